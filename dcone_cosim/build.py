@@ -1,0 +1,74 @@
+"""The one door to our own models: what a scene may say of them, and their FMUs, built on demand and cached.
+
+No other module of this package knows `fmu_src`: everything else works on an FMU's file and its model description.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from fmu_src.interface import Group, Interface, Model, Variable
+from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
+from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
+
+__all__ = ["MODELS", "Group", "Interface", "Model", "Variable"]
+
+MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
+"""The model of each phase."""
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A value that cannot work although it is within its bounds: which, as given, and what would."""
+
+    variable: str
+    given: str
+    expected: str
+
+
+def parameters(interface: Interface) -> Iterator[Variable]:
+    """The rows a scene may set."""
+    return (v for v in interface.variables if v.causality == "parameter")
+
+
+def defaults(interface: Interface) -> dict[str, float]:
+    """Start value of every parameter by FMI name, SI."""
+    return {
+        name: float(start)
+        for v in parameters(interface)
+        for name, start in zip(v.element_names(), v.starts(), strict=True)
+    }
+
+
+def out_of_reach(phase: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Refusal]:
+    """Why the net or the tether cannot reach the target; empty when they can."""
+    if phase != "capture" or "target" not in terms:
+        return []
+    from fmu_src.net_capture.reach import refusals
+
+    return [Refusal(*row) for row in refusals(dict(values))]
+
+
+def cache_folder() -> Path:
+    """Where built FMUs are kept: `DCONE_CACHE`, or the user's cache folder."""
+    given = os.environ.get("DCONE_CACHE")
+    if given:
+        return Path(given)
+    import platformdirs
+
+    return Path(platformdirs.user_cache_dir("dcone"))
+
+
+def ensure_fmu(phase: str, terms: Mapping[str, str], announce: Callable[[str], None]) -> Path:
+    """Path of the FMU of a phase's model with the given terms; it is built when the cache has none."""
+    from fmu_src.packaging.archive import build
+
+    return Path(build(MODELS[phase].interface(terms), cache_folder(), announce))
+
+
+def readable_name(phase: str, terms: Mapping[str, str]) -> str:
+    """File name of an FMU for others: the model and its terms."""
+    return "-".join([MODELS[phase].name, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"

@@ -1,0 +1,238 @@
+"""The hand-off: what the capture leaves behind becomes what the removal begins with, and a ledger proves it.
+
+Net, bullets and vertex join the target inelastically: their masses, momenta, spins and inertias add. The removal carries
+two point masses, so the spin of the joined body is dropped, and booked as dropped with its size; when it would move
+the tether's far end fast enough to change the first tug, the hand-off is refused.
+
+Frames. Positions and velocities are given in the orbital frame of the target's initial centre of mass, velocities as
+seen in that turning frame; spins are relative to inertial space, along the orbital axes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+
+Vector = npt.NDArray[np.float64]
+Values = Mapping[str, float]
+
+CAPTURE_OUTPUTS = (
+    *(f"chaser.{what}[{i}]" for what in ("position", "velocity") for i in (1, 2, 3)),
+    *(f"target.{what}[{i}]" for what in ("position", "velocity", "rate", "inertia", "spin") for i in (1, 2, 3)),
+    *(f"target.attitude[{i}]" for i in (1, 2, 3, 4)),
+    "catch.mass",
+    *(f"catch.{what}[{i}]" for what in ("position", "velocity", "spin") for i in (1, 2, 3)),
+    *(f"catch.inertia[{i}]" for i in range(1, 7)),
+    "energy.kinetic",
+)
+"""Outputs of the capture FMU that the hand-off reads."""
+
+CAPTURE_PARAMETERS = (
+    "chaser.mass",
+    "target.mass",
+    *(f"target.size[{i}]" for i in (1, 2, 3)),
+    *(f"chaser.start_velocity[{i}]" for i in (1, 2, 3)),
+)
+
+_CARRIED = ("center_position", "center_velocity", "relative_position", "relative_velocity")
+REMOVAL_SETS = ("chaser.mass", "target.mass", *(f"start.{what}[{i}]" for what in _CARRIED for i in (1, 2, 3)))
+"""Real parameters of the removal FMU that the hand-off writes, and reads back; with `start.condition` and the anomaly."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body in the orbital frame.
+
+    mass [kg], position (3,) [m], velocity (3,) as seen in the turning frame [m/s], spin (3,) about its own centre of mass
+    relative to inertial space [N m s], inertia (3, 3) about its centre of mass [kg m2], all along the orbital axes
+    """
+
+    mass: float
+    position: Vector
+    velocity: Vector
+    spin: Vector = field(default_factory=lambda: np.zeros(3))
+    inertia: Vector = field(default_factory=lambda: np.zeros((3, 3)))
+
+    def inertial_velocity(self, turning: Vector) -> Vector:
+        """u = v + w x r [m/s], along the orbital axes."""
+        return self.velocity + np.cross(turning, self.position)
+
+
+@dataclass(frozen=True)
+class Handoff:
+    """What is handed over: the bodies before, the joined body, and the removal's parameters."""
+
+    chaser: Body
+    target: Body
+    catch: Body
+    catch_energy: float
+    joint: Body
+    turning: Vector
+    parameters: dict[str, float]
+
+
+def mean_motion(altitude: float) -> float:
+    """Rate of the orbital frame on a circular orbit, n = sqrt(mu / a^3) [rad/s]; altitude over the equatorial radius [m]."""
+    axis = EARTH_EQUATORIAL_RADIUS + altitude
+    return math.sqrt(EARTH_MU / axis) / axis
+
+
+def _vector(values: Values, name: str) -> Vector:
+    return np.array([values[f"{name}[{i}]"] for i in (1, 2, 3)])
+
+
+def rotation_matrix(attitude: Vector) -> Vector:
+    """(3, 3) from body to orbital axes, of a unit quaternion, scalar first."""
+    w, x, y, z = attitude
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def join(first: Body, second: Body, turning: Vector) -> Body:
+    """The two as one rigid body after a perfectly inelastic joining.
+
+        m = m1 + m2,  r = (m1 r1 + m2 r2)/m,  H = H1 + H2 + mu d x d',  I = I1 + I2 + mu (d.d 1 - d d^T)
+
+    with mu = m1 m2/m and d = r2 - r1, d' its inertial rate.
+    """
+    mass = first.mass + second.mass
+    reduced = first.mass * second.mass / mass
+    d = second.position - first.position
+    rate = second.velocity - first.velocity + np.cross(turning, d)
+    return Body(
+        mass,
+        (first.mass * first.position + second.mass * second.position) / mass,
+        (first.mass * first.velocity + second.mass * second.velocity) / mass,
+        first.spin + second.spin + reduced * np.cross(d, rate),
+        first.inertia + second.inertia + reduced * (np.dot(d, d) * np.eye(3) - np.outer(d, d)),
+    )
+
+
+def pair_parameters(chaser: Body, target: Body) -> dict[str, float]:
+    """Masses, centre of mass and relative state of two points, under the removal's names."""
+    mass = chaser.mass + target.mass
+    vectors = {
+        "center_position": (chaser.mass * chaser.position + target.mass * target.position) / mass,
+        "center_velocity": (chaser.mass * chaser.velocity + target.mass * target.velocity) / mass,
+        "relative_position": target.position - chaser.position,
+        "relative_velocity": target.velocity - chaser.velocity,
+    }
+    parameters = {"chaser.mass": chaser.mass, "target.mass": target.mass}
+    for name, vector in vectors.items():
+        parameters |= {f"start.{name}[{i + 1}]": float(vector[i]) for i in range(3)}
+    return parameters
+
+
+def prepare(capture: Values, frame_rate: float) -> Handoff:
+    """Map the capture's outputs and parameters to the removal's parameters.
+
+    capture       `CAPTURE_OUTPUTS` and `CAPTURE_PARAMETERS` by name, SI
+    frame_rate    n, at which the orbital frame turns [rad/s]
+    """
+    turning = np.array([0.0, 0.0, frame_rate])
+    chaser = Body(capture["chaser.mass"], _vector(capture, "chaser.position"), _vector(capture, "chaser.velocity"))
+    turn = rotation_matrix(np.array([capture[f"target.attitude[{i}]"] for i in range(1, 5)]))
+    target = Body(
+        capture["target.mass"],
+        _vector(capture, "target.position"),
+        _vector(capture, "target.velocity"),
+        _vector(capture, "target.spin"),
+        turn @ np.diag(_vector(capture, "target.inertia")) @ turn.T,
+    )
+    i11, i22, i33, i12, i13, i23 = (capture[f"catch.inertia[{i}]"] for i in range(1, 7))
+    inertia = np.array([[i11, i12, i13], [i12, i22, i23], [i13, i23, i33]])
+    seen_spin = _vector(capture, "catch.spin")
+    catch = Body(
+        capture["catch.mass"],
+        _vector(capture, "catch.position"),
+        _vector(capture, "catch.velocity"),
+        seen_spin + inertia @ turning,
+        inertia,
+    )
+    # Kinetic energy of the catch about its own centre of mass, from that in the turning frame.
+    inner = capture["energy.kinetic"] - 0.5 * catch.mass * float(catch.velocity @ catch.velocity)
+    inner += float(turning @ seen_spin) + 0.5 * float(turning @ inertia @ turning)
+    joint = join(target, catch, turning)
+    return Handoff(chaser, target, catch, inner, joint, turning, pair_parameters(chaser, joint))
+
+
+def held_bodies(removal: Values) -> tuple[Body, Body]:
+    """Chaser and target as the removal's parameters say when read back."""
+    chaser_mass, target_mass = removal["chaser.mass"], removal["target.mass"]
+    mass = chaser_mass + target_mass
+    center, center_rate = _vector(removal, "start.center_position"), _vector(removal, "start.center_velocity")
+    relative, relative_rate = _vector(removal, "start.relative_position"), _vector(removal, "start.relative_velocity")
+    return (
+        Body(chaser_mass, center - target_mass / mass * relative, center_rate - target_mass / mass * relative_rate),
+        Body(target_mass, center + chaser_mass / mass * relative, center_rate + chaser_mass / mass * relative_rate),
+    )
+
+
+def spin_energy(body: Body) -> float:
+    """H . I^-1 H / 2 [J]; zero for a body without inertia."""
+    if not body.inertia.any():
+        return 0.0
+    return 0.5 * float(body.spin @ np.linalg.solve(body.inertia, body.spin))
+
+
+@dataclass(frozen=True)
+class SpinCheck:
+    """How much the dropped spin would have mattered.
+
+    attachment_speed   |H| / I_min times the target's half diagonal: how fast the tether's end may be carried about [m/s]
+    tug_speed          estimate of the speed at which the line first comes taut [m/s]
+    """
+
+    attachment_speed: float
+    tug_speed: float
+    tolerance: float
+
+    @property
+    def share(self) -> float:
+        return self.attachment_speed / self.tug_speed if self.tug_speed > 0.0 else math.inf
+
+    @property
+    def accepted(self) -> bool:
+        return self.attachment_speed <= self.tolerance * self.tug_speed
+
+
+def check_spin(
+    handed: Handoff, size: Vector, rest_length: float, thrust: float, tolerance: float
+) -> SpinCheck:
+    """Compare the speed the dropped spin gives the attachment with the relative speed of the first tug.
+
+        v_tug^2 = v_rel^2 + 2 (|F|/m_chaser) (L0 - distance)
+
+    size          edges of the target                            [m]    (3,)
+    rest_length   L0 of the tether                               [m]
+    thrust        F of the chaser                                [N]
+
+    Valid    as an estimate: gravity between hand-over and first tug is left out
+    """
+    joint, chaser = handed.joint, handed.chaser
+    smallest = float(np.linalg.eigvalsh(joint.inertia)[0])
+    arm = 0.5 * float(np.linalg.norm(size))
+    speed = float(np.linalg.norm(joint.spin)) / smallest * arm if smallest > 0.0 else 0.0
+    relative = joint.velocity - chaser.velocity
+    slack = max(0.0, rest_length - float(np.linalg.norm(joint.position - chaser.position)))
+    tug = math.sqrt(float(relative @ relative) + 2.0 * abs(thrust) / chaser.mass * slack)
+    return SpinCheck(speed, tug, tolerance)
+
+
+def without_recoil(handed: Handoff, start_velocity: Vector) -> dict[str, float]:
+    """The removal's parameters had the shot given no momentum: the same places, everything at rest but for the chaser's
+    own velocity before the shot [m/s], (3,)."""
+    chaser = Body(handed.chaser.mass, handed.chaser.position, start_velocity)
+    target = Body(handed.joint.mass, handed.joint.position, np.zeros(3))
+    return pair_parameters(chaser, target)

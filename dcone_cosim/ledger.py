@@ -1,0 +1,168 @@
+"""The ledger of a hand-off: each conserved quantity before and after, and what is knowingly missing from it.
+
+Linear momentum is booked with velocities as seen in the orbital frame of the target's initial centre of mass. Angular
+momentum and kinetic energy are booked in axes that coincide with that frame at the instant but do not turn
+(u = v + w x r, w = (0, 0, n)): only there does a spin relative to inertial space add to an orbital part. Geocentric
+sums would hide everything: 1e-12 of the geocentric angular momentum is 160 N m s.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from dcone_cosim.handoff import Body, Handoff, Values, Vector, held_bodies, spin_energy
+
+CLOSURE = 1e-12
+"""Largest difference of a row, as a share of the sum of the magnitudes that enter."""
+AXES = ("radial", "along-track", "cross-track")
+
+
+@dataclass(frozen=True)
+class LedgerRow:
+    """One conserved quantity across the hand-off.
+
+    before       sum over the bodies of the capture
+    after        sum over the bodies the removal holds, from what it was read back to hold
+    accounted    what is meant to be missing from `after`, found independently, and `account` says what it is
+    magnitude    sum of the sizes of everything that enters
+    """
+
+    quantity: str
+    unit: str
+    before: float
+    after: float
+    accounted: float
+    account: str
+    magnitude: float
+
+    @property
+    def difference(self) -> float:
+        return self.before - self.after - self.accounted
+
+    @property
+    def closure(self) -> float:
+        """|difference| as a share of the sum of magnitudes."""
+        if self.magnitude == 0.0:
+            return 0.0 if self.difference == 0.0 else math.inf
+        return abs(self.difference) / self.magnitude
+
+    @property
+    def closed(self) -> bool:
+        return self.closure <= CLOSURE
+
+    def as_dict(self) -> dict[str, str | float | bool]:
+        return {
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "before": self.before,
+            "after": self.after,
+            "accounted": self.accounted,
+            "account": self.account,
+            "difference": self.difference,
+            "sum_of_magnitudes": self.magnitude,
+            "relative_closure": self.closure,
+            "closed": self.closed,
+        }
+
+
+def ledger(handed: Handoff, removal: Values) -> list[LedgerRow]:
+    """Every conserved quantity, before from the capture, after from what the removal was read back to hold."""
+    before = [handed.chaser, handed.target, handed.catch]
+    after = list(held_bodies(removal))
+    turning = handed.turning
+    rows = [
+        LedgerRow(
+            "mass", "kg", sum(b.mass for b in before), sum(b.mass for b in after), 0.0, "", sum(b.mass for b in before)
+        )
+    ]
+    for axis, label in enumerate(("radial", "along-track", "cross-track")):
+        parts = [b.mass * float(b.velocity[axis]) for b in before]
+        rows.append(
+            LedgerRow(
+                f"linear momentum, {label}",
+                "N s",
+                math.fsum(parts),
+                math.fsum(b.mass * float(b.velocity[axis]) for b in after),
+                0.0,
+                "",
+                sum(b.mass * float(np.linalg.norm(b.velocity)) for b in before),
+            )
+        )
+    rows += _angular_rows(before, after, handed.joint, turning)
+    rows.append(_energy_row(handed, after))
+    return rows
+
+
+def _orbital_parts(bodies: list[Body], turning: Vector) -> list[Vector]:
+    """Angular momentum of each body's centre of mass about the joint centre of mass, non-turning axes [N m s]."""
+    mass = sum(b.mass for b in bodies)
+    center = sum((b.mass * b.position for b in bodies), np.zeros(3)) / mass
+    rate = sum((b.mass * b.velocity for b in bodies), np.zeros(3)) / mass
+    parts = []
+    for b in bodies:
+        arm = b.position - center
+        parts.append(b.mass * np.cross(arm, b.velocity - rate + np.cross(turning, arm)))
+    return parts
+
+
+def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: Vector) -> list[LedgerRow]:
+    orbital, kept = _orbital_parts(before, turning), _orbital_parts(after, turning)
+    moved = sum(_orbital_parts(before[1:], turning), np.zeros(3))
+    spins = [b.spin for b in before]
+    size = sum(float(np.linalg.norm(p)) for p in orbital)
+    size_spin = sum(float(np.linalg.norm(p)) for p in (*spins, moved))
+    rows = []
+    for axis, label in enumerate(("radial", "along-track", "cross-track")):
+        rows.append(
+            LedgerRow(
+                f"angular momentum, orbital part, {label}",
+                "N m s",
+                math.fsum(float(p[axis]) for p in orbital),
+                math.fsum(float(p[axis]) for p in kept),
+                float(moved[axis]),
+                "became spin when the net joined the target",
+                size,
+            )
+        )
+    for axis, label in enumerate(("radial", "along-track", "cross-track")):
+        rows.append(
+            LedgerRow(
+                f"angular momentum, spin part, {label}",
+                "N m s",
+                math.fsum(float(p[axis]) for p in (*spins, moved)),
+                0.0,
+                float(joint.spin[axis]),
+                "dropped: a point target has no spin",
+                size_spin,
+            )
+        )
+    return rows
+
+
+def _energy_row(handed: Handoff, after: list[Body]) -> LedgerRow:
+    turning = handed.turning
+
+    def of_motion(body: Body) -> float:
+        velocity = body.inertial_velocity(turning)
+        return 0.5 * body.mass * float(velocity @ velocity)
+
+    before = [of_motion(b) for b in (handed.chaser, handed.target, handed.catch)]
+    before += [spin_energy(handed.target), handed.catch_energy]
+    dropped = spin_energy(handed.joint)
+    target, catch = handed.target, handed.catch
+    closing = catch.inertial_velocity(turning) - target.inertial_velocity(turning)
+    reduced = target.mass * catch.mass / handed.joint.mass
+    meeting = 0.5 * reduced * float(closing @ closing)
+    lost = meeting + spin_energy(target) + handed.catch_energy - dropped
+    return LedgerRow(
+        "kinetic energy",
+        "J",
+        math.fsum(before),
+        math.fsum(of_motion(b) for b in after),
+        lost + dropped,
+        f"{lost:.6g} J lost where net and target become one body, {dropped:.6g} J dropped with the spin",
+        math.fsum(abs(e) for e in before),
+    )

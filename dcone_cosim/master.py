@@ -1,0 +1,299 @@
+"""The master: runs the phases of a scene one after the other, and hands over between them.
+
+    build (elsewhere) -> capture FMU -> hand-off as a transaction -> removal FMU
+
+It knows the FMUs by the names of `contract` and `handoff` alone. Failures on the way do not throw away what was reached:
+they end up in the `RunResult`, whose `exit_code` says what happened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from dcone_cosim.component import Steppable
+from dcone_cosim.contract import HANDED_OVER
+from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
+from dcone_cosim.handoff import (
+    CAPTURE_OUTPUTS,
+    CAPTURE_PARAMETERS,
+    REMOVAL_SETS,
+    Handoff,
+    SpinCheck,
+    check_spin,
+    mean_motion,
+    prepare,
+    without_recoil,
+)
+from dcone_cosim.ledger import LedgerRow, ledger
+from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
+from dcone_cosim.progress import Progress
+from dcone_cosim.scene import PhaseScene, Scene
+
+Instantiate = Callable[[str, str], Steppable]
+"""`instantiate(phase, name)` makes a component of that phase's FMU."""
+
+CROSS_CHECK = 1e-4
+"""Relative agreement asked of what the removal computes with what was handed over. It forms its outputs in the frame of
+the pair's centre of mass, which is turned and turns a little differently: by the offset over the radius, 3e-6 for 20 m."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """A size the removal computes from what it was handed, against the same size before."""
+
+    quantity: str
+    given: float
+    found: float
+    tolerance: float
+    unit: str
+
+
+@dataclass
+class HandoffRecord:
+    """The transaction as it went: what was mapped, its ledger, the spin check, and why it failed if it did."""
+
+    time: float
+    located_by: str
+    handed: Handoff
+    spin: SpinCheck
+    rows: list[LedgerRow] = field(default_factory=list)
+    checks: list[Check] = field(default_factory=list)
+    failure: str = ""
+
+
+@dataclass
+class RunResult:
+    """All that a run leaves behind."""
+
+    scene: Scene
+    phases: dict[str, PhaseResult] = field(default_factory=dict)
+    parameters: dict[str, dict[str, float]] = field(default_factory=dict)
+    handoff: HandoffRecord | None = None
+    comparison: PhaseResult | None = None
+    status: str = "completed"
+    message: str = ""
+    exit_code: int = SUCCESS
+
+    def fail(self, status: str, message: str, exit_code: int) -> None:
+        self.status, self.message, self.exit_code = status, message, exit_code
+
+
+def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> RunResult:
+    """Run every phase of the scene; a fault of an FMU before its first step is an `InputError`, since it is the
+    parameters that it refuses."""
+    run = RunResult(scene)
+    phases = {phase.name: phase for phase in scene.phases}
+    if "capture" in phases:
+        _run_capture(run, phases["capture"], instantiate, progress, then_removal="removal" in phases)
+        if run.exit_code != SUCCESS:
+            return run
+    if "removal" in phases:
+        _run_removal(run, phases["removal"], instantiate, progress)
+    return run
+
+
+def _start(component: Steppable, parameters: Mapping[str, float], start: float, duration: float) -> dict[str, float]:
+    """Set parameters and initialise; returns every parameter read back."""
+    component.set(parameters)
+    component.initialise(start, start + duration)
+    return parameters_of(component, parameters)
+
+
+def _run_capture(
+    run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress, then_removal: bool
+) -> None:
+    component = instantiate("capture", "capture")
+    try:
+        try:
+            run.parameters["capture"] = _start(component, phase.parameters, 0.0, phase.duration)
+            plan = CapturePlan(
+                phase.macro_step,
+                phase.duration,
+                str(phase.options.get("hand_over", "captured")),
+                then_removal,
+                float(phase.options.get("after_capture", np.inf)),
+                phase.options.get("snapshots", ()),
+            )
+            loop = CaptureLoop(component, plan, progress)
+        except FmuError as error:
+            raise InputError(f"{run.scene.title}: the capture cannot begin\n  {error}") from error
+        progress.begin("capture", 0.0, phase.duration)
+        result = loop.run()
+        progress.end()
+        run.phases["capture"] = result
+        if result.error is not None:
+            run.fail("FMU failed", str(result.error), FMU_FAILED)
+        elif result.located is None:
+            waited = f"not {plan.hand_over}" if result.outcome in ("flying", "captured", "settled") else result.outcome
+            text = f"capture failed: {waited.replace('_', ' ')} at t = {result.end:.6g} s (outcome {result.outcome})"
+            run.fail("capture failed", text, CAPTURE_FAILED)
+        elif then_removal:
+            names = [n for n in (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS) if n in component.variables]
+            missing = [n for n in (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS) if n not in component.variables]
+            if missing:
+                text = f"the capture FMU lacks what a hand-off reads: {', '.join(missing)}"
+                run.fail("hand-off refused", text, HANDOFF_FAILED)
+                return
+            removal = next(p for p in run.scene.phases if p.name == "removal")
+            handed = prepare(component.get(names), mean_motion(_altitude(run, removal)))
+            run.handoff = HandoffRecord(result.located, result.located_by, handed, SpinCheck(0.0, 0.0, 0.0))
+    finally:
+        component.close()
+
+
+def _altitude(run: RunResult, removal: PhaseScene) -> float:
+    given = removal.parameters.get("orbit.altitude")
+    return float(removal.defaults["orbit.altitude"] if given is None else given)
+
+
+def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress) -> None:
+    parameters, start = dict(phase.parameters), 0.0
+    record = run.handoff
+    if record is not None:
+        start = record.time
+        parameters |= record.handed.parameters
+        anomaly = parameters.get("orbit.true_anomaly", phase.defaults.get("orbit.true_anomaly", 0.0))
+        parameters["orbit.true_anomaly"] = advanced(anomaly, record.handed.turning[2] * start)
+        parameters["start.condition"] = phase.choice("start.condition", HANDED_OVER)
+        try:
+            _check_before(run, phase, record)
+        except HandoffError as error:
+            record.failure = str(error)
+            run.fail("hand-off refused", str(error), HANDOFF_FAILED)
+            return
+    component = instantiate("removal", "removal")
+    try:
+        try:
+            run.parameters["removal"] = _start(component, parameters, start, phase.duration)
+            loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress)
+        except FmuError as error:
+            if record is None:
+                raise InputError(f"{run.scene.title}: the removal cannot begin\n  {error}") from error
+            record.failure = str(error)
+            run.fail("hand-off violated", f"the removal does not accept what is handed over\n  {error}", HANDOFF_FAILED)
+            return
+        if record is not None:
+            try:
+                _close_ledger(record, component)
+            except HandoffError as error:
+                record.failure = str(error)
+                run.fail("hand-off violated", str(error), HANDOFF_FAILED)
+                return
+        progress.begin("removal", start, start + phase.duration)
+        result = loop.run()
+        progress.end()
+    finally:
+        component.close()
+    run.phases["removal"] = result
+    if result.error is not None:
+        run.fail("FMU failed", str(result.error), FMU_FAILED)
+    elif record is not None and run.scene.handoff.get("compare_without_recoil", True):
+        run.comparison = _compare(run, phase, parameters, instantiate, progress)
+
+
+def advanced(anomaly: float, by: float) -> float:
+    """True anomaly on a circular orbit moved on [rad], kept within one turn, as the removal's bounds ask."""
+    return float(np.remainder(anomaly + by, 2.0 * np.pi))
+
+
+def _check_before(run: RunResult, phase: PhaseScene, record: HandoffRecord) -> None:
+    """Refuse a hand-off that the removal could not carry truthfully."""
+
+    def value(name: str, absent: float) -> float:
+        return float(phase.parameters.get(name, phase.defaults.get(name, absent)))
+
+    capture = run.parameters["capture"]
+    size = np.array([capture[f"target.size[{i}]"] for i in (1, 2, 3)])
+    rest_length = value("tether.rest_length", value("reel.length", np.inf))
+    tolerance = float(run.scene.handoff.get("spin_tolerance", 0.1))
+    handed = record.handed
+    distance = float(np.linalg.norm(handed.joint.position - handed.chaser.position))
+    slack = rest_length if np.isfinite(rest_length) else distance
+    spin = check_spin(handed, size, slack, value("thrust.level", 0.0), tolerance)
+    record.spin = spin
+    if "tether.rest_length" in phase.defaults and distance > rest_length:
+        raise HandoffError(
+            f"hand-off refused: at t = {record.time:.6g} s target and chaser are {distance:.6g} m apart, "
+            f"the tether is {rest_length:.6g} m long; give it more, or shoot from nearer"
+        )
+    if not spin.accepted:
+        raise HandoffError(
+            "hand-off refused: the removal's point target cannot carry the spin, and the spin would change the answer\n"
+            f"  spin of target and net {float(np.linalg.norm(handed.joint.spin)):.4g} N m s "
+            f"moves the tether's end at up to {spin.attachment_speed:.4g} m/s,\n"
+            f"  {spin.share:.3g} times the {spin.tug_speed:.4g} m/s of the first tug; "
+            f"handoff.spin_tolerance allows {spin.tolerance:g}\n"
+            "  a removal whose target is a rigid body would carry it"
+        )
+
+
+def _close_ledger(record: HandoffRecord, component: Steppable) -> None:
+    """Read back what the removal holds, fill the ledger, and compare what it computed from it."""
+    missing = [name for name in REMOVAL_SETS if name not in component.variables]
+    if missing:
+        raise HandoffError(f"hand-off violated: the removal FMU lacks {', '.join(missing)}")
+    held = component.get(REMOVAL_SETS)
+    record.rows = ledger(record.handed, held)
+    record.checks = _cross_check(record.handed, component)
+    broken = [
+        f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}, "
+        f"difference {row.difference:.3g} {row.unit} is {row.closure:.3g} of the sum of magnitudes"
+        for row in record.rows
+        if not row.closed
+    ]
+    broken += [
+        f"{c.quantity}: handed over {c.given:.12g} {c.unit}, the removal computes {c.found:.12g} {c.unit}"
+        for c in record.checks
+        if not abs(c.found - c.given) <= c.tolerance
+    ]
+    if broken:
+        raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
+
+
+def _cross_check(handed: Handoff, component: Steppable) -> list[Check]:
+    """Sizes that do not depend on the frame they are formed in, as far as the component gives the outputs for them."""
+    joint, chaser = handed.joint, handed.chaser
+    relative, rate = joint.position - chaser.position, joint.velocity - chaser.velocity
+    distance, speed = float(np.linalg.norm(relative)), float(np.linalg.norm(rate))
+    turned = CROSS_CHECK * (speed + float(np.linalg.norm(handed.turning)) * distance)
+    expected = [
+        ("separation", ("separation",), distance, CROSS_CHECK * distance, "m"),
+        ("size of relative.position", _elements("relative.position"), distance, CROSS_CHECK * distance, "m"),
+        ("size of relative.velocity", _elements("relative.velocity"), speed, turned, "m/s"),
+    ]
+    checks = []
+    for label, names, given, tolerance, unit in expected:
+        if all(name in component.variables for name in names):
+            found = component.get(names)
+            checks.append(Check(label, given, float(np.linalg.norm([found[n] for n in names])), tolerance, unit))
+    return checks
+
+
+def _elements(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}[{i}]" for i in (1, 2, 3))
+
+
+def _compare(
+    run: RunResult, phase: PhaseScene, parameters: dict[str, Any], instantiate: Instantiate, progress: Progress
+) -> PhaseResult | None:
+    """The same removal with the shot's momentum left out: what the recoil changes."""
+    record = run.handoff
+    assert record is not None
+    capture = run.parameters["capture"]
+    velocity = np.array([capture[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
+    component = instantiate("removal", "removal without recoil")
+    try:
+        _start(component, parameters | without_recoil(record.handed, velocity), record.time, phase.duration)
+        loop = RemovalLoop(component, phase.macro_step, record.time, phase.duration, progress)
+        progress.begin("removal without recoil", record.time, record.time + phase.duration)
+        result = loop.run()
+        progress.end()
+    except FmuError:
+        return None
+    finally:
+        component.close()
+    return result if result.error is None else None

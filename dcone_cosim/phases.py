@@ -1,0 +1,289 @@
+"""The two phases as loops over communication points, each on one component; what they leave is a `PhaseResult`.
+
+Every communication point is start + i * macro_step, from an integer, so nothing accumulates.
+"""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dcone_cosim.component import Readable, Steppable, output_names
+from dcone_cosim.contract import FAILED_OUTCOMES, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
+from dcone_cosim.errors import FmuError
+from dcone_cosim.progress import Progress
+from dcone_cosim.recorder import Recorder, Snapshots, TugLog
+
+LOCATED_TO = 1e-6
+"""How closely the instant of a hand-over is located by halving [s]."""
+
+
+@dataclass(frozen=True)
+class CapturePlan:
+    """What the capture loop is asked to do.
+
+    hand_over      the trigger (see `contract.HAND_OVER`)
+    stop_there     end at the trigger, since a removal follows; otherwise go on
+    after_capture  go on for this long after the trigger [s]
+    snapshots      when to keep node positions [s]; empty: evenly spread
+    """
+
+    macro_step: float
+    duration: float
+    hand_over: str = "captured"
+    stop_there: bool = False
+    after_capture: float = math.inf
+    snapshots: Sequence[float] = ()
+
+
+@dataclass
+class PhaseResult:
+    """What a phase leaves: its columns, and how it came out.
+
+    outcome      capture: name of its outcome; removal: "towed"
+    located      instant of the hand-over [s] and how it was found, None when there was none
+    error        the failure that ended the phase early
+    """
+
+    name: str
+    start: float
+    recorder: Recorder
+    snapshots: Snapshots = field(default_factory=Snapshots)
+    tugs: TugLog | None = None
+    outcome: str = ""
+    located: float | None = None
+    located_by: str = ""
+    steps: int = 0
+    cpu: float = 0.0
+    wall: float = 0.0
+    error: FmuError | None = None
+
+    @property
+    def end(self) -> float:
+        return float(self.recorder["time"][-1]) if len(self.recorder) else self.start
+
+
+class _Stopwatch:
+    def __init__(self, result: PhaseResult) -> None:
+        self.result = result
+
+    def __enter__(self) -> None:
+        self.cpu, self.wall = clock.process_time(), clock.perf_counter()
+
+    def __exit__(self, *_: object) -> None:
+        self.result.cpu = clock.process_time() - self.cpu
+        self.result.wall = clock.perf_counter() - self.wall
+
+
+def grid_steps(duration: float, macro_step: float) -> int:
+    """Number of macro steps that cover the duration; the last one may be shorter."""
+    return max(1, math.ceil(duration / macro_step - 1e-9))
+
+
+class CaptureLoop:
+    """Steps a capture FMU until it has handed over, failed, or run out of time."""
+
+    def __init__(self, component: Steppable, plan: CapturePlan, progress: Progress) -> None:
+        self.component = component
+        self.plan = plan
+        self.progress = progress
+        names = output_names(component.variables, without=(NODE_PREFIX,))
+        self.read = component.reader(names)
+        self.place = {name: i for i, name in enumerate(self.read.names)}
+        nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
+        self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
+        self.tether_length = math.inf
+        if plan.hand_over == "tether_taut":
+            self._need("tether.paid_out")
+            self.tether_length = component.get(["tether.length"])["tether.length"]
+        self._need("settled" if plan.hand_over == "settled" else "captured")
+        self.result = PhaseResult(
+            component.name,
+            0.0,
+            Recorder(self.read.names, component.variables, grid_steps(plan.duration, plan.macro_step) + 3),
+            Snapshots(plan.snapshots),
+        )
+
+    def _need(self, name: str) -> None:
+        if name not in self.place:
+            raise FmuError(f"{self.component.name}: handing over when {self.plan.hand_over} needs the output {name}")
+
+    def triggered(self) -> bool:
+        """Whether the row read last says that it is time to hand over."""
+        values = self.read.values
+        if self.plan.hand_over == "settled":
+            return bool(values[self.place["settled"]])
+        captured = bool(values[self.place["captured"]])
+        if self.plan.hand_over == "captured":
+            return captured
+        return captured and bool(values[self.place["tether.paid_out"]] >= self.tether_length)
+
+    def outcome(self) -> str:
+        if "outcome" not in self.place:
+            return "captured" if bool(self.read.values[self.place["captured"]]) else "flying"
+        number = int(self.read.values[self.place["outcome"]])
+        return OUTCOMES[number] if number in range(len(OUTCOMES)) else f"outcome {number}"
+
+    def run(self) -> PhaseResult:
+        result = self.result
+        with _Stopwatch(result):
+            try:
+                self._run()
+            except FmuError as error:
+                result.error = error
+        return result
+
+    def _record(self, time: float, force: bool = False) -> None:
+        self.result.recorder.add(time, self.read())
+        if self.read_nodes is not None and (self.result.snapshots.due(time, 1e-9) or force):
+            count = int(self.read.values[self.place["net.nodes"]]) if "net.nodes" in self.place else None
+            positions = self.read_nodes().reshape(-1, 3)
+            self.result.snapshots.add(time, positions[:count])
+
+    def _run(self) -> None:
+        plan, result, component = self.plan, self.result, self.component
+        self._record(0.0)
+        last = plan.duration
+        for i in range(grid_steps(plan.duration, plan.macro_step)):
+            begin, end = i * plan.macro_step, min((i + 1) * plan.macro_step, last)
+            if begin >= last:
+                break
+            searching = result.located is None
+            if searching and component.can_save:
+                component.save()
+            component.step(begin, end - begin)
+            result.steps += 1
+            self.read()
+            if searching and self.triggered():
+                at = self._locate(begin, end)
+                result.located = at
+                last = min(plan.duration, at if plan.stop_there else at + plan.after_capture)
+                self._record(at, force=True)
+                if plan.stop_there:
+                    break
+                end = min(end, last)
+                if at < end:
+                    component.step(at, end - at)
+                    self._record(end)
+            else:
+                self._record(end)
+            result.outcome = self.outcome()
+            self.progress.at(end)
+            if result.outcome in FAILED_OUTCOMES and result.located is None:
+                break
+        self.read()
+        result.outcome = self.outcome()
+
+    def _locate(self, begin: float, end: float) -> float:
+        """Instant of the trigger in the step just taken; the component is left there.
+
+        Goes to `t_capture` when the FMU reports it in the step, otherwise halves the step down to `LOCATED_TO`.
+        """
+        component, result = self.component, self.result
+        place = self.place.get("t_capture")
+        reported = float(self.read.values[place]) if place is not None and self.plan.hand_over == "captured" else -1.0
+        if not component.can_save:
+            result.located_by = f"end of the macro step of {end - begin:g} s: this FMU cannot save its state"
+            if begin < reported <= end:
+                result.located_by += f" (it reports {reported:.9g} s)"
+            return end
+        low, high = begin, end
+        component.restore()
+        if begin < reported < end:
+            component.step(begin, reported - begin)
+            self.read()
+            if self.triggered():
+                result.located_by = "the FMU's own t_capture, reached from its saved state"
+                return reported
+            low = reported
+            component.save()
+        elif reported == end:
+            component.step(begin, end - begin)
+            result.located_by = "the FMU's own t_capture"
+            return end
+        while high - low > LOCATED_TO:
+            middle = 0.5 * (low + high)
+            component.step(low, middle - low)
+            self.read()
+            if self.triggered():
+                high = middle
+                component.restore()
+            else:
+                low = middle
+                component.save()
+        component.step(low, high - low)
+        result.located_by = f"halving the macro step to {high - low:.2g} s"
+        return high
+
+
+class RemovalLoop:
+    """Steps a removal FMU for its duration and gathers its tugs."""
+
+    def __init__(
+        self, component: Steppable, macro_step: float, start: float, duration: float, progress: Progress
+    ) -> None:
+        self.component = component
+        self.macro_step, self.start, self.duration = macro_step, start, duration
+        self.progress = progress
+        self.read = component.reader(output_names(component.variables, without=(NODE_PREFIX, TUG_PREFIX)))
+        place = {name: i for i, name in enumerate(self.read.names)}
+        self.count_at, self.taut_at = place.get("tether.tug_count"), place.get("tether.taut")
+        ring = 0
+        while all(f"{TUG_PREFIX}{ring + 1}].{field}" in component.variables for field in TUG_FIELDS):
+            ring += 1
+        names = [f"{TUG_PREFIX}{i}].{field}" for i in range(1, ring + 1) for field in TUG_FIELDS]
+        self.read_ring: Readable | None = component.reader(names) if ring and self.count_at is not None else None
+        self.result = PhaseResult(
+            component.name,
+            start,
+            Recorder(self.read.names, component.variables, grid_steps(duration, macro_step) + 1),
+            tugs=TugLog(ring) if self.read_ring is not None else None,
+        )
+
+    def run(self) -> PhaseResult:
+        result = self.result
+        with _Stopwatch(result):
+            try:
+                self._run()
+                result.outcome = "towed"
+            except FmuError as error:
+                result.error = error
+                result.outcome = "stopped"
+        return result
+
+    def _record(self, time: float, was_taut: bool) -> bool:
+        """Add a row; true when a tug may still be growing."""
+        values = self.read()
+        self.result.recorder.add(time, values)
+        tugs = self.result.tugs
+        if tugs is None or self.read_ring is None or self.count_at is None:
+            return False
+        taut = self.taut_at is None or bool(values[self.taut_at])
+        count = int(values[self.count_at])
+        if count and (count != tugs.count or taut or was_taut):
+            tugs.update(count, self.read_ring().reshape(tugs.ring, len(TUG_FIELDS)))
+        return taut
+
+    def _run(self) -> None:
+        component, result = self.component, self.result
+        steps = grid_steps(self.duration, self.macro_step)
+        stop = self.start + self.duration
+        taut = self._record(self.start, False)
+        for i in range(steps):
+            begin = self.start + i * self.macro_step
+            end = stop if i == steps - 1 else self.start + (i + 1) * self.macro_step
+            component.step(begin, end - begin)
+            result.steps += 1
+            taut = self._record(end, taut)
+            self.progress.at(end)
+
+
+def parameters_of(component: Steppable, given: Mapping[str, float]) -> dict[str, float]:
+    """Every parameter of the component as it now stands: what was given and what was left at its start value."""
+    names = [v.name for v in component.variables.values() if v.causality == "parameter"]
+    present = component.get(names) if names else {}
+    return {name: present.get(name, float(np.nan)) for name in dict.fromkeys((*given, *names))}

@@ -1,0 +1,114 @@
+"""How a run shows what it is doing: a bar on a terminal, plain lines elsewhere, or nothing."""
+
+from __future__ import annotations
+
+import time as clock
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+INTERVAL = 0.1
+"""Least wall time between two updates of the bar [s]."""
+
+
+class Progress:
+    """Silent; the others show more."""
+
+    def say(self, text: str) -> None:
+        """One line about what begins now."""
+
+    def begin(self, phase: str, start: float, stop: float) -> None:
+        """A phase begins, from `start` to at most `stop` [s]."""
+
+    def at(self, time: float) -> None:
+        """The phase has reached this simulated time [s]."""
+
+    def end(self) -> None:
+        """The phase is over."""
+
+    def close(self) -> None:
+        """Leave the terminal as it was."""
+
+
+class Lines(Progress):
+    """One plain line per phase, for logs."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._phase = ""
+        self._start = self._reached = self._began = 0.0
+
+    def say(self, text: str) -> None:
+        self._console.print(text, markup=False, highlight=False)
+
+    def begin(self, phase: str, start: float, stop: float) -> None:
+        self._phase, self._start, self._reached = phase, start, start
+        self._began = clock.perf_counter()
+
+    def at(self, time: float) -> None:
+        self._reached = time
+
+    def end(self) -> None:
+        wall = max(clock.perf_counter() - self._began, 1e-9)
+        simulated = self._reached - self._start
+        self.say(f"{self._phase}: {simulated:.6g} s simulated in {wall:.2f} s, {simulated / wall:.4g} times real time")
+
+
+class Bar(Progress):
+    """A progress bar with phase, simulated time and speed."""
+
+    def __init__(self, console: Console) -> None:
+        from rich.progress import BarColumn, SpinnerColumn, TextColumn
+        from rich.progress import Progress as RichProgress
+
+        self._bar = RichProgress(
+            SpinnerColumn(),
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=32),
+            TextColumn("{task.fields[state]}"),
+            console=console,
+            transient=False,
+        )
+        self._bar.start()
+        self._task: Any = None
+        self._building: Any = None
+        self._start = self._stop = self._began = self._shown = 0.0
+
+    def say(self, text: str) -> None:
+        self._finish_building()
+        self._building = self._bar.add_task(text, total=None, state="")
+
+    def _finish_building(self) -> None:
+        if self._building is not None:
+            self._bar.update(self._building, total=1, completed=1)
+            self._building = None
+
+    def begin(self, phase: str, start: float, stop: float) -> None:
+        self._finish_building()
+        self._start, self._stop = start, stop
+        self._began = clock.perf_counter()
+        self._shown = 0.0
+        self._task = self._bar.add_task(phase, total=max(stop - start, 1e-12), state="")
+
+    def at(self, time: float) -> None:
+        now = clock.perf_counter()
+        if now - self._shown >= INTERVAL:
+            self._shown = now
+            self._show(time, now)
+        self._last = time
+
+    def _show(self, time: float, now: float) -> None:
+        simulated = time - self._start
+        speed = simulated / max(now - self._began, 1e-9)
+        state = f"{time:,.1f} of {self._stop:,.0f} s simulated, {speed:,.0f} s per second"
+        self._bar.update(self._task, completed=simulated, state=state)
+
+    def end(self) -> None:
+        now = clock.perf_counter()
+        self._show(self._last, now)
+        self._bar.update(self._task, total=max(self._last - self._start, 1e-12))
+
+    def close(self) -> None:
+        self._finish_building()
+        self._bar.stop()

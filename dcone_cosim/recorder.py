@@ -1,0 +1,114 @@
+"""Columns of a phase, filled one row per communication point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from dcone_cosim.component import VariableInfo
+
+Row = npt.NDArray[np.float64]
+
+
+class Recorder:
+    """Rows of numbers under fixed names, each with its unit and kind; the first column is the time [s].
+
+    The table grows by doubling, so a row costs one copy.
+    """
+
+    def __init__(self, names: Sequence[str], variables: Mapping[str, VariableInfo], expected_rows: int = 256) -> None:
+        self.names = ("time", *names)
+        self.units = {"time": "s"} | {name: variables[name].unit for name in names}
+        self.kinds = {"time": "Real"} | {name: variables[name].kind for name in names}
+        self._table = np.empty((max(expected_rows, 1), len(self.names)))
+        self._rows = 0
+        self._place = {name: i for i, name in enumerate(self.names)}
+
+    def __len__(self) -> int:
+        return self._rows
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._place
+
+    def add(self, time: float, values: Row) -> None:
+        if self._rows == len(self._table):
+            self._table = np.concatenate([self._table, np.empty_like(self._table)])
+        self._table[self._rows, 0] = time
+        self._table[self._rows, 1:] = values
+        self._rows += 1
+
+    def __getitem__(self, name: str) -> Row:
+        """One column."""
+        column: Row = self._table[: self._rows, self._place[name]]
+        return column
+
+    def vector(self, name: str, size: int = 3) -> Row:
+        """Columns `name[1]` to `name[size]` side by side, shape (rows, size)."""
+        return np.column_stack([self[f"{name}[{i}]"] for i in range(1, size + 1)])
+
+    def last(self) -> dict[str, float]:
+        """The latest row by name, without the time."""
+        return dict(zip(self.names[1:], self._table[self._rows - 1, 1:].tolist(), strict=True))
+
+    def column(self, name: str) -> npt.NDArray[np.float64] | npt.NDArray[np.int64] | npt.NDArray[np.bool_]:
+        """One column in the type of its variable."""
+        kind = self.kinds[name]
+        return self[name] if kind == "Real" else self[name].astype(np.int64 if kind == "Integer" else np.bool_)
+
+
+class Snapshots:
+    """Node positions at some of the communication points.
+
+    times        record at the first communication point at or after each; empty: evenly thinned, at most `limit` are kept
+    """
+
+    def __init__(self, times: Sequence[float] = (), limit: int = 64) -> None:
+        self.times: list[float] = []
+        self.nodes: list[Row] = []
+        self._wanted = sorted(times)
+        self._asked = bool(times)
+        self._limit = limit
+        self._stride = 1
+        self._seen = 0
+
+    def due(self, time: float, tolerance: float) -> bool:
+        """Whether to record at this communication point; asked once for each."""
+        if self._asked:
+            due = False
+            while self._wanted and self._wanted[0] <= time + tolerance:
+                self._wanted.pop(0)
+                due = True
+            return due
+        self._seen += 1
+        return (self._seen - 1) % self._stride == 0
+
+    def add(self, time: float, positions: Row) -> None:
+        """positions: (nodes, 3) [m]"""
+        self.times.append(time)
+        self.nodes.append(positions.copy())
+        if not self._asked and len(self.times) > self._limit:
+            self.times, self.nodes = self.times[::2], self.nodes[::2]
+            self._stride *= 2
+
+
+class TugLog:
+    """Every tug once, gathered from the ring of the latest that the FMU keeps, by its running count."""
+
+    def __init__(self, ring: int) -> None:
+        self.ring = ring
+        self.count = 0
+        self.rows: dict[int, tuple[float, float, float]] = {}
+
+    def update(self, count: int, latest: Row) -> None:
+        """latest: time [s], peak [N], speed [m/s] of each tug in the ring, newest first, shape (ring, 3)"""
+        self.count = count
+        for place in range(min(count, self.ring)):
+            time, peak, speed = latest[place].tolist()
+            self.rows[count - place] = (time, peak, speed)
+
+    @property
+    def missed(self) -> int:
+        """Tugs that left the ring before it was read: the macro step was too long to see them."""
+        return self.count - len(self.rows)

@@ -1,0 +1,134 @@
+"""Values of a scene: what a key expects, and how a text with a unit becomes an SI number.
+
+A dimensional value is a string with its unit ("24 m", "5 deg/s"); a pure number is bare. A bare number for a length, or
+a mass where a length belongs, is thus an error that can name what was expected.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import astropy.units as u
+
+
+class Unexpected(ValueError):
+    """A value that does not fit; the text says what was expected."""
+
+
+@lru_cache(maxsize=256)
+def unit_of(fmi_unit: str) -> Any:
+    """The astropy unit of an FMI unit name such as "N.s/m"."""
+    return u.dimensionless_unscaled if fmi_unit == "1" else u.Unit(fmi_unit)
+
+
+def spoken(fmi_unit: str) -> str:
+    """An FMI unit as a person writes it: "N.m.s" is "N m s"."""
+    return fmi_unit.replace(".", " ").replace("1/s", "/s") if fmi_unit != "1" else ""
+
+
+def dimension_of(unit: Any) -> str:
+    """Name of the dimension, the shortest astropy knows: "length", "pressure"; the unit itself when it has no name."""
+    names = [name for name in unit.physical_type if name != "unknown"]
+    preferred = {"speed", "pressure", "torque", "energy", "angular speed", "momentum", "force", "mass density"}
+    chosen = [name for name in names if name in preferred] or sorted(names, key=len)
+    return chosen[0] if chosen else f"quantity in {unit}"
+
+
+def _article(noun: str) -> str:
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a key of a scene takes, and the way from there to SI.
+
+    unit       FMI unit of the SI value, "1" for a pure number
+    size       0 for a scalar, otherwise the number of elements of a list
+    choices    names of an Integer's values
+    example    a value as a scene would write it
+    refusal    why an SI value is out of bounds, or None
+    """
+
+    unit: str
+    kind: str = "Real"
+    size: int = 0
+    choices: tuple[str, ...] = ()
+    example: str = ""
+    refusal: Callable[[float], str | None] = lambda value: None
+
+    def read(self, value: object) -> float | list[float]:
+        """SI value, or `Unexpected`."""
+        if not self.size:
+            return self._scalar(value)
+        if not isinstance(value, list) or len(value) != self.size:
+            raise Unexpected(f"expected a list of {self.size}, each {self._wanted()}")
+        numbers = []
+        for place, element in enumerate(value, start=1):
+            try:
+                numbers.append(self._scalar(element))
+            except Unexpected as error:
+                raise Unexpected(f"element {place}: {error}") from None
+        return numbers
+
+    def _wanted(self) -> str:
+        if self.choices:
+            return f"one of {', '.join(self.choices)}"
+        if self.kind == "Boolean":
+            return "true or false"
+        if self.kind == "Integer":
+            return f"a whole number, such as {self.example}"
+        if self.unit == "1":
+            return f"a bare number, such as {self.example}"
+        return f'{_article(dimension_of(unit_of(self.unit)))} with its unit, such as "{self.example}"'
+
+    def _scalar(self, value: object) -> float:
+        if self.choices:
+            if value not in self.choices:
+                raise Unexpected(f"expected {self._wanted()}")
+            return float(self.choices.index(str(value)))
+        if self.kind == "Boolean":
+            if not isinstance(value, bool):
+                raise Unexpected(f"expected {self._wanted()}")
+            return float(value)
+        number = self._bare(value) if self.unit == "1" else self._quantity(value)
+        reason = self.refusal(number) if math.isfinite(number) else "must be finite"
+        if reason:
+            raise Unexpected(f"{reason}; expected {self._wanted()}")
+        return number
+
+    def _bare(self, value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise Unexpected(f"expected {self._wanted()}")
+        if self.kind == "Integer" and not isinstance(value, int):
+            raise Unexpected(f"expected {self._wanted()}")
+        return float(value)
+
+    def _quantity(self, value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float | str):
+            raise Unexpected(f"expected {self._wanted()}")
+        if not isinstance(value, str):
+            raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
+        try:
+            quantity = u.Quantity(value)
+        except (TypeError, ValueError):
+            raise Unexpected(f"is no number with a unit; expected {self._wanted()}") from None
+        try:
+            number = float(quantity.to_value(unit_of(self.unit)))
+        except u.UnitConversionError:
+            if quantity.unit == u.dimensionless_unscaled:
+                raise Unexpected(f"a bare number has no unit; expected {self._wanted()}") from None
+            raise Unexpected(f"is {_article(dimension_of(quantity.unit))}; expected {self._wanted()}") from None
+        return number
+
+
+def example_of(start: float, unit: str, display_unit: str = "") -> str:
+    """A start value as a scene would write it: 7e10 Pa with display unit GPa is "70 GPa"; zero is shown as 1."""
+    if unit == "1":
+        return f"{start:g}"
+    shown = display_unit or unit
+    value = (start or 1.0) * unit_of(unit).to(unit_of(shown)) if start else 1.0
+    return f"{value:g} {spoken(shown)}"

@@ -1,0 +1,221 @@
+"""One table of variables per model, and everything that is derived from it.
+
+A model's variables are declared once, as rows of `Variable`, grouped by the physics term that needs them. From the rows
+follow the memory record the kernels work on, the FMI value references (a variable's slot in that record), the model
+description, the keys a scene may say, and the table in the model's documentation. All values are SI.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+Kind = Literal["Real", "Integer", "Boolean"]
+Causality = Literal["parameter", "input", "output", "state"]
+Value = float | int | bool
+INDEX = "[#]"
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One row of a model's table: a scalar or a small array of fixed shape.
+
+    name         FMI structured name; every `[#]` stands for an index counted from 1, in the order of `shape`
+    unit         FMI unit name of the SI value, "1" for a pure number
+    causality    parameter (fixed before the start), input, output, or state (in the record, not at the interface)
+    start        one value for all elements, or one per element in C order; parameters and inputs only
+    minimum      least permitted value; `open_minimum` excludes the bound itself
+    choices      for an Integer choice: name of each permitted value, as a scene writes it
+    """
+
+    name: str
+    unit: str
+    causality: Causality
+    description: str
+    start: Value | Sequence[Value] = 0.0
+    kind: Kind = "Real"
+    shape: tuple[int, ...] = ()
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    open_minimum: bool = False
+    display_unit: str = ""
+    choices: tuple[str, ...] = ()
+    discrete: bool = False
+
+    def __post_init__(self) -> None:
+        if self.name.count(INDEX) != len(self.shape):
+            raise ValueError(f"{self.name}: shape {self.shape} needs as many {INDEX}")
+
+    @property
+    def field(self) -> str:
+        """Name of the record's field: `bullet[#].position[#]` is `bullet_position`."""
+        return self.name.replace(INDEX, "").replace(".", "_")
+
+    @property
+    def section(self) -> str:
+        """First part of the name: the table of a scene that sets it."""
+        return self.name.partition(".")[0]
+
+    @property
+    def key(self) -> str:
+        """Rest of the name: the key in that table."""
+        return self.name.partition(".")[2].replace(INDEX, "")
+
+    @property
+    def size(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def at_interface(self) -> bool:
+        return self.causality != "state"
+
+    def starts(self) -> list[Value]:
+        """Start value of each element."""
+        if isinstance(self.start, Sequence):
+            if len(self.start) != self.size:
+                raise ValueError(f"{self.name}: {self.size} start values needed, {len(self.start)} given")
+            return list(self.start)
+        return [self.start] * self.size
+
+    def element_names(self) -> list[str]:
+        """FMI name of each element, in C order."""
+        names = []
+        for index in itertools.product(*(range(1, n + 1) for n in self.shape)):
+            name = self.name
+            for i in index:
+                name = name.replace(INDEX, f"[{i}]", 1)
+            names.append(name)
+        return names
+
+    def refusal(self, value: float) -> str | None:
+        """Why a value is out of bounds, or None."""
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        if not math.isfinite(value):
+            return "must be finite"
+        if value < self.minimum or (self.open_minimum and value == self.minimum):
+            return f"must be {'greater than' if self.open_minimum else 'at least'} {self.minimum:g}{unit}"
+        if value > self.maximum:
+            return f"must be at most {self.maximum:g}{unit}"
+        return None
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A reason for which a kernel may stop: its status code, FMI severity and text (what went wrong, what to try)."""
+
+    code: int
+    severity: Literal["discard", "error"]
+    text: str
+
+
+@dataclass(frozen=True)
+class Term:
+    """One physics term a scene may name: its variables, and a sentence on what it adds."""
+
+    summary: str
+    variables: tuple[Variable, ...] = ()
+
+
+@dataclass(frozen=True)
+class Group:
+    """Terms of which a scene names at most one, by the key `selector` of its table.
+
+    optional     the scene may leave the group out; then nothing of it is in the FMU
+    """
+
+    terms: Mapping[str, Term]
+    selector: str = "law"
+    optional: bool = False
+
+
+HEAD = (
+    Variable("work_size", "1", "state", "doubles of work memory this instance needs", kind="Integer"),
+    Variable("fault_code", "1", "state", "code of the fault that stopped the kernel, 0 for none", kind="Integer"),
+    Variable("fault_index", "1", "state", "which node, thread or parameter", kind="Integer"),
+    Variable("fault_time", "s", "state", "when"),
+    Variable("fault_value", "1", "state", "offending value, SI"),
+)
+"""Every record begins with these; the C shim knows them by their place."""
+
+SIZE, INITIALISE, STEP, REFRESH = range(4)
+"""Commands of a model's entry `entry(command, record, work, time, step) -> status`.
+
+SIZE        set `work_size` from the parameters
+INITIALISE  fill state and outputs from parameters; `time` is the start time [s]
+STEP        advance from `time` by `step` [s], with the inputs held
+REFRESH     recompute the outputs that depend directly on inputs, at `time`
+"""
+
+
+@dataclass(frozen=True)
+class Model:
+    """What a model offers: its name, the variables it always has, its groups of terms, and its faults."""
+
+    name: str
+    summary: str
+    base: tuple[Variable, ...]
+    groups: Mapping[str, Group]
+    faults: tuple[Fault, ...]
+    module: str
+
+    def interface(self, terms: Mapping[str, str]) -> Interface:
+        """The interface of this model built with the given terms, `{group: term}`."""
+        for group, term in terms.items():
+            if group not in self.groups:
+                raise ValueError(f"{self.name} has no group of terms {group!r}; it has {', '.join(self.groups)}")
+            if term not in self.groups[group].terms:
+                raise ValueError(f"{group} = {term!r}: expected one of {', '.join(self.groups[group].terms)}")
+        for name, group_ in self.groups.items():
+            if not group_.optional and name not in terms:
+                raise ValueError(f"{self.name} needs a choice of {name}: {', '.join(group_.terms)}")
+        ordered = {name: terms[name] for name in self.groups if name in terms}
+        variables = list(HEAD + self.base)
+        for name, term in ordered.items():
+            variables += [v for v in self.groups[name].terms[term].variables if v not in variables]
+        return Interface(self, ordered, tuple(variables))
+
+
+@dataclass(frozen=True)
+class Interface:
+    """The variables of one model with one choice of terms."""
+
+    model: Model
+    terms: Mapping[str, str]
+    variables: tuple[Variable, ...]
+
+    @cached_property
+    def dtype(self) -> np.dtype[np.void]:
+        """Record of 8-byte slots: float64 for Real, int64 for Integer and Boolean."""
+        fields = [(v.field, "<f8" if v.kind == "Real" else "<i8", v.shape) for v in self.variables]
+        return np.dtype([(name, code, shape) if shape else (name, code) for name, code, shape in fields])
+
+    @cached_property
+    def references(self) -> dict[str, int]:
+        """Value reference of every scalar at the interface: its slot in the record."""
+        return {name: slot for name, slot, _, _ in self.scalars() if not name.startswith("@")}
+
+    def scalars(self) -> Iterator[tuple[str, int, Variable, Value]]:
+        """Name, slot, row and start value of every scalar; the name of a hidden one begins with @."""
+        slot = 0
+        for v in self.variables:
+            for name, start in zip(v.element_names(), v.starts(), strict=True):
+                yield (name if v.at_interface else "@" + name), slot, v, start
+                slot += 1
+
+    def has(self, group: str) -> bool:
+        return group in self.terms
+
+    def make_record(self) -> npt.NDArray[Any]:
+        """A record with every start value, as an array of length 1."""
+        record = np.zeros(1, self.dtype)
+        for v in self.variables:
+            starts = v.starts()
+            record[0][v.field] = np.reshape(starts, v.shape) if v.shape else starts[0]
+        return record

@@ -1,0 +1,158 @@
+"""Contact of nodes with the target: an envelope first, then the surface, then an inelastic impulse (law A).
+
+A node may not come closer than the surface by the end of the substep: an impulse along the outward normal raises its
+normal velocity relative to the surface point to what still lands on the surface, or to the restitution's share. The
+target takes the opposite impulse at the same point, so linear and angular momentum are kept to rounding, and the loss of
+kinetic energy is booked exactly.
+"""
+
+import math
+
+from fmu_src.net_capture.shapes import box_distance
+from fmu_src.net_capture.topology import INVERSE_MASS, MASS, U, V, W, X, Y, Z, node_plane
+from orbital.kernel import kernel
+from orbital.rotations import rotate, rotate_inverse
+from orbital.vectors import cross, dot
+
+RECOVERY_SPEED = 0.01
+"""Speed [m/s] at which a node found below the surface is brought back: small against any impact, so it adds no energy."""
+
+
+@kernel
+def find_near(x, y, z, cx, cy, cz, squared):
+    """How many nodes of a chunk lie within the envelope."""
+    near = 0
+    for j in range(x.size):
+        dx = x[j] - cx
+        dy = y[j] - cy
+        dz = z[j] - cz
+        near += 1 if dx * dx + dy * dy + dz * dz < squared else 0
+    return near
+
+
+@kernel
+def touch_nodes(p, work, start, n, frame_rate, h):
+    """Give one chunk of nodes the impulses of contact, after the kick and before the drift."""
+    stop = start + n
+    x = node_plane(p, work, X)[start:stop]
+    y = node_plane(p, work, Y)[start:stop]
+    z = node_plane(p, work, Z)[start:stop]
+    c = p.target_place
+    squared = p.envelope_radius * p.envelope_radius
+    if find_near(x, y, z, c[0], c[1], c[2], squared) > 0:
+        for j in range(n):
+            dx = x[j] - c[0]
+            dy = y[j] - c[1]
+            dz = z[j] - c[2]
+            if dx * dx + dy * dy + dz * dz < squared:
+                touch(p, work, start + j, frame_rate, h)
+
+
+@kernel
+def touch(p, work, node, frame_rate, h):
+    """Impulse between one node and the box, if it would otherwise end the substep below the surface."""
+    inverse = node_plane(p, work, INVERSE_MASS)[node]
+    if inverse == 0.0:
+        return
+    u = node_plane(p, work, U)
+    v = node_plane(p, work, V)
+    w = node_plane(p, work, W)
+    arm = p.scratch[13:16]
+    body = p.scratch[16:19]
+    normal = p.scratch[19:22]
+    spin = p.scratch[22:25]
+    lever = p.scratch[25:28]
+    arm[0] = node_plane(p, work, X)[node] - p.target_place[0]
+    arm[1] = node_plane(p, work, Y)[node] - p.target_place[1]
+    arm[2] = node_plane(p, work, Z)[node] - p.target_place[2]
+    rotate_inverse(body, p.target_pose, arm)
+    gap = box_distance(normal, body, p.half_size)
+    # inverse of the mass the impulse feels: node, target, and the target's turning
+    cross(lever, body, normal)
+    feel = inverse + 1.0 / p.target_mass
+    for i in range(3):
+        feel += lever[i] * lever[i] / p.target_inertia[i]
+    rotate(normal, p.target_pose, normal)
+    rotate_inverse(spin, p.target_pose, p.target_spin)
+    for i in range(3):
+        spin[i] /= p.target_inertia[i]
+    rotate(spin, p.target_pose, spin)
+    spin[2] -= frame_rate
+    approach = (
+        normal[0] * (u[node] - p.target_velocity[0] - (spin[1] * arm[2] - spin[2] * arm[1]))
+        + normal[1] * (v[node] - p.target_velocity[1] - (spin[2] * arm[0] - spin[0] * arm[2]))
+        + normal[2] * (w[node] - p.target_velocity[2] - (spin[0] * arm[1] - spin[1] * arm[0]))
+    )
+    if gap + h * approach >= 0.0:
+        return
+    wanted = -gap / h
+    if wanted > RECOVERY_SPEED:
+        wanted = RECOVERY_SPEED
+    if approach < 0.0 and -p.contact_restitution * approach > wanted:
+        wanted = -p.contact_restitution * approach
+    if wanted <= approach:
+        return
+    impulse = (wanted - approach) / feel
+    p.contact_impulse += impulse
+    # work of the impulse over the mean of the relative normal velocities before and after
+    p.contact_loss -= impulse * 0.5 * (wanted + approach)
+    u[node] += impulse * inverse * normal[0]
+    v[node] += impulse * inverse * normal[1]
+    w[node] += impulse * inverse * normal[2]
+    cross(lever, arm, normal)
+    for i in range(3):
+        p.target_velocity[i] -= impulse / p.target_mass * normal[i]
+        p.target_spin[i] -= impulse * lever[i]
+    if p.contact_first_time < 0.0:
+        p.contact_first_time = p.start_time + p.grid * p.solver_substep
+
+
+@kernel
+def start_contact(p):
+    """Clear the contact ledger; take the envelope from the target's size."""
+    for i in range(3):
+        p.half_size[i] = 0.5 * p.target_size[i]
+    p.envelope_radius = math.sqrt(dot(p.half_size, p.half_size)) + 0.05
+    p.contact_first_time = -1.0
+    p.contact_impulse = 0.0
+    p.contact_loss = 0.0
+
+
+@kernel
+def measure_contact(p, work):
+    """Count the nodes on the surface (within a millimetre)."""
+    x = node_plane(p, work, X)
+    y = node_plane(p, work, Y)
+    z = node_plane(p, work, Z)
+    mass = node_plane(p, work, MASS)
+    arm = p.scratch[13:16]
+    normal = p.scratch[19:22]
+    count = 0
+    for i in range(x.size):
+        arm[0] = x[i] - p.target_place[0]
+        arm[1] = y[i] - p.target_place[1]
+        arm[2] = z[i] - p.target_place[2]
+        if mass[i] > 0.0 and dot(arm, arm) < p.envelope_radius * p.envelope_radius:
+            rotate_inverse(arm, p.target_pose, arm)
+            if box_distance(normal, arm, p.half_size) < 1e-3:
+                count += 1
+    p.contact_nodes = count
+
+
+@kernel
+def inside(p, work):
+    """How many nodes lie inside the target [count], for the check of the start."""
+    x = node_plane(p, work, X)
+    y = node_plane(p, work, Y)
+    z = node_plane(p, work, Z)
+    arm = p.scratch[13:16]
+    normal = p.scratch[19:22]
+    count = 0
+    for i in range(x.size):
+        arm[0] = x[i] - p.target_place[0]
+        arm[1] = y[i] - p.target_place[1]
+        arm[2] = z[i] - p.target_place[2]
+        rotate_inverse(arm, p.target_pose, arm)
+        if box_distance(normal, arm, p.half_size) <= 0.0:
+            count += 1
+    return count

@@ -1,0 +1,408 @@
+"""Composition of the net capture model: only here do the terms meet.
+
+One substep, from grid time n h to (n + 1) h (leapfrog: velocities live half a substep back, so one evaluation of the
+forces serves; second order, stable to h = 2 (sqrt(1 + z^2) - z) / omega_max, see `orbital.oscillators`):
+
+    forces at x_n        threads, closing cord, tension at the vertex
+    kick                 v_{n+1/2} = v_{n-1/2} + h F / m, and gravity
+    contact              impulses on the nodes that would end below the surface
+    drift                x_{n+1} = x_n + h v_{n+1/2}
+
+The grid is counted in integers from the start, whatever the macro step, so a scene gives the same bits in every tool.
+"""
+
+import math
+
+import numpy as np
+from numba import from_dtype, njit, types
+
+from fmu_src.interface import INITIALISE, REFRESH, SIZE, STEP
+from fmu_src.net_capture import closure, contact, environment, folding, quality, target, threads, topology
+from fmu_src.net_capture.interface import LARGEST_MESH, MODEL, OUTCOMES
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.kernel import OPTIONS, kernel
+from orbital.oscillators import explicit_step_limit
+from orbital.vectors import dot
+
+MEASURE_INTERVAL = 0.01
+"""Seconds between two looks at mouth and capture: a whole number of substeps fits."""
+ON_GRID = 1e-3
+"""Share of a substep by which a communication point may miss the grid and still count as on it: masters add up times."""
+
+FLYING, CAPTURED, SETTLED, MISSED, SLIPPED_OFF, NOT_CLOSED, TETHER_TAUT = range(len(OUTCOMES))
+
+
+def make_entry(terms):
+    """Entry of the model built with these terms, `entry(command, record, work, time, step) -> status`."""
+    has_target = "target" in terms
+    has_contact = "contact" in terms
+    has_closing = "closing" in terms
+    has_tether = "tether" in terms
+    has_settling = "settling" in terms
+    has_nodes = "nodes" in terms
+    capacity = int(terms["nodes"]) if has_nodes else 0
+    is_hill = terms["gravity"] == "hill"
+    kick_body = environment.hill_kick_body if is_hill else environment.no_kick_body
+    kick_nodes = environment.hill_kick_nodes if is_hill else environment.no_kick_nodes
+    frame_rate_of = environment.hill_rate if is_hill else environment.no_rate
+
+    @kernel
+    def check(p):
+        """Fault code of a parameter combination that makes no net, or 0; sets the counts."""
+        meshes = round(p.net_side / p.net_mesh)
+        if abs(p.net_side / p.net_mesh - meshes) > 1e-6 * meshes or meshes < 2:
+            p.fault_value = p.net_side / p.net_mesh
+            return 2
+        if meshes * p.net_segments > LARGEST_MESH:
+            p.fault_value = meshes * p.net_segments
+            return 4
+        if p.net_fold_side >= p.net_side:
+            p.fault_value = p.net_fold_side
+            return 6
+        p.knots = int(meshes) + 1
+        p.net_nodes = p.knots * p.knots + 2 * (p.net_segments - 1) * p.knots * (p.knots - 1)
+        p.net_threads = 2 * p.net_segments * p.knots * (p.knots - 1)
+        p.node_slots = topology.node_slots(p.knots, p.net_segments)
+        p.thread_slots = topology.thread_slots(p.knots, p.net_segments)
+        p.strips = topology.strip_count(p.net_segments)
+        if has_nodes:
+            if p.net_nodes > capacity:
+                p.fault_value = p.net_nodes
+                return 3
+        p.work_size = topology.work_size(p.knots, p.net_segments)
+        return 0
+
+    @kernel
+    def aim(p):
+        """Shot axes as rows, and the muzzle; a fault code or 0."""
+        axis = p.axes[6:9]
+        for i in range(3):
+            p.muzzle[i] = p.chaser_start_position[i]
+            axis[i] = p.shot_axis[i]
+        if dot(axis, axis) == 0.0:
+            for i in range(3):
+                axis[i] = -p.chaser_start_position[i]
+        length = math.sqrt(dot(axis, axis))
+        if length == 0.0:
+            return 5
+        for i in range(3):
+            axis[i] /= length
+        # first transverse axis: the orbital axis least along the shot, made normal to it
+        least = 0
+        for i in range(3):
+            if abs(axis[i]) < abs(axis[least]):
+                least = i
+        share = axis[least]
+        first = p.scratch[0:3]
+        for i in range(3):
+            first[i] = (1.0 if i == least else 0.0) - share * axis[i]
+        length = math.sqrt(dot(first, first))
+        for i in range(3):
+            first[i] /= length
+        second = p.scratch[3:6]
+        second[0] = axis[1] * first[2] - axis[2] * first[1]
+        second[1] = axis[2] * first[0] - axis[0] * first[2]
+        second[2] = axis[0] * first[1] - axis[1] * first[0]
+        c = math.cos(p.shot_roll)
+        s = math.sin(p.shot_roll)
+        for i in range(3):
+            p.axes[i] = c * first[i] + s * second[i]
+            p.axes[3 + i] = c * second[i] - s * first[i]
+        return 0
+
+    @kernel
+    def choose_substep(p):
+        """Rest length, stiffness and damping of a segment, the stability bound, and a substep that divides the grid."""
+        thread = p.net_mass / (2 * p.knots * (p.knots - 1))
+        area = p.net_mass / (p.net_density * 2 * p.knots * (p.knots - 1) * p.net_mesh)
+        stiffness = p.net_youngs_modulus * area / p.net_mesh
+        p.thread_length = p.net_mesh / p.net_segments
+        p.thread_stiffness = stiffness * p.net_segments
+        p.thread_damping = 2.0 * p.net_damping_ratio * math.sqrt(stiffness * 2.0 * thread) * p.net_segments
+        bound = explicit_step_limit(p.thread_stiffness, 2.0 * thread / p.net_segments, p.thread_damping)
+        if has_closing:
+            hardest = p.closing_axial_stiffness / p.closing_lock_length
+            dashpot = 2.0 * p.closing_damping_ratio * math.sqrt(0.5 * hardest * p.bullets_mass)
+            bound = min(bound, explicit_step_limit(hardest, 2.0 * p.bullets_mass, dashpot))
+        p.solver_stability_bound = bound
+        p.measure_every = math.ceil(MEASURE_INTERVAL / (p.solver_step_ratio * bound) - 1e-9)
+        p.solver_substep = MEASURE_INTERVAL / p.measure_every
+
+    @kernel
+    def add_forces(p, work):
+        """All forces at the present positions into the force planes."""
+        p.thread_taut = threads.add_thread_forces(p, work)
+        if has_tether:
+            pull_vertex(p, work)
+
+    @kernel
+    def pull_vertex(p, work):
+        """The tether's tension signal at the vertex, towards the chaser."""
+        if p.tether_vertex_tension != 0.0:
+            away = towards_chaser(p, work)
+            for axis in range(3):
+                share = 0.25 * p.tether_vertex_tension * p.scratch[axis] / away
+                force = topology.node_plane(p, work, topology.FX + axis)
+                for i in range(4):
+                    force[topology.vertex_node(p.knots, i)] += share
+
+    @kernel
+    def towards_chaser(p, work):
+        """Vector from the vertex to the chaser into scratch; returns its length [m]."""
+        for axis in range(3):
+            plane = topology.node_plane(p, work, topology.X + axis)
+            at = 0.0
+            for i in range(4):
+                at += 0.25 * plane[topology.vertex_node(p.knots, i)]
+            p.scratch[axis] = p.chaser_place[axis] - at
+        return math.sqrt(dot(p.scratch[0:3], p.scratch[0:3]))
+
+    @kernel
+    def substep(p, work):
+        """One step of the grid."""
+        h = p.solver_substep
+        frame_rate = frame_rate_of(p)
+        add_forces(p, work)
+        if has_closing:
+            closure.draw_cord(p, work, h)
+        if has_tether:
+            if p.tether_vertex_tension != 0.0:
+                away = towards_chaser(p, work)
+                for axis in range(3):
+                    p.chaser_velocity[axis] -= h * p.tether_vertex_tension * p.scratch[axis] / away / p.chaser_mass
+        kick_body(p, p.chaser_place, p.chaser_velocity, h)
+        if has_target:
+            kick_body(p, p.target_place, p.target_velocity, h)
+        slots = p.node_slots
+        for start in range(0, slots, topology.CHUNK):
+            n = min(topology.CHUNK, slots - start)
+            threads.kick_nodes(p, work, start, n, h)
+            kick_nodes(p, work, start, n, h)
+            if has_contact:
+                contact.touch_nodes(p, work, start, n, frame_rate, h)
+            threads.drift_nodes(p, work, start, n, h)
+        for axis in range(3):
+            p.chaser_place[axis] += h * p.chaser_velocity[axis]
+        if has_target:
+            target.drift_target(p, frame_rate, h)
+        p.grid += 1
+
+    @kernel
+    def now(p):
+        """Grid time [s]."""
+        return p.start_time + p.grid * p.solver_substep
+
+    @kernel
+    def look(p, work):
+        """Every measure interval: mouth, trigger, capture and outcome; fault code 1 if the net has blown up."""
+        time = now(p)
+        quality.watch_mouth(p, work, time, MEASURE_INTERVAL)
+        if not math.isfinite(p.mouth_area_max) or not math.isfinite(quality.mouth_area(p, work)):
+            return 1
+        if has_closing:
+            touched = p.contact_first_time if has_contact else -1.0
+            beyond = quality.least_depth_beyond(p, work, p.target_place) if has_target else -math.inf
+            closure.pull_trigger(p, work, time, touched, beyond)
+        if p.outcome == FLYING:
+            judge_flight(p, work, time)
+        elif p.outcome == CAPTURED or p.outcome == SETTLED:
+            judge_catch(p, work, time)
+        return 0
+
+    @kernel
+    def judge_flight(p, work, time):
+        """Capture, or one of the ways to fail."""
+        if has_target:
+            beyond = quality.least_depth_beyond(p, work, p.target_place)
+            if has_closing:
+                if p.closing_t_start >= 0.0 and p.mouth_cord_length < p.girth:
+                    if beyond > 0.0 and quality.encloses(p, work, p.target_place):
+                        p.outcome = CAPTURED
+                        p.captured = 1
+                        p.t_capture = time
+                        if has_settling:
+                            p.calm_since = time
+                    else:
+                        p.outcome = fail(p)
+                elif p.trigger_time >= 0.0 and time > p.trigger_time + p.closing_timeout:
+                    p.outcome = NOT_CLOSED
+            elif beyond > p.net_side:
+                p.outcome = fail(p)
+        if has_tether:
+            if p.outcome == FLYING and towards_chaser(p, work) >= p.tether_length:
+                p.outcome = TETHER_TAUT
+
+    @kernel
+    def fail(p):
+        """Missed, or slipped off after a touch."""
+        if has_contact:
+            return SLIPPED_OFF if p.contact_first_time >= 0.0 else MISSED
+        return MISSED
+
+    @kernel
+    def judge_catch(p, work, time):
+        """Whether a catch holds, and whether it has settled."""
+        if has_target:
+            if p.grid % (10 * p.measure_every) == 0 and not quality.encloses(p, work, p.target_place):
+                p.outcome = SLIPPED_OFF
+                p.captured = 0
+                p.settled = 0
+            elif has_settling:
+                quality.measure_net(p, work, 0.0)
+                squared = 0.0
+                for i in range(3):
+                    relative = p.catch_velocity[i] - p.target_velocity[i]
+                    squared += relative * relative
+                if squared > p.settling_speed * p.settling_speed:
+                    p.calm_since = time
+                elif time >= p.calm_since + p.settling_time and p.settled == 0:
+                    p.settled = 1
+                    p.outcome = SETTLED
+
+    @kernel
+    def measure(p, work, ahead):
+        """All outputs, `ahead` seconds after the last substep; nothing of the state changes."""
+        slots = p.node_slots
+        add_forces(p, work)
+        elastic = threads.elastic_energy(p, work)
+        if has_closing:
+            elastic += closure.stored_in_cord(p, work)
+            p.closed = 1 if p.mouth_locked_pairs == 4 else 0
+        quality.measure_net(p, work, ahead)
+        p.energy_elastic = elastic
+        p.energy_total = p.energy_kinetic + elastic
+        for axis in range(3):
+            p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_velocity[axis]
+        quality.add_body_momenta(p, p.chaser_mass, p.chaser_position, p.chaser_velocity)
+        if has_target:
+            for axis in range(3):
+                p.target_position[axis] = p.target_place[axis] + ahead * p.target_velocity[axis]
+            target.measure_target(p)
+            target.turn(p.target_attitude, p.target_pose, p.target_rate, p, frame_rate_of(p), ahead)
+            quality.add_body_momenta(p, p.target_mass, p.target_position, p.target_velocity)
+            for axis in range(3):
+                p.angular_momentum[axis] += p.target_spin[axis]
+            if has_closing:
+                p.mouth_girth = p.girth
+        if has_contact:
+            contact.measure_contact(p, work)
+        if has_tether:
+            away = 0.0
+            for axis in range(3):
+                d = p.vertex_position[axis] - p.chaser_position[axis]
+                away += d * d
+            p.tether_paid_out = math.sqrt(away)
+        if has_nodes:
+            write_nodes(p, work, ahead)
+        quality.measure_mouth(p, work)
+        quality.collect_peaks(p, work)
+        if has_closing:
+            if p.cord_tension_peak > p.cord_tension_max:
+                p.cord_tension_max = p.cord_tension_peak
+        p.solver_steps = p.grid
+        for plane in range(topology.FX, topology.FX + 3):
+            force = topology.node_plane(p, work, plane)
+            for i in range(slots):
+                force[i] = 0.0
+        finite = math.isfinite(p.energy_total) and math.isfinite(p.momentum[0] + p.momentum[1] + p.momentum[2])
+        return 0 if finite else 1
+
+    @kernel
+    def write_nodes(p, work, ahead):
+        """Positions of all nodes, unused slots passed over."""
+        mass = topology.node_plane(p, work, topology.MASS)
+        out = 0
+        for node in range(mass.size):
+            if mass[node] > 0.0:
+                for axis in range(3):
+                    p.node_position[out, axis] = quality.position(p, work, axis, node, ahead)
+                out += 1
+
+    @kernel
+    def initialise(p, work, time):
+        """Fold, aim, shoot; a fault code or 0."""
+        fault = check(p)
+        if fault == 0:
+            fault = aim(p)
+        if fault != 0:
+            return fault
+        for i in range(work.size):
+            work[i] = 0.0
+        p.start_time = time
+        p.grid = 0
+        p.outcome = FLYING
+        p.captured = 0
+        p.settled = 0
+        p.closed = 0
+        p.t_capture = -1.0
+        p.thread_tension_max = 0.0
+        p.thread_tension_max_index = 0
+        choose_substep(p)
+        if is_hill:
+            a = EARTH_EQUATORIAL_RADIUS + p.orbit_altitude
+            p.mean_motion = math.sqrt(EARTH_MU / (a * a * a))
+        if has_target:
+            fault = target.place_target(p)
+            if fault != 0:
+                return fault
+        topology.lay_out_strips(p, work)
+        topology.lay_out_threads(p, work)
+        topology.lay_out_masses(p, work)
+        folding.fold_flat(p, work)
+        folding.jitter(p, work)
+        folding.shoot(p, work)
+        if has_contact:
+            contact.start_contact(p)
+            if contact.inside(p, work) > 0:
+                return 9
+        if has_closing:
+            closure.start_closing(p)
+        quality.start_mouth(p)
+        quality.measure_net(p, work, 0.0)
+        for axis in range(3):
+            p.chaser_place[axis] = p.chaser_start_position[axis]
+            recoil = p.catch_mass * (p.catch_velocity[axis] - p.chaser_start_velocity[axis])
+            p.chaser_velocity[axis] = p.chaser_start_velocity[axis] - recoil / p.chaser_mass
+        return measure(p, work, 0.0)
+
+    @kernel
+    def advance(p, work, end):
+        """Substeps up to the last grid point not after `end`, then the outputs at `end`."""
+        q = (end - p.start_time) / p.solver_substep
+        last = math.floor(q + ON_GRID)
+        if p.grid < last:
+            quality.clear_peaks(p, work)
+            if has_closing:
+                p.cord_tension_peak = 0.0
+        while p.grid < last:
+            substep(p, work)
+            if p.grid % p.measure_every == 0:
+                fault = look(p, work)
+                if fault != 0:
+                    return fault
+        ahead = (q - p.grid) * p.solver_substep
+        if ahead < ON_GRID * p.solver_substep:
+            ahead = 0.0
+        return measure(p, work, ahead)
+
+    record = from_dtype(np.dtype(MODEL.interface(terms).dtype))
+    signature = types.int32(types.int64, record[::1], types.float64[::1], types.float64, types.float64)
+
+    @njit(signature, **OPTIONS)
+    def entry(command, instance, work, time, step):
+        p = instance[0]
+        fault = 0
+        if command == SIZE:
+            fault = check(p)
+        elif command == INITIALISE:
+            fault = initialise(p, work, time)
+        elif command == STEP:
+            fault = advance(p, work, time + step)
+        elif command == REFRESH:
+            fault = measure(p, work, 0.0)
+        if fault != 0:
+            p.fault_code = fault
+            p.fault_time = time
+        return fault
+
+    return entry

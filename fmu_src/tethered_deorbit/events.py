@@ -1,0 +1,162 @@
+"""What happens inside one step of the integrator: where the line goes slack or taut, and its largest tension.
+
+Everything is read off the dense output of the step. Signals and their exact time derivatives are sampled at a few points;
+between two of them an extremum shows by its slope, so that a line that goes taut and slack again within one step is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from fmu_src.integrators import AdaptiveScheme
+from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.reel import Reel
+from fmu_src.tethered_deorbit.tether import length_acceleration, length_rate
+from orbital.kernel import kernel
+from orbital.vectors import Array, norm
+
+INTERVALS = 8
+ROOT_ITERATIONS = 80
+CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE = range(4)
+"""Signals: the crossing signal rises through zero when the line changes between slack and taut."""
+
+
+class Events(NamedTuple):
+    """Kernels that look into the current step.
+
+    signals(record, state, rate) -> (crossing, its rate, tension, its rate)   of any state; the line as it is now
+    ensure_dense(record, work)                            compute the dense output of the step unless it is there
+    find_change(record, work) -> fraction                 of the step at which slack and taut change, or -1
+    largest_tension(record, work, first, last) -> N       between two fractions of the step
+    """
+
+    signals: Callable[..., Any]
+    ensure_dense: Callable[..., Any]
+    find_change: Callable[..., Any]
+    largest_tension: Callable[..., Any]
+
+
+def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
+    """The kernels for one law of the line and one integrator.
+
+    Valid    steps in which the signals turn at most once in an eighth of the step
+    Checked  tests/tethered_deorbit/test_events.py
+    """
+
+    @kernel
+    def signals(record: Any, state: Array, rate: Array) -> tuple[float, float, float, float]:
+        position, velocity, acceleration = state[6:9], state[9:12], rate[9:12]
+        length = norm(position)
+        speed = length_rate(position, velocity, length)
+        change = length_acceleration(position, velocity, acceleration, length, speed)
+        tension = reel.tension(record, length, speed)
+        tension_rate = reel.tension_rate(record, speed, change)
+        if record[0].state_taut:
+            return -tension, -tension_rate, tension, tension_rate
+        onset = reel.onset(record, length, speed)
+        onset_rate = reel.onset_rate(record, length, speed, change)
+        return onset, onset_rate, tension, tension_rate
+
+    @kernel
+    def ensure_dense(record: Any, work: Array) -> None:
+        r = record[0]
+        if r.state_dense_ready == 0:
+            scheme.prepare_dense(
+                record,
+                work[layout.BEGIN : layout.END],
+                work[layout.END : layout.HERE],
+                r.state_step,
+                work[layout.STAGES : layout.DENSE],
+                work[layout.DENSE : layout.WORK],
+                work[layout.LOW : layout.HIGH],
+            )
+            r.state_dense_ready = 1
+
+    @kernel
+    def at(record: Any, work: Array, fraction: float) -> tuple[float, float, float, float]:
+        """Signals at a fraction of the step; the dense output must be there."""
+        dense = work[layout.DENSE : layout.WORK]
+        here = work[layout.HERE : layout.SLOPE]
+        slope = work[layout.SLOPE : layout.LOW]
+        scheme.dense_value(work[layout.BEGIN : layout.END], dense, fraction, 6, 6, here[6:12])
+        scheme.dense_rate(dense, fraction, record[0].state_step, 6, 6, slope[6:12])
+        return signals(record, here, slope)
+
+    @kernel
+    def root(record: Any, work: Array, low: float, high: float, which: int) -> float:
+        """Fraction of the step at which a signal changes sign between two fractions.
+
+        Regula falsi in the Illinois form, halved when it stalls; the step is redone afterwards to land exactly.
+        """
+        at_low = at(record, work, low)[which]
+        at_high = at(record, work, high)[which]
+        kept = 0
+        for i in range(ROOT_ITERATIONS):
+            if high - low <= 1.0e-13:
+                break
+            middle = 0.5 * (low + high)
+            if i % 3 != 2:
+                guess = (low * at_high - high * at_low) / (at_high - at_low)
+                if low < guess < high:
+                    middle = guess
+            value = at(record, work, middle)[which]
+            if value == 0.0:
+                return middle
+            if (value > 0.0) == (at_high > 0.0):
+                if abs(middle - high) <= 1.0e-14:
+                    return middle
+                high, at_high = middle, value
+                if kept == 1:
+                    at_low *= 0.5
+                kept = 1
+            else:
+                if abs(middle - low) <= 1.0e-14:
+                    return middle
+                low, at_low = middle, value
+                if kept == -1:
+                    at_high *= 0.5
+                kept = -1
+        return high
+
+    @kernel
+    def find_change(record: Any, work: Array) -> float:
+        ensure_dense(record, work)
+        low = 0.0
+        value_low, slope_low, _, _ = at(record, work, low)
+        for i in range(INTERVALS):
+            high = (i + 1.0) / INTERVALS
+            value_high, slope_high, _, _ = at(record, work, high)
+            if value_high > 0.0:
+                if value_low <= 0.0:
+                    return root(record, work, low, high, CROSSING)
+                # On the wrong side from the start, by rounding: right at once, unless it comes back in between.
+                if slope_low < 0.0 and slope_high > 0.0:
+                    bottom = root(record, work, low, high, CROSSING_SLOPE)
+                    if at(record, work, bottom)[CROSSING] <= 0.0:
+                        return root(record, work, bottom, high, CROSSING)
+                return low
+            if slope_low > 0.0 and slope_high < 0.0:
+                top = root(record, work, low, high, CROSSING_SLOPE)
+                if at(record, work, top)[CROSSING] > 0.0:
+                    return root(record, work, low, top, CROSSING) if value_low <= 0.0 else low
+            low, value_low, slope_low = high, value_high, slope_high
+        return -1.0
+
+    @kernel
+    def largest_tension(record: Any, work: Array, first: float, last: float) -> float:
+        ensure_dense(record, work)
+        low = first
+        _, _, value_low, slope_low = at(record, work, low)
+        largest = value_low
+        for i in range(INTERVALS):
+            high = first + (last - first) * ((i + 1.0) / INTERVALS)
+            _, _, value_high, slope_high = at(record, work, high)
+            largest = max(largest, value_high)
+            if slope_low > 0.0 and slope_high < 0.0:
+                top = root(record, work, low, high, TENSION_SLOPE)
+                largest = max(largest, at(record, work, top)[TENSION])
+            low, value_low, slope_low = high, value_high, slope_high
+        return largest
+
+    return Events(signals, ensure_dense, find_change, largest_tension)

@@ -1,0 +1,81 @@
+"""What is seen of the pair at a communication point."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from fmu_src.tethered_deorbit.interface import TUGS
+from fmu_src.tethered_deorbit.reel import Reel
+from fmu_src.tethered_deorbit.tether import length_rate
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.frames import orbital_basis, relative_to_orbital
+from orbital.hill import hill_jacobi
+from orbital.kernel import kernel
+from orbital.twobody import semi_major_axis, specific_energy
+from orbital.vectors import Array, norm
+
+
+@kernel
+def begin_tug(record: Any, time: float, speed: float) -> None:
+    """Put a new tug at the head of the ring; the oldest falls out.
+
+    time          when the line went taut                        [s]
+    speed         rate of lengthening then                       [m/s]
+
+    Checked  tests/tethered_deorbit/test_macro_step.py
+    """
+    r = record[0]
+    for i in range(TUGS - 1):
+        j = TUGS - 1 - i
+        r.tug_time[j] = r.tug_time[j - 1]
+        r.tug_peak[j] = r.tug_peak[j - 1]
+        r.tug_speed[j] = r.tug_speed[j - 1]
+    r.tug_time[0] = time
+    r.tug_peak[0] = 0.0
+    r.tug_speed[0] = speed
+    r.tether_tug_count += 1
+    r.state_tug_peak = 0.0
+
+
+def make_publish(reel: Reel) -> Callable[..., Any]:
+    """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
+
+    @kernel
+    def publish(record: Any, state: Array) -> None:
+        """Outputs at one instant; `state` (12,) as in `layout`, and `state.taut`, the line's condition there.
+
+        energy.relative = m_r (hill_jacobi + k s^2/(2 m_r)),   s = l - l0 while taut (a locked reel's elastic energy)
+
+        Checked  tests/tethered_deorbit/test_start.py
+        """
+        r = record[0]
+        position, velocity = state[6:9], state[9:12]
+        length = norm(position)
+        rate = length_rate(position, velocity, length)
+        r.separation = length
+        r.tether_length = length
+        r.tether_length_rate = rate
+        r.tether_taut = r.state_taut
+        r.tether_tension = max(0.0, reel.tension(record, length, rate)) if r.state_taut else 0.0
+        for i in range(3):
+            r.center_position[i] = state[i]
+            r.center_velocity[i] = state[3 + i]
+            r.chaser_position[i] = state[i] - r.state_target_share * position[i]
+            r.chaser_velocity[i] = state[3 + i] - r.state_target_share * velocity[i]
+            r.target_position[i] = state[i] + r.state_chaser_share * position[i]
+            r.target_velocity[i] = state[3 + i] + r.state_chaser_share * velocity[i]
+        r.chaser_radius = norm(r.chaser_position)
+        r.target_radius = norm(r.target_position)
+        r.altitude = norm(r.center_position) - EARTH_EQUATORIAL_RADIUS
+        r.center_semi_major_axis = semi_major_axis(r.center_position, r.center_velocity, EARTH_MU)
+        turning = orbital_basis(r.state_basis, r.center_position, r.center_velocity)
+        relative_to_orbital(r.relative_position, r.relative_velocity, r.state_basis, turning, position, velocity)
+        r.tether_angle = math.atan2(r.relative_position[1], r.relative_position[0])
+        r.energy_orbital = r.state_total_mass * specific_energy(r.center_position, r.center_velocity, EARTH_MU)
+        r.energy_relative = r.state_reduced_mass * hill_jacobi(r.relative_position, r.relative_velocity, turning)
+        if r.state_taut:
+            r.energy_relative += 0.5 * r.state_stiffness * (length - r.state_length) * (length - r.state_length)
+
+    return publish

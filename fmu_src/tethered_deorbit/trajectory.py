@@ -1,0 +1,216 @@
+"""The trajectory in the integrator's own steps, which know nothing of communication points.
+
+A step reaches from `state.begin` to `state.end` and is kept with its dense output until a communication point lies past it.
+So the same inputs give the same steps, bit for bit, whatever the macro step. A step ends early, exactly there, when the line
+changes between slack and taut.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from fmu_src.integrators import DOP853_STAGES, AdaptiveScheme
+from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.events import Events
+from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
+from orbital.kernel import kernel
+from orbital.vectors import Array, dot, norm
+
+TAUT_STEP = 2.0
+"""Longest step of a taut line, in radians of its fastest motion: well inside stability (5.97), so that it damps."""
+FIRST_TAUT_STEP = 0.3
+FIRST_FREE_STEP = 0.05
+"""First step after a change: in radians of the line's, or of the orbit's motion."""
+SHORTEST_CONTACT = 1.0e-6
+"""Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
+LANDING_ITERATIONS = 5
+ROUNDING = 4.0 * 2.220446049250313e-16
+
+
+def make_measure() -> Callable[..., Any]:
+    """Size of an error of the state in units of the tolerances."""
+
+    @kernel
+    def measure(record: Any, state: Array, error: Array) -> float:
+        """Square of the error's size [-].
+
+            sum of (e_R/tol_o)^2, (e_V/(tol_o n))^2, (e_rho/tol_s)^2, (e_rho'/(tol_s n))^2,
+            and while taut, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2
+
+        Each tolerance is at least a few units in the last place of what it measures.
+
+        state, error     R, V, rho, rho'  of `layout`            (12,)
+
+        Valid    n the reference orbit's mean motion, omega the taut line's frequency
+        Source   ours
+        Checked  tests/tethered_deorbit/test_integrator.py
+        """
+        r = record[0]
+        n = r.state_mean_motion
+        orbit = r.solver_tolerance_orbit + ROUNDING * norm(state[0:3])
+        orbit_rate = r.solver_tolerance_orbit * n + ROUNDING * norm(state[3:6])
+        length = norm(state[6:9])
+        apart = r.solver_tolerance_separation + ROUNDING * length
+        apart_rate = r.solver_tolerance_separation * n + ROUNDING * norm(state[9:12])
+        square = dot(error[0:3], error[0:3]) / (orbit * orbit)
+        square += dot(error[3:6], error[3:6]) / (orbit_rate * orbit_rate)
+        square += dot(error[6:9], error[6:9]) / (apart * apart)
+        if r.state_taut and length > 0.0:
+            taut = r.state_taut_tolerance + ROUNDING * length
+            taut_rate = taut * r.state_frequency
+            along = dot(error[6:9], state[6:9]) / length
+            along_rate = dot(error[9:12], state[6:9]) / length
+            across = dot(error[9:12], error[9:12]) - along_rate * along_rate
+            square += along * along / (taut * taut) + along_rate * along_rate / (taut_rate * taut_rate)
+            square += max(0.0, across) / (apart_rate * apart_rate)
+        else:
+            square += dot(error[9:12], error[9:12]) / (apart_rate * apart_rate)
+        return float(square)
+
+    return measure
+
+
+class Trajectory(NamedTuple):
+    """Kernels that move along the trajectory.
+
+    restart(record, work, time)               begin anew at the state stored as END
+    advance(record, work) -> fault            take the next step, up to a change of the line
+    state_at(record, work, time, out)         state within the current step
+    """
+
+    restart: Callable[..., Any]
+    advance: Callable[..., Any]
+    state_at: Callable[..., Any]
+
+
+def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, events: Events) -> Trajectory:
+    """The kernels for one set of equations, integrator and events.
+
+    Valid    tolerances that rounding can meet
+    Checked  tests/tethered_deorbit/test_macro_step.py
+    """
+    last = layout.STAGES + DOP853_STAGES * layout.SIZE
+    """Place of the derivative at the end of the step."""
+
+    @kernel
+    def restart(record: Any, work: Array, time: float) -> None:
+        r = record[0]
+        for i in range(layout.SIZE):
+            work[layout.BEGIN + i] = work[layout.END + i]
+        r.state_begin = time
+        r.state_end = time
+        r.state_step = 0.0
+        r.state_event = 0
+        r.state_fresh = 1
+        r.state_dense_ready = 0
+        r.state_error = 1.0e-4
+        free = FIRST_FREE_STEP / r.state_mean_motion
+        r.state_next_step = min(free, FIRST_TAUT_STEP / r.state_frequency) if r.state_taut else free
+
+    @kernel
+    def attempt(record: Any, work: Array, step: float) -> None:
+        scheme.attempt(
+            record,
+            work[layout.BEGIN : layout.END],
+            step,
+            work[layout.STAGES : layout.DENSE],
+            work[layout.END : layout.HERE],
+        )
+        r = record[0]
+        r.state_step = step
+        r.state_end = r.state_begin + step
+        r.state_dense_ready = 0
+
+    @kernel
+    def end_signals(record: Any, work: Array) -> tuple[float, float, float, float]:
+        return events.signals(record, work[layout.END : layout.HERE], work[last : last + layout.SIZE])
+
+    @kernel
+    def quiet(record: Any, work: Array) -> bool:
+        """A taut line whose tension cannot reach zero within the step, judged by its slope at both ends."""
+        r = record[0]
+        _, _, begin, begin_rate = events.signals(
+            record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE]
+        )
+        _, _, end, end_rate = end_signals(record, work)
+        return bool(2.0 * r.state_step * max(abs(begin_rate), abs(end_rate)) < min(begin, end))
+
+    @kernel
+    def land(record: Any, work: Array, fraction: float) -> None:
+        """Redo the step so that it ends on the change, to rounding: Newton on the step's size, from the dense output."""
+        r = record[0]
+        whole = r.state_step
+        least = min(whole, SHORTEST_CONTACT / r.state_frequency)
+        step = max(least, fraction * whole)
+        attempt(record, work, step)
+        for _ in range(LANDING_ITERATIONS):
+            value, slope, _, _ = end_signals(record, work)
+            if not abs(value) < 0.1 * abs(slope) * step:
+                break
+            better = min(whole, max(least, step - value / slope))
+            if abs(better - step) <= ROUNDING * step:
+                break
+            step = better
+            attempt(record, work, step)
+        r.state_event = 1
+
+    @kernel
+    def advance(record: Any, work: Array) -> int:
+        r = record[0]
+        for i in range(layout.SIZE):
+            work[layout.BEGIN + i] = work[layout.END + i]
+        if r.state_fresh:
+            derivative(
+                record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE]
+            )
+            r.state_fresh = 0
+        else:
+            for i in range(layout.SIZE):
+                work[layout.STAGES + i] = work[last + i]
+        r.state_begin = r.state_end
+        r.state_event = 0
+        r.solver_steps += 1
+        step = r.state_next_step
+        while True:
+            if r.state_taut:
+                step = min(step, TAUT_STEP / r.state_frequency)
+            if not step > 16.0 * ROUNDING * abs(r.state_begin):
+                return NOT_FINITE if not math.isfinite(r.state_error) else STEP_NOT_MET
+            attempt(record, work, step)
+            error = scheme.error(
+                record,
+                work[layout.END : layout.HERE],
+                step,
+                work[layout.STAGES : layout.DENSE],
+                work[layout.LOW : layout.HIGH],
+                work[layout.HIGH : layout.STAGES],
+            )
+            if error <= 1.0:
+                break
+            r.state_error = error
+            r.solver_rejected += 1
+            step = scheme.shorter_step(step, error)
+        r.state_next_step = scheme.next_step(step, error, r.state_error if math.isfinite(r.state_error) else 1.0)
+        r.state_error = error
+        if not (r.state_taut and quiet(record, work)):
+            fraction = events.find_change(record, work)
+            if fraction >= 0.0:
+                land(record, work, fraction)
+        return 0
+
+    @kernel
+    def state_at(record: Any, work: Array, time: float, out: Array) -> None:
+        r = record[0]
+        if time >= r.state_end or r.state_step == 0.0:
+            for i in range(layout.SIZE):
+                out[i] = work[layout.END + i]
+            return
+        events.ensure_dense(record, work)
+        fraction = max(0.0, (time - r.state_begin) / r.state_step)
+        scheme.dense_value(
+            work[layout.BEGIN : layout.END], work[layout.DENSE : layout.WORK], fraction, 0, layout.SIZE, out
+        )
+
+    return Trajectory(restart, advance, state_at)

@@ -1,0 +1,211 @@
+"""One mass on a line that pulls: frequencies, damping, the snap of a slack line, and the longest stable step.
+
+Closed forms for a thread of the net or a tether (a spring with a dashpot, k x + c dx/dt) by which the models are
+judged, and from which the sizing takes its peaks. The damping ratio zeta is c / (2 sqrt(k m)), m the reduced mass.
+"""
+
+import math
+
+from orbital.kernel import kernel
+
+
+def line_stiffness(young_modulus: float, diameter: float, length: float) -> float:
+    """Stiffness of a solid round line [N/m].
+
+        k = E A / L,   A = pi d^2/4
+
+    young_modulus E                                              [Pa]
+    diameter      d      of the load-bearing section             [m]
+    length        L      unloaded                                [m]
+
+    Valid    strains at which E is constant; a braid is softer by its packing
+    Source   D-CoNe paper, eq. 1
+    Checked  tests/orbital/test_oscillators.py; 3926.99 N/m for the tether of Table 2
+    """
+    return young_modulus * 0.25 * math.pi * diameter**2 / length
+
+
+def reduced_mass(first: float, second: float) -> float:
+    """Reduced mass of two bodies joined by a line [kg].
+
+        m_r = m1 m2 / (m1 + m2)
+
+    first, second m1 m2                                          [kg]
+
+    Valid    positive masses
+    Source   relative motion of two bodies
+    Checked  tests/orbital/test_oscillators.py; 666.667 kg for Table 2
+    """
+    return first * second / (first + second)
+
+
+def natural_frequency(stiffness: float, mass: float) -> float:
+    """Undamped angular frequency [rad/s].
+
+        omega = sqrt(k / m)
+
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass of what moves              [kg]
+
+    Valid    the line stays taut
+    Source   harmonic oscillator
+    Checked  tests/orbital/test_oscillators.py; period 2.589 s for Table 2
+    """
+    return math.sqrt(stiffness / mass)
+
+
+def damping_ratio(damping: float, stiffness: float, mass: float) -> float:
+    """Damping as a ratio of the critical one [-].
+
+        zeta = c / (2 sqrt(k m))
+
+    damping       c      axial dashpot                           [N s/m]
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass of what moves              [kg]
+
+    Valid    positive stiffness and mass
+    Source   harmonic oscillator
+    Checked  tests/orbital/test_oscillators.py
+    """
+    return damping / (2.0 * math.sqrt(stiffness * mass))
+
+
+def damped_frequency(stiffness: float, mass: float, damping: float) -> float:
+    """Angular frequency of the damped oscillation [rad/s].
+
+        omega_d = omega sqrt(1 - zeta^2)
+
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass of what moves              [kg]
+    damping       c      axial dashpot                           [N s/m]
+
+    Valid    zeta < 1; ValueError otherwise
+    Source   harmonic oscillator
+    Checked  tests/orbital/test_oscillators.py
+    """
+    zeta = damping_ratio(damping, stiffness, mass)
+    return natural_frequency(stiffness, mass) * _root(zeta)
+
+
+def logarithmic_decrement(zeta: float) -> float:
+    """Logarithm of the ratio of two successive maxima [-].
+
+        delta = 2 pi zeta / sqrt(1 - zeta^2)
+
+    zeta                 damping ratio                           [-]
+
+    Valid    0 <= zeta < 1; ValueError otherwise
+    Source   harmonic oscillator
+    Checked  tests/orbital/test_oscillators.py
+    """
+    return 2.0 * math.pi * zeta / _root(zeta)
+
+
+def snap_peak(speed: float, stiffness: float, mass: float, preload: float = 0.0) -> float:
+    """Largest tension [N] when an undamped line goes taut at a given speed.
+
+        T = P + sqrt(P^2 + k m v^2)
+
+    speed         v      of separation as the line goes taut     [m/s]
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass                            [kg]
+    preload       P      steady force that keeps the line apart, its static tension  [N]
+
+    Valid    no damping, forces other than the line's constant during the snap
+    Source   energy: m v^2/2 + P x = k x^2/2
+    Checked  tests/orbital/test_oscillators.py
+    """
+    return preload + math.sqrt(preload**2 + stiffness * mass * speed**2)
+
+
+def damped_snap_peak(speed: float, stiffness: float, mass: float, zeta: float) -> float:
+    """Largest tension [N] when a damped line, which never pushes, goes taut at a given speed.
+
+        T = v sqrt(k m) exp(-zeta (3 acos zeta - pi)/sqrt(1 - zeta^2))     zeta < 1/2
+        T = 2 zeta v sqrt(k m) = c v                                       zeta >= 1/2
+
+    speed         v      of separation as the line goes taut     [m/s]
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass                            [kg]
+    zeta                 damping ratio c / (2 sqrt(k m))         [-]
+
+    The tension is -m x''; it is largest where x''' = 0, at omega_d t = 3 acos zeta - pi. From one half on that lies
+    before the start, and the dashpot's first tug is the largest.
+
+    Valid    no preload, zeta >= 0
+    Source   x = v/omega_d exp(-zeta omega t) sin omega_d t; each derivative advances its phase by pi - acos zeta
+    Checked  tests/orbital/test_oscillators.py
+    """
+    _require_positive(zeta)
+    impact = speed * math.sqrt(stiffness * mass)
+    if zeta >= 0.5:
+        return 2.0 * zeta * impact
+    return impact * math.exp(-zeta * (3.0 * math.acos(zeta) - math.pi) / _root(zeta))
+
+
+def snap_duration(stiffness: float, mass: float, zeta: float) -> float:
+    """Time [s] from the line's going taut to its tension's falling back to zero, without preload.
+
+        t = 2 acos(zeta) / omega_d
+
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass                            [kg]
+    zeta                 damping ratio                           [-]
+
+    Valid    0 <= zeta < 1; ValueError otherwise. Half a period, pi/omega, without damping
+    Source   first zero of x'' after the start, as for `damped_snap_peak`
+    Checked  tests/orbital/test_oscillators.py
+    """
+    root = _root(zeta)
+    return 2.0 * math.acos(zeta) / (natural_frequency(stiffness, mass) * root)
+
+
+def snap_restitution(zeta: float) -> float:
+    """Speed of return over speed of arrival in a snap without preload [-].
+
+        e = exp(-2 zeta acos zeta / sqrt(1 - zeta^2))
+
+    zeta                 damping ratio                           [-]
+
+    Valid    0 <= zeta < 1; ValueError otherwise. The line lets go when its tension vanishes, still stretched
+    Source   speed at the end of `snap_duration`
+    Checked  tests/orbital/test_oscillators.py
+    """
+    root = _root(zeta)
+    return math.exp(-2.0 * zeta * math.acos(zeta) / root)
+
+
+@kernel
+def explicit_step_limit(stiffness: float, node_mass: float, damping: float = 0.0) -> float:
+    """Longest step [s] at which an explicit scheme on a square net is sure to be stable.
+
+        h = 2 (sqrt(1 + z^2) - z)/omega_max,   omega_max = sqrt(8 k/m),   z = d omega_max/(2 k)
+
+    stiffness     k      of one thread, EA / l                   [N/m]
+    node_mass     m      of an interior node, two threads' worth [kg]
+    damping       d      of one thread                           [N s/m]
+
+    Four taut threads meet at a node, so by Gershgorin no eigenvalue of the stiffness exceeds 8 k. The scheme is the
+    symplectic Euler one, with the dashpot's force from the velocity before the step.
+
+    Valid    straight threads; bullets and borders only lower the highest frequency
+    Source   physics.md, section 1; h omega (h omega + 4 z) = 4 is the edge of stability
+    Checked  tests/orbital/test_oscillators.py; 1.41e-4 s undamped for Table 1 at 1 m, 1.05e-4 s at a ratio of 0.106
+    """
+    highest = math.sqrt(8.0 * stiffness / node_mass)
+    z = damping * highest / (2.0 * stiffness)
+    # The conjugate of sqrt(1 + z^2) - z, which would cancel under heavy damping.
+    return 2.0 / (highest * (math.sqrt(1.0 + z * z) + z))
+
+
+def _root(zeta: float) -> float:
+    """sqrt(1 - zeta^2) [-], for the ratios at which a line oscillates; ValueError for any other."""
+    if not 0.0 <= zeta < 1.0:
+        raise ValueError(f"the damping ratio must lie in [0, 1), but is {zeta}")
+    return math.sqrt((1.0 - zeta) * (1.0 + zeta))
+
+
+def _require_positive(zeta: float) -> None:
+    """ValueError for a damping ratio that is negative or not a number."""
+    if not zeta >= 0.0:
+        raise ValueError(f"the damping ratio must not be negative, but is {zeta}")
