@@ -50,6 +50,7 @@ class Readable(Protocol):
     """Fetches the same variables again and again; `values` is overwritten by each call."""
 
     names: tuple[str, ...]
+    values: Row
 
     def __call__(self) -> Row: ...
 
@@ -71,8 +72,8 @@ class Steppable(Protocol):
     def close(self) -> None: ...
 
 
-# fmpy's proxy formats the variadic message in C and hands it to one Python function per process; the environment pointer
-# tells the instances apart.
+# fmpy's proxy formats the variadic message in C and hands it to one Python function per process; the environment
+# pointer tells the instances apart.
 _messages: dict[int, deque[tuple[int, str]]] = {}
 _environment = itertools.count(1)
 
@@ -249,9 +250,7 @@ class Component:
 
     def _error(self, error: Any, where: str = "") -> FmuError:
         status = STATUS[error.status] if error.status in range(len(STATUS)) else str(error.status)
-        return FmuError(
-            f"{self.name} ({self.archive.path.name}): {error.function} gave {status}{where}{self._said()}"
-        )
+        return FmuError(f"{self.name} ({self.archive.path.name}): {error.function} gave {status}{where}{self._said()}")
 
     def _said(self) -> str:
         """The FMU's latest complaints, or its latest words when none is a complaint."""
@@ -288,7 +287,7 @@ class Reader:
         for kind, group in itertools.groupby(ordered, key=lambda info: info.kind):
             references = [info.reference for info in group]
             count = len(references)
-            buffer = ((ctypes.c_double if kind == "Real" else ctypes.c_int) * count)()
+            buffer: Any = ((ctypes.c_double if kind == "Real" else ctypes.c_int) * count)()
             self._blocks.append(
                 (
                     getattr(component._fmu, f"fmi2Get{kind}"),

@@ -1,8 +1,8 @@
 """The hand-off: what the capture leaves behind becomes what the removal begins with, and a ledger proves it.
 
-Net, bullets and vertex join the target inelastically: their masses, momenta, spins and inertias add. The removal carries
-two point masses, so the spin of the joined body is dropped, and booked as dropped with its size; when it would move
-the tether's far end fast enough to change the first tug, the hand-off is refused.
+Net, bullets and vertex join the target inelastically: their masses, momenta, spins and inertias add. The removal
+carries two point masses, so the spin of the joined body is dropped, and booked as dropped with its size; when it
+would move the tether's far end fast enough to change the first tug, the hand-off is refused.
 
 Frames. Positions and velocities are given in the orbital frame of the target's initial centre of mass, velocities as
 seen in that turning frame; spins are relative to inertial space, along the orbital axes.
@@ -42,15 +42,15 @@ CAPTURE_PARAMETERS = (
 
 _CARRIED = ("center_position", "center_velocity", "relative_position", "relative_velocity")
 REMOVAL_SETS = ("chaser.mass", "target.mass", *(f"start.{what}[{i}]" for what in _CARRIED for i in (1, 2, 3)))
-"""Real parameters of the removal FMU that the hand-off writes, and reads back; with `start.condition` and the anomaly."""
+"""Real parameters of the removal FMU that the hand-off writes and reads back, beside `start.condition` and anomaly."""
 
 
 @dataclass(frozen=True)
 class Body:
     """A body in the orbital frame.
 
-    mass [kg], position (3,) [m], velocity (3,) as seen in the turning frame [m/s], spin (3,) about its own centre of mass
-    relative to inertial space [N m s], inertia (3, 3) about its centre of mass [kg m2], all along the orbital axes
+    mass [kg], position (3,) [m], velocity (3,) as seen in the turning frame [m/s], spin (3,) about its own centre of
+    mass relative to inertial space [N m s], inertia (3, 3) about its centre of mass [kg m2], along the orbital axes
     """
 
     mass: float
@@ -78,7 +78,10 @@ class Handoff:
 
 
 def mean_motion(altitude: float) -> float:
-    """Rate of the orbital frame on a circular orbit, n = sqrt(mu / a^3) [rad/s]; altitude over the equatorial radius [m]."""
+    """Rate at which the orbital frame turns on a circular orbit, n = sqrt(mu / a^3) [rad/s].
+
+    altitude      over the equatorial radius                     [m]
+    """
     axis = EARTH_EQUATORIAL_RADIUS + altitude
     return math.sqrt(EARTH_MU / axis) / axis
 
@@ -190,7 +193,7 @@ def spin_energy(body: Body) -> float:
 class SpinCheck:
     """How much the dropped spin would have mattered.
 
-    attachment_speed   |H| / I_min times the target's half diagonal: how fast the tether's end may be carried about [m/s]
+    attachment_speed   |H| / I_min times the target's half diagonal: how fast it may carry the tether's end [m/s]
     tug_speed          estimate of the speed at which the line first comes taut [m/s]
     """
 
@@ -207,9 +210,7 @@ class SpinCheck:
         return self.attachment_speed <= self.tolerance * self.tug_speed
 
 
-def check_spin(
-    handed: Handoff, size: Vector, rest_length: float, thrust: float, tolerance: float
-) -> SpinCheck:
+def check_spin(handed: Handoff, size: Vector, rest_length: float, thrust: float, tolerance: float) -> SpinCheck:
     """Compare the speed the dropped spin gives the attachment with the relative speed of the first tug.
 
         v_tug^2 = v_rel^2 + 2 (|F|/m_chaser) (L0 - distance)

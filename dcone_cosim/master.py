@@ -2,8 +2,8 @@
 
     build (elsewhere) -> capture FMU -> hand-off as a transaction -> removal FMU
 
-It knows the FMUs by the names of `contract` and `handoff` alone. Failures on the way do not throw away what was reached:
-they end up in the `RunResult`, whose `exit_code` says what happened.
+It knows the FMUs by the names of `contract` and `handoff` alone. Failures on the way do not throw away what was
+reached: they end up in the `RunResult`, whose `exit_code` says what happened.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Instantiate = Callable[[str, str], Steppable]
 
 CROSS_CHECK = 1e-4
 """Relative agreement asked of what the removal computes with what was handed over. It forms its outputs in the frame of
-the pair's centre of mass, which is turned and turns a little differently: by the offset over the radius, 3e-6 for 20 m."""
+the pair's centre of mass, turned and turning a little differently: by the offset over the radius, 3e-6 for 20 m."""
 
 
 @dataclass(frozen=True)

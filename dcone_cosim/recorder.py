@@ -55,13 +55,15 @@ class Recorder:
     def column(self, name: str) -> npt.NDArray[np.float64] | npt.NDArray[np.int64] | npt.NDArray[np.bool_]:
         """One column in the type of its variable."""
         kind = self.kinds[name]
-        return self[name] if kind == "Real" else self[name].astype(np.int64 if kind == "Integer" else np.bool_)
+        if kind == "Real":
+            return self[name]
+        return self[name].astype(np.int64) if kind == "Integer" else self[name].astype(np.bool_)
 
 
 class Snapshots:
     """Node positions at some of the communication points.
 
-    times        record at the first communication point at or after each; empty: evenly thinned, at most `limit` are kept
+    times        record at the first communication point at or after each; empty: evenly thinned, at most `limit` kept
     """
 
     def __init__(self, times: Sequence[float] = (), limit: int = 64) -> None:

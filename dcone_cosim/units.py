@@ -32,6 +32,8 @@ def spoken(fmi_unit: str) -> str:
 
 def dimension_of(unit: Any) -> str:
     """Name of the dimension, the shortest astropy knows: "length", "pressure"; the unit itself when it has no name."""
+    if unit.is_equivalent(u.N / u.m):
+        return "stiffness"  # astropy knows it as a spectral flux density
     names = [name for name in unit.physical_type if name != "unknown"]
     preferred = {"speed", "pressure", "torque", "energy", "angular speed", "momentum", "force", "mass density"}
     chosen = [name for name in names if name in preferred] or sorted(names, key=len)

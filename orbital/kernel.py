@@ -19,3 +19,12 @@ def kernel(function: Function) -> Function:
     """Compile a function for use by other kernels; called from Python it compiles for the types it first meets."""
     compiled: Function = njit(**OPTIONS)(function)
     return compiled
+
+
+def view(function: Function) -> Function:
+    """Compile a function that returns a slice of the memory it is given: it is inlined where it is called.
+
+    Without the numba runtime a compiled function cannot return an array, only an inlined one can.
+    """
+    compiled: Function = njit(inline="always", **OPTIONS)(function)
+    return compiled

@@ -64,6 +64,28 @@ def cord_energy(p, distance, length):
 
 
 @kernel
+def cord_tension(p, stiffness, damping, stretch, rate, winding):
+    """Tension [N] of a stretched cord that a winch may be drawing in.
+
+        T = k (s - L) + d (ds/dt - dL/dt),   dL/dt = -v0 (1 - T / T_stall) while the winch turns
+
+    The dashpot works on the cord's own stretch rate, so the winch's law and the tension are solved together.
+
+    stiffness  k     EA / L                                     [N/m]
+    damping    d     dashpot of the cord                        [N s/m]
+    stretch    s - L distance of the bullets less cord out      [m]
+    rate       ds/dt of their distance                          [m/s]
+    winding    false once the pair is locked
+    """
+    still = stiffness * stretch + damping * rate
+    if not winding or still >= p.closing_stall_force:
+        return still if still > 0.0 else 0.0
+    drag = damping * p.closing_speed / p.closing_stall_force
+    tension = (still + damping * p.closing_speed) / (1.0 + drag)
+    return tension if tension > 0.0 else 0.0
+
+
+@kernel
 def draw_cord(p, work, h):
     """Pull neighbouring bullets together and wind the winches by one substep."""
     if p.closing_t_start < 0.0:
@@ -92,7 +114,7 @@ def draw_cord(p, work, h):
             stiffness = p.closing_axial_stiffness / length
             damping = 2.0 * p.closing_damping_ratio * math.sqrt(0.5 * stiffness * p.bullets_mass)
             rate = ((u[b] - u[a]) * dx + (v[b] - v[a]) * dy + (w[b] - w[a]) * dz) / distance
-            tension = stiffness * (distance - length) + damping * rate
+            tension = cord_tension(p, stiffness, damping, distance - length, rate, length > p.closing_lock_length)
             if tension > 0.0:
                 q = tension / distance
                 fx[a] += q * dx
@@ -101,17 +123,14 @@ def draw_cord(p, work, h):
                 fx[b] -= q * dx
                 fy[b] -= q * dy
                 fz[b] -= q * dz
-            else:
-                tension = 0.0
         if tension > p.cord_tension_peak:
             p.cord_tension_peak = tension
-        if length > p.closing_lock_length:
-            if tension < p.closing_stall_force:
-                shorter = length - h * p.closing_speed * (1.0 - tension / p.closing_stall_force)
-                if shorter < p.closing_lock_length:
-                    shorter = p.closing_lock_length
-                p.closing_work += cord_energy(p, distance, shorter) - cord_energy(p, distance, length)
-                p.cord_length[i] = shorter
+        if length > p.closing_lock_length and tension < p.closing_stall_force:
+            shorter = length - h * p.closing_speed * (1.0 - tension / p.closing_stall_force)
+            if shorter < p.closing_lock_length:
+                shorter = p.closing_lock_length
+            p.closing_work += tension * (length - shorter)
+            p.cord_length[i] = shorter
         if p.cord_length[i] <= p.closing_lock_length:
             locked += 1
         total += p.cord_length[i]

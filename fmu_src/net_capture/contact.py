@@ -9,7 +9,7 @@ kinetic energy is booked exactly.
 import math
 
 from fmu_src.net_capture.shapes import box_distance
-from fmu_src.net_capture.topology import INVERSE_MASS, MASS, U, V, W, X, Y, Z, node_plane
+from fmu_src.net_capture.topology import FX, FY, FZ, INVERSE_MASS, MASS, U, V, W, X, Y, Z, node_plane
 from orbital.kernel import kernel
 from orbital.rotations import rotate, rotate_inverse
 from orbital.vectors import cross, dot
@@ -94,8 +94,13 @@ def touch(p, work, node, frame_rate, h):
         return
     impulse = (wanted - approach) / feel
     p.contact_impulse += impulse
-    # work of the impulse over the mean of the relative normal velocities before and after
-    p.contact_loss -= impulse * 0.5 * (wanted + approach)
+    # work of the impulse over the mean of the relative normal velocities before the kick of this substep and after
+    kicked = (
+        node_plane(p, work, FX)[node] * normal[0]
+        + node_plane(p, work, FY)[node] * normal[1]
+        + node_plane(p, work, FZ)[node] * normal[2]
+    )
+    p.contact_loss -= impulse * 0.5 * (wanted + approach - h * inverse * kicked)
     u[node] += impulse * inverse * normal[0]
     v[node] += impulse * inverse * normal[1]
     w[node] += impulse * inverse * normal[2]

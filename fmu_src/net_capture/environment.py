@@ -65,4 +65,3 @@ def hill_rate(p):
 def no_rate(p):
     """The frame does not turn."""
     return 0.0
-

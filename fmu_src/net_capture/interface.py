@@ -314,7 +314,7 @@ CLOSING = {
             _at_least_zero("closing.delay", "s", "from the trigger to the start of the winches", 0.0),
             _positive("closing.speed", "m/s", "no-load speed of each winch: a 24 m side in 5 s", 5.0),
             _positive("closing.stall_force", "N", "tension at which a winch stands still", 10.0),
-            _positive("closing.axial_stiffness", "N", "EA of the cord", 13740.0),
+            _positive("closing.axial_stiffness", "N", "EA of the cord: 0.5 mm nylon", 903.0),
             _at_least_zero("closing.damping_ratio", "1", "of the cord between two bullets", 0.106),
             _positive("closing.lock_length", "m", "a pair is locked when its cord is shorter than this", 0.25),
             _positive(

@@ -67,7 +67,29 @@ def find_taut(excess, xa, ya, za, xb, yb, zb, squared):
 
 @kernel
 def pull(
-    excess, xa, ya, za, xb, yb, zb, ua, va, wa, ub, vb, wb, fxa, fya, fza, fxb, fyb, fzb, length, stiffness, damping, peak
+    excess,
+    xa,
+    ya,
+    za,
+    xb,
+    yb,
+    zb,
+    ua,
+    va,
+    wa,
+    ub,
+    vb,
+    wb,
+    fxa,
+    fya,
+    fza,
+    fxb,
+    fyb,
+    fzb,
+    length,
+    stiffness,
+    damping,
+    peak,
 ):
     """Add the forces [N] of the taut threads among a chunk to both their nodes."""
     for j in range(excess.size):
@@ -181,17 +203,17 @@ def elastic_energy(p, work):
 
 @kernel
 def kick(velocity, force, inverse_mass, h):
-    """Velocities from forces, and the forces cleared for the next substep."""
+    """Velocities from forces."""
     for j in range(velocity.size):
         velocity[j] += h * (force[j] * inverse_mass[j])
-        force[j] = 0.0
 
 
 @kernel
-def drift(position, velocity, h):
-    """Positions from velocities."""
+def drift(position, velocity, force, h):
+    """Positions from velocities, and the forces cleared for the next substep."""
     for j in range(position.size):
         position[j] += h * velocity[j]
+        force[j] = 0.0
 
 
 @kernel
@@ -205,7 +227,14 @@ def kick_nodes(p, work, start, n, h):
 
 @kernel
 def drift_nodes(p, work, start, n, h):
-    """Drift one chunk of nodes."""
-    drift(node_plane(p, work, X)[start : start + n], node_plane(p, work, U)[start : start + n], h)
-    drift(node_plane(p, work, Y)[start : start + n], node_plane(p, work, V)[start : start + n], h)
-    drift(node_plane(p, work, Z)[start : start + n], node_plane(p, work, W)[start : start + n], h)
+    """Drift one chunk of nodes, and clear their forces."""
+    stop = start + n
+    drift(
+        node_plane(p, work, X)[start:stop], node_plane(p, work, U)[start:stop], node_plane(p, work, FX)[start:stop], h
+    )
+    drift(
+        node_plane(p, work, Y)[start:stop], node_plane(p, work, V)[start:stop], node_plane(p, work, FY)[start:stop], h
+    )
+    drift(
+        node_plane(p, work, Z)[start:stop], node_plane(p, work, W)[start:stop], node_plane(p, work, FZ)[start:stop], h
+    )

@@ -16,7 +16,7 @@ their rest length is infinite, so they never pull.
 
 import math
 
-from orbital.kernel import kernel
+from orbital.kernel import kernel, view
 
 X, Y, Z, U, V, W, FX, FY, FZ, INVERSE_MASS, MASS = range(11)
 """Node planes: position [m], velocity half a substep back [m/s], force [N], 1/m [1/kg] (zero: unused slot), m [kg]."""
@@ -59,14 +59,14 @@ def work_size(knots, segments):
     )
 
 
-@kernel
+@view
 def node_plane(p, work, plane):
     """One node plane as a slice."""
     n = p.node_slots
     return work[plane * n : (plane + 1) * n]
 
 
-@kernel
+@view
 def thread_plane(p, work, plane):
     """One thread plane as a slice."""
     base = NODE_PLANES * p.node_slots
@@ -74,14 +74,14 @@ def thread_plane(p, work, plane):
     return work[base + plane * n : base + (plane + 1) * n]
 
 
-@kernel
+@view
 def strip_table(p, work):
     """The strips as a flat slice: a, b, count, first of each."""
     base = NODE_PLANES * p.node_slots + THREAD_PLANES * p.thread_slots
     return work[base : base + 4 * p.strips]
 
 
-@kernel
+@view
 def chunk_scratch(p, work):
     """Scratch for one chunk of lanes."""
     base = NODE_PLANES * p.node_slots + THREAD_PLANES * p.thread_slots + 4 * p.strips

@@ -21,7 +21,9 @@ FAULTS = (
     Fault(TOO_MANY_EVENTS, "error", "the line goes slack and taut too often in one macro step; take shorter ones"),
     Fault(TIME_GAP, "error", "the communication point does not follow the one before"),
     Fault(GROUND, "error", "the pair has come below the equatorial radius: the orbit has ended"),
-    Fault(BAD_ORBIT, "error", "the perigee lies below the equatorial radius; raise orbit.altitude or lower eccentricity"),
+    Fault(
+        BAD_ORBIT, "error", "the perigee lies below the equatorial radius; raise orbit.altitude or lower eccentricity"
+    ),
     Fault(BAD_CHORD, "error", "start.separation cannot be a chord of this orbit"),
     Fault(START_STRETCHED, "error", "start.separation exceeds the line's length: a locked line would start stretched"),
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive"),
@@ -36,11 +38,21 @@ def _parameter(name: str, unit: str, description: str, start: float, low: float,
 
 def _positive(name: str, unit: str, description: str, start: float, high: float, **more: str) -> Variable:
     return Variable(
-        name, unit, "parameter", description, start, minimum=0.0, open_minimum=True, maximum=high, **more  # type: ignore[arg-type]
+        name,
+        unit,
+        "parameter",
+        description,
+        start,
+        minimum=0.0,
+        open_minimum=True,
+        maximum=high,
+        **more,  # type: ignore[arg-type]
     )
 
 
-def _angle(name: str, description: str, start: float, low: float = -2.0 * math.pi, high: float = 2.0 * math.pi) -> Variable:
+def _angle(
+    name: str, description: str, start: float, low: float = -2.0 * math.pi, high: float = 2.0 * math.pi
+) -> Variable:
     return _parameter(name, "rad", description, start, low, high, display_unit="deg")
 
 
@@ -101,10 +113,10 @@ START = (
 )
 
 SOLVER = (
-    _parameter("solver.tolerance_orbit", "m", "error of the centre of mass in one step", 1e-5, 1e-8, 1e3),
+    _parameter("solver.tolerance_orbit", "m", "error of the centre of mass in one step", 1e-7, 1e-9, 1e3),
     _parameter("solver.tolerance_separation", "m", "error of the relative position in one step", 1e-10, 1e-14, 1.0),
-    _parameter("solver.tolerance_stretch", "m", "error of the stretch in one step while an elastic line is taut",
-               1e-12, 1e-15, 1e-3),
+    _parameter("solver.tolerance_stretch", "m", "estimated error of the stretch in one step while an elastic line is taut",
+               1e-11, 1e-15, 1e-3),
 )  # fmt: skip
 
 OUTPUTS = (
@@ -160,7 +172,7 @@ STATE = (
     _state("length_offset", "m", "in force"),
     _state("length", "m", "at which the line's tension vanishes at rest, or the commanded one"),
     _state("stiffness", "N/m", "of the line, or gain of the reel"),
-    _state("damping", "N s/m", "of the line, or gain of the reel"),
+    _state("damping", "N.s/m", "of the line, or gain of the reel"),
     _state("feed_forward", "N", "of a working reel"),
     _state("frequency", "rad/s", "of the fastest motion while taut"),
     _state("taut_tolerance", "m", "of the stretch while taut"),

@@ -153,7 +153,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return
         stages = work[layout.STAGES : layout.DENSE]
         _, _, begin, begin_rate = events.signals(record, work[layout.BEGIN : layout.END], stages[0 : layout.SIZE])
-        _, _, end, end_rate = events.signals(record, work[layout.END : layout.HERE], stages[12 * layout.SIZE : 13 * layout.SIZE])
+        _, _, end, end_rate = events.signals(
+            record, work[layout.END : layout.HERE], stages[12 * layout.SIZE : 13 * layout.SIZE]
+        )
         whole = max(begin, end)
         still = r.state_step * max(abs(begin_rate), abs(end_rate)) <= 4.0 * r.state_stiffness * r.state_taut_tolerance
         if not still and not ((begin_rate >= 0.0) == (end_rate >= 0.0) and r.state_step * r.state_frequency < 1.5):

@@ -160,5 +160,7 @@ def start_state(record: Any, state: Array, longest: float) -> int:
         offset[i] = 0.0
         rest[i] = 0.0
     offset[1] = r.start_separation if r.start_leading == 0 else -r.start_separation
-    relative_to_inertial(state[6:9], state[9:12], r.state_basis, rate if r.start_condition == VBAR else 0.0, offset, rest)
+    relative_to_inertial(
+        state[6:9], state[9:12], r.state_basis, rate if r.start_condition == VBAR else 0.0, offset, rest
+    )
     return 0

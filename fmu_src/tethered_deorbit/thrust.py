@@ -82,9 +82,7 @@ def _add_along_track(record: Any, state: Array, rate: Array) -> None:
 def _add_along_velocity(record: Any, state: Array, rate: Array) -> None:
     """Thrust along the chaser's inertial velocity: u = v/|v|."""
     share = record[0].state_target_share
-    _add_along(
-        record, rate, state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
-    )
+    _add_along(record, rate, state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11])
 
 
 @kernel

@@ -162,9 +162,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         for i in range(layout.SIZE):
             work[layout.BEGIN + i] = work[layout.END + i]
         if r.state_fresh:
-            derivative(
-                record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE]
-            )
+            derivative(record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE])
             r.state_fresh = 0
         else:
             for i in range(layout.SIZE):

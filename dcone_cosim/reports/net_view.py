@@ -1,0 +1,154 @@
+"""The capture in space: net, bullets, mouth cord and target at eight times."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dcone_cosim.handoff import rotation_matrix
+from dcone_cosim.phases import PhaseResult
+from dcone_cosim.reports import style
+
+Array = npt.NDArray[np.float64]
+PANELS = 8
+SHOWN = (1, 2, 0)
+"""Axes of a panel: along-track to the right, cross-track into the page, radial up."""
+CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+
+
+def choose(times: list[float], asked: bool, located: float | None) -> list[int]:
+    """Which snapshots to show: those asked for, or evenly spread ones with the instant of hand-over among them."""
+    if len(times) <= PANELS:
+        return list(range(len(times)))
+    if asked:
+        kept = [i for i, t in enumerate(times) if t != located]
+        return kept[:PANELS]
+    chosen = [int(np.argmin(np.abs(np.array(times) - t))) for t in np.linspace(times[0], times[-1], PANELS)]
+    if located is not None and located in times:
+        there = times.index(located)
+        chosen[min(range(PANELS), key=lambda i: abs(times[chosen[i]] - located))] = there
+    return sorted(set(chosen))
+
+
+def draw(result: PhaseResult, parameters: dict[str, float], asked: bool, title: str, path: Path) -> None:
+    """PNG of the capture at up to eight times."""
+    shots = result.snapshots
+    chosen = choose(shots.times, asked, result.located)
+    row_of = {i: int(np.argmin(np.abs(result.recorder["time"] - shots.times[i]))) for i in chosen}
+    figure = style.new_figure(14.0, 7.4)
+    low, high = _limits(result, chosen, row_of, parameters)
+    for panel, i in enumerate(chosen):
+        axes = figure.add_subplot(2, 4, panel + 1, projection="3d", computed_zorder=False)
+        _panel(axes, result, i, row_of[i], parameters)
+        _frame(axes, low, high, panel)
+        mark = "  (hand-over)" if result.located is not None and shots.times[i] == result.located else ""
+        axes.set_title(f"t = {shots.times[i]:.2f} s{mark}", y=0.97)
+    figure.suptitle(title)
+    _legend(figure)
+    style.save(figure, path)
+
+
+def _panel(axes: Any, result: PhaseResult, shot: int, row: int, parameters: dict[str, float]) -> None:
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+    nodes = result.snapshots.nodes[shot][:, SHOWN]
+    _box(axes, result, row, parameters)
+    lines = _thread_lines(nodes, parameters)
+    if lines:
+        axes.add_collection3d(Line3DCollection(lines, colors=style.NET, linewidths=0.35, alpha=0.75, zorder=3))
+    else:
+        axes.plot(*nodes.T, ".", color=style.NET, markersize=1, zorder=3)
+    bullets = _bullets(result, row)[:, SHOWN]
+    if len(bullets):
+        ring = np.vstack([bullets, bullets[:1]])
+        axes.plot(*ring.T, color=style.BULLET, linewidth=0.9, alpha=0.8, zorder=4)
+        axes.plot(*bullets.T, "o", color=style.BULLET, markersize=2.8, zorder=5)
+
+
+def _bullets(result: PhaseResult, row: int) -> Array:
+    """Bullets in the order of the mouth, (4, 3) [m]."""
+    recorder = result.recorder
+    if "bullet[1].position[1]" not in recorder:
+        return np.zeros((0, 3))
+    return np.array([[recorder[f"bullet[{b}].position[{i}]"][row] for i in (1, 2, 3)] for b in (1, 2, 3, 4)])
+
+
+def _thread_lines(nodes: Array, parameters: dict[str, float]) -> list[Array]:
+    """The threads as rows and columns of knots, (knots, 3) each; empty when the net's shape is not known."""
+    side, mesh = parameters.get("net.side"), parameters.get("net.mesh")
+    if not side or not mesh:
+        return []
+    knots = round(side / mesh) + 1
+    if knots * knots > len(nodes):
+        return []
+    grid = nodes[: knots * knots].reshape(knots, knots, 3)
+    return [*grid, *grid.transpose(1, 0, 2)]
+
+
+def _box(axes: Any, result: PhaseResult, row: int, parameters: dict[str, float]) -> None:
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    corners = _corners(result, row, parameters)
+    if corners is None:
+        return
+    corners = corners[:, SHOWN]
+    faces = [corners[list(face)] for face in FACES]
+    axes.add_collection3d(
+        Poly3DCollection(faces, facecolors=style.TARGET, edgecolors="#4d3b1c", linewidths=0.5, alpha=0.45, zorder=2)
+    )
+
+
+def _corners(result: PhaseResult, row: int, parameters: dict[str, float]) -> Array | None:
+    """Corners of the target turned by its attitude, (8, 3) [m]."""
+    recorder = result.recorder
+    if "target.attitude[1]" not in recorder or "target.size[1]" not in parameters:
+        return None
+    size = np.array([parameters[f"target.size[{i}]"] for i in (1, 2, 3)])
+    turn = rotation_matrix(recorder.vector("target.attitude", 4)[row])
+    corners: Array = recorder.vector("target.position")[row] + (CORNERS * size) @ turn.T
+    return corners
+
+
+def _limits(
+    result: PhaseResult, chosen: list[int], rows: dict[int, int], parameters: dict[str, float]
+) -> tuple[Array, Array]:
+    """Bounds of everything shown, one for all panels so that they compare."""
+    clouds = [result.snapshots.nodes[i] for i in chosen] + [_bullets(result, rows[i]) for i in chosen]
+    for i in chosen:
+        corners = _corners(result, rows[i], parameters)
+        if corners is not None:
+            clouds.append(corners)
+    points = np.concatenate(clouds)[:, SHOWN]
+    return points.min(axis=0), points.max(axis=0)
+
+
+def _frame(axes: Any, low: Array, high: Array, panel: int) -> None:
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    axes.set_zlim(low[2], high[2])
+    axes.set_box_aspect(high - low, zoom=1.25)
+    axes.view_init(elev=18, azim=-62)
+    axes.tick_params(labelsize=6, pad=-3)
+    for axis, label in ((axes.xaxis, "along-track [m]"), (axes.yaxis, "cross-track [m]"), (axes.zaxis, "radial [m]")):
+        axis.set_label_text(label if panel % 4 == 0 else "", fontsize=7)
+        axis.labelpad = -6
+        axis.pane.set_alpha(0.15)
+
+
+def _legend(figure: Any) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    figure.legend(
+        handles=[
+            Line2D([], [], color=style.NET, label="threads"),
+            Line2D([], [], color=style.BULLET, marker="o", markersize=4, label="bullets and mouth"),
+            Patch(facecolor=style.TARGET, alpha=0.45, label="target"),
+        ],
+        loc="outside lower center",
+        ncols=3,
+    )

@@ -1,0 +1,184 @@
+"""What a run found, as rows of label, value and unit: printed as a table, and kept for machines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dcone_cosim.handoff import spin_energy
+from dcone_cosim.master import HandoffRecord, RunResult
+from dcone_cosim.phases import PhaseResult
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+DAY = 86400.0
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One line of the summary; `key` is its name for machines."""
+
+    phase: str
+    key: str
+    label: str
+    value: float | int | str
+    unit: str = ""
+
+    def shown(self) -> str:
+        if isinstance(self.value, str):
+            return self.value
+        number = f"{self.value:d}" if isinstance(self.value, int) else f"{self.value:.6g}"
+        return f"{number} {self.unit}".rstrip()
+
+
+def findings(run: RunResult) -> list[Finding]:
+    rows: list[Finding] = []
+    for name, result in run.phases.items():
+        if name == "removal" and run.handoff is not None:
+            rows += _of_handoff(run, run.handoff)
+        rows += _of_capture(run, result) if name == "capture" else _of_removal(run, result)
+        rows += _of_effort(name, result)
+    if run.handoff is not None and "removal" not in run.phases:
+        rows += _of_handoff(run, run.handoff)
+    return rows
+
+
+def as_dict(run: RunResult) -> dict[str, Any]:
+    """For machines: `{phase: {key: {value, unit}}}` beside the status."""
+    content: dict[str, Any] = {
+        "scene": run.scene.name,
+        "title": run.scene.title,
+        "status": run.status,
+        "message": run.message,
+        "exit_code": run.exit_code,
+    }
+    for row in findings(run):
+        content.setdefault(row.phase, {})[row.key] = {"value": row.value, "unit": row.unit or "1"}
+    return content
+
+
+def show(run: RunResult, console: Console) -> None:
+    from rich.table import Table
+
+    table = Table(title=run.scene.title, title_justify="left", show_header=False, box=None, pad_edge=False)
+    table.add_column(style="bold")
+    table.add_column()
+    table.add_column(justify="right")
+    previous = ""
+    for row in findings(run):
+        table.add_row(row.phase if row.phase != previous else "", row.label, row.shown())
+        previous = row.phase
+    console.print(table)
+
+
+_CAPTURE_ROWS = (
+    ("contact.first_time", "first touch of the target", "s"),
+    ("mouth.t80", "mouth over 80 % of the net's area from", "s"),
+    ("mouth.t_max", "mouth widest at", "s"),
+    ("mouth.area_max", "largest mouth area", "m2"),
+    ("thread.tension_max", "largest tension of a thread", "N"),
+    ("cord.tension_max", "largest tension of the closing cord", "N"),
+    ("closing.t_start", "winches started at", "s"),
+    ("mouth.cord_length", "mouth cord still out at the end", "m"),
+    ("mouth.girth", "girth it would have to pass", "m"),
+    ("contact.loss", "energy lost in contact", "J"),
+    ("tether.paid_out", "tether paid out", "m"),
+    ("net.nodes", "nodes of the net", ""),
+    ("net.threads", "threads of the net", ""),
+)
+
+
+def _of_capture(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
+    last = result.recorder.last() if len(result.recorder) else {}
+    yield Finding("capture", "outcome", "outcome", result.outcome.replace("_", " "))
+    if result.located is not None:
+        yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
+        yield Finding("capture", "located_by", "found by", result.located_by)
+    for name, label, unit in _CAPTURE_ROWS:
+        if name in last and last[name] >= 0.0:
+            value = last[name] if unit else int(last[name])
+            yield Finding("capture", name, label, value, unit)
+    parameters = run.parameters.get("capture", {})
+    if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
+        recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
+        size = float(np.linalg.norm(recoil))
+        yield Finding("capture", "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+
+
+def _vector(values: dict[str, float], name: str) -> Any:
+    return np.array([values.get(f"{name}[{i}]", 0.0) for i in (1, 2, 3)])
+
+
+def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
+    handed, spin = record.handed, record.spin
+    relative = handed.joint.velocity - handed.chaser.velocity
+    distance = handed.joint.position - handed.chaser.position
+    dropped, speed = float(np.linalg.norm(handed.joint.spin)), spin.attachment_speed
+    yield Finding("hand-off", "time", "at", record.time, "s")
+    yield Finding("hand-off", "mass", "target and net", handed.joint.mass, "kg")
+    yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
+    yield Finding("hand-off", "relative_speed", "relative speed", 1e3 * float(np.linalg.norm(relative)), "mm/s")
+    yield Finding("hand-off", "spin_dropped", "spin dropped (a point target has none)", dropped, "N m s")
+    yield Finding("hand-off", "spin_energy_dropped", "its energy", spin_energy(handed.joint), "J")
+    yield Finding("hand-off", "attachment_speed", "it moves the tether's end at most", 1e3 * speed, "mm/s")
+    yield Finding("hand-off", "tug_speed", "first tug expected at about", 1e3 * spin.tug_speed, "mm/s")
+    if record.rows:
+        worst = max(record.rows, key=lambda row: row.closure)
+        yield Finding("hand-off", "ledger_closure", f"ledger closes to (worst: {worst.quantity})", worst.closure)
+        energy = next(row for row in record.rows if row.quantity == "kinetic energy")
+        lost = energy.accounted - spin_energy(handed.joint)
+        yield Finding("hand-off", "energy_lost", "kinetic energy lost as the net joins", lost, "J")
+
+
+def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
+    recorder = result.recorder
+    elapsed = result.end - result.start
+    yield Finding("removal", "simulated", "simulated", elapsed, "s")
+    yield from _of_tugs(result, "")
+    if run.comparison is not None:
+        yield from _of_tugs(run.comparison, "_without_recoil")
+    if not len(recorder):
+        return
+    last = recorder.last()
+    for name, label, unit, scale in (
+        ("tether.tension", "tension at the end", "N", 1.0),
+        ("separation", "distance at the end", "m", 1.0),
+        ("altitude", "altitude at the end", "km", 1e-3),
+        ("chaser.propellant", "propellant used", "kg", 1.0),
+    ):
+        if name in last:
+            yield Finding("removal", name, label, scale * last[name], unit)
+    if "center.semi_major_axis" in recorder and elapsed > 0.0:
+        axis = recorder["center.semi_major_axis"]
+        lowered = float(axis[0] - axis[-1])
+        yield Finding("removal", "lowered", "orbit lowered by", lowered, "m")
+        yield Finding("removal", "lowering_rate", "that is", lowered / elapsed * DAY, "m/day")
+
+
+def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
+    tugs = result.tugs
+    if tugs is None:
+        return
+    note = ", without the recoil" if suffix else ""
+    yield Finding("removal", f"tugs{suffix}", f"tugs{note}", tugs.count)
+    if tugs.missed:
+        yield Finding(
+            "removal", f"tugs_missed{suffix}", f"of these not seen: shorten the macro step{note}", tugs.missed
+        )
+    if not tugs.rows:
+        return
+    first = tugs.rows[min(tugs.rows)]
+    largest = max(tugs.rows.values(), key=lambda row: row[1])
+    yield Finding("removal", f"first_tug{suffix}", f"first tug{note}, after", first[0] - result.start, "s")
+    yield Finding("removal", f"first_tug_speed{suffix}", f"its speed{note}", 1e3 * first[2], "mm/s")
+    yield Finding("removal", f"first_tug_peak{suffix}", f"its peak{note}", first[1], "N")
+    yield Finding("removal", f"largest_tug_peak{suffix}", f"largest tug{note}", largest[1], "N")
+
+
+def _of_effort(name: str, result: PhaseResult) -> Iterator[Finding]:
+    yield Finding(name, "steps", "macro steps", result.steps)
+    yield Finding(name, "wall", "time taken", result.wall, "s")

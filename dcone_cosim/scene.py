@@ -1,0 +1,118 @@
+"""A scene: what is to be simulated, read from TOML and checked as a whole before anything is built or written.
+
+    title = "..."               phases = ["capture", "removal"]
+    [orbit]                     shared by both phases
+    [capture]  [capture.net] shape = "square" ...       a table per part; a table that names a term brings the term in
+    [removal]  [removal.reel] law = "locked" ...
+    [handoff]
+
+Which tables and keys there are follows from the models' own tables of variables, through `build`.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from dcone_cosim.errors import InputError
+from dcone_cosim.names import did_you_mean
+
+SHIPPED = Path(__file__).parent / "scenes"
+PHASES = ("capture", "removal")
+
+
+@dataclass(frozen=True)
+class PhaseScene:
+    """One phase of a scene, all values SI.
+
+    terms        group of the model: term that the scene names
+    parameters   FMI name: value, of what the scene says
+    defaults     FMI name: start value, of every parameter there is
+    choices      FMI name: names of the values of an Integer choice
+    options      what concerns the master: hand_over, after_capture, snapshots
+    """
+
+    name: str
+    model: str
+    terms: Mapping[str, str]
+    parameters: Mapping[str, float]
+    macro_step: float
+    duration: float
+    options: Mapping[str, Any] = field(default_factory=dict)
+    defaults: Mapping[str, float] = field(default_factory=dict)
+    choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def choice(self, name: str, label: str) -> float:
+        """Value of an Integer choice by its name."""
+        return float(self.choices[name].index(label))
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A scene that has passed every check.
+
+    name       its file's name without the suffix
+    text       the file as read, kept with the results
+    handoff    options of the hand-off: spin_tolerance, compare_without_recoil
+    """
+
+    name: str
+    title: str
+    text: str
+    phases: tuple[PhaseScene, ...]
+    handoff: Mapping[str, Any] = field(default_factory=dict)
+
+
+def shipped() -> dict[str, Path]:
+    """The scenes that come with the program, by name."""
+    return {path.stem: path for path in sorted(SHIPPED.glob("*.toml"))}
+
+
+def find(name: str) -> Path:
+    """Path of a scene given by its name or as a path."""
+    known = shipped()
+    if name in known:
+        return known[name]
+    path = Path(name)
+    if path.is_file():
+        return path
+    if path.is_dir():
+        raise InputError(f"{name} is a folder; expected a scene: a .toml file, or one of {', '.join(known)}")
+    if path.suffix == ".toml" or len(path.parts) > 1:
+        beside = [str(p) for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
+        raise InputError(f"scene file {name} does not exist{did_you_mean(name, beside or known)}")
+    raise InputError(f"no scene named {name!r}{did_you_mean(name, known)}")
+
+
+def load(name: str) -> Scene:
+    """The scene of that name or path, checked; an `InputError` lists every mistake found."""
+    path = find(name)
+    return parse(read_text(path), path.stem, str(path))
+
+
+def read_text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} cannot be read as text: {error}") from error
+
+
+def parse(text: str, name: str, source: str) -> Scene:
+    """A scene from its text; `source` names it in messages."""
+    if not text.strip():
+        raise InputError(f"{source} is empty; expected a scene with at least [capture] or [removal]")
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{source} is not valid TOML, or cut short: {error}") from error
+    from dcone_cosim.scene_check import check  # astropy and pydantic are loaded only for a text that parses
+
+    return check(document, text, name, source)
+
+
+def title_of(path: Path) -> str:
+    """The title of a scene file, without checking the rest."""
+    return str(tomllib.loads(read_text(path)).get("title", ""))
