@@ -1,0 +1,76 @@
+"""LLVM IR of a model's entry, free of Python: `python -m fmu_src.packaging.compile MODEL TERMS OUT`.
+
+Runs as a child process, since what numba emits is settled by the environment it is imported in: a generic processor and no
+vectoriser of its own, so that clang chooses both for each target. All but the entry becomes internal, what is not reached
+is dropped, and what ties the text to this host (target, numba's own globals) is struck out.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+ENTRY = "dcone_entry"
+ENVIRONMENT = {
+    "NUMBA_CPU_NAME": "generic",
+    "NUMBA_CPU_FEATURES": "",
+    "NUMBA_LOOP_VECTORIZE": "0",
+    "NUMBA_SLP_VECTORIZE": "0",
+    "NUMBA_DISABLE_JIT": "0",
+    "NUMBA_DEBUGINFO": "0",
+}
+
+
+class BuildError(RuntimeError):
+    """A tool of the build failed; carries its own words."""
+
+
+def emit(model: str, terms: Mapping[str, str], path: Path) -> None:
+    """Write the IR of one model with its terms to `path`, in a child process."""
+    command = [sys.executable, "-m", "fmu_src.packaging.compile", model, json.dumps(dict(terms)), str(path)]
+    done = subprocess.run(command, env={**os.environ, **ENVIRONMENT}, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise BuildError(f"compiling the kernels of {model} failed:\n{done.stderr.strip()[-2000:]}")
+
+
+def _lower(model: str, terms: Mapping[str, str]) -> str:
+    import importlib
+
+    import llvmlite.binding as llvm
+    from numba import njit
+
+    from fmu_src.catalogue import MODELS
+    from orbital.kernel import OPTIONS
+
+    entry = importlib.import_module(MODELS[model].module).make_entry(dict(terms))
+    (signature,) = entry.nopython_signatures
+    bare = njit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(entry.py_func)
+    result = bare.overloads[signature.args]
+    name = result.fndesc.llvm_func_name
+    module = llvm.parse_assembly(result.library.get_llvm_str())
+    for function in module.functions:
+        if not function.is_declaration and function.name != name:
+            function.linkage = "internal"
+    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine()
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_global_dead_code_eliminate_pass()
+    passes.run(module, builder)
+    host = re.compile(r'target (datalayout|triple)|source_filename|@"?_ZN08NumbaEnv')
+    text = "\n".join(line for line in str(module).splitlines() if not host.match(line))
+    text = text.replace(f'@"{name}"', f"@{ENTRY}").replace(f"@{name}", f"@{ENTRY}")
+    foreign = sorted(set(re.findall(r"declare [^@]*@\"?((?:Py|_Py|NRT_|numba_|Numba)[\w.]*)", text)))
+    if foreign:
+        raise BuildError(f"the kernels of {model} still call Python: {', '.join(foreign)}")
+    if "inttoptr (i64" in text:
+        raise BuildError(f"the kernels of {model} hold an address of this process")
+    return text + "\n"
+
+
+if __name__ == "__main__":
+    Path(sys.argv[3]).write_text(_lower(sys.argv[1], json.loads(sys.argv[2])))
