@@ -47,8 +47,10 @@ def out_of_reach(phase: str, values: Mapping[str, float], terms: Mapping[str, st
     """Why the net or the tether cannot reach the target; empty when they can."""
     if phase != "capture" or "target" not in terms:
         return []
-    from fmu_src.net_capture.reach import refusals
-
+    try:
+        from fmu_src.net_capture.reach import refusals
+    except ImportError:
+        return []
     return [Refusal(*row) for row in refusals(dict(values))]
 
 
@@ -62,11 +64,12 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
-def ensure_fmu(phase: str, terms: Mapping[str, str], announce: Callable[[str], None]) -> Path:
-    """Path of the FMU of a phase's model with the given terms; it is built when the cache has none."""
-    from fmu_src.packaging.archive import build
+def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
+    """Path of the FMU of each phase, `{phase: terms}`; those that the cache has not are built side by side."""
+    from fmu_src.packaging.archive import build_all
 
-    return Path(build(MODELS[phase].interface(terms), cache_folder(), announce))
+    interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
+    return dict(zip(phases, build_all(interfaces, cache_folder(), announce), strict=True))
 
 
 def readable_name(phase: str, terms: Mapping[str, str]) -> str:

@@ -163,6 +163,7 @@ class CaptureLoop:
                 result.located = at
                 last = min(plan.duration, at if plan.stop_there else at + plan.after_capture)
                 self._record(at, force=True)
+                self.progress.at(at)
                 if plan.stop_there:
                     break
                 end = min(end, last)

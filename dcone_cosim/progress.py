@@ -72,20 +72,22 @@ class Bar(Progress):
         )
         self._bar.start()
         self._task: Any = None
-        self._building: Any = None
-        self._start = self._stop = self._began = self._shown = 0.0
+        self._waiting: Any = None
+        self._start = self._stop = self._began = self._shown = self._last = 0.0
 
     def say(self, text: str) -> None:
-        self._finish_building()
-        self._building = self._bar.add_task(text, total=None, state="")
+        """May be called from several threads: FMUs are built side by side."""
+        self._bar.console.print(text, markup=False, highlight=False)
+        if self._waiting is None:
+            self._waiting = self._bar.add_task("working", total=None, state="")
 
-    def _finish_building(self) -> None:
-        if self._building is not None:
-            self._bar.update(self._building, total=1, completed=1)
-            self._building = None
+    def _stop_waiting(self) -> None:
+        if self._waiting is not None:
+            self._bar.remove_task(self._waiting)
+            self._waiting = None
 
     def begin(self, phase: str, start: float, stop: float) -> None:
-        self._finish_building()
+        self._stop_waiting()
         self._start, self._stop = start, stop
         self._began = clock.perf_counter()
         self._shown = 0.0
@@ -110,5 +112,5 @@ class Bar(Progress):
         self._bar.update(self._task, total=max(self._last - self._start, 1e-12))
 
     def close(self) -> None:
-        self._finish_building()
+        self._stop_waiting()
         self._bar.stop()

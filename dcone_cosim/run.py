@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
@@ -147,12 +148,23 @@ def _plain(value: Any) -> Any:
 
 def _table(columns: Sequence[tuple[str, str, Any]]) -> pa.Table:
     """columns: name, unit, values"""
-    arrays = [pa.array(values) for _, _, values in columns]
+    arrays = [_arrow(np.asarray(values)) for _, _, values in columns]
     fields = [
         pa.field(name, array.type, metadata={"unit": unit})
         for (name, unit, _), array in zip(columns, arrays, strict=True)
     ]
     return pa.Table.from_arrays(arrays, schema=pa.schema(fields))
+
+
+def _arrow(values: npt.NDArray[Any]) -> Any:
+    """An arrow array over the memory of a numpy one; `pyarrow.array` would import pandas first, half a second."""
+    if values.dtype == np.bool_:
+        return pa.Array.from_buffers(
+            pa.bool_(), len(values), [None, pa.py_buffer(np.packbits(values, bitorder="little"))]
+        )
+    kind = pa.int64() if np.issubdtype(values.dtype, np.integer) else pa.float64()
+    contiguous = np.ascontiguousarray(values, dtype=np.int64 if kind == pa.int64() else np.float64)
+    return pa.Array.from_buffers(kind, len(values), [None, pa.py_buffer(contiguous)])
 
 
 def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:

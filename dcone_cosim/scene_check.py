@@ -91,6 +91,7 @@ def check(document: dict[str, Any], text: str, name: str, source: str) -> Scene:
     chosen = _phases_to_run(document, present, mistakes)
     if len(chosen) == len(PHASES):
         mistakes += _set_by_handoff(document)
+    mistakes += _hand_over_without_term(document, phases)
     if not mistakes:
         scene = _assemble(values, phases, chosen, text, name)
         for phase in scene.phases:
@@ -281,6 +282,18 @@ def _phases_to_run(document: dict[str, Any], present: list[str], mistakes: list[
         elif name not in present:
             mistakes.append(Mistake(("phases",), given, f"the phase has no table; expected [{name}]"))
     return [name for name in PHASES if name in given]
+
+
+NEEDED_TERM = {"settled": "settling", "tether_taut": "tether"}
+
+
+def _hand_over_without_term(document: dict[str, Any], phases: Mapping[str, _Phase]) -> list[Mistake]:
+    """A condition for handing over that no term of the scene can ever report."""
+    given = document["capture"].get("hand_over") if "capture" in phases else None
+    group = NEEDED_TERM.get(given) if isinstance(given, str) else None
+    if group is None or group in phases["capture"].interface.terms:
+        return []
+    return [Mistake(("capture", "hand_over"), given, f"needs the table [capture.{group}], which this scene lacks")]
 
 
 def _set_by_handoff(document: dict[str, Any]) -> list[Mistake]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import threading
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from dcone_cosim.component import Archive, Component
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.reports import summary
+from dcone_cosim.reports import style, summary
 from dcone_cosim.run import check_free, default_folder, write
 from dcone_cosim.scene import Scene, load
 
@@ -21,9 +22,8 @@ class Archives:
     """The unpacked FMU of every phase of a scene; closing removes the temporary folders."""
 
     def __init__(self, scene: Scene, progress: Progress) -> None:
-        self._of: dict[str, Archive] = {}
-        for phase in scene.phases:
-            self._of[phase.name] = Archive(build.ensure_fmu(phase.name, phase.terms, progress.say))
+        paths = build.ensure_fmus({phase.name: phase.terms for phase in scene.phases}, progress.say)
+        self._of = {phase: Archive(path) for phase, path in paths.items()}
 
     def instantiate(self, phase: str, name: str) -> Component:
         return self._of[phase].instantiate(name)
@@ -62,6 +62,8 @@ def run_and_write(
     scene = load(name)
     folder = out if out is not None else default_folder(scene.name)
     check_free(folder, force)
+    if with_figures:
+        threading.Thread(target=style.load, daemon=True).start()
     with Archives(scene, progress) as archives:
         result = run_scene(scene, archives.instantiate, progress)
         facts = archives.facts()
@@ -81,6 +83,7 @@ def write_fmus(name: str, out: Path, progress: Progress) -> list[Path]:
     scene = load(name)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
-    built = [(build.ensure_fmu(p.name, p.terms, progress.say), p) for p in scene.phases]
+    terms = {phase.name: phase.terms for phase in scene.phases}
+    built = build.ensure_fmus(terms, progress.say)
     out.mkdir(parents=True, exist_ok=True)
-    return [Path(shutil.copyfile(fmu, out / build.readable_name(p.name, p.terms))) for fmu, p in built]
+    return [Path(shutil.copyfile(fmu, out / build.readable_name(phase, terms[phase]))) for phase, fmu in built.items()]

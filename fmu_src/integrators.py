@@ -62,7 +62,7 @@ def _next_step(step: float, error: float, previous_error: float) -> float:
 
         h' = h * 0.9 e^(-3/32) e_old^(1/32),   held between h/5 and 5 h
 
-    The powers are three and one times an eighth's quarter, taken by repeated square roots, which round alike everywhere.
+    The powers are taken by repeated square roots, which round alike everywhere.
 
     error, previous_error  in units of the tolerance             [-]
 
@@ -134,7 +134,8 @@ def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], siz
         fifth = measure(context, end, high)
         if fifth == 0.0:
             return 0.0
-        return step * fifth / math.sqrt(fifth + 0.01 * measure(context, end, low))
+        third = measure(context, end, low)
+        return step * float(fifth) / math.sqrt(fifth + 0.01 * third)
 
     @kernel
     def prepare_dense(

@@ -54,18 +54,17 @@ def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> Path:
         above.axhline(0.8 * flat, color=style.MUTED, linewidth=0.8, linestyle=":", label="80 % of the flat net")
     above.set_ylabel("mouth area [m²]")
     above.set_ylim(bottom=0)
-    series = (
-        ("energy.total", "kinetic and elastic", style.CHASER),
-        ("energy.kinetic", "kinetic", style.NET),
-        ("energy.elastic", "elastic", style.ACCENT),
-        ("target.energy", "of the target", style.TARGET),
-        ("contact.loss", "lost in contact", style.BULLET),
-        ("closing.work", "work of the winches", "#7d3c98"),
+    series: tuple[tuple[str, str, str, dict[str, float]], ...] = (
+        ("energy.total", "kinetic and elastic", style.CHASER, {"linewidth": 3.0, "alpha": 0.35}),
+        ("energy.kinetic", "kinetic", style.CHASER, {}),
+        ("energy.elastic", "elastic", style.ACCENT, {}),
+        ("target.energy", "of the target", style.TARGET, {}),
+        ("contact.loss", "lost in contact", style.BULLET, {}),
+        ("closing.work", "work of the winches", "#7d3c98", {}),
     )
-    for name, label, colour in series:
+    for name, label, colour, extra in series:
         if name in recorder:
-            dash = "--" if name == "energy.kinetic" else "-"
-            below.plot(time, recorder[name], dash, color=colour, linewidth=1.2, label=label)
+            below.plot(time, recorder[name], color=colour, label=label, **({"linewidth": 1.1} | extra))
     below.set_ylabel("energy [J]")
     below.set_xlabel("time since the shot [s]")
     for name, label, dash in EVENTS:
@@ -73,8 +72,8 @@ def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> Path:
             for axes in (above, below):
                 axes.axvline(last[name], color="black", linewidth=0.8, linestyle=dash, alpha=0.7)
             above.annotate(
-                label, (last[name], 1.0), xycoords=("data", "axes fraction"), rotation=90, fontsize=7,
-                xytext=(-2, -4), textcoords="offset points", ha="right", va="top",
+                label, (last[name], 0.5), xycoords=("data", "axes fraction"), rotation=90, fontsize=8,
+                ha="center", va="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
             )  # fmt: skip
     above.legend(loc="upper left")
     below.legend(loc="upper left", ncols=2)
@@ -111,43 +110,53 @@ LEAST = 1e-6
 
 
 def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> Path:
-    """Tension at the communication points, the tugs between them as stems, and the first hours apart."""
+    """Tension over the whole phase, logarithmic, and the time of the tugs apart, linear; tugs as stems."""
     recorder = result.recorder
     divisor, unit = style.time_axis(result.end - result.start)
     time = (recorder["time"] - result.start) / divisor
-    figure = style.new_figure(8.5, 6.0)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    figure = style.new_figure(8.5, 6.4)
+    above, below = figure.subplots(2, 1, height_ratios=(3, 2))
     tension = recorder["tether.tension"]
     visible = np.where(tension > LEAST, tension, np.nan)
     above.plot(time, visible, color=style.CHASER, linewidth=0.9, label="tension at the macro steps")
     shown = [tension[tension > LEAST]]
-    for tugs, start, colour, label in _tug_sets(run, result):
-        at = np.array([(t - start) / divisor for t, _, _ in tugs])
-        peak = np.array([p for _, p, _ in tugs])
-        above.vlines(at, LEAST, peak, color=colour, linewidth=0.5, alpha=0.5)
-        above.plot(at, peak, "o", color=colour, markersize=3, label=label)
-        below.plot(at, 1e3 * np.array([v for _, _, v in tugs]), "o", color=colour, markersize=3, label=label)
+    sets = _tug_sets(run, result)
+    last = max((float(rows[:, 0].max()) for _, rows, _, _ in sets), default=result.end - result.start)
+    zoom, zoom_unit = style.time_axis(1.05 * last)
+    for label, rows, colour, strong in sets:
+        peak = rows[:, 1]
+        for axes, at in ((above, rows[:, 0] / divisor), (below, rows[:, 0] / zoom)):
+            axes.vlines(at, LEAST, peak, color=colour, linewidth=0.7, alpha=0.7)
+            axes.plot(at, peak, "o", color=colour, markersize=3.5 if strong else 2.5, label=label)
         shown.append(peak[peak > LEAST])
     values = np.concatenate(shown)
     above.set_yscale("log")
     if len(values):
         above.set_ylim(max(LEAST, 0.3 * values.min()), 3.0 * values.max())
+    above.set_xlim(0.0, time[-1])
     above.set_ylabel("tether tension [N]")
+    above.set_xlabel(f"time since the removal began [{unit}]")
     if above.get_legend_handles_labels()[1]:
         above.legend(loc="upper right")
-    below.set_ylabel("speed as it goes taut [mm/s]")
+    within = (recorder["time"] - result.start) / zoom
+    below.plot(within, tension, color=style.CHASER, linewidth=0.9)
+    below.set_xlim(0.0, 1.05 * last / zoom)
     below.set_ylim(bottom=0)
-    below.set_xlabel(f"time since the removal began [{unit}]")
+    below.set_ylabel("tether tension [N]")
+    below.set_xlabel(f"the tugs apart: time since the removal began [{zoom_unit}]")
     figure.suptitle(title)
     style.save(figure, path)
     return path
 
 
-def _tug_sets(run: RunResult, result: PhaseResult) -> list[tuple[list[tuple[float, float, float]], float, str, str]]:
-    sets: list[tuple[list[tuple[float, float, float]], float, str, str]] = []
-    if run.comparison is not None and run.comparison.tugs is not None and run.comparison.tugs.rows:
-        other = run.comparison.tugs
-        sets.append((list(other.rows.values()), run.comparison.start, style.MUTED, "tugs, had there been no recoil"))
-    if result.tugs is not None and result.tugs.rows:
-        sets.append((list(result.tugs.rows.values()), result.start, style.BULLET, "tugs"))
+def _tug_sets(run: RunResult, result: PhaseResult) -> list[tuple[str, style.Array, str, bool]]:
+    """Label, rows of time since the phase began [s] and peak [N], colour, and whether they are the run's own."""
+    sets = []
+    for phase, label, colour, strong in (
+        (run.comparison, "tugs, had there been no recoil", style.MUTED, False),
+        (result, "tugs", style.BULLET, True),
+    ):
+        if phase is not None and phase.tugs is not None and phase.tugs.rows:
+            rows = np.array(list(phase.tugs.rows.values()))[:, :2] - np.array([phase.start, 0.0])
+            sets.append((label, rows, colour, strong))
     return sets

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def show(scene: Scene, console: Console, progress: Progress) -> None:
     from rich.table import Table
 
+    paths = build.ensure_fmus({phase.name: phase.terms for phase in scene.phases}, progress.say)
     for phase in scene.phases:
-        path = build.ensure_fmu(phase.name, phase.terms, progress.say)
         table = Table(
             title=f"{scene.name}, {phase.name}: {phase.model}", title_justify="left", box=None, pad_edge=False
         )
@@ -33,7 +33,7 @@ def show(scene: Scene, console: Console, progress: Progress) -> None:
                 table.add_row("left out", f"{group_name}: {term}", group.terms[term].summary)
             if group_name == "nodes" and named is None:
                 table.add_row("left out", "nodes", "position of every node")
-        with Archive(path) as archive:
+        with Archive(paths[phase.name]) as archive:
             sizes = _sizes(phase, archive)
         console.print(table)
         for label, text in sizes:

@@ -6,13 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from dcone_cosim.handoff import rotation_matrix
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.reports import style
+from dcone_cosim.reports.style import Array
 
-Array = npt.NDArray[np.float64]
 PANELS = 8
 SHOWN = (1, 2, 0)
 """Axes of a panel: along-track to the right, cross-track into the page, radial up."""
@@ -39,14 +38,15 @@ def draw(result: PhaseResult, parameters: dict[str, float], asked: bool, title: 
     shots = result.snapshots
     chosen = choose(shots.times, asked, result.located)
     row_of = {i: int(np.argmin(np.abs(result.recorder["time"] - shots.times[i]))) for i in chosen}
-    figure = style.new_figure(14.0, 7.4)
+    figure = style.new_figure(14.0, 6.8, layout=None)
+    figure.subplots_adjust(left=0.02, right=0.97, bottom=0.07, top=0.92, wspace=0.06, hspace=0.1)
     low, high = _limits(result, chosen, row_of, parameters)
     for panel, i in enumerate(chosen):
         axes = figure.add_subplot(2, 4, panel + 1, projection="3d", computed_zorder=False)
         _panel(axes, result, i, row_of[i], parameters)
-        _frame(axes, low, high, panel)
+        _frame(axes, low, high)
         mark = "  (hand-over)" if result.located is not None and shots.times[i] == result.located else ""
-        axes.set_title(f"t = {shots.times[i]:.2f} s{mark}", y=0.97)
+        axes.set_title(f"t = {shots.times[i]:.2f} s{mark}", y=0.99)
     figure.suptitle(title)
     _legend(figure)
     style.save(figure, path)
@@ -126,16 +126,17 @@ def _limits(
     return points.min(axis=0), points.max(axis=0)
 
 
-def _frame(axes: Any, low: Array, high: Array, panel: int) -> None:
+def _frame(axes: Any, low: Array, high: Array) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_zlim(low[2], high[2])
-    axes.set_box_aspect(high - low, zoom=1.25)
+    axes.set_box_aspect(high - low, zoom=1.3)
     axes.view_init(elev=18, azim=-62)
-    axes.tick_params(labelsize=6, pad=-3)
-    for axis, label in ((axes.xaxis, "along-track [m]"), (axes.yaxis, "cross-track [m]"), (axes.zaxis, "radial [m]")):
-        axis.set_label_text(label if panel % 4 == 0 else "", fontsize=7)
-        axis.labelpad = -6
+    axes.tick_params(labelsize=7, pad=-3)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         axis.pane.set_alpha(0.15)
 
 
@@ -148,7 +149,10 @@ def _legend(figure: Any) -> None:
             Line2D([], [], color=style.NET, label="threads"),
             Line2D([], [], color=style.BULLET, marker="o", markersize=4, label="bullets and mouth"),
             Patch(facecolor=style.TARGET, alpha=0.45, label="target"),
+            Line2D(
+                [], [], linestyle="", label="axes [m]: along-track to the right, cross-track to the back, radial up"
+            ),
         ],
-        loc="outside lower center",
-        ncols=3,
+        loc="lower center",
+        ncols=4,
     )

@@ -5,6 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
 CHASER = "#1f4e79"
 TARGET = "#8a6d3b"
 NET = "#4a6fa5"
@@ -25,18 +30,25 @@ SETTINGS: Any = {
 }
 
 
-def new_figure(width: float, height: float) -> Any:
+def load() -> None:
+    """Import what drawing needs, half a second; may run in a thread while an FMU computes."""
+    import matplotlib.backends.backend_agg
+    import matplotlib.figure  # noqa: F401
+    import mpl_toolkits.mplot3d.art3d  # noqa: F401
+
+
+def new_figure(width: float, height: float, layout: Any = "constrained") -> Any:
     """A figure on the Agg canvas [inch], without pyplot and its global state."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = Figure(figsize=(width, height), layout=layout)
     FigureCanvasAgg(figure)
     return figure
 
 
 def save(figure: Any, path: Path) -> None:
-    figure.savefig(path, dpi=DPI)
+    figure.savefig(path, dpi=DPI, pil_kwargs={"compress_level": 3})
 
 
 def time_axis(duration: float) -> tuple[float, str]:

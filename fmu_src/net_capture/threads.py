@@ -6,17 +6,16 @@ length exceeds the squared rest length; the square root, the damping and the for
 
 import math
 
+import numpy as np
+
 from fmu_src.net_capture.topology import (
     CHUNK,
-    DAMPING,
     FX,
     FY,
     FZ,
     INVERSE_MASS,
-    LENGTH,
     LENGTH_SQUARED,
     PEAK,
-    STIFFNESS,
     U,
     V,
     W,
@@ -66,50 +65,63 @@ def find_taut(excess, xa, ya, za, xb, yb, zb, squared):
 
 
 @kernel
-def pull(
-    excess,
-    xa,
-    ya,
-    za,
-    xb,
-    yb,
-    zb,
-    ua,
-    va,
-    wa,
-    ub,
-    vb,
-    wb,
-    fxa,
-    fya,
-    fza,
-    fxb,
-    fyb,
-    fzb,
-    length,
-    stiffness,
-    damping,
-    peak,
-):
-    """Add the forces [N] of the taut threads among a chunk to both their nodes."""
+def gather_taut(lanes, excess):
+    """Write the numbers of the taut lanes one after another; no branch to mispredict."""
+    found = 0
     for j in range(excess.size):
-        if excess[j] > 0.0:
-            dx = xb[j] - xa[j]
-            dy = yb[j] - ya[j]
-            dz = zb[j] - za[j]
-            r = math.sqrt(dx * dx + dy * dy + dz * dz)
-            rate = ((ub[j] - ua[j]) * dx + (vb[j] - va[j]) * dy + (wb[j] - wa[j]) * dz) / r
-            tension = thread_tension(r, rate, length[j], stiffness[j], damping[j])
-            if tension > 0.0:
-                if tension > peak[j]:
-                    peak[j] = tension
-                q = tension / r
-                fxa[j] += q * dx
-                fya[j] += q * dy
-                fza[j] += q * dz
-                fxb[j] -= q * dx
-                fyb[j] -= q * dy
-                fzb[j] -= q * dz
+        lanes[found] = j
+        found += 1 if excess[j] > 0.0 else 0
+
+
+@kernel
+def pull(lanes, nodes, slots, a, b, peak, length, stiffness, damping):
+    """Add the forces [N] of the taut lanes of a chunk to both their nodes.
+
+    lanes     numbers of the taut lanes within the chunk
+    nodes     the node planes, one after another, `slots` long each
+    a, b      nodes joined by the chunk's first lane
+    peak      largest tension so far of each lane of the chunk   [N]
+
+    Indices are unsigned, which spares the test for negative ones: at this place it costs a third.
+    """
+    n = np.uint64(slots)
+    for i in range(lanes.size):
+        lane = np.uint64(lanes[i])
+        ia = np.uint64(a) + lane
+        ib = np.uint64(b) + lane
+        dx = nodes[ib] - nodes[ia]
+        ua = ia + n
+        ub = ib + n
+        dy = nodes[ub] - nodes[ua]
+        ua += n
+        ub += n
+        dz = nodes[ub] - nodes[ua]
+        r = math.sqrt(dx * dx + dy * dy + dz * dz)
+        inverse = 1.0 / r
+        ua += n
+        ub += n
+        rate = (nodes[ub] - nodes[ua]) * dx
+        ua += n
+        ub += n
+        rate += (nodes[ub] - nodes[ua]) * dy
+        ua += n
+        ub += n
+        rate += (nodes[ub] - nodes[ua]) * dz
+        tension = thread_tension(r, rate * inverse, length, stiffness, damping)
+        peak[lane] = tension if tension > peak[lane] else peak[lane]
+        q = tension * inverse
+        ua += n
+        ub += n
+        nodes[ua] += q * dx
+        nodes[ub] -= q * dx
+        ua += n
+        ub += n
+        nodes[ua] += q * dy
+        nodes[ub] -= q * dy
+        ua += n
+        ub += n
+        nodes[ua] += q * dz
+        nodes[ub] -= q * dz
 
 
 @kernel
@@ -118,19 +130,12 @@ def add_thread_forces(p, work):
     x = node_plane(p, work, X)
     y = node_plane(p, work, Y)
     z = node_plane(p, work, Z)
-    u = node_plane(p, work, U)
-    v = node_plane(p, work, V)
-    w = node_plane(p, work, W)
-    fx = node_plane(p, work, FX)
-    fy = node_plane(p, work, FY)
-    fz = node_plane(p, work, FZ)
-    length = thread_plane(p, work, LENGTH)
     squared = thread_plane(p, work, LENGTH_SQUARED)
-    stiffness = thread_plane(p, work, STIFFNESS)
-    damping = thread_plane(p, work, DAMPING)
     peak = thread_plane(p, work, PEAK)
     table = strip_table(p, work)
     scratch = chunk_scratch(p, work)
+    excess = scratch[0:CHUNK]
+    lanes = scratch[CHUNK : 2 * CHUNK]
     taut = 0
     for q in range(p.strips):
         count = int(table[4 * q + 2])
@@ -139,40 +144,30 @@ def add_thread_forces(p, work):
             b = int(table[4 * q + 1]) + start
             t = int(table[4 * q + 3]) + start
             n = min(CHUNK, count - start)
-            e = scratch[0:n]
-            xa = x[a : a + n]
-            ya = y[a : a + n]
-            za = z[a : a + n]
-            xb = x[b : b + n]
-            yb = y[b : b + n]
-            zb = z[b : b + n]
-            found = find_taut(e, xa, ya, za, xb, yb, zb, squared[t : t + n])
+            e = excess[0:n]
+            found = find_taut(
+                e,
+                x[a : a + n],
+                y[a : a + n],
+                z[a : a + n],
+                x[b : b + n],
+                y[b : b + n],
+                z[b : b + n],
+                squared[t : t + n],
+            )
             if found > 0:
                 taut += found
+                gather_taut(lanes, e)
                 pull(
-                    e,
-                    xa,
-                    ya,
-                    za,
-                    xb,
-                    yb,
-                    zb,
-                    u[a : a + n],
-                    v[a : a + n],
-                    w[a : a + n],
-                    u[b : b + n],
-                    v[b : b + n],
-                    w[b : b + n],
-                    fx[a : a + n],
-                    fy[a : a + n],
-                    fz[a : a + n],
-                    fx[b : b + n],
-                    fy[b : b + n],
-                    fz[b : b + n],
-                    length[t : t + n],
-                    stiffness[t : t + n],
-                    damping[t : t + n],
+                    lanes[0:found],
+                    work,
+                    p.node_slots,
+                    a,
+                    b,
                     peak[t : t + n],
+                    p.thread_length,
+                    p.thread_stiffness,
+                    p.thread_damping,
                 )
     return taut
 
@@ -183,10 +178,9 @@ def elastic_energy(p, work):
     x = node_plane(p, work, X)
     y = node_plane(p, work, Y)
     z = node_plane(p, work, Z)
-    length = thread_plane(p, work, LENGTH)
-    stiffness = thread_plane(p, work, STIFFNESS)
+    squared = thread_plane(p, work, LENGTH_SQUARED)
     table = strip_table(p, work)
-    energy = 0.0
+    total = 0.0
     for q in range(p.strips):
         a = int(table[4 * q])
         b = int(table[4 * q + 1])
@@ -195,10 +189,11 @@ def elastic_energy(p, work):
             dx = x[b + j] - x[a + j]
             dy = y[b + j] - y[a + j]
             dz = z[b + j] - z[a + j]
-            stretch = math.sqrt(dx * dx + dy * dy + dz * dz) - length[t + j]
-            if stretch > 0.0:
-                energy += 0.5 * stiffness[t + j] * stretch * stretch
-    return energy
+            distance = dx * dx + dy * dy + dz * dz
+            if distance > squared[t + j]:
+                stretch = math.sqrt(distance) - p.thread_length
+                total += stretch * stretch
+    return 0.5 * p.thread_stiffness * total
 
 
 @kernel

@@ -22,9 +22,9 @@ X, Y, Z, U, V, W, FX, FY, FZ, INVERSE_MASS, MASS = range(11)
 """Node planes: position [m], velocity half a substep back [m/s], force [N], 1/m [1/kg] (zero: unused slot), m [kg]."""
 NODE_PLANES = 11
 
-LENGTH, LENGTH_SQUARED, STIFFNESS, DAMPING, PEAK = range(5)
-"""Thread planes: rest length [m], its square, EA/l [N/m], dashpot [N s/m], peak tension in this macro step [N]."""
-THREAD_PLANES = 5
+LENGTH_SQUARED, PEAK = range(2)
+"""Thread planes: squared rest length [m2], infinite where nothing is joined; peak tension in this macro step [N]."""
+THREAD_PLANES = 2
 
 CHUNK = 256
 """Lanes handled at once: long enough to hide the cost of a call, short enough to stay in the first cache."""
@@ -50,12 +50,12 @@ def strip_count(segments):
 
 @kernel
 def work_size(knots, segments):
-    """Doubles of work memory: node planes, thread planes, strips, one chunk of scratch."""
+    """Doubles of work memory: node planes, thread planes, strips, two chunks of scratch."""
     return (
         NODE_PLANES * node_slots(knots, segments)
         + THREAD_PLANES * thread_slots(knots, segments)
         + 4 * strip_count(segments)
-        + CHUNK
+        + 2 * CHUNK
     )
 
 
@@ -83,9 +83,9 @@ def strip_table(p, work):
 
 @view
 def chunk_scratch(p, work):
-    """Scratch for one chunk of lanes."""
+    """Scratch for two chunks of lanes."""
     base = NODE_PLANES * p.node_slots + THREAD_PLANES * p.thread_slots + 4 * p.strips
-    return work[base : base + CHUNK]
+    return work[base : base + 2 * CHUNK]
 
 
 @kernel
@@ -116,21 +116,15 @@ def lay_out_strips(p, work):
 
 @kernel
 def lay_out_threads(p, work):
-    """Give every thread its rest length, stiffness and damping; lanes that join nothing get an infinite length."""
-    length = thread_plane(p, work, LENGTH)
+    """Give every thread its squared rest length, and lanes that join nothing an infinite one."""
     squared = thread_plane(p, work, LENGTH_SQUARED)
-    stiffness = thread_plane(p, work, STIFFNESS)
-    damping = thread_plane(p, work, DAMPING)
     table = strip_table(p, work)
     for q in range(p.strips):
         first = int(table[4 * q + 3])
         across = q < p.net_segments
         for j in range(int(table[4 * q + 2])):
             real = not (across and j % p.knots == p.knots - 1)
-            length[first + j] = p.thread_length if real else math.inf
             squared[first + j] = p.thread_length * p.thread_length if real else math.inf
-            stiffness[first + j] = p.thread_stiffness
-            damping[first + j] = p.thread_damping
 
 
 @kernel
@@ -138,7 +132,7 @@ def lay_out_masses(p, work):
     """Half of every thread to each of its nodes, then the bullets and the vertex; unused slots get no mass."""
     mass = node_plane(p, work, MASS)
     inverse = node_plane(p, work, INVERSE_MASS)
-    length = thread_plane(p, work, LENGTH)
+    squared = thread_plane(p, work, LENGTH_SQUARED)
     half = 0.5 * p.net_mass / p.net_threads
     table = strip_table(p, work)
     for q in range(p.strips):
@@ -146,7 +140,7 @@ def lay_out_masses(p, work):
         b = int(table[4 * q + 1])
         first = int(table[4 * q + 3])
         for j in range(int(table[4 * q + 2])):
-            if length[first + j] < math.inf:
+            if squared[first + j] < math.inf:
                 mass[a + j] += half
                 mass[b + j] += half
     for corner in range(4):

@@ -14,6 +14,7 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 ENTRY = "dcone_entry"
 ENVIRONMENT = {
@@ -21,6 +22,7 @@ ENVIRONMENT = {
     "NUMBA_CPU_FEATURES": "",
     "NUMBA_LOOP_VECTORIZE": "0",
     "NUMBA_SLP_VECTORIZE": "0",
+    "NUMBA_OPT": "1",
     "NUMBA_DISABLE_JIT": "0",
     "NUMBA_DEBUGINFO": "0",
 }
@@ -38,10 +40,24 @@ def emit(model: str, terms: Mapping[str, str], path: Path) -> None:
         raise BuildError(f"compiling the kernels of {model} failed:\n{done.stderr.strip()[-2000:]}")
 
 
+def _keep_loops_whole(llvm: Any) -> None:
+    """Have numba's passes leave loops as they are: once unrolled, clang no longer sees what to vectorise."""
+    make_options = llvm.create_pipeline_tuning_options
+
+    def options_without_unrolling(speed_level: int = 2) -> Any:
+        options = make_options(speed_level)
+        options.loop_unrolling = False
+        return options
+
+    llvm.create_pipeline_tuning_options = options_without_unrolling
+
+
 def _lower(model: str, terms: Mapping[str, str]) -> str:
     import importlib
 
     import llvmlite.binding as llvm
+
+    _keep_loops_whole(llvm)
     from numba import njit
 
     from fmu_src.catalogue import MODELS

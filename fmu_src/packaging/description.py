@@ -184,7 +184,11 @@ def documentation(interface: Interface, folder: Path) -> str:
     from markdown_it import MarkdownIt
 
     text = (folder / "README.md").read_text() if (folder / "README.md").exists() else interface.model.summary
-    table = ["\n## Variables of this FMU\n", "| name | unit | causality | start | meaning |", "| --- | --- | --- | --- | --- |"]
+    table = [
+        "\n## Variables of this FMU\n",
+        "| name | unit | causality | start | meaning |",
+        "| --- | --- | --- | --- | --- |",
+    ]
     for v in interface.variables:
         if v.at_interface:
             size = "".join(f"[1..{n}]" for n in v.shape[:1]) if v.shape else ""

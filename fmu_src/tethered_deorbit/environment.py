@@ -20,7 +20,7 @@ def add_gravity(record: Any, state: Array, rate: Array) -> None:
 
     state         R, V, rho, rho'  of `layout`                   (12,)
 
-    The two differences are each formed without cancellation, and have opposite signs: nothing is lost in subtracting them.
+    The two differences are each formed without cancellation and have opposite signs: nothing is lost in between.
 
     Valid    point masses about a point mass, any length of line
     Source   Newton for two bodies; Battin's f(q) in `orbital.twobody`

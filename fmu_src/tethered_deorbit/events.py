@@ -1,7 +1,8 @@
 """What happens inside one step of the integrator: where the line goes slack or taut, and its largest tension.
 
-Everything is read off the dense output of the step. Signals and their exact time derivatives are sampled at a few points;
-between two of them an extremum shows by its slope, so that a line that goes taut and slack again within one step is found.
+Everything is read off the dense output of the step. Signals and their exact time derivatives are sampled at a few
+points; between two of them an extremum shows by its slope, so that a line that goes taut and slack again within one
+step is found.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
     """The kernels for one law of the line and one integrator.
 
     Valid    steps in which the signals turn at most once in an eighth of the step
-    Checked  tests/tethered_deorbit/test_events.py
+    Checked  tests/tethered_deorbit/test_robust.py
     """
 
     @kernel

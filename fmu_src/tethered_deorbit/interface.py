@@ -115,7 +115,7 @@ START = (
 SOLVER = (
     _parameter("solver.tolerance_orbit", "m", "error of the centre of mass in one step", 1e-7, 1e-9, 1e3),
     _parameter("solver.tolerance_separation", "m", "error of the relative position in one step", 1e-10, 1e-14, 1.0),
-    _parameter("solver.tolerance_stretch", "m", "estimated error of the stretch in one step while an elastic line is taut",
+    _parameter("solver.tolerance_stretch", "m", "estimated error of the stretch in one step of a taut elastic line",
                1e-11, 1e-15, 1e-3),
 )  # fmt: skip
 

@@ -246,7 +246,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     record_type = numba.from_dtype(MODEL.interface(terms).dtype)[::1]
     signature = numba.int32(numba.int64, record_type, numba.float64[::1], numba.float64, numba.float64)
 
-    @njit(signature, **OPTIONS)  # type: ignore[untyped-decorator]
+    @njit(signature, **OPTIONS)
     def entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
         record[0].fault_code = 0
         if command == SIZE:

@@ -63,7 +63,7 @@ def _make_locked(elastic_stiffness: Callable[..., Any]) -> Reel:
     def prepare(record: Any, offset: float) -> int:
         r = record[0]
         length = r.tether_rest_length + offset
-        if not length > 0.0:
+        if not 0.0 < length < math.inf:
             return NO_LENGTH
         stiffness = elastic_stiffness(r.tether_youngs_modulus, r.tether_diameter, length)
         if not (stiffness > 0.0 and r.tether_damping_ratio >= 0.0):
@@ -116,14 +116,14 @@ def _make_linear() -> Reel:
 
     Valid    winding speeds and tensions within what the reel can do
     Source   physics.md, section 2
-    Checked  tests/tethered_deorbit/test_reel.py
+    Checked  tests/tethered_deorbit/test_terms.py
     """
 
     @kernel
     def prepare(record: Any, offset: float) -> int:
         r = record[0]
         length = r.reel_length + offset
-        if not length > 0.0:
+        if not 0.0 < length < math.inf:
             return NO_LENGTH
         if not (r.reel_proportional_gain >= 0.0 and r.reel_derivative_gain >= 0.0):
             return BAD_PARAMETER

@@ -1,8 +1,8 @@
 """The trajectory in the integrator's own steps, which know nothing of communication points.
 
-A step reaches from `state.begin` to `state.end` and is kept with its dense output until a communication point lies past it.
-So the same inputs give the same steps, bit for bit, whatever the macro step. A step ends early, exactly there, when the line
-changes between slack and taut.
+A step reaches from `state.begin` to `state.end` and is kept with its dense output until a communication point lies past
+it. So the same inputs give the same steps, bit for bit, whatever the macro step. A step ends early, exactly there, when
+the line changes between slack and taut.
 """
 
 from __future__ import annotations
@@ -125,7 +125,10 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def end_signals(record: Any, work: Array) -> tuple[float, float, float, float]:
-        return events.signals(record, work[layout.END : layout.HERE], work[last : last + layout.SIZE])
+        signals: tuple[float, float, float, float] = events.signals(
+            record, work[layout.END : layout.HERE], work[last : last + layout.SIZE]
+        )
+        return signals
 
     @kernel
     def quiet(record: Any, work: Array) -> bool:
@@ -139,7 +142,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def land(record: Any, work: Array, fraction: float) -> None:
-        """Redo the step so that it ends on the change, to rounding: Newton on the step's size, from the dense output."""
+        """Redo the step so that it ends on the change, to rounding: Newton on its size, from the dense output."""
         r = record[0]
         whole = r.state_step
         least = min(whole, SHORTEST_CONTACT / r.state_frequency)

@@ -71,7 +71,7 @@ def tow(**parameters: float) -> Instance:
 
 
 def hanging(angle: float, rate: float = 0.0, tension: float = TENSION, **parameters: float) -> Instance:
-    """Handed over with the line at an angle [rad] from the vertical, turning at a rate [rad/s], stretched by a tension [N]."""
+    """Handed over, the line at an angle [rad] from the vertical, turning at a rate [rad/s], under a tension [N]."""
     length = LENGTH + tension / STIFFNESS
     i = Instance(MODEL, TERMS, {k.replace("__", "."): v for k, v in parameters.items()})
     i["start.condition"] = HANDED_OVER
@@ -168,8 +168,8 @@ def test_equilibrium() -> None:
 
 
 def test_tension_noise() -> None:
-    """One taut orbit from the equilibrium: standard deviation of the tension below 1e-6 N, also where steps are joined."""
-    count = int(references.math.tau / RATE / 1.7)
+    """One taut orbit from the equilibrium: standard deviation of the tension below 1e-6 N, also inside of steps."""
+    count = int(math.tau / RATE / 1.7)
     assert record(hanging(ANGLE), "tether_tension", 1.7, count).std() < 1e-6
     assert record(hanging(ANGLE, rate=1e-6), "tether_tension", 1.7, count).std() > 1e-6
 
@@ -230,7 +230,7 @@ def test_spiral_to_200_km() -> None:
 
 
 def growth(thrust: float, time: float = 1500.0, **changed: float) -> float:
-    """Square of the rate [1/s^2] at which a line towed along V-bar leaves it: half the difference of two mirrored starts."""
+    """Square of the rate [1/s^2] at which a line leaves V-bar: from half the difference of two mirrored starts."""
     end = []
     for side in (1.0, -1.0):
         pull = thrust * TARGET / (CHASER + TARGET)

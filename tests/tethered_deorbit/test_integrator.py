@@ -1,0 +1,148 @@
+"""The scheme itself, on a Kepler orbit and an oscillator: order, dense output, edges of stability, step control."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fmu_src.instance import Instance
+from fmu_src.integrators import DOP853_DENSE_ROWS, DOP853_ROWS, DOP853_STAGES, AdaptiveScheme, make_dop853
+from fmu_src.tethered_deorbit.interface import MODEL
+from orbital.kepler import propagate
+from orbital.kernel import kernel
+from orbital.twobody import two_body_acceleration
+
+SIZE = 6
+
+
+@kernel
+def kepler(context: Any, state: Any, rate: Any) -> None:
+    two_body_acceleration(rate[3:6], state[0:3], 1.0)
+    for i in range(3):
+        rate[i] = state[3 + i]
+
+
+@kernel
+def oscillator(context: Any, state: Any, rate: Any) -> None:
+    """Frequency 1, damping ratio from the context."""
+    rate[0] = state[1]
+    rate[1] = -state[0] - 2.0 * context[0] * state[1]
+
+
+@kernel
+def squared(context: Any, state: Any, error: Any) -> float:
+    total = 0.0
+    for i in range(len(error)):
+        total += error[i] * error[i]
+    return total
+
+
+def fixed_steps(derivative: Callable[..., Any], scheme: AdaptiveScheme, start: Any, step: float, count: int) -> Any:
+    """State after `count` steps, and the memory of the last one."""
+    state, end = start.copy(), start.copy()
+    stages = np.zeros(DOP853_ROWS * len(start))
+    for _ in range(count):
+        state = end.copy()
+        derivative(np.zeros(1), state, stages[: len(start)])
+        scheme.attempt(np.zeros(1), state, step, stages, end)
+    return state, end, stages
+
+
+START = np.array([0.95, 0.0, 0.0, 0.0, math.sqrt(1.05 / 0.95), 0.0])
+"""Perigee of an ellipse with semi-major axis 1 and eccentricity 0.05."""
+
+
+def exact(time: float) -> Any:
+    out = np.zeros(6)
+    propagate(out[:3], out[3:], START[:3], START[3:], time, 1.0)
+    return out
+
+
+@pytest.fixture(scope="module")
+def scheme() -> AdaptiveScheme:
+    return make_dop853(kepler, squared, SIZE)
+
+
+def slope(steps: list[float], errors: list[float]) -> float:
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+
+
+def test_order_eight(scheme: AdaptiveScheme) -> None:
+    counts = [32, 38, 46, 56]
+    ends = [fixed_steps(kepler, scheme, START, math.tau / n, n)[1] for n in counts]
+    errors = [float(np.linalg.norm(end - exact(math.tau))) for end in ends]
+    assert slope([math.tau / n for n in counts], errors) == pytest.approx(8.0, abs=0.1)
+
+
+def test_dense_output_order(scheme: AdaptiveScheme) -> None:
+    """Order 7: the largest error within one step falls with its eighth power, that of the rate with the seventh."""
+    steps, errors, rates = [0.5, 0.4, 0.32, 0.25], [], []
+    for step in steps:
+        state, end, stages = fixed_steps(kepler, scheme, START, step, 1)
+        dense, out, rate = np.zeros(DOP853_DENSE_ROWS * SIZE), np.zeros(SIZE), np.zeros(SIZE)
+        scheme.prepare_dense(np.zeros(1), state, end, step, stages, dense, np.zeros(SIZE))
+        worst, worst_rate = 0.0, 0.0
+        for fraction in np.linspace(0.0, 1.0, 41):
+            scheme.dense_value(state, dense, fraction, 0, SIZE, out)
+            worst = max(worst, float(np.linalg.norm(out - exact(fraction * step))))
+            scheme.dense_rate(dense, fraction, step, 0, SIZE, rate)
+            worst_rate = max(worst_rate, float(np.linalg.norm(rate[:3] - exact(fraction * step)[3:])))
+        assert out == pytest.approx(end, abs=1e-15)
+        errors.append(worst)
+        rates.append(worst_rate)
+    assert slope(steps, errors) == pytest.approx(8.0, abs=0.1)
+    assert slope(steps, rates) == pytest.approx(7.0, abs=0.1)
+
+
+def test_edges_of_stability() -> None:
+    """h |lambda| = 5.97 on the imaginary axis, 6.4 on the real one; the decay below it is the one stated."""
+    small = make_dop853(oscillator, squared, 2)
+
+    def growth(step: float, zeta: float) -> float:
+        columns = []
+        for start in np.eye(2):
+            end, stages = np.zeros(2), np.zeros(DOP853_ROWS * 2)
+            oscillator(np.array([zeta]), start, stages[:2])
+            small.attempt(np.array([zeta]), start, step, stages, end)
+            columns.append(end.copy())
+        return float(abs(np.linalg.eigvals(np.array(columns).T)).max())
+
+    assert growth(5.96, 0.0) < 1.0 < growth(5.98, 0.0)
+    assert 1.0 - growth(2.0, 0.0) == pytest.approx(2.7e-5, rel=0.02)
+    assert 1.0 - growth(1.0, 0.0) == pytest.approx(2.4e-8, rel=0.02)
+    assert growth(6.38, 1.0) < 1.0 < growth(6.42, 1.0)
+
+
+def test_step_control(scheme: AdaptiveScheme) -> None:
+    assert scheme.next_step(1.0, 0.9**8, 0.9**8) == pytest.approx(0.9 * 0.9 ** (-0.5))
+    assert scheme.next_step(1.0, 0.0, 1.0) == 5.0
+    assert scheme.shorter_step(1.0, 2.0**8) == pytest.approx(0.45)
+    assert scheme.shorter_step(1.0, math.nan) == 0.2
+    stages = np.zeros(DOP853_ROWS * SIZE)
+    kepler(np.zeros(1), START, stages[:SIZE])
+    end, low, high = np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE)
+    steps, errors = [0.4, 0.3, 0.2], []
+    for step in steps:
+        scheme.attempt(np.zeros(1), START, step, stages, end)
+        errors.append(scheme.error(np.zeros(1), end, step, stages, low, high))
+    assert slope(steps, errors) == pytest.approx(8.0, abs=0.3)
+    assert DOP853_STAGES == 12
+
+
+def test_tolerances_rule_the_error() -> None:
+    """A hundred times the tolerance costs accuracy, and saves steps; each of the three has its own say."""
+
+    def tug(**tolerances: float) -> tuple[float, float, int]:
+        terms = {"reel": "locked", "thrust": "along_track"}
+        i = Instance(MODEL, terms, {f"solver.tolerance_{k}": v for k, v in tolerances.items()}).initialise()
+        i.step(3217.0)
+        return i["tug[1].time"], i["tug[1].peak"], int(i["solver.steps"])
+
+    reference = (3215.6134167570826, 7.4542333983073155)  # table2_reference.json, case B
+    good = tug()
+    coarse = tug(orbit=1.0, separation=1e-5, stretch=1e-6)
+    assert abs(good[0] - reference[0]) < 1e-6 < abs(coarse[0] - reference[0])
+    assert abs(good[1] / reference[1] - 1.0) < 1e-8 < abs(coarse[1] / reference[1] - 1.0)
+    assert coarse[2] < tug(separation=1e-5, orbit=1.0)[2] <= good[2] < tug(stretch=1e-13)[2]
