@@ -43,15 +43,13 @@ def defaults(interface: Interface) -> dict[str, float]:
     }
 
 
-def out_of_reach(phase: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Refusal]:
+def out_of_reach(phase: str, values: Mapping[str, float], duration: float) -> list[Refusal]:
     """Why the net or the tether cannot reach the target; empty when they can."""
-    if phase != "capture" or "target" not in terms:
+    if phase != "capture":
         return []
-    try:
-        from fmu_src.net_capture.reach import refusals
-    except ImportError:
-        return []
-    return [Refusal(*row) for row in refusals(dict(values))]
+    from fmu_src.net_capture.reach import refusals
+
+    return [Refusal(*row) for row in refusals(values, duration)]
 
 
 def cache_folder() -> Path:

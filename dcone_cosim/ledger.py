@@ -72,27 +72,29 @@ def ledger(handed: Handoff, removal: Values) -> list[LedgerRow]:
     """Every conserved quantity, before from the capture, after from what the removal was read back to hold."""
     before = [handed.chaser, handed.target, handed.catch]
     after = list(held_bodies(removal))
-    turning = handed.turning
-    rows = [
-        LedgerRow(
-            "mass", "kg", sum(b.mass for b in before), sum(b.mass for b in after), 0.0, "", sum(b.mass for b in before)
-        )
-    ]
-    for axis, label in enumerate(("radial", "along-track", "cross-track")):
-        parts = [b.mass * float(b.velocity[axis]) for b in before]
-        rows.append(
-            LedgerRow(
-                f"linear momentum, {label}",
-                "N s",
-                math.fsum(parts),
-                math.fsum(b.mass * float(b.velocity[axis]) for b in after),
-                0.0,
-                "",
-                sum(b.mass * float(np.linalg.norm(b.velocity)) for b in before),
-            )
-        )
-    rows += _angular_rows(before, after, handed.joint, turning)
+    rows = _sum_rows(before, after)
+    rows += _angular_rows(before, after, handed.joint, handed.turning)
     rows.append(_energy_row(handed, after))
+    return rows
+
+
+def _sum_rows(before: list[Body], after: list[Body]) -> list[LedgerRow]:
+    """Mass, mass moment and linear momentum, of each body and of all.
+
+    The sums alone would not see two bodies that exchange momentum, or change places.
+    """
+    sides = (("chaser", before[:1], after[:1]), ("target and net", before[1:], after[1:]), ("all", before, after))
+    rows = []
+    total = sum(b.mass for b in before)
+    for side, old, new in sides:
+        was, now = math.fsum(b.mass for b in old), math.fsum(b.mass for b in new)
+        rows.append(LedgerRow(f"mass, {side}", "kg", was, now, 0.0, "", total))
+    for quantity, unit, name in (("mass moment", "kg m", "position"), ("linear momentum", "N s", "velocity")):
+        size = sum(b.mass * float(np.linalg.norm(getattr(b, name))) for b in before)
+        for side, old, new in sides:
+            for axis, label in enumerate(AXES):
+                was, now = (math.fsum(b.mass * float(getattr(b, name)[axis]) for b in part) for part in (old, new))
+                rows.append(LedgerRow(f"{quantity}, {side}, {label}", unit, was, now, 0.0, "", size))
     return rows
 
 
@@ -115,7 +117,7 @@ def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: V
     size = sum(float(np.linalg.norm(p)) for p in orbital)
     size_spin = sum(float(np.linalg.norm(p)) for p in (*spins, moved))
     rows = []
-    for axis, label in enumerate(("radial", "along-track", "cross-track")):
+    for axis, label in enumerate(AXES):
         rows.append(
             LedgerRow(
                 f"angular momentum, orbital part, {label}",
@@ -127,7 +129,7 @@ def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: V
                 size,
             )
         )
-    for axis, label in enumerate(("radial", "along-track", "cross-track")):
+    for axis, label in enumerate(AXES):
         rows.append(
             LedgerRow(
                 f"angular momentum, spin part, {label}",

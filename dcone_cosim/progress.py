@@ -65,7 +65,7 @@ class Bar(Progress):
         self._bar = RichProgress(
             SpinnerColumn(),
             TextColumn("{task.description}"),
-            BarColumn(bar_width=32),
+            BarColumn(bar_width=24),
             TextColumn("{task.fields[state]}"),
             console=console,
             transient=False,
@@ -103,7 +103,7 @@ class Bar(Progress):
     def _show(self, time: float, now: float) -> None:
         simulated = time - self._start
         speed = simulated / max(now - self._began, 1e-9)
-        state = f"{time:,.1f} of {self._stop:,.0f} s simulated, {speed:,.0f} s per second"
+        state = f"{time:,.1f} of {self._stop:,.0f} s, {speed:,.3g} times real time"
         self._bar.update(self._task, completed=simulated, state=state)
 
     def end(self) -> None:

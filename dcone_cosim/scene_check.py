@@ -79,8 +79,6 @@ def check(document: dict[str, Any], text: str, name: str, source: str) -> Scene:
     """The scene, or an `InputError` that lists all mistakes with their lines."""
     mistakes: list[Mistake] = []
     present = [phase for phase in PHASES if isinstance(document.get(phase), dict)]
-    if not present and not set(document) - {"title"}:
-        raise InputError(f"{source} holds no phase; expected [capture], [removal] or both")
     phases = {phase: _choose_terms(phase, document[phase], mistakes) for phase in present}
     model = _scene_model(phases)
     values: Any = None
@@ -92,11 +90,13 @@ def check(document: dict[str, Any], text: str, name: str, source: str) -> Scene:
     if len(chosen) == len(PHASES):
         mistakes += _set_by_handoff(document)
     mistakes += _hand_over_without_term(document, phases)
+    if not mistakes and not chosen:
+        raise InputError(f"{source} holds no phase; expected [capture], [removal] or both")
     if not mistakes:
         scene = _assemble(values, phases, chosen, text, name)
         for phase in scene.phases:
             complete = {**phase.defaults, **phase.parameters}
-            for refusal in build.out_of_reach(phase.name, complete, phase.terms):
+            for refusal in build.out_of_reach(phase.name, complete, phase.duration):
                 section, _, key = refusal.variable.partition(".")
                 path = (section, key) if section == SHARED else (phase.name, section, key.partition("[")[0])
                 mistakes.append(Mistake(path, refusal.given, refusal.expected))

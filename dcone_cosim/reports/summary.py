@@ -128,7 +128,8 @@ def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
     yield Finding("hand-off", "tug_speed", "first tug expected at about", 1e3 * spin.tug_speed, "mm/s")
     if record.rows:
         worst = max(record.rows, key=lambda row: row.closure)
-        yield Finding("hand-off", "ledger_closure", f"ledger closes to (worst: {worst.quantity})", worst.closure)
+        yield Finding("hand-off", "ledger_closure", "ledger closes to", worst.closure)
+        yield Finding("hand-off", "ledger_worst", "in its worst row", worst.quantity)
         energy = next(row for row in record.rows if row.quantity == "kinetic energy")
         lost = energy.accounted - spin_energy(handed.joint)
         yield Finding("hand-off", "energy_lost", "kinetic energy lost as the net joins", lost, "J")

@@ -203,7 +203,7 @@ REELS = Group(
             (
                 _positive("reel.length", "m", "commanded length l_c", 12.0, 1e6),
                 _parameter("reel.proportional_gain", "N/m", "k_p", 0.0, 0.0, 1e6),
-                _parameter("reel.derivative_gain", "N.s/m", "k_d", 0.0, 0.0, 1e6),
+                _parameter("reel.derivative_gain", "N.s/m", "k_d", 0.0, 0.0, 1e5),
                 LENGTH_OFFSET,
             ),
         ),

@@ -15,7 +15,7 @@ from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.environment import add_gravity
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
-from fmu_src.tethered_deorbit.outputs import begin_tug, make_publish
+from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish
 from fmu_src.tethered_deorbit.reel import make_reel
 from fmu_src.tethered_deorbit.start import start_state
 from fmu_src.tethered_deorbit.tether import add_tension, elastic_stiffness, length_rate
@@ -96,6 +96,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         code = reel.prepare(record, r.reel_length_offset)
         if code != 0:
             return fail(record, code, time, r.reel_length_offset)
+        thrust.reset(record, time)
         code = thrust.prepare(record, time)
         if code != 0:
             return fail(record, code, time, 0.0)
@@ -106,6 +107,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if not finite(end):
             return fail(record, NOT_FINITE, time, 0.0)
         r.state_published = time
+        r.solver_steps = 0
+        r.solver_rejected = 0
+        clear_tugs(record)
         speed = judge_line(record, end)
         trajectory.restart(record, work, time)
         publish(record, end)

@@ -18,6 +18,21 @@ from orbital.vectors import Array, norm
 
 
 @kernel
+def clear_tugs(record: Any) -> None:
+    """Empty the ring: no tug has been.
+
+    Checked  tests/tethered_deorbit/test_macro_step.py
+    """
+    r = record[0]
+    for i in range(TUGS):
+        r.tug_time[i] = 0.0
+        r.tug_peak[i] = 0.0
+        r.tug_speed[i] = 0.0
+    r.tether_tug_count = 0
+    r.state_tug_peak = 0.0
+
+
+@kernel
 def begin_tug(record: Any, time: float, speed: float) -> None:
     """Put a new tug at the head of the ring; the oldest falls out.
 

@@ -15,12 +15,14 @@ from orbital.vectors import Array
 class Thrust(NamedTuple):
     """Kernels of one direction.
 
+    reset(record, time)               nothing used yet
     add(record, state, rate)          add the thrust to the rate of the state
     changed(record) -> bool           the input asks for another force than the one in force
     prepare(record, time) -> fault    put what the input asks for in force, from `time` on
     publish(record, time)             propellant used up to `time`
     """
 
+    reset: Callable[..., Any]
     add: Callable[..., Any]
     changed: Callable[..., Any]
     prepare: Callable[..., Any]
@@ -29,6 +31,10 @@ class Thrust(NamedTuple):
 
 def make_no_thrust() -> Thrust:
     """An FMU without a thruster: nothing of it is compiled."""
+
+    @kernel
+    def reset(record: Any, time: float) -> None:
+        pass
 
     @kernel
     def add(record: Any, state: Array, rate: Array) -> None:
@@ -46,7 +52,7 @@ def make_no_thrust() -> Thrust:
     def publish(record: Any, time: float) -> None:
         pass
 
-    return Thrust(add, changed, prepare, publish)
+    return Thrust(reset, add, changed, prepare, publish)
 
 
 @kernel
@@ -108,6 +114,13 @@ def make_thrust(direction: str) -> Thrust:
     add = {"along_track": _add_along_track, "velocity": _add_along_velocity, "tether": _add_along_tether}[direction]
 
     @kernel
+    def reset(record: Any, time: float) -> None:
+        r = record[0]
+        r.state_thrust = 0.0
+        r.state_propellant = 0.0
+        r.state_propellant_since = time
+
+    @kernel
     def used(record: Any, time: float) -> float:
         r = record[0]
         flow = abs(r.state_thrust) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
@@ -134,4 +147,4 @@ def make_thrust(direction: str) -> Thrust:
     def publish(record: Any, time: float) -> None:
         record[0].chaser_propellant = used(record, time)
 
-    return Thrust(add, changed, prepare, publish)
+    return Thrust(reset, add, changed, prepare, publish)

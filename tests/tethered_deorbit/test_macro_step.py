@@ -114,6 +114,18 @@ def test_saved_in_the_middle_of_a_tug() -> None:
     assert other.work.tobytes() != expected[1]
 
 
+def test_initialised_anew() -> None:
+    """Nothing of an earlier run is left, whatever the start time."""
+    i = tow()
+    i.step(5000.0)
+    i.initialise(0.0).step(2000.0)
+    fresh = tow()
+    fresh.step(2000.0)
+    assert fingerprint(i) == fingerprint(fresh)
+    i.initialise(1e6).step(2000.0)
+    assert i["tug[1].time"] - 1e6 == pytest.approx(fresh["tug[1].time"], abs=1e-8)
+
+
 def as_parameters(i: Instance) -> Instance:
     """A new instance that starts, by hand-over, in the present state of another on a circular orbit."""
     rate = math.sqrt(EARTH_MU / (EARTH_EQUATORIAL_RADIUS + i["orbit.altitude"]) ** 3)

@@ -1,0 +1,106 @@
+"""The scenes that come with the program, and how a scene becomes parameters."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from dcone_cosim import build
+from dcone_cosim.contract import HANDED_OVER, OUTCOMES
+from dcone_cosim.scene import find, load, parse, shipped, title_of
+from dcone_cosim.toml_lines import key_lines, line_of
+
+
+def test_the_three_scenes_are_there() -> None:
+    assert {"table1-capture", "table2-deorbit", "mission"} <= set(shipped())
+    assert all(title_of(path) for path in shipped().values())
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_a_shipped_scene_says_only_what_its_model_has(name: str) -> None:
+    scene = load(name)
+    assert scene.text == find(name).read_text()
+    for phase in scene.phases:
+        interface = build.MODELS[phase.name].interface(phase.terms)
+        assert set(phase.parameters) <= set(interface.references)
+        assert set(phase.parameters) <= set(phase.defaults)
+
+
+def test_table_2_is_the_papers() -> None:
+    (phase,) = load("table2-deorbit").phases
+    assert phase.parameters == {
+        "chaser.mass": 2000.0,
+        "target.mass": 1000.0,
+        "orbit.altitude": 800e3,
+        "orbit.inclination": math.radians(98.0),
+        "start.condition": 0.0,
+        "start.leading": 0.0,
+        "start.separation": 10.0,
+        "tether.rest_length": 12.0,
+        "tether.diameter": 1e-3,
+        "tether.youngs_modulus": 60e9,
+        "tether.damping_ratio": 0.05,
+        "thrust.level": -0.01,
+    }
+    assert phase.terms == {"reel": "locked", "thrust": "along_track"}
+    assert (phase.macro_step, phase.duration) == (60.0, 86400.0)
+
+
+def test_table_1_is_the_papers() -> None:
+    (phase,) = load("table1-capture").phases
+    expected = {
+        "net.side": 24.0,
+        "net.mass": 0.33,
+        "bullets.mass": 0.5,
+        "bullets.speed": 3.0,
+        "bullets.angle": math.radians(40.0),
+        "vertex.mass": 0.15,
+        "target.size[1]": 4.0,
+        "target.size[2]": 8.0,
+        "target.size[3]": 4.0,
+    }
+    assert expected.items() <= phase.parameters.items()
+    assert phase.options["snapshots"] == [0.0, 5.32, 7.24, 9.13, 11.21, 12.32, 13.8, 15.0]
+
+
+def test_the_orbit_goes_to_every_phase_that_has_it() -> None:
+    capture, removal = load("mission").phases
+    assert capture.parameters["orbit.altitude"] == removal.parameters["orbit.altitude"] == 800e3
+    assert "orbit.inclination" not in capture.parameters
+    assert "orbit.inclination" in removal.parameters
+
+
+def test_what_is_not_named_is_not_in_the_fmu() -> None:
+    text = find("table1-capture").read_text()
+    less = text.replace('[capture.contact]\nlaw = "inelastic"\n', "")
+    assert "contact" in parse(text, "a", "a").phases[0].terms
+    assert "contact" not in parse(less, "a", "a").phases[0].terms
+
+
+def test_a_phase_can_be_run_alone() -> None:
+    text = find("mission").read_text().replace('["capture", "removal"]', '["capture"]')
+    assert [phase.name for phase in parse(text, "a", "a").phases] == ["capture"]
+
+
+def test_the_contract_names_what_our_models_mean() -> None:
+    capture, removal = (build.MODELS[phase] for phase in ("capture", "removal"))
+    outcome = next(v for v in capture.base if v.name == "outcome")
+    condition = next(v for v in removal.base if v.name == "start.condition")
+    assert outcome.choices == OUTCOMES
+    assert HANDED_OVER in condition.choices
+
+
+def test_lines_of_keys() -> None:
+    text = '# first\ntitle = "a # b"\n\n[orbit]\nheight = 1\n[capture . net] # why\nsize = [\n  "1 m",\n]\na.b = 2\n'
+    lines = key_lines(text)
+    assert lines == {
+        ("title",): 2,
+        ("orbit",): 4,
+        ("orbit", "height"): 5,
+        ("capture", "net"): 6,
+        ("capture", "net", "size"): 7,
+        ("capture", "net", "a", "b"): 10,
+    }
+    assert line_of(lines, ("capture", "net", "missing")) == 6
+    assert line_of(lines, ("nowhere",)) is None

@@ -1,0 +1,106 @@
+"""A value of a scene is a number with its unit; anything else is told what was expected."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from dcone_cosim.build import MODELS, defaults
+from dcone_cosim.scene_check import expected_of
+from dcone_cosim.units import Expected, Unexpected, example_of, unit_of
+
+LENGTH = Expected("m", example="24 m", refusal=lambda v: None if v > 0 else "must be greater than 0 m")
+
+
+@pytest.mark.parametrize(
+    ("unit", "text", "value"),
+    [
+        ("m", "24 m", 24.0),
+        ("m", "800 km", 800e3),
+        ("m", "1 mm", 1e-3),
+        ("rad/s", "5 deg/s", math.radians(5.0)),
+        ("Pa", "70 GPa", 70e9),
+        ("N", "-0.01 N", -0.01),
+        ("s", "1 day", 86400.0),
+        ("s", "6 h", 21600.0),
+        ("kg/m3", "1440 kg/m3", 1440.0),
+        ("kg/m3", "1.44 g/cm3", 1440.0),
+        ("kg.m2", "3 kg m2", 3.0),
+        ("N.s/m", "2 N s/m", 2.0),
+        ("rad", "98 deg", math.radians(98.0)),
+    ],
+)
+def test_units_are_converted(unit: str, text: str, value: float) -> None:
+    assert Expected(unit).read(text) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("value", "reason"),
+    [
+        (24, "bare number"),
+        (24.0, "bare number"),
+        ("24", "bare number"),
+        ("3 kg", "is a mass"),
+        ("2 m2", "is an area"),
+        ("-1 m", "greater than 0 m"),
+        ("0 m", "greater than 0 m"),
+        ("nan m", "finite"),
+        ("1e999 m", "finite"),
+        ("twelve m", "no number with a unit"),
+        ("1 furlongs", "no number with a unit"),
+        ("", "no number with a unit"),
+        (True, "expected a length"),
+        (["1 m"], "expected a length"),
+    ],
+)
+def test_what_does_not_fit_is_refused(value: object, reason: str) -> None:
+    with pytest.raises(Unexpected, match=reason) as error:
+        LENGTH.read(value)
+    assert "expected a length" in str(error.value)
+    assert '"24 m"' in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("expected", "good", "bad"),
+    [
+        (Expected("1", kind="Integer", example="3"), 3, [3.5, "3", True]),
+        (Expected("1", example="0.1"), 0.1, ["0.1", "5 %", False]),
+        (Expected("1", kind="Boolean"), True, [1, "true"]),
+        (Expected("1", choices=("none", "hill")), "hill", ["hil", 1]),
+        (Expected("m", size=3, example="1 m"), ["1 m", "2 km", "0 m"], [["1 m"], "1 m", ["1 m", "1 m", 1]]),
+    ],
+)
+def test_other_kinds_of_values(expected: Expected, good: object, bad: list[object]) -> None:
+    assert expected.read(good) is not None
+    for value in bad:
+        with pytest.raises(Unexpected):
+            expected.read(value)
+
+
+@pytest.mark.parametrize("phase", ["capture", "removal"])
+def test_every_unit_of_the_models_is_understood(phase: str) -> None:
+    """And the example a message gives for a key is itself accepted by the key."""
+    model = MODELS[phase]
+    rows = [*model.base]
+    for group in model.groups.values():
+        for term in group.terms:
+            rows += group.terms[term].variables if term in group.terms else ()
+    for row in rows:
+        if row.causality == "parameter":
+            unit_of(row.unit)
+            expected = expected_of(row)
+            if row.kind == "Real" and row.unit != "1":
+                scalar = Expected(expected.unit, example=expected.example, refusal=expected.refusal)
+                scalar.read(expected.example)
+
+
+def test_examples_use_the_display_unit() -> None:
+    assert example_of(70e9, "Pa", "GPa") == "70 GPa"
+    assert example_of(0.0, "m") == "1 m"
+
+
+def test_defaults_are_the_start_values() -> None:
+    values = defaults(MODELS["capture"].interface({"net": "square", "gravity": "none", "target": "box"}))
+    assert values["target.size[2]"] == 8.0
+    assert values["chaser.start_position[2]"] == -20.0
