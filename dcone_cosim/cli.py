@@ -40,7 +40,7 @@ def run(
 
     Exit code: 0 success, 2 bad input, 3 the capture failed, 4 the hand-off was refused or violated, 5 an FMU failed.
     """
-    from dcone_cosim.session import run_and_write
+    from dcone_cosim.commands import run_and_write
 
     console = _console(json)
     progress = _progress(console)
@@ -68,7 +68,7 @@ def build(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .fmu files.")],
 ) -> None:
     """Write the FMUs of a scene, for use in other tools."""
-    from dcone_cosim.session import write_fmus
+    from dcone_cosim.commands import write_fmus
 
     progress = _progress(_console(False))
     try:

@@ -1,5 +1,5 @@
 """The two models, as numba kernels, and what packs them into FMI 2.0 co-simulation units.
 
-Physics is written once. The same kernel runs in the process (`fmu_src.instance`) and, compiled ahead of time, inside the
-FMU's binary, where it gives the same bits.
+Physics is written once. The same kernel runs in the process (`fmu_src.instance`) and, compiled ahead of time, inside
+the FMU's binary, where it gives the same bits.
 """

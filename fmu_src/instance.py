@@ -34,18 +34,13 @@ class Instance:
         self.work: npt.NDArray[np.float64] = np.zeros(0)
         self.time = 0.0
         self._entry = _entry(model.module, tuple(self.interface.terms.items()))
-        self._slots = self.interface.references
+        self._slots = {n: (slot, v.kind == "Real") for n, slot, v, _ in self.interface.scalars() if v.at_interface}
         for name, value in (parameters or {}).items():
             self[name] = value
 
     def _slot(self, name: str) -> tuple[npt.NDArray[Any], int]:
-        slot = self._slots[name]
-        kind = self._kinds[name]
-        return self.record.view(np.float64 if kind == "Real" else np.int64), slot
-
-    @property
-    def _kinds(self) -> dict[str, str]:
-        return {name: v.kind for name, _, v, _ in self.interface.scalars()}
+        slot, real = self._slots[name]
+        return self.record.view(np.float64 if real else np.int64), slot
 
     def __getitem__(self, name: str) -> float:
         view, slot = self._slot(name)

@@ -2,8 +2,8 @@
 
 A node may not come closer than the surface by the end of the substep: an impulse along the outward normal raises its
 normal velocity relative to the surface point to what still lands on the surface, or to the restitution's share. The
-target takes the opposite impulse at the same point, so linear and angular momentum are kept to rounding, and the loss of
-kinetic energy is booked exactly.
+target takes the opposite impulse at the same point, so linear and angular momentum are kept to rounding, and the loss
+of kinetic energy is booked exactly.
 """
 
 import math
@@ -15,7 +15,8 @@ from orbital.rotations import rotate, rotate_inverse
 from orbital.vectors import cross, dot
 
 RECOVERY_SPEED = 0.01
-"""Speed [m/s] at which a node found below the surface is brought back: small against any impact, so it adds no energy."""
+"""Speed [m/s] at which a node found below the surface is brought back: small against any impact, so it adds no
+energy."""
 
 
 @kernel

@@ -1,7 +1,8 @@
 """The folded net in its canister: where every node starts, and with which velocity.
 
-The net is folded flat into a small square normal to the shot, so no thread is longer than its rest length. Bullets leave
-along the diagonals, at an angle from the shot axis; the rest is at rest in the canister, which moves with the chaser.
+The net is folded flat into a small square normal to the shot, so no thread is longer than its rest length. Bullets
+leave along the diagonals, at an angle from the shot axis; the rest is at rest in the canister, which moves with the
+chaser.
 """
 
 import math

@@ -153,6 +153,7 @@ BASE = (
     _count("thread_slots", "slots in each thread plane", "state"),
     _count("measure_every", "substeps between two looks at mouth and capture", "state"),
     _state("chaser_place[#]", "m", "chaser at the last substep", shape=(3,)),
+    _state("chaser_drift[#]", "m/s", "velocity of the chaser half a substep back", shape=(3,)),
     _state("scratch[#]", "1", "small vectors of the kernels", shape=(28,)),
 )
 

@@ -27,7 +27,8 @@ from orbital.vectors import dot
 MEASURE_INTERVAL = 0.01
 """Seconds between two looks at mouth and capture: a whole number of substeps fits."""
 ON_GRID = 1e-3
-"""Share of a substep by which a communication point may miss the grid and still count as on it: masters add up times."""
+"""Share of a substep by which a communication point may miss the grid and still count as on it: masters add up
+times."""
 
 FLYING, CAPTURED, SETTLED, MISSED, SLIPPED_OFF, NOT_CLOSED, TETHER_TAUT = range(len(OUTCOMES))
 
@@ -138,8 +139,8 @@ def make_entry(terms):
     @kernel
     def pull_vertex(p, work):
         """The tether's tension signal at the vertex, towards the chaser."""
-        if p.tether_vertex_tension != 0.0:
-            away = towards_chaser(p, work)
+        away = towards_chaser(p, work)
+        if p.tether_vertex_tension != 0.0 and away > 0.0:
             for axis in range(3):
                 share = 0.25 * p.tether_vertex_tension * p.scratch[axis] / away
                 force = topology.node_plane(p, work, topology.FX + axis)
@@ -166,11 +167,11 @@ def make_entry(terms):
         if has_closing:
             closure.draw_cord(p, work, h)
         if has_tether:
-            if p.tether_vertex_tension != 0.0:
-                away = towards_chaser(p, work)
+            away = towards_chaser(p, work)
+            if p.tether_vertex_tension != 0.0 and away > 0.0:
                 for axis in range(3):
-                    p.chaser_velocity[axis] -= h * p.tether_vertex_tension * p.scratch[axis] / away / p.chaser_mass
-        kick_body(p, p.chaser_place, p.chaser_velocity, h)
+                    p.chaser_drift[axis] -= h * p.tether_vertex_tension * p.scratch[axis] / away / p.chaser_mass
+        kick_body(p, p.chaser_place, p.chaser_drift, h)
         if has_target:
             kick_body(p, p.target_place, p.target_velocity, h)
         slots = p.node_slots
@@ -182,7 +183,7 @@ def make_entry(terms):
                 contact.touch_nodes(p, work, start, n, frame_rate, h)
             threads.drift_nodes(p, work, start, n, h)
         for axis in range(3):
-            p.chaser_place[axis] += h * p.chaser_velocity[axis]
+            p.chaser_place[axis] += h * p.chaser_drift[axis]
         if has_target:
             target.drift_target(p, frame_rate, h)
         p.grid += 1
@@ -272,7 +273,14 @@ def make_entry(terms):
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic
         for axis in range(3):
-            p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_velocity[axis]
+            p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_drift[axis]
+            p.chaser_velocity[axis] = p.chaser_drift[axis]
+        if has_tether:
+            away = towards_chaser(p, work)
+            if p.tether_vertex_tension != 0.0 and away > 0.0:
+                for axis in range(3):
+                    pull = p.tether_vertex_tension * p.scratch[axis] / away / p.chaser_mass
+                    p.chaser_velocity[axis] -= 0.5 * p.solver_substep * pull
         quality.add_body_momenta(p, p.chaser_mass, p.chaser_position, p.chaser_velocity)
         if has_target:
             for axis in range(3):
@@ -362,7 +370,7 @@ def make_entry(terms):
         for axis in range(3):
             p.chaser_place[axis] = p.chaser_start_position[axis]
             recoil = p.catch_mass * (p.catch_velocity[axis] - p.chaser_start_velocity[axis])
-            p.chaser_velocity[axis] = p.chaser_start_velocity[axis] - recoil / p.chaser_mass
+            p.chaser_drift[axis] = p.chaser_start_velocity[axis] - recoil / p.chaser_mass
         return measure(p, work, 0.0)
 
     @kernel

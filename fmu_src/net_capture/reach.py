@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 FALLEN_BACK = 2.0
-"""A net flies on about as far again as it took to open while it falls back: at Table 1's shot the mouth, full at 21.5 m,
-is below a tenth of its area beyond 40 m (measured with this model, undisturbed, damping ratio 0.106)."""
+"""A net flies on about as far again as it took to open while it falls back: at Table 1's shot the mouth, full at 21.5
+m, is below a tenth of its area beyond 40 m (measured with this model, undisturbed, damping ratio 0.106)."""
 
 
 class Refusal(NamedTuple):
@@ -61,15 +61,23 @@ def refusals(parameters: Mapping[str, float], duration: float = math.inf) -> lis
     near = distance - 0.5 * math.hypot(*size)
     tether = parameters.get("tether.length")
     if tether is not None and tether < distance:
-        found.append(Refusal("tether.length", f"{tether:g} m", f"at least {distance:.4g} m, the distance to the target"))
+        found.append(
+            Refusal("tether.length", f"{tether:g} m", f"at least {distance:.4g} m, the distance to the target")
+        )
     girth = 2.0 * (sum(size) - max(size))
     if 4.0 * side <= girth:
-        found.append(Refusal("net.side", f"{side:g} m", f"more than {girth / 4:.4g} m: the mouth must go round the target"))
+        found.append(
+            Refusal("net.side", f"{side:g} m", f"more than {girth / 4:.4g} m: the mouth must go round the target")
+        )
     forward = speed * math.cos(angle)
     if forward <= 1e-9:
-        found.append(Refusal("bullets.speed", f"{speed:g} m/s", "a speed along the shot axis, or the net never arrives"))
+        found.append(
+            Refusal("bullets.speed", f"{speed:g} m/s", "a speed along the shot axis, or the net never arrives")
+        )
     elif near / forward > duration:
-        expected = f"at most {forward * duration + distance - near:.4g} m: the net flies {forward:.3g} m/s for {duration:g} s"
+        expected = (
+            f"at most {forward * duration + distance - near:.4g} m: the net flies {forward:.3g} m/s for {duration:g} s"
+        )
         found.append(Refusal("chaser.start_position", where, expected))
     limit = FALLEN_BACK * opening_distance(side, float(parameters["net.fold_side"]), speed, angle)
     if forward > 1e-9 and near > limit:
@@ -81,6 +89,8 @@ def refusals(parameters: Mapping[str, float], duration: float = math.inf) -> lis
         beside = math.sqrt(max(distance * distance - along * along, 0.0))
         if along <= 0.0 or beside > 0.5 * side + 0.5 * math.hypot(*size):
             found.append(
-                Refusal("shot.axis", f"passes {beside:.4g} m beside the target", f"within {0.5 * side:.4g} m of its centre")
+                Refusal(
+                    "shot.axis", f"passes {beside:.4g} m beside the target", f"within {0.5 * side:.4g} m of its centre"
+                )
             )
     return found

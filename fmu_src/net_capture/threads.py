@@ -1,7 +1,8 @@
 """Threads that pull but never push, and the motion of the nodes they join.
 
 Most threads are slack at any time. So a first pass over a strip, free of branches, only asks by how much the squared
-length exceeds the squared rest length; the square root, the damping and the force are worked out where a thread is taut.
+length exceeds the squared rest length; the square root, the damping and the force are worked out where a thread is
+taut.
 """
 
 import math

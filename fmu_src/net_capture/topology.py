@@ -1,8 +1,9 @@
 """Where everything lies in the work memory, and which thread joins which nodes.
 
 Node quantities are planes, one after another, each as long as there are node slots; thread quantities likewise. Threads
-are ordered in *strips*: strip (a, b, count, first) holds the threads first + j between nodes a + j and b + j, j < count,
-so that every loop runs over slices with unit stride and a net of any mesh, cut into any number of segments, is data.
+are ordered in *strips*: strip (a, b, count, first) holds the threads first + j between nodes a + j and b + j, j <
+count, so that every loop runs over slices with unit stride and a net of any mesh, cut into any number of segments, is
+data.
 
 Square net of K knots per side, each thread cut into s segments:
 

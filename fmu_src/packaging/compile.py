@@ -1,8 +1,8 @@
 """LLVM IR of a model's entry, free of Python: `python -m fmu_src.packaging.compile MODEL TERMS OUT`.
 
-Runs as a child process, since what numba emits is settled by the environment it is imported in: a generic processor and no
-vectoriser of its own, so that clang chooses both for each target. All but the entry becomes internal, what is not reached
-is dropped, and what ties the text to this host (target, numba's own globals) is struck out.
+Runs as a child process, since what numba emits is settled by the environment it is imported in: a generic processor
+and no vectoriser of its own, so that clang chooses both for each target. All but the entry becomes internal, what is
+not reached is dropped, and what ties the text to this host (target, numba's own globals) is struck out.
 """
 
 from __future__ import annotations
@@ -65,7 +65,8 @@ def _lower(model: str, terms: Mapping[str, str]) -> str:
 
     entry = importlib.import_module(MODELS[model].module).make_entry(dict(terms))
     (signature,) = entry.nopython_signatures
-    bare = njit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(entry.py_func)
+    bare_options: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    bare = njit(signature, **bare_options)(entry.py_func)
     result = bare.overloads[signature.args]
     name = result.fndesc.llvm_func_name
     module = llvm.parse_assembly(result.library.get_llvm_str())

@@ -13,6 +13,10 @@ from typing import Any
 from fmu_src.interface import HEAD, Interface, Value, Variable
 
 GENERATOR = "D-CoNe co-simulation"
+STYLE = (
+    "body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}"
+    "td,th{padding:.1em .6em;text-align:left}"
+)
 SI_BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -196,5 +200,5 @@ def documentation(interface: Interface, folder: Path) -> str:
             name = re.sub(r"\[#\]", "[i]", v.name) + (f" {size}" if size else "")
             table.append(f"| `{name}` | {v.unit} | {v.causality} | {start} | {_sentence(v)} |")
     body: Any = MarkdownIt("commonmark").enable("table").render(text + "\n".join(table))
-    style = "body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}td,th{padding:.1em .6em;text-align:left}"
-    return f'<!DOCTYPE html><html><head><meta charset="utf-8"><title>{interface.model.name}</title><style>{style}</style></head><body>{body}</body></html>\n'
+    head = f'<meta charset="utf-8"><title>{interface.model.name}</title><style>{STYLE}</style>'
+    return f"<!DOCTYPE html><html><head>{head}</head><body>{body}</body></html>\n"

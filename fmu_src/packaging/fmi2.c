@@ -341,7 +341,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
         return say(i, fmi2Error, "the step begins at %.17g s, but the FMU stands at %.17g s", time, i->time);
     if (step == 0.0) return fmi2OK;
     i->block[FAULT_CODE].integer = 0;
-    if (run(i, STEP, time, step)) return tell_fault(i);
+    /* a master that adds up times drifts by rounding: the gap is closed, so that the model sees none */
+    if (run(i, STEP, i->time, (time - i->time) + step)) return tell_fault(i);
     i->time = time + step;
     return fmi2OK;
 }

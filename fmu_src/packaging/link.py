@@ -43,12 +43,10 @@ def host() -> Platform:
 
     if sys.platform == "linux" and platform.machine() in ("x86_64", "AMD64"):
         return LINUX64
-    raise BuildError(
-        f"no FMU binary can be built for {sys.platform} on {platform.machine()} yet: Linux on x86-64 is the one platform"
-    )
+    raise BuildError(f"no FMU can be built for {sys.platform} on {platform.machine()} yet, only for Linux on x86-64")
 
 
-def _clang(arguments: Sequence[str | Path]) -> None:
+def _clang(arguments: Sequence[object]) -> None:
     command = [sys.executable, "-m", "ziglang", "cc", *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
@@ -57,15 +55,22 @@ def _clang(arguments: Sequence[str | Path]) -> None:
 
 def link(ir: Path, header: Path, library: Path, platform: Platform) -> None:
     """Make the shared library of one FMU from its IR and its generated header, in the folder of `ir`."""
-    objects = []
+    objects: list[Path] = []
     for processor in platform.processors:
         source = ir.with_name(f"kernel_{processor}.ll")
         source.write_text(ir.read_text().replace(f"@{ENTRY}", f"@{ENTRY}_{processor}"))
         objects.append(source.with_suffix(".o"))
         _clang(["-target", platform.target, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", objects[-1]])
-    include = ["-I", HEADERS, "-I", header.parent]
-    _clang(
-        ["-target", platform.target, "-std=c99", *FLAGS, "-fvisibility=hidden", "-Wall", "-Wextra", "-shared", "-s"]
-        + include
-        + [SHIM, *objects, "-o", library, "-lm"]
-    )
+    visible = [
+        "-std=c99",
+        "-fvisibility=hidden",
+        "-Wall",
+        "-Wextra",
+        "-shared",
+        "-s",
+        "-I",
+        HEADERS,
+        "-I",
+        header.parent,
+    ]
+    _clang(["-target", platform.target, *FLAGS, *visible, SHIM, *objects, "-o", library, "-lm"])

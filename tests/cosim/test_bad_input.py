@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim import cli, session
+from dcone_cosim import cli, commands
 from dcone_cosim.scene import find
 
 
@@ -18,7 +18,7 @@ def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     def never(*_: object) -> None:
         raise AssertionError("bad input got as far as building an FMU")
 
-    monkeypatch.setattr(session.build, "ensure_fmus", never)
+    monkeypatch.setattr(commands.build, "ensure_fmus", never)
 
     def run(*arguments: str) -> tuple[int, str]:
         monkeypatch.setattr("sys.argv", ["dcone", *arguments])

@@ -82,12 +82,13 @@ def test_a_node_bounces_with_the_restitution_asked_for(shoot, restitution):
         },
         CAPTURE,
     )
-    forward = 3.0 * math.cos(0.3)
-    net.step(5.0 / forward - 0.01)
-    assert net["contact.first_time"] == -1.0
-    net.step(0.03)
-    assert net["contact.first_time"] == pytest.approx(5.0 / forward, abs=2e-4)
-    assert net["bullet[1].velocity[2]"] == pytest.approx(-restitution * forward, abs=0.05)
+    while net["contact.first_time"] < 0.0:
+        before = net.array("bullet_velocity").copy()
+        net.step(0.001)
+    arrived = before[:, 1].max()
+    assert 2.7 < arrived < 3.0 * math.cos(0.3)
+    assert 5.0 / (3.0 * math.cos(0.3)) < net["contact.first_time"] < 5.0 / arrived
+    assert net.array("bullet_velocity")[:, 1] == pytest.approx(-restitution * before[:, 1], abs=0.01 * arrived)
 
 
 def test_settled_comes_after_captured(shoot):
@@ -105,7 +106,7 @@ def test_settled_comes_after_captured(shoot):
         ({"shot.axis[2]": 1.0, "shot.axis[1]": 1.6, "closing.time": 9.0}, "missed"),
         ({"closing.time": 7.0, "closing.speed": 8.0}, "slipped_off"),
         ({"closing.speed": 0.1, "closing.timeout": 3.0}, "not_closed"),
-        ({"tether.length": 18.0}, "tether_taut"),
+        ({"tether.length": 15.0}, "tether_taut"),
     ],
 )
 def test_failed_shots_say_why(shoot, change, outcome):
@@ -130,6 +131,7 @@ def test_every_trigger_closes_the_mouth(shoot, trigger):
 
 def test_tension_at_the_vertex_goes_to_net_and_chaser(shoot):
     net = shoot({"closing.time": 30.0}, CAPTURE)
+    net.step(8.0)
     net["tether.vertex_tension"] = 2.0
     before = net.array("chaser_velocity").copy()
     net.step(1.0)
@@ -143,7 +145,8 @@ def test_free_bodies_follow_clohessy_wiltshire(shoot):
     from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
     from orbital.hill import clohessy_wiltshire
 
-    net = shoot({"closing.time": 11.2} | TUMBLE, CAPTURE_HILL)
+    drift = {"chaser.start_velocity[1]": 0.01, "chaser.start_velocity[2]": 0.02, "chaser.start_velocity[3]": 0.01}
+    net = shoot({"closing.time": 11.2} | TUMBLE | drift, CAPTURE_HILL)
     n = math.sqrt(EARTH_MU / (EARTH_EQUATORIAL_RADIUS + 800e3) ** 3)
 
     def centre():
@@ -196,7 +199,14 @@ def test_target_spins_like_a_free_body(shoot):
         ({f"chaser.start_position[{i}]": 0.0 for i in (1, 2, 3)}, "shot.axis"),
         ({"chaser.start_position[2]": -1.0}, "inside the target"),
         ({"target.start_attitude[1]": 2.0}, "quaternion"),
-        ({"target.principal_inertia[1]": 1.0, "target.principal_inertia[2]": 1.0, "target.principal_inertia[3]": 5.0}, "triangle"),
+        (
+            {
+                "target.principal_inertia[1]": 1.0,
+                "target.principal_inertia[2]": 1.0,
+                "target.principal_inertia[3]": 5.0,
+            },
+            "triangle",
+        ),
     ],
 )
 def test_impossible_scenes_are_refused(shoot, change, words):

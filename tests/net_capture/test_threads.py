@@ -96,7 +96,9 @@ def test_static_stretch_is_that_of_the_whole_thread(shoot, segments):
     stretch = sum(force / stiffness for _ in range(segments))
     assert length * segments == pytest.approx(1.0, rel=1e-15)
     assert stretch == pytest.approx(force * 1.0 / (70e9 * area), rel=1e-6)
-    assert threads.thread_tension(length + force / stiffness, 0.0, length, stiffness, 0.0) == pytest.approx(force, rel=1e-6)
+    assert threads.thread_tension(length + force / stiffness, 0.0, length, stiffness, 0.0) == pytest.approx(
+        force, rel=1e-6
+    )
 
 
 @pytest.mark.parametrize(("segments", "mesh"), [(1, 2.0), (2, 2.0), (3, 2.0), (2, 8.0)])

@@ -23,7 +23,13 @@ class Archives:
 
     def __init__(self, scene: Scene, progress: Progress) -> None:
         paths = build.ensure_fmus({phase.name: phase.terms for phase in scene.phases}, progress.say)
-        self._of = {phase: Archive(path) for phase, path in paths.items()}
+        self._of: dict[str, Archive] = {}
+        try:
+            for phase, path in paths.items():
+                self._of[phase] = Archive(path)
+        except BaseException:
+            self.close()
+            raise
 
     def instantiate(self, phase: str, name: str) -> Component:
         return self._of[phase].instantiate(name)
@@ -44,9 +50,12 @@ class Archives:
     def __enter__(self) -> Archives:
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def close(self) -> None:
         for archive in self._of.values():
             archive.close()
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
 
 def run_and_write(

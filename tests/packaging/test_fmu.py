@@ -1,0 +1,256 @@
+"""Both FMUs against their kernels in this process and against fmpy: bits, state, refusals, archive."""
+
+import json
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import extract, read_model_description, simulate_fmu
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave
+from fmpy.validation import validate_fmu
+
+from fmu_src.catalogue import MODELS
+from fmu_src.instance import Instance
+from fmu_src.packaging import archive, link
+from tests.conftest import CAPTURE
+
+REMOVAL = {"reel": "locked", "thrust": "along_track"}
+CASES = {
+    "net_capture": (CAPTURE, {"net.mesh": 2.0, "closing.time": 9.0, "target.start_rate[1]": 0.02}, 0.25, 60),
+    "tethered_deorbit": (REMOVAL, {"tether.damping_ratio": 0.05, "thrust.level": -0.01}, 60.0, 70),
+}
+
+
+class Driven:
+    """An FMU driven by variable name."""
+
+    def __init__(self, path, folder, parameters):
+        self.description = read_model_description(str(path))
+        self.variables = {v.name: v for v in self.description.modelVariables}
+        self.slave = FMU2Slave(
+            guid=self.description.guid,
+            unzipDirectory=folder,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName="tested",
+        )
+        self.messages = []
+        self.slave.instantiate(callbacks=None, loggingOn=False, visible=False)
+        self.time = 0.0
+        self.set(parameters)
+        self.slave.setupExperiment(startTime=0.0)
+        self.slave.enterInitializationMode()
+        self.slave.exitInitializationMode()
+
+    def set(self, values):
+        for name, value in values.items():
+            v = self.variables[name]
+            getattr(self.slave, "set" + v.type)([v.valueReference], [value])
+
+    def outputs(self):
+        rows = {}
+        for kind in ("Real", "Integer", "Boolean"):
+            chosen = [v for v in self.variables.values() if v.causality == "output" and v.type == kind]
+            values = getattr(self.slave, "get" + kind)([v.valueReference for v in chosen])
+            rows |= {v.name: value for v, value in zip(chosen, values, strict=True)}
+        return rows
+
+    def step(self, size):
+        self.slave.doStep(self.time, size)
+        self.time += size
+
+
+@pytest.fixture(scope="session")
+def fmu(tmp_path_factory):
+    """Path and unpacked folder of an FMU, by model; built once for all processes of the session."""
+    cache = Path(tmp_path_factory.getbasetemp()).parent / "fmus"
+    made = {}
+
+    def make(name):
+        if name not in made:
+            path = archive.build(MODELS[name].interface(CASES[name][0]), cache)
+            made[name] = (path, str(extract(str(path), unzipdir=str(tmp_path_factory.mktemp(name)))))
+        return made[name]
+
+    return make
+
+
+@pytest.fixture(params=list(CASES))
+def case(request, fmu):
+    terms, parameters, step, count = CASES[request.param]
+    return request.param, *fmu(request.param), terms, parameters, step, count
+
+
+def test_description_is_valid(case):
+    assert validate_fmu(str(case[1])) == []
+
+
+def test_binary_gives_the_kernels_bits(case):
+    name, path, folder, terms, parameters, step, count = case
+    driven = Driven(path, folder, parameters)
+    twin = Instance(MODELS[name], terms, parameters).initialise()
+    for _ in range(count):
+        driven.step(step)
+        twin.step(step)
+    outputs = driven.outputs()
+    assert len(outputs) > 20
+    unequal = {n: (v, twin[n]) for n, v in outputs.items() if np.float64(v).tobytes() != np.float64(twin[n]).tobytes()}
+    assert unequal == {}
+    # the twin that must fail: one parameter moved by a millionth
+    moved = next(iter(parameters))
+    other = Instance(MODELS[name], terms, parameters | {moved: parameters[moved] * (1.0 + 1e-6)})
+    if moved != "net.mesh":
+        other.initialise()
+        for _ in range(count):
+            other.step(step)
+        assert any(outputs[n] != other[n] for n in outputs)
+
+
+def test_fmpy_simulates_it_alike(case):
+    _, path, folder, _, parameters, step, count = case
+    driven = Driven(path, folder, parameters)
+    names = [n for n, v in driven.variables.items() if v.causality == "output" and v.type == "Real"]
+    result = simulate_fmu(
+        str(path), stop_time=step * count, output_interval=step, start_values=parameters, output=names
+    )
+    for _ in range(count):
+        driven.step(step)
+    outputs = driven.outputs()
+    assert result["time"][-1] == pytest.approx(step * count)
+    last = {n: result[n][-1] for n in names}
+    assert last == {n: outputs[n] for n in names}
+
+
+def test_state_replays_in_process_and_in_another_one(case, tmp_path):
+    """Saved in the middle (closing, or a tug), replayed here twice and in a fresh process: the same bits."""
+    name, path, folder, _, parameters, step, count = case
+    driven = Driven(path, folder, parameters)
+    for _ in range(count // 2):
+        driven.step(step)
+    state = driven.slave.getFMUstate()
+    middle = driven.time
+    data = driven.slave.serializeFMUstate(state)
+    ends = []
+    for _ in range(2):
+        driven.slave.setFMUstate(state)
+        driven.time = middle
+        for _ in range(count - count // 2):
+            driven.step(step)
+        ends.append(driven.outputs())
+    assert ends[0] == ends[1]
+    (tmp_path / "state").write_bytes(data)
+    program = tmp_path / "replay.py"
+    program.write_text(
+        "import json, sys\n"
+        "from tests.packaging.test_fmu import Driven\n"
+        "path, folder, state, time, step, count = json.loads(sys.argv[1])\n"
+        "driven = Driven(path, folder, {})\n"  # default parameters: another mesh, so another size of memory
+        "saved = driven.slave.deSerializeFMUstate(open(state, 'rb').read())\n"
+        "driven.slave.setFMUstate(saved)\n"
+        "driven.time = time\n"
+        "for _ in range(count):\n"
+        "    driven.step(step)\n"
+        "print(json.dumps({n: float(v).hex() for n, v in driven.outputs().items()}))\n"
+    )
+    argument = json.dumps([str(path), folder, str(tmp_path / "state"), middle, step, count - count // 2])
+    root = str(Path(__file__).parents[2])
+    done = subprocess.run(
+        [sys.executable, str(program), argument], capture_output=True, text=True, check=True, cwd=root,
+        env={"PYTHONPATH": root, "PATH": ""},
+    )  # fmt: skip
+    assert json.loads(done.stdout) == {n: float(v).hex() for n, v in ends[0].items()}
+
+
+def test_reset_equals_fresh(case):
+    _, path, folder, _, parameters, step, _ = case
+    driven = Driven(path, folder, parameters)
+    for _ in range(3):
+        driven.step(step)
+    first = driven.outputs()
+    driven.slave.reset()
+    driven.time = 0.0
+    driven.set(parameters)
+    driven.slave.setupExperiment(startTime=0.0)
+    driven.slave.enterInitializationMode()
+    driven.slave.exitInitializationMode()
+    for _ in range(3):
+        driven.step(step)
+    assert driven.outputs() == first
+
+
+def test_step_of_zero_length_changes_nothing(case):
+    _, path, folder, _, parameters, step, _ = case
+    driven = Driven(path, folder, parameters)
+    driven.step(step)
+    before = driven.outputs()
+    driven.slave.doStep(driven.time, 0.0)
+    assert driven.outputs() == before
+
+
+def test_communication_points_may_drift_a_little(case):
+    _, path, folder, _, parameters, step, count = case
+    ends = []
+    for drift in (0.0, 1e-9):
+        driven = Driven(path, folder, parameters)
+        for i in range(count):
+            driven.slave.doStep(i * step * (1.0 + drift), step)
+        ends.append(driven.outputs())
+    keys = [k for k in ends[0] if k.startswith(("solver.steps", "tether.tug_count", "thread.taut"))]
+    assert keys
+    assert all(ends[0][k] == ends[1][k] for k in keys)
+
+
+def test_misuse_is_an_error_not_a_crash(case):
+    _, path, folder, _, parameters, step, _ = case
+    driven = Driven(path, folder, parameters)
+    slave = driven.slave
+    with pytest.raises(FMICallException):
+        slave.getReal([10**6])
+    with pytest.raises(FMICallException):
+        slave.setReal([driven.variables["chaser.mass"].valueReference], [1.0])  # fixed after initialisation
+    with pytest.raises(FMICallException):
+        slave.doStep(5.0 * step, step)  # not where the FMU stands
+    with pytest.raises(FMICallException):
+        slave.doStep(0.0, -step)
+    with pytest.raises(FMICallException):
+        slave.deSerializeFMUstate(b"nonsense" * 40)
+    driven.step(step)  # still alive
+
+
+def test_parameter_out_of_bounds_is_refused_with_its_name(case):
+    _, path, folder, _, _, _, _ = case
+    with pytest.raises(FMICallException):
+        Driven(path, folder, {"chaser.mass": -1.0})
+
+
+def test_archive_depends_on_its_content_alone(tmp_path):
+    files = {"modelDescription.xml": b"<x/>", "binaries/linux64/a.so": b"\0\1"}
+    archive.pack(files, tmp_path / "a.zip")
+    archive.pack(dict(reversed(files.items())), tmp_path / "b.zip")
+    assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
+    archive.pack(files | {"modelDescription.xml": b"<y/>"}, tmp_path / "b.zip")
+    assert (tmp_path / "a.zip").read_bytes() != (tmp_path / "b.zip").read_bytes()
+
+
+def test_term_left_out_is_not_in_the_fmu(fmu):
+    path, _ = fmu("net_capture")
+    names = {v.name for v in read_model_description(str(path)).modelVariables}
+    assert "close.command" in names
+    assert not any(n.startswith(("node[", "orbit.")) for n in names)
+    with zipfile.ZipFile(path) as content:
+        assert {"modelDescription.xml", "documentation/index.html"} < set(content.namelist())
+        library = content.read("binaries/linux64/net_capture.so")
+    assert b"Py_" not in library
+    assert b"fmi2SetContinuousStates" in library
+
+
+def test_fingerprint_follows_terms_and_processors(monkeypatch):
+    model = MODELS["net_capture"]
+    first = archive.fingerprint(model.interface(CAPTURE), link.LINUX64)
+    assert first == archive.fingerprint(model.interface(dict(reversed(CAPTURE.items()))), link.LINUX64)
+    assert first != archive.fingerprint(model.interface(CAPTURE | {"gravity": "hill"}), link.LINUX64)
+    monkeypatch.setattr(archive, "version", lambda name: "0")
+    assert first != archive.fingerprint(model.interface(CAPTURE), link.LINUX64)
