@@ -126,7 +126,7 @@ def test_fmpy_simulates_it_alike(case):
 
 def test_state_replays_in_process_and_in_another_one(case, tmp_path):
     """Saved in the middle (closing, or a tug), replayed here twice and in a fresh process: the same bits."""
-    name, path, folder, _, parameters, step, count = case
+    _, path, folder, _, parameters, step, count = case
     driven = Driven(path, folder, parameters)
     for _ in range(count // 2):
         driven.step(step)
