@@ -18,9 +18,10 @@ from dcone_cosim import build
 from dcone_cosim.contract import HAND_OVER
 from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import REMOVAL_SETS
+from dcone_cosim.mistakes import Mistake, message
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scene import PHASES, PhaseScene, Scene
-from dcone_cosim.toml_lines import Path, key_lines, line_of
+from dcone_cosim.toml_lines import Path
 from dcone_cosim.units import Expected, Unexpected, example_of
 
 SHARED = "orbit"
@@ -54,15 +55,6 @@ HANDOFF_KEYS: Mapping[str, Expected] = {
     "spin_tolerance": Expected("1", example="0.1", refusal=_not_negative("")),
     "compare_without_recoil": Expected("1", kind="Boolean"),
 }
-
-
-@dataclass(frozen=True)
-class Mistake:
-    """One thing wrong: where, what was given (None when something is missing), and what was expected."""
-
-    path: Path
-    given: object
-    expected: str
 
 
 @dataclass
@@ -102,7 +94,7 @@ def check(document: dict[str, Any], text: str, name: str, source: str) -> Scene:
                 mistakes.append(Mistake(path, refusal.given, refusal.expected))
         if not mistakes:
             return scene
-    raise InputError(_message(mistakes, text, source))
+    raise InputError(message(mistakes, text, source))
 
 
 def _choose_terms(phase: str, tables: dict[str, Any], mistakes: list[Mistake]) -> _Phase:
@@ -350,28 +342,3 @@ def _assemble(values: Any, phases: Mapping[str, _Phase], chosen: list[str], text
         if (value := getattr(values.handoff, key, None)) is not None
     }
     return Scene(name, values.title, text, tuple(made), handoff)
-
-
-def _message(mistakes: list[Mistake], text: str, source: str) -> str:
-    lines = key_lines(text)
-    found = sorted(mistakes, key=lambda m: line_of(lines, m.path) or 0)
-    rows = [f"{source}: {len(found)} mistake{'s' if len(found) > 1 else ''}"]
-    for mistake in found:
-        line = line_of(lines, mistake.path)
-        where = f"line {line}: " if line is not None else ""
-        value = "missing" if mistake.given is None else f"= {_shown(mistake.given)}"
-        rows.append(f"  {where}{'.'.join(mistake.path)} {value}: {mistake.expected}")
-    return "\n".join(rows)
-
-
-def _shown(value: object) -> str:
-    """A value as the scene has it, short."""
-    if isinstance(value, str):
-        text = f'"{value}"'
-    elif isinstance(value, bool):
-        text = str(value).lower()
-    elif isinstance(value, dict):
-        return "a table"
-    else:
-        text = str(value).replace("'", '"')
-    return text if len(text) <= 60 else text[:57] + "..."

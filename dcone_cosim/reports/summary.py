@@ -129,10 +129,9 @@ def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
     if record.rows:
         worst = max(record.rows, key=lambda row: row.closure)
         yield Finding("hand-off", "ledger_closure", "ledger closes to", worst.closure)
-        yield Finding("hand-off", "ledger_worst", "in its worst row", worst.quantity)
         energy = next(row for row in record.rows if row.quantity == "kinetic energy")
         lost = energy.accounted - spin_energy(handed.joint)
-        yield Finding("hand-off", "energy_lost", "kinetic energy lost as the net joins", lost, "J")
+        yield Finding("hand-off", "energy_lost", "energy lost as the net joins", lost, "J")
 
 
 def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
@@ -164,7 +163,7 @@ def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
     tugs = result.tugs
     if tugs is None:
         return
-    note = ", without the recoil" if suffix else ""
+    note = " (no recoil)" if suffix else ""
     yield Finding("removal", f"tugs{suffix}", f"tugs{note}", tugs.count)
     if tugs.missed:
         yield Finding(
@@ -174,7 +173,7 @@ def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
         return
     first = tugs.rows[min(tugs.rows)]
     largest = max(tugs.rows.values(), key=lambda row: row[1])
-    yield Finding("removal", f"first_tug{suffix}", f"first tug{note}, after", first[0] - result.start, "s")
+    yield Finding("removal", f"first_tug{suffix}", f"first tug after{note}", first[0] - result.start, "s")
     yield Finding("removal", f"first_tug_speed{suffix}", f"its speed{note}", 1e3 * first[2], "mm/s")
     yield Finding("removal", f"first_tug_peak{suffix}", f"its peak{note}", first[1], "N")
     yield Finding("removal", f"largest_tug_peak{suffix}", f"largest tug{note}", largest[1], "N")
