@@ -9,11 +9,29 @@ of kinetic energy is booked exactly.
 import math
 
 from fmu_src.net_capture.shapes import box_distance
-from fmu_src.net_capture.topology import FX, FY, FZ, INVERSE_MASS, MASS, U, V, W, X, Y, Z, node_plane
+from fmu_src.net_capture.topology import (
+    CHUNK,
+    FX,
+    FY,
+    FZ,
+    INVERSE_MASS,
+    MASS,
+    U,
+    V,
+    W,
+    X,
+    Y,
+    Z,
+    chunk_scratch,
+    gather,
+    node_plane,
+)
 from orbital.kernel import kernel
-from orbital.rotations import rotate, rotate_inverse
+from orbital.rotations import rotate_inverse, to_matrix
 from orbital.vectors import cross, dot
 
+FASTEST = 200.0
+"""Speed [m/s] between node and surface up to which the second level of the search misses no contact."""
 RECOVERY_SPEED = 0.01
 """Speed [m/s] at which a node found below the surface is brought back: small against any impact, so it adds no
 energy."""
@@ -32,6 +50,50 @@ def find_near(x, y, z, cx, cy, cz, squared):
 
 
 @kernel
+def find_close(closeness, x, y, z, cx, cy, cz, turn, half, margin):
+    """Write for each node of a chunk by how much it lies within the box widened by a margin [m]; return how many do."""
+    hx = half[0] + margin
+    hy = half[1] + margin
+    hz = half[2] + margin
+    a = turn[0, 0]
+    b = turn[0, 1]
+    c = turn[0, 2]
+    d = turn[1, 0]
+    e = turn[1, 1]
+    f = turn[1, 2]
+    g = turn[2, 0]
+    h = turn[2, 1]
+    k = turn[2, 2]
+    close = 0
+    for j in range(closeness.size):
+        dx = x[j] - cx
+        dy = y[j] - cy
+        dz = z[j] - cz
+        u = hx - abs(a * dx + d * dy + g * dz)
+        v = hy - abs(b * dx + e * dy + h * dz)
+        w = hz - abs(c * dx + f * dy + k * dz)
+        least = u if u < v else v
+        least = least if least < w else w
+        closeness[j] = least
+        close += 1 if least > 0.0 else 0
+    return close
+
+
+@kernel
+def take_rate(p, frame_rate):
+    """Angular velocity of the target relative to the frame, frame axes, from its angular momentum."""
+    turn = p.target_turn
+    for i in range(3):
+        p.target_omega[i] = 0.0
+    for k in range(3):
+        spin = turn[0, k] * p.target_spin[0] + turn[1, k] * p.target_spin[1] + turn[2, k] * p.target_spin[2]
+        rate = spin / p.target_inertia[k]
+        for i in range(3):
+            p.target_omega[i] += turn[i, k] * rate
+    p.target_omega[2] -= frame_rate
+
+
+@kernel
 def touch_nodes(p, work, start, n, frame_rate, h):
     """Give one chunk of nodes the impulses of contact, after the kick and before the drift."""
     stop = start + n
@@ -39,14 +101,17 @@ def touch_nodes(p, work, start, n, frame_rate, h):
     y = node_plane(p, work, Y)[start:stop]
     z = node_plane(p, work, Z)[start:stop]
     c = p.target_place
-    squared = p.envelope_radius * p.envelope_radius
-    if find_near(x, y, z, c[0], c[1], c[2], squared) > 0:
-        for j in range(n):
-            dx = x[j] - c[0]
-            dy = y[j] - c[1]
-            dz = z[j] - c[2]
-            if dx * dx + dy * dy + dz * dz < squared:
-                touch(p, work, start + j, frame_rate, h)
+    if find_near(x, y, z, c[0], c[1], c[2], p.envelope_radius * p.envelope_radius) > 0:
+        scratch = chunk_scratch(p, work)
+        closeness = scratch[0:n]
+        lanes = scratch[CHUNK : 2 * CHUNK]
+        to_matrix(p.target_turn, p.target_pose)
+        found = find_close(closeness, x, y, z, c[0], c[1], c[2], p.target_turn, p.half_size, FASTEST * h)
+        if found > 0:
+            take_rate(p, frame_rate)
+            gather(lanes, closeness)
+            for i in range(found):
+                touch(p, work, start + int(lanes[i]), frame_rate, h)
 
 
 @kernel
@@ -60,29 +125,23 @@ def touch(p, work, node, frame_rate, h):
     w = node_plane(p, work, W)
     arm = p.scratch[13:16]
     body = p.scratch[16:19]
-    normal = p.scratch[19:22]
-    spin = p.scratch[22:25]
+    local = p.scratch[19:22]
+    normal = p.scratch[22:25]
     lever = p.scratch[25:28]
+    turn = p.target_turn
+    omega = p.target_omega
     arm[0] = node_plane(p, work, X)[node] - p.target_place[0]
     arm[1] = node_plane(p, work, Y)[node] - p.target_place[1]
     arm[2] = node_plane(p, work, Z)[node] - p.target_place[2]
-    rotate_inverse(body, p.target_pose, arm)
-    gap = box_distance(normal, body, p.half_size)
-    # inverse of the mass the impulse feels: node, target, and the target's turning
-    cross(lever, body, normal)
-    feel = inverse + 1.0 / p.target_mass
     for i in range(3):
-        feel += lever[i] * lever[i] / p.target_inertia[i]
-    rotate(normal, p.target_pose, normal)
-    rotate_inverse(spin, p.target_pose, p.target_spin)
+        body[i] = turn[0, i] * arm[0] + turn[1, i] * arm[1] + turn[2, i] * arm[2]
+    gap = box_distance(local, body, p.half_size)
     for i in range(3):
-        spin[i] /= p.target_inertia[i]
-    rotate(spin, p.target_pose, spin)
-    spin[2] -= frame_rate
+        normal[i] = turn[i, 0] * local[0] + turn[i, 1] * local[1] + turn[i, 2] * local[2]
     approach = (
-        normal[0] * (u[node] - p.target_velocity[0] - (spin[1] * arm[2] - spin[2] * arm[1]))
-        + normal[1] * (v[node] - p.target_velocity[1] - (spin[2] * arm[0] - spin[0] * arm[2]))
-        + normal[2] * (w[node] - p.target_velocity[2] - (spin[0] * arm[1] - spin[1] * arm[0]))
+        normal[0] * (u[node] - p.target_velocity[0] - (omega[1] * arm[2] - omega[2] * arm[1]))
+        + normal[1] * (v[node] - p.target_velocity[1] - (omega[2] * arm[0] - omega[0] * arm[2]))
+        + normal[2] * (w[node] - p.target_velocity[2] - (omega[0] * arm[1] - omega[1] * arm[0]))
     )
     if gap + h * approach >= 0.0:
         return
@@ -93,6 +152,11 @@ def touch(p, work, node, frame_rate, h):
         wanted = -p.contact_restitution * approach
     if wanted <= approach:
         return
+    # inverse of the mass the impulse feels: node, target, and the target's turning
+    cross(lever, body, local)
+    feel = inverse + 1.0 / p.target_mass
+    for i in range(3):
+        feel += lever[i] * lever[i] / p.target_inertia[i]
     impulse = (wanted - approach) / feel
     p.contact_impulse += impulse
     # work of the impulse over the mean of the relative normal velocities before the kick of this substep and after
@@ -109,6 +173,7 @@ def touch(p, work, node, frame_rate, h):
     for i in range(3):
         p.target_velocity[i] -= impulse / p.target_mass * normal[i]
         p.target_spin[i] -= impulse * lever[i]
+    take_rate(p, frame_rate)
     if p.contact_first_time < 0.0:
         p.contact_first_time = p.start_time + p.grid * p.solver_substep
 

@@ -282,6 +282,8 @@ CONTACT = {
             _out("contact.first_time", "s", "first touch; -1 before"),
             _out("contact.impulse", "N.s", "sum of the sizes of all impulses so far"),
             _state("half_size[#]", "m", "half the edges of the target", shape=(3,)),
+            Variable("target_turn[#][#]", "1", "state", "rotation matrix from body to frame", shape=(3, 3)),
+            _state("target_omega[#]", "rad/s", "rate of the target relative to the frame, frame axes", shape=(3,)),
             _state("envelope_radius", "m", "of the sphere around the target"),
             _out("contact.loss", "J", "kinetic energy lost in contact so far"),
         ),

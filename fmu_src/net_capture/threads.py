@@ -24,6 +24,7 @@ from fmu_src.net_capture.topology import (
     Y,
     Z,
     chunk_scratch,
+    gather,
     node_plane,
     strip_table,
     thread_plane,
@@ -63,15 +64,6 @@ def find_taut(excess, xa, ya, za, xb, yb, zb, squared):
         excess[j] = e
         taut += 1 if e > 0.0 else 0
     return taut
-
-
-@kernel
-def gather_taut(lanes, excess):
-    """Write the numbers of the taut lanes one after another; no branch to mispredict."""
-    found = 0
-    for j in range(excess.size):
-        lanes[found] = j
-        found += 1 if excess[j] > 0.0 else 0
 
 
 @kernel
@@ -158,7 +150,7 @@ def add_thread_forces(p, work):
             )
             if found > 0:
                 taut += found
-                gather_taut(lanes, e)
+                gather(lanes, e)
                 pull(
                     lanes[0:found],
                     work,

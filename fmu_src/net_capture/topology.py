@@ -90,6 +90,15 @@ def chunk_scratch(p, work):
 
 
 @kernel
+def gather(lanes, amount):
+    """Write the numbers of the lanes with a positive amount one after another; no branch to mispredict."""
+    found = 0
+    for j in range(amount.size):
+        lanes[found] = j
+        found += 1 if amount[j] > 0.0 else 0
+
+
+@kernel
 def lay_out_strips(p, work):
     """Write the strip table of a square net."""
     knots = p.knots

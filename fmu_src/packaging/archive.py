@@ -72,6 +72,10 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
         }
         finished = folder / path.name
         pack(files, finished)
+        if fingerprint(interface, platform) != key:
+            raise compile.BuildError(
+                f"the sources of {interface.model.name} changed while it was built: build it again"
+            )
         os.replace(finished, path)
     finally:
         shutil.rmtree(folder, ignore_errors=True)

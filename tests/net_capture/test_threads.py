@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from fmu_src.net_capture import threads
-from fmu_src.net_capture.threads import drift, find_taut, gather_taut, kick, pull, thread_tension
+from fmu_src.net_capture.threads import drift, find_taut, kick, pull, thread_tension
+from fmu_src.net_capture.topology import gather
 
 K, XI, L = 13740.0, 0.106, 1.0
 
@@ -25,7 +26,7 @@ def two_masses(m, d, stretch_rate, h, steps, tension=thread_tension):
         peak[:] = 0.0
         x, y, z = planes[0], planes[1], planes[2]
         if find_taut(excess, x[:1], y[:1], z[:1], x[1:], y[1:], z[1:], np.array([L * L])):
-            gather_taut(lanes, excess)
+            gather(lanes, excess)
             pull(lanes, nodes, slots, 0, 1, peak, L, K, d)
         for axis in range(3):
             kick(planes[3 + axis], planes[6 + axis], inverse, h)
