@@ -1,4 +1,5 @@
-"""Error against run time of what a user can trade: `pytest -m bench -n 0 -s tests/benchmarks/test_error_against_time.py`.
+"""Error against run time of what a user can trade: `pytest -m bench -n 0 -s
+tests/benchmarks/test_error_against_time.py`.
 
 Prints the tables that stand in README.md. Reference of each row: the finest setting of the same table.
 """
