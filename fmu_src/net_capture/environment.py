@@ -13,7 +13,7 @@ def hill_kick(x, z, u, v, w, n, h):
 
     Valid    distances small against the orbital radius, circular orbit
     Source   Hill 1878; Clohessy and Wiltshire 1960
-    Checked  tests/net_capture/test_environment.py
+    Checked  tests/net_capture/test_contact.py, test_free_flight.py
     """
     for j in range(x.size):
         old = u[j]

@@ -16,7 +16,7 @@ def box_distance(normal, point, half):
     normal       unit vector, body axes          [1]  (3,)
 
     Valid    any point; on an edge seen from inside the first of the nearest faces is taken
-    Checked  tests/net_capture/test_shapes.py
+    Checked  tests/net_capture/test_contact.py
     """
     outside = 0.0
     deepest = -math.inf
@@ -52,7 +52,7 @@ def box_girth(size):
 
         2 (a + b)  with a, b the two shorter edges
 
-    Checked  tests/net_capture/test_shapes.py (16 m for 4 x 8 x 4 m)
+    Checked  tests/net_capture/test_contact.py (16 m for 4 x 8 x 4 m)
     """
     longest = max(size[0], max(size[1], size[2]))
     return 2.0 * (size[0] + size[1] + size[2] - longest)

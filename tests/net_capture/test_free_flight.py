@@ -110,14 +110,37 @@ def test_stiffness_changes_tension_as_its_root_and_not_the_opening(shoot):
 JITTER = {f"solver.jitter[{i}]": 1e-6 for i in (1, 2, 3)}
 
 
-def test_less_damping_opens_wider_and_longer(shoot):
-    """[P]: small damping against none; the vertex swings less with damping."""
+def test_small_damping_against_none(shoot):
+    """[P]: small damping gives a larger and longer opening, and a smaller vertex oscillation, than none."""
     result = {}
-    for ratio in (0.106, 0.0):
-        net = shoot({"net.damping_ratio": ratio, "solver.step_ratio": 0.3})
-        swing = advance(net, 16.0, 0.05, ["vertex.velocity[2]"])[:, 0]
-        result[ratio] = (net["mouth.area_max"], net["mouth.time_above_80"], np.abs(np.diff(swing)).mean())
-    assert result[0.0][2] > result[0.106][2]
+    for ratio in (0.01, 0.0):
+        net = shoot({"net.damping_ratio": ratio, "solver.step_ratio": 0.4})
+        advance(net, 9.0, 0.5)
+        track = advance(net, 20.0, 0.05, ["vertex.position[2]", "catch.position[2]"])
+        shaking = np.abs(np.diff(track[:, 0] - track[:, 1], 2)).mean() / 0.05**2
+        result[ratio] = (net["mouth.area_max"], net["mouth.time_above_80"], shaking)
+    assert result[0.01][0] > 1.2 * result[0.0][0]
+    assert result[0.01][1] > result[0.0][1] + 3.0
+    assert result[0.01][2] < 0.9 * result[0.0][2]
+
+
+def test_the_net_is_chaotic_and_its_aggregates_are_not(shoot):
+    """Jittered starts (1e-6 m): spread of the mouth area 0.015 % at 8 s, 0.27 % at 15 s; one peak tension is a sample."""
+    areas, peaks, tracks = [], [], []
+    for seed in range(8):
+        net = shoot({"solver.seed": seed} | JITTER)
+        at = []
+        for t in (8.0, 15.0):
+            advance(net, t, 1.0)
+            at.append(net["mouth.area"])
+        areas.append(at)
+        peaks.append(net["thread.tension_max"])
+        tracks.append(net["vertex.position[1]"])
+    spread = np.std(areas, axis=0) / np.mean(areas, axis=0)
+    assert 1e-6 < spread[0] < 1e-3
+    assert spread[0] < spread[1] < 1e-2
+    assert np.std(peaks) / np.mean(peaks) < 0.15
+    assert np.ptp(tracks) > 1e-4  # a micrometre has grown a hundredfold and more: no run is the run
 
 
 def test_small_damping_opens_larger_and_longer_than_large(shoot):
@@ -191,3 +214,27 @@ def test_step_bound_follows_the_mesh_and_a_step_beyond_it_fails(shoot):
     start = net["energy.total"]
     advance(net, 6.0, 0.5)
     assert net["energy.total"] > 1.05 * start
+
+
+def test_jacobi_integral_of_a_slow_shot(shoot):
+    """Gravity hill, no damping: kinetic and elastic energy less n^2 (3 x^2 - z^2) m / 2 is constant; energy is not.
+
+    So slow a shot (1 cm/s) that the tide's share is as large as the kinetic energy.
+    """
+    net = shoot(
+        {"net.mesh": 12.0, "net.damping_ratio": 0.0, "bullets.speed": 0.01, "solver.step_ratio": 0.5},
+        {"net": "square", "gravity": "hill"},
+    )
+    n = float(net.record["mean_motion"][0])
+
+    def integral():
+        first, second, third = net.array("catch_inertia")[:3]
+        mass = net["catch.mass"]
+        xx = 0.5 * (second + third - first) + mass * net["catch.position[1]"] ** 2
+        zz = 0.5 * (first + second - third) + mass * net["catch.position[3]"] ** 2
+        return net["energy.total"] - 0.5 * n * n * (3.0 * xx - zz)
+
+    start, energy = integral(), net["energy.total"]
+    net.step(1500.0)
+    assert integral() == pytest.approx(start, abs=0.01 * energy)
+    assert abs(net["energy.total"] - energy) > 0.1 * energy

@@ -69,6 +69,7 @@ def test_logarithmic_decrement_gives_the_dashpot():
     decrement = np.mean(np.log(np.array(peaks[:-1]) / np.array(peaks[1:]))[:4])
     zeta = 0.05
     assert decrement == pytest.approx(2.0 * math.pi * zeta / math.sqrt(1.0 - zeta * zeta), rel=5e-3)
+    assert decrement != pytest.approx(2.0 * math.pi * 0.051 / math.sqrt(1.0 - 0.051**2), rel=5e-3)
 
 
 def test_slack_thread_pulls_exactly_nothing():
@@ -97,6 +98,7 @@ def test_static_stretch_is_that_of_the_whole_thread(shoot, segments):
     stretch = sum(force / stiffness for _ in range(segments))
     assert length * segments == pytest.approx(1.0, rel=1e-15)
     assert stretch == pytest.approx(force * 1.0 / (70e9 * area), rel=1e-6)
+    assert stretch != pytest.approx(force * 1.01 / (70e9 * area), rel=1e-6)
     assert threads.thread_tension(length + force / stiffness, 0.0, length, stiffness, 0.0) == pytest.approx(
         force, rel=1e-6
     )
