@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -141,6 +142,7 @@ HEAD = (
     Variable("fault_index", "1", "state", "which node, thread or parameter", kind="Integer"),
     Variable("fault_time", "s", "state", "when"),
     Variable("fault_value", "1", "state", "offending value, SI"),
+    Variable("terms", "1", "state", "unused; its name in the record tells one choice of terms from another"),
 )
 """Every record begins with these; the C shim knows them by their place."""
 
@@ -192,8 +194,15 @@ class Interface:
 
     @cached_property
     def dtype(self) -> np.dtype[np.void]:
-        """Record of 8-byte slots: float64 for Real, int64 for Integer and Boolean."""
-        fields = [(v.field, "<f8" if v.kind == "Real" else "<i8", v.shape) for v in self.variables]
+        """Record of 8-byte slots: float64 for Real, int64 for Integer and Boolean.
+
+        One field bears the terms' name: numba would otherwise take a longer record for a shorter one it begins with.
+        """
+        mark = "terms_" + "_".join(re.sub(r"\W", "", f"{group}_{term}") for group, term in self.terms.items())
+        fields = [
+            (mark if v.name == "terms" else v.field, "<f8" if v.kind == "Real" else "<i8", v.shape)
+            for v in self.variables
+        ]
         return np.dtype([(name, code, shape) if shape else (name, code) for name, code, shape in fields])
 
     @cached_property
@@ -216,6 +225,8 @@ class Interface:
         """A record with every start value, as an array of length 1."""
         record = np.zeros(1, self.dtype)
         for v in self.variables:
+            if not v.at_interface:
+                continue
             starts = v.starts()
             record[0][v.field] = np.reshape(starts, v.shape) if v.shape else starts[0]
         return record

@@ -6,9 +6,7 @@ target takes the opposite impulse at the same point, so linear and angular momen
 of kinetic energy is booked exactly.
 """
 
-import math
-
-from fmu_src.net_capture.shapes import box_distance
+from fmu_src.net_capture.shapes import box_distance, box_radius
 from fmu_src.net_capture.topology import (
     CHUNK,
     FX,
@@ -183,7 +181,7 @@ def start_contact(p):
     """Clear the contact ledger; take the envelope from the target's size."""
     for i in range(3):
         p.half_size[i] = 0.5 * p.target_size[i]
-    p.envelope_radius = math.sqrt(dot(p.half_size, p.half_size)) + 0.05
+    p.envelope_radius = box_radius(p.half_size) + 0.05
     p.contact_first_time = -1.0
     p.contact_impulse = 0.0
     p.contact_loss = 0.0

@@ -1,4 +1,4 @@
-"""The folded net in its canister: where every node starts, and with which velocity.
+"""Aim and fold: the axes of the shot, where every node starts, and with which velocity.
 
 The net is folded flat into a small square normal to the shot, so no thread is longer than its rest length. Bullets
 leave along the diagonals, at an angle from the shot axis; the rest is at rest in the canister, which moves with the
@@ -7,8 +7,49 @@ chaser.
 
 import math
 
+from fmu_src.net_capture.interface import NO_AXIS
 from fmu_src.net_capture.topology import U, V, W, X, Y, Z, bullet_node, node_plane
 from orbital.kernel import kernel
+from orbital.vectors import dot
+
+
+@kernel
+def aim(p):
+    """Shot axes as rows, and the muzzle; a fault code or 0."""
+    axis = p.axes[6:9]
+    for i in range(3):
+        p.muzzle[i] = p.chaser_start_position[i]
+        axis[i] = p.shot_axis[i]
+    if dot(axis, axis) == 0.0:
+        for i in range(3):
+            axis[i] = -p.chaser_start_position[i]
+    length = math.sqrt(dot(axis, axis))
+    if length == 0.0:
+        return NO_AXIS
+    for i in range(3):
+        axis[i] /= length
+    # first transverse axis: the orbital axis least along the shot, made normal to it
+    least = 0
+    for i in range(3):
+        if abs(axis[i]) < abs(axis[least]):
+            least = i
+    share = axis[least]
+    first = p.scratch[0:3]
+    for i in range(3):
+        first[i] = (1.0 if i == least else 0.0) - share * axis[i]
+    length = math.sqrt(dot(first, first))
+    for i in range(3):
+        first[i] /= length
+    second = p.scratch[3:6]
+    second[0] = axis[1] * first[2] - axis[2] * first[1]
+    second[1] = axis[2] * first[0] - axis[0] * first[2]
+    second[2] = axis[0] * first[1] - axis[1] * first[0]
+    c = math.cos(p.shot_roll)
+    s = math.sin(p.shot_roll)
+    for i in range(3):
+        p.axes[i] = c * first[i] + s * second[i]
+        p.axes[3 + i] = c * second[i] - s * first[i]
+    return 0
 
 
 @kernel

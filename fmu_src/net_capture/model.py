@@ -17,20 +17,30 @@ import numpy as np
 from numba import from_dtype, njit, types
 
 from fmu_src.interface import INITIALISE, REFRESH, SIZE, STEP
-from fmu_src.net_capture import closure, contact, environment, folding, quality, target, threads, topology
-from fmu_src.net_capture.interface import LARGEST_MESH, MODEL, OUTCOMES
+from fmu_src.net_capture import (
+    closure,
+    contact,
+    environment,
+    folding,
+    interface,
+    outcome,
+    quality,
+    target,
+    tether,
+    threads,
+    topology,
+)
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
 from orbital.oscillators import explicit_step_limit
-from orbital.vectors import dot
 
 MEASURE_INTERVAL = 0.01
 """Seconds between two looks at mouth and capture: a whole number of substeps fits."""
+SMALLEST_SUBSTEP = 1e-9
+"""Seconds: below, no run would end."""
 ON_GRID = 1e-3
 """Share of a substep by which a communication point may miss the grid and still count as on it: masters add up
 times."""
-
-FLYING, CAPTURED, SETTLED, MISSED, SLIPPED_OFF, NOT_CLOSED, TETHER_TAUT = range(len(OUTCOMES))
 
 
 def make_entry(terms):
@@ -39,12 +49,12 @@ def make_entry(terms):
     has_contact = "contact" in terms
     has_closing = "closing" in terms
     has_tether = "tether" in terms
-    has_settling = "settling" in terms
     has_nodes = "nodes" in terms
     capacity = int(terms["nodes"]) if has_nodes else 0
     is_hill = terms["gravity"] == "hill"
     kick_body = environment.hill_kick_body if is_hill else environment.no_kick_body
     kick_nodes = environment.hill_kick_nodes if is_hill else environment.no_kick_nodes
+    judge = outcome.make_judge(terms, tether.towards_chaser)
     frame_rate_of = environment.hill_rate if is_hill else environment.no_rate
 
     @kernel
@@ -53,13 +63,13 @@ def make_entry(terms):
         meshes = round(p.net_side / p.net_mesh)
         if abs(p.net_side / p.net_mesh - meshes) > 1e-6 * meshes or meshes < 2:
             p.fault_value = p.net_side / p.net_mesh
-            return 2
-        if meshes * p.net_segments > LARGEST_MESH:
+            return interface.NO_WHOLE_MESHES
+        if meshes * p.net_segments > interface.LARGEST_MESH:
             p.fault_value = meshes * p.net_segments
-            return 4
+            return interface.TOO_FINE
         if p.net_fold_side >= p.net_side:
             p.fault_value = p.net_fold_side
-            return 6
+            return interface.FOLD_TOO_LARGE
         p.knots = int(meshes) + 1
         p.net_nodes = p.knots * p.knots + 2 * (p.net_segments - 1) * p.knots * (p.knots - 1)
         p.net_threads = 2 * p.net_segments * p.knots * (p.knots - 1)
@@ -69,46 +79,8 @@ def make_entry(terms):
         if has_nodes:
             if p.net_nodes > capacity:
                 p.fault_value = p.net_nodes
-                return 3
+                return interface.TOO_MANY_NODES
         p.work_size = topology.work_size(p.knots, p.net_segments)
-        return 0
-
-    @kernel
-    def aim(p):
-        """Shot axes as rows, and the muzzle; a fault code or 0."""
-        axis = p.axes[6:9]
-        for i in range(3):
-            p.muzzle[i] = p.chaser_start_position[i]
-            axis[i] = p.shot_axis[i]
-        if dot(axis, axis) == 0.0:
-            for i in range(3):
-                axis[i] = -p.chaser_start_position[i]
-        length = math.sqrt(dot(axis, axis))
-        if length == 0.0:
-            return 5
-        for i in range(3):
-            axis[i] /= length
-        # first transverse axis: the orbital axis least along the shot, made normal to it
-        least = 0
-        for i in range(3):
-            if abs(axis[i]) < abs(axis[least]):
-                least = i
-        share = axis[least]
-        first = p.scratch[0:3]
-        for i in range(3):
-            first[i] = (1.0 if i == least else 0.0) - share * axis[i]
-        length = math.sqrt(dot(first, first))
-        for i in range(3):
-            first[i] /= length
-        second = p.scratch[3:6]
-        second[0] = axis[1] * first[2] - axis[2] * first[1]
-        second[1] = axis[2] * first[0] - axis[0] * first[2]
-        second[2] = axis[0] * first[1] - axis[1] * first[0]
-        c = math.cos(p.shot_roll)
-        s = math.sin(p.shot_roll)
-        for i in range(3):
-            p.axes[i] = c * first[i] + s * second[i]
-            p.axes[3 + i] = c * second[i] - s * first[i]
         return 0
 
     @kernel
@@ -126,37 +98,19 @@ def make_entry(terms):
             dashpot = 2.0 * p.closing_damping_ratio * math.sqrt(0.5 * hardest * p.bullets_mass)
             bound = min(bound, explicit_step_limit(hardest, 2.0 * p.bullets_mass, dashpot))
         p.solver_stability_bound = bound
+        p.fault_value = p.solver_step_ratio * bound
+        if not p.fault_value > SMALLEST_SUBSTEP:
+            return interface.STEP_TOO_SMALL
         p.measure_every = math.ceil(MEASURE_INTERVAL / (p.solver_step_ratio * bound) - 1e-9)
         p.solver_substep = MEASURE_INTERVAL / p.measure_every
+        return 0
 
     @kernel
     def add_forces(p, work):
         """All forces at the present positions into the force planes."""
         p.thread_taut = threads.add_thread_forces(p, work)
         if has_tether:
-            pull_vertex(p, work)
-
-    @kernel
-    def pull_vertex(p, work):
-        """The tether's tension signal at the vertex, towards the chaser."""
-        away = towards_chaser(p, work)
-        if p.tether_vertex_tension != 0.0 and away > 0.0:
-            for axis in range(3):
-                share = 0.25 * p.tether_vertex_tension * p.scratch[axis] / away
-                force = topology.node_plane(p, work, topology.FX + axis)
-                for i in range(4):
-                    force[topology.vertex_node(p.knots, i)] += share
-
-    @kernel
-    def towards_chaser(p, work):
-        """Vector from the vertex to the chaser into scratch; returns its length [m]."""
-        for axis in range(3):
-            plane = topology.node_plane(p, work, topology.X + axis)
-            at = 0.0
-            for i in range(4):
-                at += 0.25 * plane[topology.vertex_node(p.knots, i)]
-            p.scratch[axis] = p.chaser_place[axis] - at
-        return math.sqrt(dot(p.scratch[0:3], p.scratch[0:3]))
+            tether.pull_vertex(p, work)
 
     @kernel
     def substep(p, work):
@@ -167,10 +121,10 @@ def make_entry(terms):
         if has_closing:
             closure.draw_cord(p, work, h)
         if has_tether:
-            away = towards_chaser(p, work)
-            if p.tether_vertex_tension != 0.0 and away > 0.0:
-                for axis in range(3):
-                    p.chaser_drift[axis] -= h * p.tether_vertex_tension * p.scratch[axis] / away / p.chaser_mass
+            change = p.scratch[25:28]
+            tether.change_of_speed(p, work, change, h)
+            for axis in range(3):
+                p.chaser_drift[axis] += change[axis]
         kick_body(p, p.chaser_place, p.chaser_drift, h)
         if has_target:
             kick_body(p, p.target_place, p.target_velocity, h)
@@ -199,66 +153,13 @@ def make_entry(terms):
         time = now(p)
         quality.watch_mouth(p, work, time, MEASURE_INTERVAL)
         if not math.isfinite(p.mouth_area_max) or not math.isfinite(quality.mouth_area(p, work)):
-            return 1
+            return interface.NOT_FINITE
         if has_closing:
             touched = p.contact_first_time if has_contact else -1.0
             beyond = quality.least_depth_beyond(p, work, p.target_place) if has_target else -math.inf
             closure.pull_trigger(p, work, time, touched, beyond)
-        if p.outcome == FLYING:
-            judge_flight(p, work, time)
-        elif p.outcome == CAPTURED or p.outcome == SETTLED:
-            judge_catch(p, work, time)
+        judge(p, work, time)
         return 0
-
-    @kernel
-    def judge_flight(p, work, time):
-        """Capture, or one of the ways to fail."""
-        if has_target:
-            beyond = quality.least_depth_beyond(p, work, p.target_place)
-            if has_closing:
-                if p.closing_t_start >= 0.0 and p.mouth_cord_length < p.girth:
-                    if beyond > 0.0 and quality.encloses(p, work, p.target_place):
-                        p.outcome = CAPTURED
-                        p.captured = 1
-                        p.t_capture = time
-                        if has_settling:
-                            p.calm_since = time
-                    else:
-                        p.outcome = fail(p)
-                elif p.trigger_time >= 0.0 and time > p.trigger_time + p.closing_timeout:
-                    p.outcome = NOT_CLOSED
-            elif beyond > p.net_side:
-                p.outcome = fail(p)
-        if has_tether:
-            if p.outcome == FLYING and towards_chaser(p, work) >= p.tether_length:
-                p.outcome = TETHER_TAUT
-
-    @kernel
-    def fail(p):
-        """Missed, or slipped off after a touch."""
-        if has_contact:
-            return SLIPPED_OFF if p.contact_first_time >= 0.0 else MISSED
-        return MISSED
-
-    @kernel
-    def judge_catch(p, work, time):
-        """Whether a catch holds, and whether it has settled."""
-        if has_target:
-            if p.grid % (10 * p.measure_every) == 0 and not quality.encloses(p, work, p.target_place):
-                p.outcome = SLIPPED_OFF
-                p.captured = 0
-                p.settled = 0
-            elif has_settling:
-                quality.measure_net(p, work, 0.0)
-                squared = 0.0
-                for i in range(3):
-                    relative = p.catch_velocity[i] - p.target_velocity[i]
-                    squared += relative * relative
-                if squared > p.settling_speed * p.settling_speed:
-                    p.calm_since = time
-                elif time >= p.calm_since + p.settling_time and p.settled == 0:
-                    p.settled = 1
-                    p.outcome = SETTLED
 
     @kernel
     def measure(p, work, ahead):
@@ -276,11 +177,10 @@ def make_entry(terms):
             p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_drift[axis]
             p.chaser_velocity[axis] = p.chaser_drift[axis]
         if has_tether:
-            away = towards_chaser(p, work)
-            if p.tether_vertex_tension != 0.0 and away > 0.0:
-                for axis in range(3):
-                    pull = p.tether_vertex_tension * p.scratch[axis] / away / p.chaser_mass
-                    p.chaser_velocity[axis] -= 0.5 * p.solver_substep * pull
+            change = p.scratch[25:28]
+            tether.change_of_speed(p, work, change, 0.5 * p.solver_substep)
+            for axis in range(3):
+                p.chaser_velocity[axis] += change[axis]
         quality.add_body_momenta(p, p.chaser_mass, p.chaser_position, p.chaser_velocity)
         if has_target:
             for axis in range(3):
@@ -295,11 +195,7 @@ def make_entry(terms):
         if has_contact:
             contact.measure_contact(p, work)
         if has_tether:
-            away = 0.0
-            for axis in range(3):
-                d = p.vertex_position[axis] - p.chaser_position[axis]
-                away += d * d
-            p.tether_paid_out = math.sqrt(away)
+            tether.measure_tether(p)
         if has_nodes:
             write_nodes(p, work, ahead)
         quality.measure_mouth(p, work)
@@ -313,7 +209,7 @@ def make_entry(terms):
             for i in range(slots):
                 force[i] = 0.0
         finite = math.isfinite(p.energy_total) and math.isfinite(p.momentum[0] + p.momentum[1] + p.momentum[2])
-        return 0 if finite else 1
+        return 0 if finite else interface.NOT_FINITE
 
     @kernel
     def write_nodes(p, work, ahead):
@@ -331,21 +227,23 @@ def make_entry(terms):
         """Fold, aim, shoot; a fault code or 0."""
         fault = check(p)
         if fault == 0:
-            fault = aim(p)
+            fault = folding.aim(p)
         if fault != 0:
             return fault
         for i in range(work.size):
             work[i] = 0.0
         p.start_time = time
         p.grid = 0
-        p.outcome = FLYING
+        p.outcome = outcome.FLYING
         p.captured = 0
         p.settled = 0
         p.closed = 0
         p.t_capture = -1.0
         p.thread_tension_max = 0.0
         p.thread_tension_max_index = 0
-        choose_substep(p)
+        fault = choose_substep(p)
+        if fault != 0:
+            return fault
         if is_hill:
             a = EARTH_EQUATORIAL_RADIUS + p.orbit_altitude
             p.mean_motion = math.sqrt(EARTH_MU / (a * a * a))
@@ -362,7 +260,7 @@ def make_entry(terms):
         if has_contact:
             contact.start_contact(p)
             if contact.inside(p, work) > 0:
-                return 9
+                return interface.INSIDE_TARGET
         if has_closing:
             closure.start_closing(p)
         quality.start_mouth(p)
@@ -393,7 +291,7 @@ def make_entry(terms):
             ahead = 0.0
         return measure(p, work, ahead)
 
-    record = from_dtype(np.dtype(MODEL.interface(terms).dtype))
+    record = from_dtype(np.dtype(interface.MODEL.interface(terms).dtype))
     signature = types.int32(types.int64, record[::1], types.float64[::1], types.float64, types.float64)
 
     @njit(signature, **OPTIONS)

@@ -5,8 +5,7 @@ the state, not the rate; the attitude follows by a midpoint step with a Cayley m
 gives the same bits on every platform.
 """
 
-import math
-
+from fmu_src.net_capture.interface import NO_INERTIA, NO_QUATERNION
 from fmu_src.net_capture.shapes import box_girth
 from orbital.kernel import kernel
 from orbital.rotations import normalise, rotate, rotate_inverse
@@ -27,7 +26,7 @@ def place_target(p):
         principal[i] = p.target_mass * (a * a + b * b) / 12.0 if total == 0.0 else p.target_principal_inertia[i]
     for i in range(3):
         if principal[i] <= 0.0 or principal[i] > (principal[(i + 1) % 3] + principal[(i + 2) % 3]) * (1.0 + 1e-12):
-            return 8
+            return NO_INERTIA
     squared = 0.0
     for i in range(4):
         p.target_pose[i] = p.target_start_attitude[i]
@@ -35,7 +34,7 @@ def place_target(p):
     if squared == 0.0:
         p.target_pose[0] = 1.0
     elif abs(squared - 1.0) > 1e-6:
-        return 7
+        return NO_QUATERNION
     normalise(p.target_pose, p.target_pose)
     for i in range(3):
         p.target_place[i] = 0.0
@@ -110,10 +109,3 @@ def measure_target(p):
     for i in range(3):
         energy += 0.5 * p.target_inertia[i] * p.target_rate[i] * p.target_rate[i]
     p.target_energy = energy
-
-
-@kernel
-def enclosing_radius(p):
-    """Radius of the target's envelope [m]."""
-    size = p.target_size
-    return 0.5 * math.sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2])

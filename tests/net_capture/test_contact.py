@@ -232,3 +232,15 @@ def test_stiff_and_extreme_cases_stay_finite(shoot, change):
         net.step(0.5)
     assert np.isfinite(net.work).sum() == np.isfinite(shoot(change, CAPTURE).work).sum()
     assert net["energy.total"] <= budget + net["closing.work"] * (1.0 + 1e-6) + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"net.youngs_modulus": 1e200}, "below a nanosecond"),
+        ({"net.youngs_modulus": 1e300, "net.mass": 1e-300}, "below a nanosecond"),
+    ],
+)
+def test_a_net_too_stiff_to_be_stepped_is_refused(shoot, change, words):
+    with pytest.raises(ModelFault, match=words):
+        shoot(change, CAPTURE)

@@ -125,7 +125,7 @@ def test_small_damping_against_none(shoot):
 
 
 def test_the_net_is_chaotic_and_its_aggregates_are_not(shoot):
-    """Jittered starts (1e-6 m): spread of the mouth area 0.015 % at 8 s, 0.27 % at 15 s; one peak tension is a sample."""
+    """Jittered starts (1e-6 m): mouth areas spread by 0.015 % at 8 s, 0.27 % at 15 s; a peak is a sample."""
     areas, peaks, tracks = [], [], []
     for seed in range(8):
         net = shoot({"solver.seed": seed} | JITTER)
