@@ -14,6 +14,7 @@ from fmu_src.integrators import AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.reel import Reel
 from fmu_src.tethered_deorbit.tether import length_acceleration, length_rate
+from fmu_src.tethered_deorbit.turning import turning_share
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
@@ -26,7 +27,8 @@ CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE = range(4)
 class Events(NamedTuple):
     """Kernels that look into the current step.
 
-    signals(record, state, rate) -> (crossing, its rate, tension, its rate)   of any state; the line as it is now
+    signals(record, state, rate) -> (crossing, its rate, tension, its rate)   of any state of the step, in its axes;
+                                                          the line as it is now
     ensure_dense(record, work)                            compute the dense output of the step unless it is there
     find_change(record, work) -> fraction                 of the step at which slack and taut change, or -1
     largest_tension(record, work, first, last) -> N       between two fractions of the step
@@ -51,6 +53,7 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
         length = norm(position)
         speed = length_rate(position, velocity, length)
         change = length_acceleration(position, velocity, acceleration, length, speed)
+        change += turning_share(record, position, velocity, length)
         tension = reel.tension(record, length, speed)
         tension_rate = reel.tension_rate(record, speed, change)
         if record[0].state_taut:

@@ -176,6 +176,7 @@ STATE = (
     _state("feed_forward", "N", "of a working reel"),
     _state("frequency", "rad/s", "of the fastest motion while taut"),
     _state("taut_tolerance", "m", "of the stretch while taut"),
+    Variable("state.turning[#]", "rad/s", "state", "rate of the axes of the current step", shape=(3,)),
     Variable("state.basis[#][#]", "1", "state", "room for a rotation", shape=(3, 3)),
     Variable("state.vector[#][#]", "1", "state", "room for vectors", shape=(4, 3)),
 )

@@ -21,6 +21,7 @@ from fmu_src.tethered_deorbit.start import start_state
 from fmu_src.tethered_deorbit.tether import add_tension, elastic_stiffness, length_rate
 from fmu_src.tethered_deorbit.thrust import make_no_thrust, make_thrust
 from fmu_src.tethered_deorbit.trajectory import make_measure, make_trajectory
+from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
 from orbital.twobody import mean_motion
@@ -49,6 +50,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             length = norm(state[6:9])
             speed = length_rate(state[6:9], state[9:12], length)
             add_tension(record, state, rate, reel.tension(record, length, speed), length)
+            add_turning(record, state, rate, -1.0)
 
     scheme = make_dop853(derivative, make_measure(), layout.SIZE)
     events = make_events(reel, scheme)
@@ -112,7 +114,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         clear_tugs(record)
         speed = judge_line(record, end)
         trajectory.restart(record, work, time)
-        publish(record, end)
+        publish(record, end, norm(end[6:9]), speed)
         r.tether_tension_peak = r.tether_tension
         if r.state_taut:
             begin_tug(record, time, speed)
@@ -161,8 +163,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             record, work[layout.END : layout.HERE], stages[12 * layout.SIZE : 13 * layout.SIZE]
         )
         whole = max(begin, end)
-        still = r.state_step * max(abs(begin_rate), abs(end_rate)) <= 4.0 * r.state_stiffness * r.state_taut_tolerance
-        if not still and not ((begin_rate >= 0.0) == (end_rate >= 0.0) and r.state_step * r.state_frequency < 1.5):
+        change, begin_change, end_change = end - begin, r.state_step * begin_rate, r.state_step * end_rate
+        still = max(abs(begin_change), abs(end_change)) <= 4.0 * r.state_stiffness * r.state_taut_tolerance
+        steady = max(abs(begin_change - change), abs(end_change - change)) <= 0.25 * abs(change)
+        short = (begin_rate >= 0.0) == (end_rate >= 0.0) and r.state_step * r.state_frequency < 1.5
+        if not (still or steady or short):
             whole = events.largest_tension(record, work, 0.0, 1.0)
         complete = until >= r.state_end
         final = 1.0 if complete else max(0.0, (until - r.state_begin) / r.state_step)
@@ -181,10 +186,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     def change_line(record: Any, work: Array) -> None:
         """The step ended where the line changes between slack and taut: let it."""
         r = record[0]
+        end = work[layout.END : layout.HERE]
+        trajectory.state_at(record, work, r.state_end, end)
         if r.state_taut:
             r.state_taut = 0
         else:
-            end = work[layout.END : layout.HERE]
             r.state_taut = 1
             begin_tug(record, r.state_end, length_rate(end[6:9], end[9:12], norm(end[6:9])))
         trajectory.restart(record, work, r.state_end)
@@ -218,12 +224,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 return fail(record, code, r.state_begin, r.state_error)
         note_tension(record, work, target)
         here = work[layout.HERE : layout.SLOPE]
-        trajectory.state_at(record, work, target, here)
+        length, speed = trajectory.state_at(record, work, target, here)
         if not finite(here):
             return fail(record, NOT_FINITE, target, 0.0)
         if norm(here[0:3]) < EARTH_EQUATORIAL_RADIUS:
             return fail(record, GROUND, target, norm(here[0:3]))
-        publish(record, here)
+        publish(record, here, length, speed)
         thrust.publish(record, target)
         r.tether_tension_peak = max(r.tether_tension_peak, r.tether_tension)
         r.state_published = target
@@ -234,14 +240,14 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         """The outputs that depend directly on inputs, as they would be with the inputs of now; the state stays."""
         r = record[0]
         here = work[layout.HERE : layout.SLOPE]
-        trajectory.state_at(record, work, r.state_published, here)
+        length, speed = trajectory.state_at(record, work, r.state_published, here)
         in_force, taut = r.state_length_offset, r.state_taut
         if r.reel_length_offset != in_force:
             code = reel.prepare(record, r.reel_length_offset)
             if code != 0:
                 return fail(record, code, time, r.reel_length_offset)
             judge_line(record, here)
-        publish(record, here)
+        publish(record, here, length, speed)
         if r.reel_length_offset != in_force:
             reel.prepare(record, in_force)
             r.state_taut = taut

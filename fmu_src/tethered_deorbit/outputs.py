@@ -8,7 +8,6 @@ from typing import Any
 
 from fmu_src.tethered_deorbit.interface import TUGS
 from fmu_src.tethered_deorbit.reel import Reel
-from fmu_src.tethered_deorbit.tether import length_rate
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.frames import orbital_basis, relative_to_orbital
 from orbital.hill import hill_jacobi
@@ -58,8 +57,11 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
     """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
 
     @kernel
-    def publish(record: Any, state: Array) -> None:
+    def publish(record: Any, state: Array, length: float, rate: float) -> None:
         """Outputs at one instant; `state` (12,) as in `layout`, and `state.taut`, the line's condition there.
+
+        length        l      of the line                         [m]
+        rate          l'     of lengthening                      [m/s]
 
         energy.relative = m_r (hill_jacobi + k s^2/(2 m_r)),   s = l - l0 while taut (a locked reel's elastic energy)
 
@@ -67,8 +69,6 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
         """
         r = record[0]
         position, velocity = state[6:9], state[9:12]
-        length = norm(position)
-        rate = length_rate(position, velocity, length)
         r.separation = length
         r.tether_length = length
         r.tether_length_rate = rate

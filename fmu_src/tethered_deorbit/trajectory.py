@@ -15,11 +15,16 @@ from fmu_src.integrators import DOP853_STAGES, AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.events import Events
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
+from fmu_src.tethered_deorbit.tether import length_rate
+from fmu_src.tethered_deorbit.turning import add_turning, set_turning, turn_back
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
-TAUT_STEP = 2.0
-"""Longest step of a taut line, in radians of its fastest motion: well inside stability (5.97), so that it damps."""
+TAUT_STEP = 3.0
+"""Longest step of a taut line, in radians of its fastest motion: inside stability (5.97), so that it damps."""
+UNDAMPED_TAUT_STEP = 1.0
+FULL_STEP_DAMPING = 0.05
+"""Damping ratio from which the longest step is allowed."""
 FIRST_TAUT_STEP = 0.3
 FIRST_FREE_STEP = 0.05
 """First step after a change: in radians of the line's, or of the orbit's motion."""
@@ -72,12 +77,32 @@ def make_measure() -> Callable[..., Any]:
     return measure
 
 
+@kernel
+def longest_taut_step(record: Any) -> float:
+    """Longest step [s] of a taut line: the scheme's own damping stays about a hundredth of the line's.
+
+        h omega <= 3 (20 zeta)^(1/8),   held between 1 and 3;   zeta = c / (2 m_r omega)
+
+    In h omega radians the scheme takes about 2.4e-8 (h omega)^10 off a vibration, the line takes zeta h omega.
+
+    Valid    omega the frequency of the fastest motion, that of the dashpot when it is faster than the spring
+    Source   stability function of `make_dop853`
+    Checked  tests/tethered_deorbit/test_turning.py
+    """
+    r = record[0]
+    damping = r.state_damping / (2.0 * r.state_reduced_mass * r.state_frequency)
+    allowed = TAUT_STEP * math.sqrt(math.sqrt(math.sqrt(min(1.0, damping / FULL_STEP_DAMPING))))
+    return float(max(UNDAMPED_TAUT_STEP, allowed) / r.state_frequency)
+
+
 class Trajectory(NamedTuple):
     """Kernels that move along the trajectory.
 
     restart(record, work, time)               begin anew at the state stored as END
     advance(record, work) -> fault            take the next step, up to a change of the line
-    state_at(record, work, time, out)         state within the current step
+    state_at(record, work, time, out) -> (length [m], its rate [m/s])   state within the current step, inertial axes;
+                                              the line's length from before the axes are turned back: the bits of
+                                              the tension do not depend on who looks
     """
 
     restart: Callable[..., Any]
@@ -99,6 +124,8 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r = record[0]
         for i in range(layout.SIZE):
             work[layout.BEGIN + i] = work[layout.END + i]
+        for i in range(3):
+            r.state_turning[i] = 0.0
         r.state_begin = time
         r.state_end = time
         r.state_step = 0.0
@@ -162,21 +189,30 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
     @kernel
     def advance(record: Any, work: Array) -> int:
         r = record[0]
+        begin = work[layout.BEGIN : layout.END]
+        rate = work[layout.STAGES : layout.STAGES + layout.SIZE]
         for i in range(layout.SIZE):
-            work[layout.BEGIN + i] = work[layout.END + i]
+            begin[i] = work[layout.END + i]
         if r.state_fresh:
-            derivative(record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE])
+            set_turning(record, begin)
+            derivative(record, begin, rate)
             r.state_fresh = 0
         else:
             for i in range(layout.SIZE):
-                work[layout.STAGES + i] = work[last + i]
+                rate[i] = work[last + i]
+            if r.state_taut:
+                add_turning(record, begin, rate, 1.0)
+                turn_back(record, r.state_step, begin)
+                turn_back(record, r.state_step, rate)
+                set_turning(record, begin)
+                add_turning(record, begin, rate, -1.0)
         r.state_begin = r.state_end
         r.state_event = 0
         r.solver_steps += 1
         step = r.state_next_step
+        if r.state_taut:
+            step = min(step, longest_taut_step(record))
         while True:
-            if r.state_taut:
-                step = min(step, TAUT_STEP / r.state_frequency)
             if not step > 16.0 * ROUNDING * abs(r.state_begin):
                 return NOT_FINITE if not math.isfinite(r.state_error) else STEP_NOT_MET
             attempt(record, work, step)
@@ -202,16 +238,22 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         return 0
 
     @kernel
-    def state_at(record: Any, work: Array, time: float, out: Array) -> None:
+    def state_at(record: Any, work: Array, time: float, out: Array) -> tuple[float, float]:
         r = record[0]
+        since = r.state_step
         if time >= r.state_end or r.state_step == 0.0:
             for i in range(layout.SIZE):
                 out[i] = work[layout.END + i]
-            return
-        events.ensure_dense(record, work)
-        fraction = max(0.0, (time - r.state_begin) / r.state_step)
-        scheme.dense_value(
-            work[layout.BEGIN : layout.END], work[layout.DENSE : layout.WORK], fraction, 0, layout.SIZE, out
-        )
+        else:
+            events.ensure_dense(record, work)
+            fraction = max(0.0, (time - r.state_begin) / r.state_step)
+            since = fraction * r.state_step
+            scheme.dense_value(
+                work[layout.BEGIN : layout.END], work[layout.DENSE : layout.WORK], fraction, 0, layout.SIZE, out
+            )
+        length = norm(out[6:9])
+        speed = length_rate(out[6:9], out[9:12], length)
+        turn_back(record, since, out)
+        return length, speed
 
     return Trajectory(restart, advance, state_at)

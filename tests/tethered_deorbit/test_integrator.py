@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fmu_src import integrators
 from fmu_src.instance import Instance
 from fmu_src.integrators import DOP853_DENSE_ROWS, DOP853_ROWS, DOP853_STAGES, AdaptiveScheme, make_dop853
 from fmu_src.tethered_deorbit.interface import MODEL
@@ -76,6 +77,26 @@ def test_order_eight(scheme: AdaptiveScheme) -> None:
     assert slope([math.tau / n for n in counts], errors) == pytest.approx(8.0, abs=0.1)
 
 
+@pytest.mark.parametrize(("name", "row"), [("_A", 12), ("_A", 7), ("_D", 0)])
+def test_order_notices_one_wrong_coefficient(monkeypatch: pytest.MonkeyPatch, name: str, row: int) -> None:
+    """Twin of the two tests of order: a weight off by 1 % in the result, in a stage, in the dense output."""
+    wrong = getattr(integrators, name).copy()
+    wrong[row * DOP853_ROWS + 6] *= 1.01
+    monkeypatch.setattr(integrators, name, wrong)
+    spoilt = make_dop853(kepler, squared, SIZE)
+    steps = [0.5, 0.4, 0.32, 0.25]
+    whole, within = [], []
+    for step in steps:
+        state, end, stages = fixed_steps(kepler, spoilt, START, step, 1)
+        whole.append(float(np.linalg.norm(end - exact(step))))
+        dense, out = np.zeros(DOP853_DENSE_ROWS * SIZE), np.zeros(SIZE)
+        spoilt.prepare_dense(np.zeros(1), state, end, step, stages, dense, np.zeros(SIZE))
+        spoilt.dense_value(state, dense, 0.4, 0, SIZE, out)
+        within.append(float(np.linalg.norm(out - exact(0.4 * step))))
+    assert slope(steps, within) < 7.0
+    assert (slope(steps, whole) < 7.0) == (name == "_A")
+
+
 def test_dense_output_order(scheme: AdaptiveScheme) -> None:
     """Order 7: the largest error within one step falls with its eighth power, that of the rate with the seventh."""
     steps, errors, rates = [0.5, 0.4, 0.32, 0.25], [], []
@@ -111,6 +132,7 @@ def test_edges_of_stability() -> None:
 
     assert growth(5.96, 0.0) < 1.0 < growth(5.98, 0.0)
     assert 1.0 - growth(2.0, 0.0) == pytest.approx(2.7e-5, rel=0.02)
+    assert 1.0 - growth(2.02, 0.0) != pytest.approx(2.7e-5, rel=0.02)
     assert 1.0 - growth(1.0, 0.0) == pytest.approx(2.4e-8, rel=0.02)
     assert growth(6.38, 1.0) < 1.0 < growth(6.42, 1.0)
 
@@ -118,7 +140,9 @@ def test_edges_of_stability() -> None:
 def test_step_control(scheme: AdaptiveScheme) -> None:
     assert scheme.next_step(1.0, 0.9**8, 0.9**8) == pytest.approx(0.9 * 0.9 ** (-0.5))
     assert scheme.next_step(1.0, 0.0, 1.0) == 5.0
+    assert scheme.next_step(1.0, 0.9**8, 0.9**8) != pytest.approx(0.9 * 0.9 ** (-4 / 7))  # a scheme of order 7
     assert scheme.shorter_step(1.0, 2.0**8) == pytest.approx(0.45)
+    assert scheme.shorter_step(1.0, 2.0**7) != pytest.approx(0.45)
     assert scheme.shorter_step(1.0, math.nan) == 0.2
     stages = np.zeros(DOP853_ROWS * SIZE)
     kepler(np.zeros(1), START, stages[:SIZE])

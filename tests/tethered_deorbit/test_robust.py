@@ -1,12 +1,29 @@
 """Far from Table 2: nothing becomes a NaN, energy behaves, and what cannot be is refused with its reason."""
 
 import math
+import re
+from typing import Any
 
 import numpy as np
 import pytest
 
 from fmu_src.instance import Instance, ModelFault
-from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
+from fmu_src.tethered_deorbit.interface import (
+    BAD_CHORD,
+    BAD_ORBIT,
+    BAD_PARAMETER,
+    GROUND,
+    HANDED_OVER,
+    MODEL,
+    NO_LENGTH,
+    NO_LINE,
+    NOT_FINITE,
+    START_STRETCHED,
+    STEP_NOT_MET,
+    TIME_GAP,
+    TOO_MANY_EVENTS,
+    VBAR,
+)
 
 TERMS = {"reel": "locked", "thrust": "along_track"}
 DAY = 86400.0
@@ -50,28 +67,92 @@ def test_macro_steps(step: float) -> None:
     assert math.isfinite(i["tether.tension"])
 
 
-def refused(match: str, parameters: dict[str, float], step: float = 0.0, terms: dict[str, str] = TERMS) -> Instance:
-    i = Instance(MODEL, terms, parameters)
-    with pytest.raises(ModelFault, match=match):
-        i.initialise().step(step)
+FAST = [1e160, 0.0, 0.0]
+LINE = [5.0, 0.0, 0.0]
+REFUSED: list[tuple[int, dict[str, Any], float]] = [
+    (NOT_FINITE, {"orbit.inclination": math.nan}, 0.0),
+    (
+        NOT_FINITE,
+        {"start.condition": HANDED_OVER, "start_relative_position": LINE, "start_relative_velocity": FAST},
+        1.0,
+    ),
+    (STEP_NOT_MET, {"time": 1e16}, 64.0),
+    (TIME_GAP, {}, -1.0),
+    (TIME_GAP, {}, math.nan),
+    (GROUND, {"orbit.altitude": 100e3, "thrust.level": -1000.0}, 5e4),
+    (BAD_ORBIT, {"orbit.eccentricity": 0.2}, 0.0),
+    (BAD_ORBIT, {"orbit.altitude": -1.0}, 0.0),
+    (BAD_CHORD, {"start.separation": 1e6, "tether.rest_length": 2e6}, 0.0),
+    (START_STRETCHED, {"start.separation": 12.5}, 0.0),
+    (START_STRETCHED, {"start.separation": 12.5, "start.condition": VBAR}, 0.0),
+    (NO_LENGTH, {"reel.length_offset": -12.0}, 0.0),
+    (NO_LENGTH, {"reel.length_offset": math.inf}, 0.0),
+    (NO_LINE, {"start.condition": HANDED_OVER}, 0.0),
+    (BAD_PARAMETER, {"chaser.mass": 0.0}, 0.0),
+    (BAD_PARAMETER, {"target.mass": math.nan}, 0.0),
+    (BAD_PARAMETER, {"solver.tolerance_orbit": 0.0}, 0.0),
+    (BAD_PARAMETER, {"solver.tolerance_separation": -1e-10}, 0.0),
+    (BAD_PARAMETER, {"solver.tolerance_stretch": 0.0}, 0.0),
+    (BAD_PARAMETER, {"start.condition": 7}, 0.0),
+    (BAD_PARAMETER, {"start.leading": 2}, 0.0),
+    (BAD_PARAMETER, {"start.separation": 0.0}, 0.0),
+    (BAD_PARAMETER, {"tether.youngs_modulus": math.nan}, 0.0),
+    (BAD_PARAMETER, {"tether.diameter": 0.0}, 0.0),
+    (BAD_PARAMETER, {"tether.damping_ratio": -0.1}, 0.0),
+    (BAD_PARAMETER, {"thrust.level": math.nan}, 0.0),
+    (BAD_PARAMETER, {"thrust.offset": math.inf}, 0.0),
+    (BAD_PARAMETER, {"thrust.specific_impulse": 0.0}, 0.0),
+]
+"""Fault, what is set (a parameter, a field, or the start time), and the macro step that meets it; 0 at the start."""
+
+ELSEWHERE = {TOO_MANY_EVENTS: "test_uncompiled.py"}
+
+
+@pytest.mark.parametrize(("code", "parameters", "step"), REFUSED)
+def test_refusals(code: int, parameters: dict[str, Any], step: float) -> None:
+    """Each with its own code and text, the offending value never a NaN, and a good value in its place goes through."""
+    i = Instance(MODEL, TERMS)
+    for name, value in parameters.items():
+        if isinstance(value, list):
+            i.array(name)[:] = value
+        elif name != "time":
+            i[name] = value
+    text = next(f.text for f in MODEL.faults if f.code == code)
+    if step != 0.0:
+        i.initialise(parameters.get("time", 0.0))
+    with pytest.raises(ModelFault, match=re.escape(text)):
+        i.step(step) if step != 0.0 else i.initialise()
+    assert i.record["fault_code"][0] == code
     assert np.isfinite(i.record["fault_value"]).all()
-    return i
+    assert np.isfinite(i.record["fault_time"]).all()
 
 
-def test_refusals() -> None:
-    refused("perigee", {"orbit.eccentricity": 0.2})
-    refused("start stretched", {"start.separation": 12.5})
-    refused("start stretched", {"start.separation": 12.5, "start.condition": 1})
-    refused("chord", {"start.separation": 1e6, "tether.rest_length": 2e6})
-    refused("no direction", {"start.condition": HANDED_OVER})
-    refused("not positive", {"reel.length_offset": -12.0})
-    refused("bounds", {"target.mass": 0.0})
-    refused("bounds", {"thrust.offset": math.inf})
-    refused("bounds", {"tether.youngs_modulus": math.nan})
-    refused("bounds", {"start.condition": 7})
-    refused("ended", {"orbit.altitude": 100e3, "thrust.level": -1000.0}, 5e4)
-    for good in ({"orbit.eccentricity": 0.1}, {"start.separation": 11.9}):
+def test_every_fault_is_reached() -> None:
+    assert {code for code, _, _ in REFUSED} | set(ELSEWHERE) == {f.code for f in MODEL.faults}
+
+
+def test_refused_while_running() -> None:
+    """An input that goes bad stops the run at that communication point and names it."""
+    for name, value, code in (
+        ("thrust.offset", math.nan, BAD_PARAMETER),
+        ("reel.length_offset", math.nan, BAD_PARAMETER),
+        ("reel.length_offset", -12.0, NO_LENGTH),
+    ):
+        i = Instance(MODEL, TERMS).initialise()
+        i.step(10.0)
+        i[name] = value
+        with pytest.raises(ModelFault):
+            i.step(10.0)
+        assert (i.record["fault_code"][0], i.record["fault_time"][0]) == (code, 10.0)
+    i = Instance(MODEL, TERMS).initialise()
+    with pytest.raises(ModelFault, match="bounds"):
+        i._call(9, 0.0, 0.0)  # no such command
+
+
+def test_good_values_beside_the_refused() -> None:
+    for good in ({"orbit.eccentricity": 0.1}, {"start.separation": 11.9}, {"reel.length_offset": -1.0}):
         Instance(MODEL, TERMS, good).initialise().step(10.0)
+    Instance(MODEL, TERMS).initialise(1e12).step(64.0)
 
 
 def test_grazing() -> None:

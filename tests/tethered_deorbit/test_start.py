@@ -41,6 +41,21 @@ def test_same_orbit(leading: int, eccentricity: float) -> None:
         assert np.abs(i.array("relative_velocity")).max() < 1e-15
 
 
+def test_same_orbit_notices_another() -> None:
+    """Twin: the same offset, but at rest in the turning frame, puts neither body on an ellipse's orbit."""
+    common = {"orbit__eccentricity": 0.05, "orbit__true_anomaly": 1.1, "start__separation": 10.0}
+    good, other = start(start__condition=SAME_ORBIT, **common), start(start__condition=VBAR, **common)
+    longer = start(start__condition=SAME_ORBIT, **(common | {"start__separation": 10.1}))
+    assert longer["separation"] != pytest.approx(good["separation"], rel=1e-3)
+    semi = EARTH_EQUATORIAL_RADIUS + 800e3
+    for body in ("chaser", "target"):
+        on, off = (
+            state_to_elements(i.array(f"{body}_position"), i.array(f"{body}_velocity"), EARTH_MU) for i in (good, other)
+        )
+        assert on.semi_major_axis == pytest.approx(semi, rel=1e-13) != off.semi_major_axis
+        assert abs(off.semi_major_axis / semi - 1.0) > 1e-8
+
+
 @pytest.mark.parametrize("leading", [0, 1])
 def test_vbar_and_equal_velocity(leading: int) -> None:
     sign = 1.0 - 2.0 * leading
@@ -50,6 +65,9 @@ def test_vbar_and_equal_velocity(leading: int) -> None:
         assert i.array("relative_position") == pytest.approx([0.0, sign * 10.0, 0.0], abs=1e-14)
         assert i.array("relative_velocity") == pytest.approx([x, 0.0, 0.0], abs=1e-16)
         assert i["tether.angle"] == pytest.approx(sign * 0.5 * math.pi)
+        other = start(start__condition=condition, start__leading=1 - leading)
+        assert other.array("relative_position") != pytest.approx([0.0, sign * 10.0, 0.0], abs=1.0)
+    assert start(start__condition=VBAR).array("relative_velocity") != pytest.approx([10.0 * rate, 0.0, 0.0], abs=1e-16)
     assert i.array("target_velocity") == pytest.approx(i.array("chaser_velocity"), abs=0.0)
 
 
@@ -90,6 +108,14 @@ def test_handed_over() -> None:
     i.array("start_center_position")[:] = 30.0, 40.0, 0.0
     i.initialise(500.0)
     assert np.linalg.norm(i.array("center_position") - center) == pytest.approx(50.0, abs=1e-8)
+    i.array("start_center_position")[:] = 30.0, 40.4, 0.0
+    i.array("start_relative_position")[:] = 1.0, -8.08, 2.0
+    i.initialise(500.0)
+    assert np.linalg.norm(i.array("center_position") - center) != pytest.approx(50.0, abs=0.1)
+    assert i.array("relative_position") != pytest.approx([1.0, -8.0, 2.0], abs=1e-2)
+    # The rate is one seen in turning axes: read as inertial it would differ by n times the length, 9 mm/s.
+    still = i.array("target_velocity") - i.array("chaser_velocity")
+    assert np.linalg.norm(still) != pytest.approx(np.linalg.norm(given["start_relative_velocity"]), rel=0.5)
 
 
 def test_taut_at_the_start_is_a_tug() -> None:
@@ -98,6 +124,9 @@ def test_taut_at_the_start_is_a_tug() -> None:
     i.initialise(100.0)
     assert (i["tether.tug_count"], i["tether.taut"], i["tug[1].time"]) == (1, 1, 100.0)
     assert i["tether.tension"] == i["tug[1].peak"] == i["tether.tension_peak"] == pytest.approx(3.927, rel=1e-3)
+    i.array("start_relative_position")[:] = 11.999, 0.0, 0.0
+    i.initialise(100.0)
+    assert (i["tether.tug_count"], i["tether.taut"], i["tug[1].time"], i["tether.tension"]) == (0, 0, 0.0, 0.0)
 
 
 def test_outputs_agree_with_each_other() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fmu_src.instance import Instance
+from fmu_src.instance import Instance, ModelFault
 from fmu_src.tethered_deorbit import tether
 from fmu_src.tethered_deorbit.environment import add_gravity
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
@@ -137,10 +137,18 @@ def test_reel_holds_its_tension() -> None:
     assert i["tether.tension"] == pytest.approx(feed, rel=1e-14)
     i.step(6000.0)
     assert i["separation"] == pytest.approx(12.0, abs=1e-4)
+    i["reel.length_offset"] = 0.5
+    i.refresh()
+    wanted = feed * 12.5 / 12.0 + 0.02 * (i["tether.length"] - 12.5) + 4.0 * i["tether.length_rate"]
+    assert i["tether.tension"] == pytest.approx(wanted, rel=1e-12)
+    assert wanted > 0.01
+    i["reel.proportional_gain"] = 0.0202
+    i.refresh()
+    assert i["tether.tension"] != pytest.approx(wanted, rel=1e-3)
+    i["reel.proportional_gain"] = 0.02
     i["reel.length_offset"] = 2.0
     i.refresh()
-    wanted = feed * 14.0 / 12.0 + 0.02 * (i["tether.length"] - 14.0) + 4.0 * i["tether.length_rate"]
-    assert i["tether.tension"] == pytest.approx(max(0.0, wanted), rel=1e-12)
+    assert i["tether.tension"] == 0.0  # such a haul asks for a push
     i.step(40000.0)
     assert i["separation"] == pytest.approx(14.0, abs=0.05)
     assert i["separation"] != pytest.approx(12.0, abs=0.05)
@@ -166,3 +174,8 @@ def test_reel_goes_slack_and_taut() -> None:
         + 0.5 * i["tether.length_rate"]
     )
     assert residual == pytest.approx(0.0, abs=1e-12)
+    assert residual + 0.01 * 0.5 * i["tether.length_rate"] != pytest.approx(0.0, abs=1e-12)  # a gain off by 1 %
+    assert residual + 0.01 * 0.05 * (i["tether.length"] - 12.0) != pytest.approx(0.0, abs=1e-12)
+    for name in ("reel.proportional_gain", "reel.derivative_gain", "reel.length"):
+        with pytest.raises(ModelFault, match="not positive" if name == "reel.length" else "bounds"):
+            Instance(MODEL, LINEAR, {name: -0.1}).initialise()
