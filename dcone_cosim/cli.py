@@ -113,7 +113,7 @@ def _console(to_error: bool) -> Console:
 def _progress(console: Console) -> Progress:
     from dcone_cosim.progress import Bar, Lines
 
-    return Bar(console) if console.is_terminal else Lines(console)
+    return Bar(console) if console.is_terminal else Lines()
 
 
 def main() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time as clock
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,8 @@ if TYPE_CHECKING:
 
 INTERVAL = 0.1
 """Least wall time between two updates of the bar [s]."""
+NARROW = 100
+"""Columns of a terminal below which the bar itself is left out [1]."""
 
 
 class Progress:
@@ -32,15 +35,17 @@ class Progress:
 
 
 class Lines(Progress):
-    """One plain line per phase, for logs."""
+    """One plain line per phase on stderr, for logs; a log that nobody reads any more does not end the run."""
 
-    def __init__(self, console: Console) -> None:
-        self._console = console
+    def __init__(self) -> None:
         self._phase = ""
         self._start = self._reached = self._began = 0.0
 
     def say(self, text: str) -> None:
-        self._console.print(text, markup=False, highlight=False)
+        try:
+            print(text, file=sys.stderr, flush=True)
+        except OSError:
+            pass
 
     def begin(self, phase: str, start: float, stop: float) -> None:
         self._phase, self._start, self._reached = phase, start, start
@@ -61,12 +66,15 @@ class Bar(Progress):
     def __init__(self, console: Console) -> None:
         from rich.progress import BarColumn, SpinnerColumn, TextColumn
         from rich.progress import Progress as RichProgress
+        from rich.table import Column
 
+        self._narrow = console.width < NARROW
+        whole = Column(no_wrap=True, overflow="ellipsis")
         self._bar = RichProgress(
             SpinnerColumn(),
-            TextColumn("{task.description}"),
-            BarColumn(bar_width=24),
-            TextColumn("{task.fields[state]}"),
+            TextColumn("{task.description}", markup=False, table_column=whole),
+            *(() if self._narrow else (BarColumn(bar_width=24),)),
+            TextColumn("{task.fields[state]}", markup=False, table_column=whole.copy()),
             console=console,
             transient=False,
         )
@@ -104,6 +112,8 @@ class Bar(Progress):
         simulated = time - self._start
         speed = simulated / max(now - self._began, 1e-9)
         state = f"{time:,.1f} of {self._stop:,.0f} s, {speed:,.3g} times real time"
+        if self._narrow:
+            state = f"{time:,.0f} of {self._stop:,.0f} s, {speed:.3g} x"
         self._bar.update(self._task, completed=simulated, state=state)
 
     def end(self) -> None:

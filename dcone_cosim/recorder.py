@@ -12,19 +12,32 @@ from dcone_cosim.component import VariableInfo
 Row = npt.NDArray[np.float64]
 
 
+FIRST_ROWS, MOST_ROWS = 256, 65536
+"""Rows of a recorder's first block, and of the largest."""
+
+
 class Recorder:
     """Rows of numbers under fixed names, each with its unit and kind; the first column is the time [s].
 
-    The table grows by doubling, so a row costs one copy.
+    Kept in blocks of columns. Each block is as long as all before it, so that memory follows the rows there are, not
+    the rows there might be, and no row is copied while the phase runs.
     """
 
-    def __init__(self, names: Sequence[str], variables: Mapping[str, VariableInfo], expected_rows: int = 256) -> None:
+    def __init__(self, names: Sequence[str], variables: Mapping[str, VariableInfo], expected_rows: int = 1) -> None:
+        """expected_rows: rows that are likely, a hint for the first block"""
         self.names = ("time", *names)
         self.units = {"time": "s"} | {name: variables[name].unit for name in names}
         self.kinds = {"time": "Real"} | {name: variables[name].kind for name in names}
-        self._table = np.empty((max(expected_rows, 1), len(self.names)))
-        self._rows = 0
         self._place = {name: i for i, name in enumerate(self.names)}
+        self._blocks: list[Row] = []
+        self._rows = self._full = 0
+        self._open(min(max(expected_rows, 1), 4 * FIRST_ROWS))
+
+    def _open(self, rows: int) -> None:
+        """Begin a block; those before it are full."""
+        self._full = self._rows
+        self._block: Row = np.empty((len(self.names), rows))
+        self._blocks.append(self._block)
 
     def __len__(self) -> int:
         return self._rows
@@ -33,16 +46,21 @@ class Recorder:
         return name in self._place
 
     def add(self, time: float, values: Row) -> None:
-        if self._rows == len(self._table):
-            self._table = np.concatenate([self._table, np.empty_like(self._table)])
-        self._table[self._rows, 0] = time
-        self._table[self._rows, 1:] = values
+        at = self._rows - self._full
+        if at == self._block.shape[1]:
+            self._open(min(max(self._rows, FIRST_ROWS), MOST_ROWS))
+            at = 0
+        self._block[0, at] = time
+        self._block[1:, at] = values
         self._rows += 1
 
     def __getitem__(self, name: str) -> Row:
         """One column."""
-        column: Row = self._table[: self._rows, self._place[name]]
-        return column
+        place = self._place[name]
+        latest: Row = self._block[place, : self._rows - self._full]
+        if not self._full:
+            return latest
+        return np.concatenate([*(block[place] for block in self._blocks[:-1]), latest])
 
     def vector(self, name: str, size: int = 3) -> Row:
         """Columns `name[1]` to `name[size]` side by side, shape (rows, size)."""
@@ -50,7 +68,7 @@ class Recorder:
 
     def last(self) -> dict[str, float]:
         """The latest row by name, without the time."""
-        return dict(zip(self.names[1:], self._table[self._rows - 1, 1:].tolist(), strict=True))
+        return dict(zip(self.names[1:], self._block[1:, self._rows - self._full - 1].tolist(), strict=True))
 
     def column(self, name: str) -> npt.NDArray[np.float64] | npt.NDArray[np.int64] | npt.NDArray[np.bool_]:
         """One column in the type of its variable."""

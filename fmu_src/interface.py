@@ -158,7 +158,10 @@ REFRESH     recompute the outputs that depend directly on inputs, at `time`
 
 @dataclass(frozen=True)
 class Model:
-    """What a model offers: its name, the variables it always has, its groups of terms, and its faults."""
+    """What a model offers: its name, the variables it always has, its groups of terms, and its faults.
+
+    stop_time, macro_step   a sensible experiment for tools that ask for one [s]
+    """
 
     name: str
     summary: str
@@ -166,6 +169,8 @@ class Model:
     groups: Mapping[str, Group]
     faults: tuple[Fault, ...]
     module: str
+    stop_time: float
+    macro_step: float
 
     def interface(self, terms: Mapping[str, str]) -> Interface:
         """The interface of this model built with the given terms, `{group: term}`."""

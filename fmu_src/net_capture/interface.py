@@ -189,4 +189,6 @@ MODEL = Model(
     },
     faults=FAULTS,
     module="fmu_src.net_capture.model",
+    stop_time=20.0,
+    macro_step=0.05,
 )

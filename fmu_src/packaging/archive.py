@@ -14,7 +14,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from fmu_src.interface import Interface
-from fmu_src.packaging import compile, description, link
+from fmu_src.packaging import compile, description, link, tools
 
 PACKAGES = ("numba", "llvmlite", "ziglang", "numpy", "fmpy")
 """Tools whose version settles what comes out."""
@@ -49,13 +49,16 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
     platform = link.host()
     key = fingerprint(interface, platform)
     path = cache / f"{interface.model.name}-{key[:16]}.fmu"
-    if path.exists():
+    if _intact(path):
         return path
-    cache.mkdir(parents=True, exist_ok=True)
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
+    except OSError as error:
+        raise tools.BuildError(f"the FMU cache {cache} can not be written: {error.strerror}") from None
     name = identifier(interface)
     guid = "{" + f"{key[:8]}-{key[8:12]}-{key[12:16]}-{key[16:20]}-{key[20:32]}" + "}"
     announce(f"building {interface.model.name} with {', '.join(interface.terms)} (once; kept in {cache})")
-    folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
     try:
         ir = folder / "model.ll"
         compile.emit(interface.model.name, interface.terms, ir)
@@ -73,19 +76,30 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
         finished = folder / path.name
         pack(files, finished)
         if fingerprint(interface, platform) != key:
-            raise compile.BuildError(
-                f"the sources of {interface.model.name} changed while it was built: build it again"
-            )
+            raise tools.BuildError(f"the sources of {interface.model.name} changed while it was built: build it again")
         os.replace(finished, path)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return path
 
 
+def _intact(path: Path) -> bool:
+    """Whether a cached FMU is there and whole; a damaged one is built again."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return archive.testzip() is None
+    except (OSError, zipfile.BadZipFile):
+        return False
+
+
 def build_all(interfaces: Sequence[Interface], cache: Path, announce: Announce = lambda _: None) -> list[Path]:
     """Paths of several FMUs, those that are missing built side by side."""
     with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
-        return list(pool.map(lambda interface: build(interface, cache, announce), interfaces))
+        try:
+            return list(pool.map(lambda interface: build(interface, cache, announce), interfaces))
+        except BaseException:
+            tools.stop()
+            raise
 
 
 def pack(files: dict[str, bytes], path: Path) -> None:

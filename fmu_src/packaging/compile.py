@@ -10,11 +10,12 @@ from __future__ import annotations
 import json
 import os
 import re
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from fmu_src.packaging import tools
 
 ENTRY = "dcone_entry"
 ENVIRONMENT = {
@@ -28,16 +29,10 @@ ENVIRONMENT = {
 }
 
 
-class BuildError(RuntimeError):
-    """A tool of the build failed; carries its own words."""
-
-
 def emit(model: str, terms: Mapping[str, str], path: Path) -> None:
     """Write the IR of one model with its terms to `path`, in a child process."""
     command = [sys.executable, "-m", "fmu_src.packaging.compile", model, json.dumps(dict(terms)), str(path)]
-    done = subprocess.run(command, env={**os.environ, **ENVIRONMENT}, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise BuildError(f"compiling the kernels of {model} failed:\n{done.stderr.strip()[-2000:]}")
+    tools.run(f"compiling the kernels of {model}", command, {**os.environ, **ENVIRONMENT})
 
 
 def _keep_loops_whole(llvm: Any) -> None:
@@ -83,9 +78,9 @@ def _lower(model: str, terms: Mapping[str, str]) -> str:
     text = text.replace(f'@"{name}"', f"@{ENTRY}").replace(f"@{name}", f"@{ENTRY}")
     foreign = sorted(set(re.findall(r"declare [^@]*@\"?((?:Py|_Py|NRT_|numba_|Numba)[\w.]*)", text)))
     if foreign:
-        raise BuildError(f"the kernels of {model} still call Python: {', '.join(foreign)}")
+        raise tools.BuildError(f"the kernels of {model} still call Python: {', '.join(foreign)}")
     if "inttoptr (i64" in text:
-        raise BuildError(f"the kernels of {model} hold an address of this process")
+        raise tools.BuildError(f"the kernels of {model} hold an address of this process")
     return text + "\n"
 
 

@@ -92,7 +92,9 @@ def model_description(interface: Interface, identifier: str, guid: str, version:
     categories = ET.SubElement(root, "LogCategories")
     ET.SubElement(categories, "Category", name="logStatusError", description="why a call was refused")
     ET.SubElement(categories, "Category", name="logStatusDiscard", description="why a step was discarded")
-    ET.SubElement(root, "DefaultExperiment", startTime="0.0")
+    model = interface.model
+    experiment = {"startTime": "0.0", "stopTime": number(model.stop_time), "stepSize": number(model.macro_step)}
+    ET.SubElement(root, "DefaultExperiment", experiment)
     variables = ET.SubElement(root, "ModelVariables")
     outputs: list[int] = []
     for index, (name, slot, v, start) in enumerate(_scalars(interface), 1):

@@ -148,8 +148,8 @@ static fmi2Status check_bounds(instance *i) {
         int real = (slot_code[b->slot] & 3) == REAL;
         double value = real ? i->block[b->slot].real : (double)i->block[b->slot].integer;
         if (!(value >= b->low && value <= b->high && isfinite(value)) || (b->open && value == b->low))
-            return say(i, fmi2Error, "%s = %.9g %s is out of its bounds: %s %.9g, at most %.9g", b->name, value, b->unit,
-                       b->open ? "greater than" : "at least", b->low, b->high);
+            return say(i, fmi2Error, "%s = %.9g %s is out of its bounds: it must be finite, %s %.9g and at most %.9g", b->name,
+                       value, b->unit, b->open ? "greater than" : "at least", b->low, b->high);
     }
     return fmi2OK;
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +9,8 @@ from pathlib import Path
 
 import fmpy
 
-from fmu_src.packaging.compile import ENTRY, BuildError
+from fmu_src.packaging import tools
+from fmu_src.packaging.compile import ENTRY
 
 SHIM = Path(__file__).parent / "fmi2.c"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
@@ -43,14 +43,14 @@ def host() -> Platform:
 
     if sys.platform == "linux" and platform.machine() in ("x86_64", "AMD64"):
         return LINUX64
-    raise BuildError(f"no FMU can be built for {sys.platform} on {platform.machine()} yet, only for Linux on x86-64")
+    raise tools.BuildError(
+        f"no FMU can be built for {sys.platform} on {platform.machine()} yet, only for Linux on x86-64"
+    )
 
 
 def _clang(arguments: Sequence[object]) -> None:
     command = [sys.executable, "-m", "ziglang", "cc", *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise BuildError(f"clang failed: {' '.join(command[2:])}\n{done.stderr.strip()[-2000:]}")
+    tools.run("clang", command)
 
 
 def link(ir: Path, header: Path, library: Path, platform: Platform) -> None:

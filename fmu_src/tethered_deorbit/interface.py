@@ -12,6 +12,11 @@ LEADERS = ("target", "chaser")
 TUGS = 16
 """Length of the ring of latest tugs: twelve may fall in one minute."""
 
+REEL_STIFFNESS, REEL_DAMPING = 4.155e-3, 2.366
+"""Default gains [N/m], [N s/m]: 5.7829 m_r n^2 and 3.4193 m_r n, the gains on length and rate of the quadratic
+regulator about the equilibrium (unit weights, lengths in l0, times in 1/n) for Table 2's pair at 800 km. The length is
+held only while k_p > 3 n^2 m_r, here 2.2e-3 N/m: farther out the tide pulls harder."""
+
 NOT_FINITE, STEP_NOT_MET, TOO_MANY_EVENTS, TIME_GAP, GROUND = range(1, 6)
 BAD_ORBIT, BAD_CHORD, START_STRETCHED, NO_LENGTH, NO_LINE, BAD_PARAMETER = range(11, 17)
 
@@ -203,8 +208,8 @@ REELS = Group(
             "a reel that controls tension: T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt)",
             (
                 _positive("reel.length", "m", "commanded length l_c", 12.0, 1e6),
-                _parameter("reel.proportional_gain", "N/m", "k_p", 0.0, 0.0, 1e6),
-                _parameter("reel.derivative_gain", "N.s/m", "k_d", 0.0, 0.0, 1e5),
+                _parameter("reel.proportional_gain", "N/m", "k_p; default of Table 2's pair", REEL_STIFFNESS, 0.0, 1e6),
+                _parameter("reel.derivative_gain", "N.s/m", "k_d; default of Table 2's pair", REEL_DAMPING, 0.0, 1e5),
                 LENGTH_OFFSET,
             ),
         ),
@@ -238,4 +243,6 @@ MODEL = Model(
     groups={"reel": REELS, "thrust": THRUSTS},
     faults=FAULTS,
     module="fmu_src.tethered_deorbit.model",
+    stop_time=86400.0,
+    macro_step=60.0,
 )

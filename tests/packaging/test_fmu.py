@@ -15,7 +15,7 @@ from fmpy.validation import validate_fmu
 
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
-from fmu_src.packaging import archive, link
+from fmu_src.packaging import archive, link, tools
 from tests.conftest import CAPTURE
 
 REMOVAL = {"reel": "locked", "thrust": "along_track"}
@@ -254,3 +254,24 @@ def test_fingerprint_follows_terms_and_processors(monkeypatch):
     assert first != archive.fingerprint(model.interface(CAPTURE | {"gravity": "hill"}), link.LINUX64)
     monkeypatch.setattr(archive, "version", lambda name: "0")
     assert first != archive.fingerprint(model.interface(CAPTURE), link.LINUX64)
+
+
+def test_damaged_fmu_in_the_cache_is_built_again(fmu, tmp_path, monkeypatch):
+    path, _ = fmu("tethered_deorbit")
+    interface = MODELS["tethered_deorbit"].interface(CASES["tethered_deorbit"][0])
+    copy = tmp_path / path.name
+    copy.write_bytes(path.read_bytes()[:5000])
+    asked = []
+    monkeypatch.setattr(archive.compile, "emit", lambda *_: asked.append(True) or (_ for _ in ()).throw(KeyError))
+    with pytest.raises(KeyError):
+        archive.build(interface, tmp_path)
+    assert asked
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]  # the half-built one is gone
+    copy.write_bytes(path.read_bytes())
+    assert archive.build(interface, tmp_path) == copy
+
+
+def test_a_cache_that_can_not_be_written_says_so(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(tools.BuildError, match="can not be written"):
+        archive.build(MODELS["tethered_deorbit"].interface(REMOVAL), tmp_path / "file" / "cache")
