@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import shutil
 import threading
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -14,7 +17,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import style, summary
-from dcone_cosim.run import check_free, default_folder, write
+from dcone_cosim.run import atomic_folder, check_free, default_folder, fill
 from dcone_cosim.scene import Scene, load
 
 
@@ -58,6 +61,22 @@ class Archives:
         self.close()
 
 
+@dataclass
+class Written:
+    """What a run left, where, and what to tell of the writing."""
+
+    result: RunResult
+    folder: Path
+    notes: list[str] = field(default_factory=list)
+
+
+def named(scene: str) -> Scene:
+    """The scene of that name or file."""
+    if not scene.strip():
+        raise InputError("the name of the scene is empty; `dcone list` shows the scenes there are")
+    return load(scene)
+
+
 def run_and_write(
     name: str,
     out: Path | None,
@@ -65,34 +84,56 @@ def run_and_write(
     with_csv: bool = False,
     with_figures: bool = True,
     force: bool = False,
-) -> tuple[RunResult, Path]:
-    """Run a scene and write its folder; returns the result and the folder. Bad input raises and leaves nothing."""
+) -> Written:
+    """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing."""
     started = datetime.now(UTC)
-    scene = load(name)
+    scene = named(name)
     folder = out if out is not None else default_folder(scene.name)
-    check_free(folder, force)
-    if with_figures:
-        threading.Thread(target=style.load, daemon=True).start()
-    with Archives(scene, progress) as archives:
-        result = run_scene(scene, archives.instantiate, progress)
-        facts = archives.facts()
+    check_free(folder, force and out is not None)
+    threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
+    notes: list[str] = []
+    with atomic_folder(folder, force) as draft:
+        with Archives(scene, progress) as archives:
+            result = run_scene(scene, archives.instantiate, progress)
+            facts = archives.facts()
 
-    def draw(draft: Path) -> None:
+        def draw(path: Path) -> None:
+            progress.say("drawing")
+            notes.extend(_draw(result, path))
+
+        fill(draft.path, result, facts, summary.as_dict(result), started, with_csv, draw if with_figures else None)
+    if out is not None and draft.folder != folder:
+        notes.append(f"{folder} came to be while the scene ran and was not touched; the results are in {draft.folder}")
+    return Written(result, draft.folder, notes)
+
+
+def _load(with_figures: bool) -> None:
+    """Import while the FMUs compute what is needed after them. What fails here fails again where it is needed."""
+    with contextlib.suppress(Exception):
+        import pyarrow.parquet  # noqa: F401
+
+        if with_figures:
+            style.load()
+
+
+def _draw(result: RunResult, folder: Path) -> list[str]:
+    """Draw; returns what could not be drawn. The numbers are there already and are worth more."""
+    try:
         from dcone_cosim.reports.figures import draw_all
 
-        progress.say("drawing")
-        draw_all(result, draft)
-
-    write(result, folder, facts, summary.as_dict(result), started, with_csv, draw if with_figures else None)
-    return result, folder
+        return draw_all(result, folder)
+    except Exception as error:
+        return [f"no figure could be drawn: {type(error).__name__}: {error}"]
 
 
 def write_fmus(name: str, out: Path, progress: Progress) -> list[Path]:
     """Copy the FMUs of a scene to a folder under readable names."""
-    scene = load(name)
+    scene = named(name)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
     terms = {phase.name: phase.terms for phase in scene.phases}
-    built = build.ensure_fmus(terms, progress.say)
     out.mkdir(parents=True, exist_ok=True)
+    if not os.access(out, os.W_OK):
+        raise InputError(f"{out} may not be written to")
+    built = build.ensure_fmus(terms, progress.say)
     return [Path(shutil.copyfile(fmu, out / build.readable_name(phase, terms[phase]))) for phase, fmu in built.items()]

@@ -29,30 +29,30 @@ SHARED = "orbit"
 STRICT = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
 
 
-def _positive(unit: str) -> Any:
-    return lambda value: None if value > 0.0 else f"must be greater than 0 {unit}"
+def _positive(unit: str, example: str) -> Expected:
+    return Expected(unit, example=example, minimum=0.0, open_minimum=True)
 
 
-def _not_negative(unit: str) -> Any:
-    return lambda value: None if value >= 0.0 else f"must be at least 0{unit and ' ' + unit}"
+def _not_negative(unit: str, example: str) -> Expected:
+    return Expected(unit, example=example, minimum=0.0)
 
 
 PHASE_KEYS: Mapping[str, Mapping[str, Expected]] = {
     "capture": {
-        "macro_step": Expected("s", example="0.02 s", refusal=_positive("s")),
-        "duration": Expected("s", example="30 s", refusal=_positive("s")),
+        "macro_step": _positive("s", "0.02 s"),
+        "duration": _positive("s", "30 s"),
         "hand_over": Expected("1", choices=HAND_OVER),
-        "after_capture": Expected("s", example="1 s", refusal=_not_negative("s")),
+        "after_capture": _not_negative("s", "1 s"),
     },
     "removal": {
-        "macro_step": Expected("s", example="60 s", refusal=_positive("s")),
-        "duration": Expected("s", example="1 day", refusal=_positive("s")),
+        "macro_step": _positive("s", "60 s"),
+        "duration": _positive("s", "1 day"),
     },
 }
 REQUIRED = ("macro_step", "duration")
-SNAPSHOTS = Expected("s", example="5.32 s", refusal=_not_negative("s"))
+SNAPSHOTS = _not_negative("s", "5.32 s")
 HANDOFF_KEYS: Mapping[str, Expected] = {
-    "spin_tolerance": Expected("1", example="0.1", refusal=_not_negative("")),
+    "spin_tolerance": _not_negative("1", "0.1"),
     "compare_without_recoil": Expected("1", kind="Boolean"),
 }
 
@@ -158,7 +158,10 @@ def expected_of(row: build.Variable) -> Expected:
     starts = [float(s) for s in row.starts()]
     start = next((s for s in starts if s), 0.0)
     example = f"{start:g}" if row.kind == "Integer" else example_of(start, row.unit, row.display_unit)
-    return Expected(row.unit, row.kind, row.size if row.shape else 0, row.choices, example, row.refusal)
+    size = row.size if row.shape else 0
+    return Expected(
+        row.unit, row.kind, size, row.choices, example, row.minimum, row.maximum, row.open_minimum, row.refusal
+    )
 
 
 def _table_model(name: str, rows: Iterable[tuple[str, Expected]], required: Iterable[str] = ()) -> type[BaseModel]:

@@ -7,12 +7,18 @@ a mass where a length belongs, is thus an error that can name what was expected.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import astropy.units as u
+
+LARGEST_INTEGER = 2**31 - 1
+"""An FMI Integer has 32 bits."""
+_QUANTITY = re.compile(r"\s*([+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|nan|inf))\s*([^\d\s].*)?", re.DOTALL)
+"""A number, and a unit that does not begin with another number."""
 
 
 class Unexpected(ValueError):
@@ -34,6 +40,8 @@ def dimension_of(unit: Any) -> str:
     """Name of the dimension, the shortest astropy knows: "length", "pressure"; the unit itself when it has no name."""
     if unit.is_equivalent(u.N / u.m):
         return "stiffness"  # astropy knows it as a spectral flux density
+    if unit.is_equivalent(u.dimensionless_unscaled):
+        return "pure number"
     names = [name for name in unit.physical_type if name != "unknown"]
     preferred = {"speed", "pressure", "torque", "energy", "angular speed", "momentum", "force", "mass density"}
     chosen = [name for name in names if name in preferred] or sorted(names, key=len)
@@ -52,7 +60,8 @@ class Expected:
     size       0 for a scalar, otherwise the number of elements of a list
     choices    names of an Integer's values
     example    a value as a scene would write it
-    refusal    why an SI value is out of bounds, or None
+    minimum    least permitted SI value; `open_minimum` excludes the bound itself
+    refusal    why else an SI value is refused, or None
     """
 
     unit: str
@@ -60,6 +69,9 @@ class Expected:
     size: int = 0
     choices: tuple[str, ...] = ()
     example: str = ""
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    open_minimum: bool = False
     refusal: Callable[[float], str | None] = lambda value: None
 
     def read(self, value: object) -> float | list[float]:
@@ -68,12 +80,17 @@ class Expected:
             return self._scalar(value)
         if not isinstance(value, list) or len(value) != self.size:
             raise Unexpected(f"expected a list of {self.size}, each {self._wanted()}")
+        return self.read_each(value)
+
+    def read_each(self, values: Sequence[object]) -> list[float]:
+        """SI value of every element, or `Unexpected` that says which one does not fit."""
         numbers = []
-        for place, element in enumerate(value, start=1):
+        for place, element in enumerate(values, start=1):
             try:
                 numbers.append(self._scalar(element))
             except Unexpected as error:
-                raise Unexpected(f"element {place}: {error}") from None
+                link = " " if str(error).startswith(("is ", "must ")) else ": "
+                raise Unexpected(f"element {place}{link}{error}") from None
         return numbers
 
     def _wanted(self) -> str:
@@ -96,35 +113,58 @@ class Expected:
             if not isinstance(value, bool):
                 raise Unexpected(f"expected {self._wanted()}")
             return float(value)
-        number = self._bare(value) if self.unit == "1" else self._quantity(value)
-        reason = self.refusal(number) if math.isfinite(number) else "must be finite"
+        number, unit = (self._bare(value), "") if self.unit == "1" else self._quantity(value)
+        reason = self._out_of_bounds(number, unit) or self.refusal(number)
         if reason:
             raise Unexpected(f"{reason}; expected {self._wanted()}")
         return number
+
+    def _out_of_bounds(self, number: float, unit: str) -> str | None:
+        """Why an SI value is out of bounds, told in the unit it was written with."""
+        if not math.isfinite(number):
+            return "must be finite"
+        if number < self.minimum or (self.open_minimum and number == self.minimum):
+            words, bound = "greater than" if self.open_minimum else "at least", self.minimum
+        elif number > self.maximum:
+            words, bound = "at most", self.maximum
+        else:
+            return None
+        if unit:
+            bound = unit_of(self.unit).to(u.Unit(unit), bound)
+        return f"must be {words} {bound:.10g}{unit and ' ' + unit}"
 
     def _bare(self, value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise Unexpected(f"expected {self._wanted()}")
         if self.kind == "Integer" and not isinstance(value, int):
             raise Unexpected(f"expected {self._wanted()}")
-        return float(value)
+        if isinstance(value, int) and abs(value) > LARGEST_INTEGER and self.kind == "Integer":
+            raise Unexpected(f"must be at most {LARGEST_INTEGER} in size; expected {self._wanted()}")
+        try:
+            return float(value)
+        except OverflowError:
+            raise Unexpected(f"is too large; expected {self._wanted()}") from None
 
-    def _quantity(self, value: object) -> float:
+    def _quantity(self, value: object) -> tuple[float, str]:
+        """SI value, and the unit as written."""
         if isinstance(value, bool) or not isinstance(value, int | float | str):
             raise Unexpected(f"expected {self._wanted()}")
         if not isinstance(value, str):
             raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
+        match = _QUANTITY.fullmatch(value)
+        if match is None:
+            raise Unexpected(f"is no number with a unit; expected {self._wanted()}")
+        if match[2] is None:
+            raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
+        written = match[2].strip()
         try:
-            quantity = u.Quantity(value)
-        except (TypeError, ValueError):
-            raise Unexpected(f"is no number with a unit; expected {self._wanted()}") from None
-        try:
-            number = float(quantity.to_value(unit_of(self.unit)))
+            unit = u.Unit(written)
+            number = float(unit.to(unit_of(self.unit), float(match[1])))
         except u.UnitConversionError:
-            if quantity.unit == u.dimensionless_unscaled:
-                raise Unexpected(f"a bare number has no unit; expected {self._wanted()}") from None
-            raise Unexpected(f"is {_article(dimension_of(quantity.unit))}; expected {self._wanted()}") from None
-        return number
+            raise Unexpected(f"is {_article(dimension_of(unit))}; expected {self._wanted()}") from None
+        except (TypeError, ValueError, ArithmeticError):
+            raise Unexpected(f"is no number with a unit; expected {self._wanted()}") from None
+        return number, written
 
 
 def example_of(start: float, unit: str, display_unit: str = "") -> str:

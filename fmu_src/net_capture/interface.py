@@ -22,11 +22,9 @@ from fmu_src.net_capture.terms import (
     state,
     vector,
 )
+from fmu_src.net_capture.terms import LARGEST_MESH as LARGEST_MESH
 
 OUTCOMES = ("flying", "captured", "settled", "missed", "slipped_off", "not_closed", "tether_taut")
-LARGEST_MESH = 400
-"""Meshes times segments per side: an instance then takes 30 MB."""
-
 
 (
     NOT_FINITE,

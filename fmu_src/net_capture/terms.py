@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Term, Variable
-from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
 TRIGGERS = ("time", "first_contact", "distance", "command")
+LARGEST_MESH = 400
+"""Meshes times segments per side: an instance then takes 30 MB."""
+MOST_NODES = (LARGEST_MESH + 1) ** 2
+"""Nodes of the largest net there is, one of uncut threads: each brings three outputs, so more would be of no use."""
 
 
 def vector(name: str, unit: str, description: str, causality: str = "output", start: object = 0.0) -> Variable:
@@ -81,7 +84,8 @@ GRAVITY = {
                 "parameter",
                 "of the circular orbit, over the equatorial radius",
                 800e3,
-                minimum=-0.5 * EARTH_EQUATORIAL_RADIUS,
+                minimum=100e3,
+                maximum=1e8,
                 display_unit="km",
             ),
             state("mean_motion", "rad/s", "of the orbital frame"),
@@ -252,7 +256,7 @@ class NodeTerms(Mapping[str, Term]):
     """A term for any number of nodes: `{"nodes": "625"}` gives an FMU with outputs for up to 625 nodes."""
 
     def __getitem__(self, capacity: str) -> Term:
-        if not capacity.isdigit() or int(capacity) < 1:
+        if capacity not in self:
             raise KeyError(capacity)
         position = Variable(
             "node[#].position[#]",
@@ -265,10 +269,16 @@ class NodeTerms(Mapping[str, Term]):
         return Term(f"position of every node, up to {capacity} nodes", (position,))
 
     def __contains__(self, capacity: object) -> bool:
-        return isinstance(capacity, str) and capacity.isdigit() and int(capacity) > 0
+        return (
+            isinstance(capacity, str)
+            and capacity.isascii()
+            and capacity.isdecimal()
+            and len(capacity) <= len(str(MOST_NODES))
+            and 1 <= int(capacity) <= MOST_NODES
+        )
 
     def __iter__(self) -> Iterator[str]:
-        return iter(("a number of nodes",))
+        return iter((f"a whole number of nodes, from 1 to {MOST_NODES}",))
 
     def __len__(self) -> int:
         return 1

@@ -179,3 +179,15 @@ def test_reel_goes_slack_and_taut() -> None:
     for name in ("reel.proportional_gain", "reel.derivative_gain", "reel.length"):
         with pytest.raises(ModelFault, match="not positive" if name == "reel.length" else "bounds"):
             Instance(MODEL, LINEAR, {name: -0.1}).initialise()
+
+
+def test_default_gains_hold_the_commanded_length() -> None:
+    """Table 2 on a working reel with the default gains settles at l_c with the tide's tension; without gains not."""
+    i = Instance(MODEL, LINEAR).initialise()
+    for _ in range(24):
+        i.step(3600.0)
+    assert i["tether.length"] == pytest.approx(12.0, abs=0.01)
+    assert i["tether.tension"] == pytest.approx(0.025865, rel=2e-3)
+    i = Instance(MODEL, LINEAR, {"reel.proportional_gain": 0.0, "reel.derivative_gain": 0.0}).initialise()
+    i.step(86400.0)
+    assert i["tether.length"] > 100.0
