@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from dcone_cosim.errors import FmuError
 from fmu_src.interface import Group, Interface, Model, Variable
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
+from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
 __all__ = ["MODELS", "Group", "Interface", "Model", "Variable"]
@@ -43,13 +45,26 @@ def defaults(interface: Interface) -> dict[str, float]:
     }
 
 
-def out_of_reach(phase: str, values: Mapping[str, float], duration: float) -> list[Refusal]:
-    """Why the net or the tether cannot reach the target; empty when they can."""
-    if phase != "capture":
-        return []
-    from fmu_src.net_capture.reach import refusals
+def cannot_work(
+    phase: str, values: Mapping[str, float], duration: float, terms: Mapping[str, str], handed_over: bool
+) -> list[Refusal]:
+    """Why a phase with these values cannot work, by conditions known before any build; empty if nothing is known.
 
-    return [Refusal(*row) for row in refusals(values, duration)]
+    values        every parameter of the phase by FMI name, SI
+    duration      in which a shot has to arrive [s]
+    handed_over   the phase begins with what the one before hands over
+    """
+    if phase == "capture":
+        from fmu_src.net_capture.reach import refusals
+
+        capacity = int(terms["nodes"]) if "nodes" in terms else None
+        return [Refusal(*row) for row in refusals(values, duration, capacity)]
+    longest = values.get("tether.rest_length")
+    separation = values["start.separation"]
+    if handed_over or values["start.condition"] == HANDED_OVER or longest is None or separation <= longest:
+        return []
+    expected = f"must be at most tether.rest_length, {longest:g} m, or the locked line would start stretched"
+    return [Refusal("start.separation", f"{separation:g} m", expected)]
 
 
 def cache_folder() -> Path:
@@ -65,9 +80,13 @@ def cache_folder() -> Path:
 def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
     """Path of the FMU of each phase, `{phase: terms}`; those that the cache has not are built side by side."""
     from fmu_src.packaging.archive import build_all
+    from fmu_src.packaging.tools import BuildError
 
     interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
-    return dict(zip(phases, build_all(interfaces, cache_folder(), announce), strict=True))
+    try:
+        return dict(zip(phases, build_all(interfaces, cache_folder(), announce), strict=True))
+    except BuildError as error:
+        raise FmuError(str(error)) from None
 
 
 def readable_name(phase: str, terms: Mapping[str, str]) -> str:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -29,7 +33,7 @@ SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="Name of a scene
 def run(
     scene: SceneName,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="Folder for the results [default: runs/SCENE-TIME].")
+        Path | None, typer.Option("-o", "--out", help="Folder for the results; runs/SCENE-TIME if not given.")
     ] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Write the columns as CSV too.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
@@ -42,23 +46,27 @@ def run(
     """
     from dcone_cosim.commands import run_and_write
 
-    console = _console(json)
-    progress = _progress(console)
+    progress = _progress()
     try:
-        result, folder = run_and_write(scene, out, progress, with_csv=csv, with_figures=figures, force=force)
+        written = run_and_write(scene, out, progress, with_csv=csv, with_figures=figures, force=force)
     finally:
         progress.close()
+    result = written.result
     from dcone_cosim.reports import summary
 
-    if json:
-        import json as encoder
+    with _reader_may_leave():
+        if json:
+            from dcone_cosim.run import as_json
 
-        typer.echo(encoder.dumps(summary.as_dict(result) | {"folder": str(folder)}, indent=1))
-    else:
-        summary.show(result, console)
-        typer.echo(f"results in {folder}")
+            more = {"folder": str(written.folder), "notes": written.notes}
+            typer.echo(as_json(summary.as_dict(result) | more))
+        else:
+            summary.show(result, _console())
+            typer.echo(f"results in {written.folder}")
+    for note in written.notes:
+        _complain(f"note: {note}")
     if result.message:
-        typer.echo(result.message, err=True)
+        _complain(result.message)
     raise typer.Exit(result.exit_code)
 
 
@@ -70,13 +78,14 @@ def build(
     """Write the FMUs of a scene, for use in other tools."""
     from dcone_cosim.commands import write_fmus
 
-    progress = _progress(_console(False))
+    progress = _progress()
     try:
         paths = write_fmus(scene, out, progress)
     finally:
         progress.close()
-    for path in paths:
-        typer.echo(path)
+    with _reader_may_leave():
+        for path in paths:
+            typer.echo(path)
 
 
 @app.command(name="list")
@@ -86,45 +95,139 @@ def list_scenes() -> None:
 
     scenes = shipped()
     width = max(len(name) for name in scenes)
-    for name, path in scenes.items():
-        typer.echo(f"{name:{width}}  {title_of(path)}")
+    with _reader_may_leave():
+        for name, path in scenes.items():
+            typer.echo(f"{name:{width}}  {title_of(path)}")
 
 
 @app.command()
 def inspect(scene: SceneName) -> None:
     """Show what a scene puts into its FMUs, what it leaves out, and how large they are."""
+    from dcone_cosim.commands import named
     from dcone_cosim.reports.inspection import show
-    from dcone_cosim.scene import load
 
-    console = _console(False)
-    progress = _progress(console)
+    progress = _progress()
     try:
-        show(load(scene), console, progress)
+        with _reader_may_leave():
+            show(named(scene), _console(), progress)
     finally:
         progress.close()
 
 
-def _console(to_error: bool) -> Console:
+def _console() -> Console:
+    """Where results go: stdout, for whoever reads it."""
     from rich.console import Console
 
-    return Console(stderr=to_error)
+    class Output(Console):
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError
+
+    return Output(soft_wrap=not sys.stdout.isatty())
 
 
-def _progress(console: Console) -> Progress:
+def _progress() -> Progress:
+    """What is going on goes to stderr."""
     from dcone_cosim.progress import Bar, Lines
 
-    return Bar(console) if console.is_terminal else Lines()
+    if not sys.stderr.isatty():
+        return Lines()
+    from rich.console import Console
+
+    return Bar(Console(stderr=True))
+
+
+@contextmanager
+def _reader_may_leave() -> Iterator[None]:
+    """Output that nobody reads any more (`dcone run mission | head -1`) is dropped: the work itself is done."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _to_nowhere()
+
+
+def _to_nowhere() -> None:
+    """What is still buffered for stdout goes nowhere, so that closing it at the end does not fail."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _complain(text: str) -> None:
+    with suppress(OSError):
+        typer.echo(text, err=True)
+
+
+def _fail(text: str, exit_code: int) -> NoReturn:
+    """One message on stderr, and with --json the same as an object on stdout."""
+    _complain(f"dcone: {text}")
+    _answer(text, exit_code)
+    sys.exit(exit_code)
+
+
+def _answer(text: str, exit_code: int) -> None:
+    if "--json" in sys.argv[1:]:
+        import json
+
+        with _reader_may_leave():
+            typer.echo(json.dumps({"error": text, "exit_code": exit_code}))
+
+
+INTERRUPTED, TERMINATED = 130, 143
+
+
+def _terminate(*_: object) -> NoReturn:
+    sys.exit(TERMINATED)
 
 
 def main() -> None:
     """Entry point: expected failures become one message and an exit code, never a traceback."""
+    before = _on_terminate(_terminate)
     try:
-        app()
+        code = app(standalone_mode=False)
     except DconeError as error:
-        typer.echo(f"dcone: {error}", err=True)
-        sys.exit(error.exit_code)
+        _fail(str(error), error.exit_code)
     except KeyboardInterrupt:
-        typer.echo("dcone: stopped", err=True)
-        sys.exit(130)
-    except BrokenPipeError:
-        sys.exit(BAD_INPUT)
+        code = INTERRUPTED
+    except OSError as error:
+        _fail(_of_system(error), BAD_INPUT)
+    except Exception as error:
+        code = _of_arguments(error)
+    except SystemExit as stop:
+        if stop.code == TERMINATED:
+            _fail("terminated; nothing was written", TERMINATED)
+        if stop.code != 1:
+            raise
+        # typer ends so when the reader of a help text has left
+        _to_nowhere()
+        code = 0
+    finally:
+        _on_terminate(before)
+    if code == INTERRUPTED:
+        _fail("interrupted; nothing was written", INTERRUPTED)
+    sys.exit(code or 0)
+
+
+def _on_terminate(handler: Any) -> Any:
+    """Set what SIGTERM does, so that temporary folders are removed then too; returns what it did before."""
+    try:
+        return signal.signal(signal.SIGTERM, handler)
+    except ValueError:
+        return signal.SIG_DFL
+
+
+def _of_system(error: OSError) -> str:
+    """What the system refused, in one line that names the file."""
+    files = " -> ".join(str(f) for f in (error.filename, error.filename2) if f is not None)
+    reason = error.strerror or str(error) or type(error).__name__
+    return f"{files}: {reason}; nothing was written" if files else f"{reason}; nothing was written"
+
+
+def _of_arguments(error: Exception) -> int:
+    """Exit code of a wrong command line, once it is told; any other exception is a fault of ours and goes on."""
+    show, message = getattr(error, "show", None), getattr(error, "format_message", None)
+    if show is None or message is None:
+        raise error
+    show()
+    code = int(getattr(error, "exit_code", BAD_INPUT))
+    _answer(message(), code)
+    return code

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
+import tempfile
 import threading
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -92,7 +93,7 @@ def run_and_write(
     check_free(folder, force and out is not None)
     threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
     notes: list[str] = []
-    with atomic_folder(folder, force) as draft:
+    with atomic_folder(folder, force and out is not None) as draft:
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
@@ -132,8 +133,17 @@ def write_fmus(name: str, out: Path, progress: Progress) -> list[Path]:
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
     terms = {phase.name: phase.terms for phase in scene.phases}
-    out.mkdir(parents=True, exist_ok=True)
-    if not os.access(out, os.W_OK):
-        raise InputError(f"{out} may not be written to")
-    built = build.ensure_fmus(terms, progress.say)
-    return [Path(shutil.copyfile(fmu, out / build.readable_name(phase, terms[phase]))) for phase, fmu in built.items()]
+    made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
+            built = build.ensure_fmus(terms, progress.say)
+            copies = {out / build.readable_name(phase, terms[phase]): fmu for phase, fmu in built.items()}
+            for path, fmu in copies.items():
+                os.replace(shutil.copyfile(fmu, Path(draft) / path.name), path)
+    except BaseException:
+        for folder in made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+        raise
+    return list(copies)

@@ -93,6 +93,19 @@ _callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
 addLoggerProxy(ctypes.byref(_callbacks))
 
 
+class CallError(FmuError):
+    """A call that an FMU refused.
+
+    said      the FMU's own words
+    detail    the call, its status and the FMU's file
+    """
+
+    def __init__(self, name: str, where: str, said: str, detail: str) -> None:
+        super().__init__(f"{name}{where}:\n  {said}\n  ({detail})")
+        self.said = said
+        self.detail = detail
+
+
 class Archive:
     """An FMU file, unpacked to a temporary folder that `close` removes."""
 
@@ -166,7 +179,7 @@ class Component:
             said = self._said()
             self._fmu = None
             _messages.pop(self._environment)
-            raise FmuError(f"{name}: {archive.path.name} could not be instantiated ({error}){said}") from error
+            raise CallError(name, " could not be instantiated", said, f"{archive.path.name}: {error}") from error
 
     def reference(self, name: str) -> VariableInfo:
         """The variable of that name; an unknown one is an error that names the nearest."""
@@ -206,7 +219,7 @@ class Component:
             reached = ""
             if error.status == fmi2.fmi2Discard:
                 reached = self._discarded_at()
-            raise self._error(error, f" at t = {time:.9g} s in a step of {size:.6g} s{reached}") from None
+            raise self._error(error, f" stopped at t = {time:.9g} s in a step of {size:.6g} s{reached}") from None
 
     def save(self) -> None:
         """Keep the present state, replacing the one kept before."""
@@ -248,15 +261,15 @@ class Component:
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
 
-    def _error(self, error: Any, where: str = "") -> FmuError:
+    def _error(self, error: Any, where: str = "") -> CallError:
         status = STATUS[error.status] if error.status in range(len(STATUS)) else str(error.status)
-        return FmuError(f"{self.name} ({self.archive.path.name}): {error.function} gave {status}{where}{self._said()}")
+        return CallError(self.name, where, self._said(), f"{self.archive.path.name}: {error.function} gave {status}")
 
     def _said(self) -> str:
         """The FMU's latest complaints, or its latest words when none is a complaint."""
         messages = list(_messages[self._environment])
         told = [text for status, text in messages if status >= fmi2.fmi2Warning] or [text for _, text in messages]
-        return f"\n  it says: {'; '.join(dict.fromkeys(told[-3:]))}" if told else "\n  it gave no message"
+        return "; ".join(dict.fromkeys(told[-3:])) if told else "the FMU gave no message"
 
     def _discarded_at(self) -> str:
         try:

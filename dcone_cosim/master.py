@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim.component import Steppable
-from dcone_cosim.contract import HANDED_OVER
+from dcone_cosim.component import CallError, Steppable
+from dcone_cosim.contract import FAILED_OUTCOMES, FLOWN, HANDED_OVER, NEVER, OUTCOMES
 from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
 from dcone_cosim.handoff import (
     CAPTURE_OUTPUTS,
@@ -29,6 +29,7 @@ from dcone_cosim.handoff import (
     without_recoil,
 )
 from dcone_cosim.ledger import LedgerRow, ledger
+from dcone_cosim.mistakes import lines_named
 from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import PhaseScene, Scene
@@ -103,6 +104,15 @@ def _start(component: Steppable, parameters: Mapping[str, float], start: float, 
     return parameters_of(component, parameters)
 
 
+def _cannot_begin(scene: Scene, phase: str, error: FmuError) -> InputError:
+    """An FMU's refusal of its parameters, in the scene's terms: the file, the lines, the FMU's words."""
+    source = scene.source or scene.name
+    if not isinstance(error, CallError):
+        return InputError(f"{source}: the {phase} cannot begin\n  {error}")
+    where = lines_named(error.said, scene.text, phase)
+    return InputError(f"{source}: the {phase} cannot begin\n  {where}{error.said}\n  ({error.detail})")
+
+
 def _run_capture(
     run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress, then_removal: bool
 ) -> None:
@@ -120,16 +130,21 @@ def _run_capture(
             )
             loop = CaptureLoop(component, plan, progress)
         except FmuError as error:
-            raise InputError(f"{run.scene.title}: the capture cannot begin\n  {error}") from error
+            raise _cannot_begin(run.scene, "capture", error) from error
         progress.begin("capture", 0.0, phase.duration)
         result = loop.run()
         progress.end()
         run.phases["capture"] = result
         if result.error is not None:
             run.fail("FMU failed", str(result.error), FMU_FAILED)
+        elif plan.hand_over == NEVER:
+            result.outcome = FLOWN if result.outcome == OUTCOMES[0] else result.outcome
         elif result.located is None:
-            waited = f"not {plan.hand_over}" if result.outcome in ("flying", "captured", "settled") else result.outcome
-            text = f"capture failed: {waited.replace('_', ' ')} at t = {result.end:.6g} s (outcome {result.outcome})"
+            if result.outcome in FAILED_OUTCOMES:
+                text = f"capture failed: {_words(result.outcome)} at t = {result.end:.6g} s"
+            else:
+                waited, stands = _words(plan.hand_over), _words(result.outcome)
+                text = f"capture failed: still {stands}, not {waited}, at the end of the phase, t = {result.end:.6g} s"
             run.fail("capture failed", text, CAPTURE_FAILED)
         elif then_removal:
             names = [n for n in (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS) if n in component.variables]
@@ -143,6 +158,10 @@ def _run_capture(
             run.handoff = HandoffRecord(result.located, result.located_by, handed, SpinCheck(0.0, 0.0, 0.0))
     finally:
         component.close()
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
 
 
 def _altitude(run: RunResult, removal: PhaseScene) -> float:
@@ -172,7 +191,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
             loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress)
         except FmuError as error:
             if record is None:
-                raise InputError(f"{run.scene.title}: the removal cannot begin\n  {error}") from error
+                raise _cannot_begin(run.scene, "removal", error) from error
             record.failure = str(error)
             run.fail("hand-off violated", f"the removal does not accept what is handed over\n  {error}", HANDOFF_FAILED)
             return

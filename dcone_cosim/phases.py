@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dcone_cosim.component import Readable, Steppable, output_names
-from dcone_cosim.contract import FAILED_OUTCOMES, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
+from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
@@ -100,7 +100,8 @@ class CaptureLoop:
         if plan.hand_over == "tether_taut":
             self._need("tether.paid_out")
             self.tether_length = component.get(["tether.length"])["tether.length"]
-        self._need("settled" if plan.hand_over == "settled" else "captured")
+        if plan.hand_over != NEVER:
+            self._need("settled" if plan.hand_over == "settled" else "captured")
         self.result = PhaseResult(
             component.name,
             0.0,
@@ -115,6 +116,8 @@ class CaptureLoop:
     def triggered(self) -> bool:
         """Whether the row read last says that it is time to hand over."""
         values = self.read.values
+        if self.plan.hand_over == NEVER:
+            return False
         if self.plan.hand_over == "settled":
             return bool(values[self.place["settled"]])
         captured = bool(values[self.place["captured"]])
@@ -124,7 +127,8 @@ class CaptureLoop:
 
     def outcome(self) -> str:
         if "outcome" not in self.place:
-            return "captured" if bool(self.read.values[self.place["captured"]]) else "flying"
+            place = self.place.get("captured")
+            return "captured" if place is not None and bool(self.read.values[place]) else "flying"
         number = int(self.read.values[self.place["outcome"]])
         return OUTCOMES[number] if number in range(len(OUTCOMES)) else f"outcome {number}"
 
@@ -152,7 +156,7 @@ class CaptureLoop:
             begin, end = i * plan.macro_step, min((i + 1) * plan.macro_step, last)
             if begin >= last:
                 break
-            searching = result.located is None
+            searching = result.located is None and plan.hand_over != NEVER
             if searching and component.can_save:
                 component.save()
             component.step(begin, end - begin)
@@ -174,7 +178,7 @@ class CaptureLoop:
                 self._record(end)
             result.outcome = self.outcome()
             self.progress.at(end)
-            if result.outcome in FAILED_OUTCOMES and result.located is None:
+            if searching and result.outcome in FAILED_OUTCOMES and result.located is None:
                 break
         self.read()
         result.outcome = self.outcome()

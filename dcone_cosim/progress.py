@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time as clock
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -42,10 +43,8 @@ class Lines(Progress):
         self._start = self._reached = self._began = 0.0
 
     def say(self, text: str) -> None:
-        try:
+        with suppress(OSError):
             print(text, file=sys.stderr, flush=True)
-        except OSError:
-            pass
 
     def begin(self, phase: str, start: float, stop: float) -> None:
         self._phase, self._start, self._reached = phase, start, start

@@ -177,7 +177,7 @@ def write(
     draw: Callable[[Path], Any] | None = None,
     force: bool = False,
 ) -> Path:
-    """Write the run folder, `draw` adding the figures; returns where it is, which is another name when this is taken."""
+    """Write the run folder, `draw` adding the figures; returns where it is: another name when this one was taken."""
     with atomic_folder(folder, force) as draft:
         fill(draft.path, run, fmus, summary, started, with_csv, draw)
     return draft.folder

@@ -22,6 +22,8 @@ from dcone_cosim.names import did_you_mean
 
 SHIPPED = Path(__file__).parent / "scenes"
 PHASES = ("capture", "removal")
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+"""Byte order marks of UTF-16."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,7 @@ class Scene:
     name       its file's name without the suffix
     text       the file as read, kept with the results
     handoff    options of the hand-off: spin_tolerance, compare_without_recoil
+    source     where it was read from, for messages
     """
 
     name: str
@@ -64,6 +67,7 @@ class Scene:
     text: str
     phases: tuple[PhaseScene, ...]
     handoff: Mapping[str, Any] = field(default_factory=dict)
+    source: str = ""
 
 
 def shipped() -> dict[str, Path]:
@@ -77,9 +81,14 @@ def find(name: str) -> Path:
     if name in known:
         return known[name]
     path = Path(name)
-    if path.is_file():
+    try:
+        is_file, is_folder = path.is_file(), path.is_dir()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{name[:60]} cannot be looked for: {reason}") from error
+    if is_file:
         return path
-    if path.is_dir():
+    if is_folder:
         raise InputError(f"{name} is a folder; expected a scene: a .toml file, or one of {', '.join(known)}")
     if path.suffix == ".toml" or len(path.parts) > 1:
         beside = [str(p) for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
@@ -94,10 +103,17 @@ def load(name: str) -> Scene:
 
 
 def read_text(path: Path) -> str:
+    """Text of a scene file, in UTF-8 with or without a byte order mark."""
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} cannot be read as text: {error}") from error
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
+    try:
+        return content.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        what = "it is in UTF-16" if content.startswith(UTF_16) else f"byte {content[error.start]:#x} in line {line}"
+        raise InputError(f"{path} cannot be read as text: {what}; save it as UTF-8") from error
 
 
 def parse(text: str, name: str, source: str) -> Scene:
@@ -107,7 +123,13 @@ def parse(text: str, name: str, source: str) -> Scene:
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{source} is not valid TOML, or cut short: {error}") from error
+        last = len(text.splitlines())
+        said = str(error).replace("(at end of document)", f"(line {last}, at the end of the file)")
+        raise InputError(f"{source} is not valid TOML, or cut short: {said}") from error
+    except RecursionError as error:
+        raise InputError(f"{source} is no scene: its lists or tables are nested too deeply") from error
+    except ValueError as error:
+        raise InputError(f"{source} is no scene: a number in it has thousands of digits") from error
     from dcone_cosim.scene_check import check  # astropy and pydantic are loaded only for a text that parses
 
     return check(document, text, name, source)

@@ -7,22 +7,22 @@ validator that reads the unit and asks the row for its bounds. So a new paramete
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
 from pydantic_core import PydanticCustomError
 
 from dcone_cosim import build
-from dcone_cosim.contract import HAND_OVER
+from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER
 from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import REMOVAL_SETS
-from dcone_cosim.mistakes import Mistake, message
+from dcone_cosim.mistakes import Mistake, message, shown
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scene import PHASES, PhaseScene, Scene
 from dcone_cosim.toml_lines import Path
-from dcone_cosim.units import Expected, Unexpected, example_of
+from dcone_cosim.units import LARGEST_INTEGER, Expected, Unexpected, example_of
 
 SHARED = "orbit"
 """Section that stands at the top of a scene and goes to every phase that has it."""
@@ -50,6 +50,8 @@ PHASE_KEYS: Mapping[str, Mapping[str, Expected]] = {
     },
 }
 REQUIRED = ("macro_step", "duration")
+MOST_STEPS = 5_000_000
+"""Macro steps of a phase: each leaves a row, and a run keeps all rows in memory."""
 SNAPSHOTS = _not_negative("s", "5.32 s")
 HANDOFF_KEYS: Mapping[str, Expected] = {
     "spin_tolerance": _not_negative("1", "0.1"),
@@ -59,17 +61,25 @@ HANDOFF_KEYS: Mapping[str, Expected] = {
 
 @dataclass
 class _Phase:
-    """One phase while it is being checked."""
+    """One phase while it is being checked.
+
+    named      groups of terms that have a table in the scene, whether or not it names a term there is
+    """
 
     name: str
     interface: build.Interface
+    named: set[str] = field(default_factory=set)
     rows: dict[tuple[str, str], build.Variable] = field(default_factory=dict)
     selectors: dict[str, str] = field(default_factory=dict)
 
 
 def check(document: dict[str, Any], text: str, name: str, source: str) -> Scene:
     """The scene, or an `InputError` that lists all mistakes with their lines."""
-    mistakes: list[Mistake] = []
+    mistakes = [
+        Mistake((phase,), document[phase], f"expected a table [{phase}]")
+        for phase in PHASES
+        if phase in document and not isinstance(document[phase], dict)
+    ]
     present = [phase for phase in PHASES if isinstance(document.get(phase), dict)]
     phases = {phase: _choose_terms(phase, document[phase], mistakes) for phase in present}
     model = _scene_model(phases)
@@ -81,17 +91,12 @@ def check(document: dict[str, Any], text: str, name: str, source: str) -> Scene:
     chosen = _phases_to_run(document, present, mistakes)
     if len(chosen) == len(PHASES):
         mistakes += _set_by_handoff(document)
-    mistakes += _hand_over_without_term(document, phases)
+    mistakes += _about_hand_over(document, phases, chosen)
     if not mistakes and not chosen:
         raise InputError(f"{source} holds no phase; expected [capture], [removal] or both")
     if not mistakes:
-        scene = _assemble(values, phases, chosen, text, name)
-        for phase in scene.phases:
-            complete = {**phase.defaults, **phase.parameters}
-            for refusal in build.out_of_reach(phase.name, complete, phase.duration):
-                section, _, key = refusal.variable.partition(".")
-                path = (section, key) if section == SHARED else (phase.name, section, key.partition("[")[0])
-                mistakes.append(Mistake(path, refusal.given, refusal.expected))
+        scene = _assemble(values, phases, chosen, text, name, source)
+        mistakes = [*_about_steps(scene, document), *_about_values(scene, document), *_about_line(scene, document)]
         if not mistakes:
             return scene
     raise InputError(message(mistakes, text, source))
@@ -110,28 +115,41 @@ def _choose_terms(phase: str, tables: dict[str, Any], mistakes: list[Mistake]) -
                 mistakes.append(Mistake(path[:2], None, f"expected this table, with {group.selector} = one of {known}"))
                 terms[group_name] = next(iter(group.terms))
             continue
-        given = table.get(group.selector) if isinstance(table, dict) else None
-        named = str(given) if isinstance(given, int) and not isinstance(given, bool) else given
-        if isinstance(named, str) and named in group.terms:
-            terms[group_name] = named
+        names = [term for term in group.terms if term in group.terms]
+        if names:
+            terms[group_name] = names[0]
+        if not isinstance(table, dict):
+            mistakes.append(Mistake(path[:2], table, f"expected a table [{phase}.{group_name}]"))
             continue
-        hint = did_you_mean(named, group.terms) if isinstance(named, str) else ""
-        mistakes.append(Mistake(path, given, f"expected {known}{hint}" if given is not None else f"expected {known}"))
-        fallback = next(iter(group.terms))
-        if fallback in group.terms:
-            terms[group_name] = fallback
+        given = table.get(group.selector)
+        chosen = _term_named(given)
+        if chosen in group.terms:
+            terms[group_name] = chosen
+            continue
+        hint = did_you_mean(given, names) if isinstance(given, str) and names else ""
+        mistakes.append(Mistake(path, given, f"expected {known}{hint}"))
     interface = model.interface(terms)
     rows = {(v.section, v.key): v for v in build.parameters(interface)}
-    return _Phase(phase, interface, rows, {name: group.selector for name, group in model.groups.items()})
+    named = {name for name in model.groups if name in tables}
+    return _Phase(phase, interface, named, rows, {name: group.selector for name, group in model.groups.items()})
+
+
+def _term_named(given: object) -> str:
+    """Name of the term that a selector's value means: a text, or a whole number where terms are counted."""
+    if isinstance(given, int) and not isinstance(given, bool) and 0 <= given <= LARGEST_INTEGER:
+        return str(given)
+    return given if isinstance(given, str) and not given.isdecimal() else ""
 
 
 def _without_selectors(document: dict[str, Any], phases: Mapping[str, _Phase]) -> dict[str, Any]:
     """The document without the keys that name terms: those are checked already."""
-    rest = dict(document)
+    rest = {key: value for key, value in document.items() if key not in PHASES}
     for name, phase in phases.items():
         tables = dict(document[name])
         for group, selector in phase.selectors.items():
-            if isinstance(tables.get(group), dict):
+            if group in tables and not isinstance(tables[group], dict):
+                del tables[group]
+            elif group in tables:
                 tables[group] = {k: v for k, v in tables[group].items() if k != selector}
         rest[name] = tables
     return rest
@@ -173,21 +191,27 @@ def _read_snapshots(value: object) -> list[float]:
     if not isinstance(value, list):
         raise _refused('expected a list of times, such as ["0 s", "5 s"]')
     try:
-        return [float(SNAPSHOTS.read(element)) for element in value]  # type: ignore[arg-type]
+        return SNAPSHOTS.read_each(value)
     except Unexpected as error:
         raise _refused(str(error)) from None
+
+
+def _read_title(value: object) -> str:
+    if not isinstance(value, str):
+        raise _refused('expected a text, such as "A net of 24 m"')
+    return value
 
 
 def _scene_model(phases: Mapping[str, _Phase]) -> type[BaseModel]:
     """The pydantic model of a scene with these terms."""
     shared: dict[str, build.Variable] = {}
     fields: dict[str, Any] = {
-        "title": (str, ""),
-        "phases": (list[str], None),
+        "title": (Annotated[Any, BeforeValidator(_read_title)], ""),
+        "phases": (Any, None),
         "handoff": (_table_model("handoff", HANDOFF_KEYS.items()), None),
     }
     for name, phase in phases.items():
-        sections: dict[str, dict[str, build.Variable]] = {group: {} for group in phase.interface.terms}
+        sections: dict[str, dict[str, build.Variable]] = {group: {} for group in (*phase.interface.terms, *phase.named)}
         for (section, key), row in phase.rows.items():
             if section == SHARED:
                 shared.setdefault(key, row)
@@ -268,27 +292,102 @@ def _phases_to_run(document: dict[str, Any], present: list[str], mistakes: list[
     given = document.get("phases")
     if given is None:
         return present
-    if not isinstance(given, list) or not given:
-        mistakes.append(Mistake(("phases",), given, 'expected a list such as ["capture", "removal"]'))
+    path = ("phases",)
+    if not isinstance(given, list) or not given or not all(isinstance(name, str) for name in given):
+        mistakes.append(Mistake(path, given, 'expected a list such as ["capture", "removal"]'))
         return present
-    for name in given:
+    for name in dict.fromkeys(given):
         if name not in PHASES:
-            mistakes.append(Mistake(("phases",), given, f"unknown phase {name!r}{did_you_mean(str(name), PHASES)}"))
-        elif name not in present:
-            mistakes.append(Mistake(("phases",), given, f"the phase has no table; expected [{name}]"))
-    return [name for name in PHASES if name in given]
+            mistakes.append(Mistake(path, given, f"unknown phase {name!r}{did_you_mean(name, PHASES)}"))
+        elif name not in document:
+            mistakes.append(Mistake(path, given, f"the phase has no table; expected [{name}]"))
+    known = [name for name in given if name in PHASES]
+    in_order = [name for name in PHASES if name in given]
+    if len(known) > len(in_order):
+        mistakes.append(Mistake(path, given, f"names a phase twice; expected {shown(in_order)}"))
+    elif known != in_order:
+        mistakes.append(Mistake(path, given, f"the capture comes before the removal; expected {shown(in_order)}"))
+    return [name for name in in_order if name in present]
 
 
 NEEDED_TERM = {"settled": "settling", "tether_taut": "tether"}
 
 
-def _hand_over_without_term(document: dict[str, Any], phases: Mapping[str, _Phase]) -> list[Mistake]:
-    """A condition for handing over that no term of the scene can ever report."""
-    given = document["capture"].get("hand_over") if "capture" in phases else None
-    group = NEEDED_TERM.get(given) if isinstance(given, str) else None
-    if group is None or group in phases["capture"].interface.terms:
+def _about_hand_over(document: dict[str, Any], phases: Mapping[str, _Phase], chosen: list[str]) -> list[Mistake]:
+    """A condition for handing over that no term of the scene can ever report, or none although a removal follows."""
+    if "capture" not in phases:
         return []
-    return [Mistake(("capture", "hand_over"), given, f"needs the table [capture.{group}], which this scene lacks")]
+    terms, given, path = phases["capture"].interface.terms, document["capture"].get("hand_over"), "hand_over"
+    found = []
+    group = NEEDED_TERM.get(given) if isinstance(given, str) else None
+    if group is not None and group not in terms:
+        text = f"needs the table [capture.{group}], which this scene lacks"
+        found.append(Mistake(("capture", path), given, text))
+    if len(chosen) == len(PHASES):
+        if given == NEVER:
+            text = f"a removal follows: expected one of {', '.join(HAND_OVER[:-1])}"
+            found.append(Mistake(("capture", path), given, text))
+        text = "expected this table: a removal follows, and without it no capture is ever reported"
+        found += [Mistake(("capture", name), None, text) for name in CAPTURE_NEEDS if name not in terms]
+    return found
+
+
+def _given(document: Any, path: Path) -> Any:
+    """What a scene says at that place, or None."""
+    for part in path:
+        document = document.get(part) if isinstance(document, dict) else None
+    return document
+
+
+def _about_steps(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
+    """Macro steps that are too long or too many."""
+    for phase in scene.phases:
+        path = (phase.name, "macro_step")
+        given, duration = _given(document, path), shown(document[phase.name]["duration"])
+        steps = phase.duration / phase.macro_step
+        if phase.macro_step > phase.duration:
+            yield Mistake(path, given, f"must be at most {phase.name}.duration, {duration}")
+        elif steps > MOST_STEPS:
+            text = f"with {phase.name}.duration = {duration} makes {steps:.4g} steps; at most {MOST_STEPS:,}"
+            yield Mistake(path, given, text)
+
+
+def _about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
+    """Values, each within its bounds, with which a phase cannot work."""
+    for phase in scene.phases:
+        values = {**phase.defaults, **phase.parameters}
+        handed_over = phase is not scene.phases[0]
+        must_arrive_in = math.inf if phase.options.get("hand_over") == NEVER else phase.duration
+        for refusal in build.cannot_work(phase.name, values, must_arrive_in, phase.terms, handed_over):
+            section, _, key = refusal.variable.partition(".")
+            path = (section, key) if section == SHARED else (phase.name, section, key.partition("[")[0])
+            yield Mistake(path, _given(document, path), refusal.expected, refusal.given)
+
+
+def _about_line(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
+    """The one line of two phases: the same length in both, and more than the distance it has to span at the shot."""
+    if len(scene.phases) < len(PHASES):
+        return
+    capture, removal = ({**phase.defaults, **phase.parameters} for phase in scene.phases)
+    paths = {phase: (phase, *name.split(".")) for phase, name in LINE.items()}
+    told = {phase: _given(document, path) for phase, path in paths.items()}
+    length = removal.get(LINE["removal"])
+    if length is None:
+        return
+    at = "removal" if told["removal"] is not None or told["capture"] is None else "capture"
+    other = capture.get(LINE["capture"], length)
+    if not math.isclose(length, other, rel_tol=1e-9):
+        if told["removal"] is None:
+            yield Mistake(paths["removal"], None, "expected the length of the line, here or as capture.tether.length")
+            return
+        text = f"must equal capture.tether.length = {shown(told['capture'])}: both phases have the same line"
+        yield Mistake(paths["removal"], told["removal"], text)
+    distance, speed = (
+        math.hypot(*(capture[f"chaser.start_{what}[{i}]"] for i in (1, 2, 3))) for what in ("position", "velocity")
+    )
+    if length <= distance - speed * scene.phases[0].duration:
+        text = f"must exceed {distance:.6g} m, the distance from chaser to target at the shot: a locked line would "
+        yield Mistake(paths[at], told[at], text + "start stretched", f"{length:g} m")
 
 
 def _set_by_handoff(document: dict[str, Any]) -> list[Mistake]:
@@ -303,13 +402,13 @@ def _set_by_handoff(document: dict[str, Any]) -> list[Mistake]:
                 mistakes.append(Mistake(("removal", section, key), keys[key], text))
     orbit = document.get(SHARED)
     eccentricity = orbit.get("eccentricity", 0.0) if isinstance(orbit, dict) else 0.0
-    if eccentricity:
+    if eccentricity and isinstance(eccentricity, int | float):
         text = "must be 0 when a capture hands over: its frame turns evenly, as on a circular orbit"
         mistakes.append(Mistake((SHARED, "eccentricity"), eccentricity, text))
     return mistakes
 
 
-def _assemble(values: Any, phases: Mapping[str, _Phase], chosen: list[str], text: str, name: str) -> Scene:
+def _assemble(values: Any, phases: Mapping[str, _Phase], chosen: list[str], text: str, name: str, source: str) -> Scene:
     """The scene from values that have passed every check."""
     made = []
     for phase_name in chosen:
@@ -324,7 +423,9 @@ def _assemble(values: Any, phases: Mapping[str, _Phase], chosen: list[str], text
         options = {key: getattr(tables, key) for key in PHASE_KEYS[phase_name] if key not in REQUIRED}
         if phase_name == "capture":
             options["snapshots"] = tables.snapshots or []
-            options["hand_over"] = HAND_OVER[int(options["hand_over"] or 0)]
+            can_capture = all(group in phase.interface.terms for group in CAPTURE_NEEDS)
+            told = options["hand_over"]
+            options["hand_over"] = HAND_OVER[int(told)] if told is not None else HAND_OVER[0] if can_capture else NEVER
             options["after_capture"] = math.inf if options["after_capture"] is None else options["after_capture"]
         made.append(
             PhaseScene(
@@ -339,9 +440,20 @@ def _assemble(values: Any, phases: Mapping[str, _Phase], chosen: list[str], text
                 {v.name: v.choices for v in phase.rows.values() if v.choices},
             )
         )
+    if len(made) == len(PHASES):
+        _share_line(made)
     handoff = {
         key: bool(value) if HANDOFF_KEYS[key].kind == "Boolean" else value
         for key in HANDOFF_KEYS
         if (value := getattr(values.handoff, key, None)) is not None
     }
-    return Scene(name, values.title, text, tuple(made), handoff)
+    return Scene(name, values.title, text, tuple(made), handoff, source)
+
+
+def _share_line(phases: list[PhaseScene]) -> None:
+    """Give the phase that does not tell the line's length what the other tells."""
+    given = [phase.parameters.get(LINE[phase.name]) for phase in phases]
+    for i, (phase, length, other) in enumerate(zip(phases, given, reversed(given), strict=True)):
+        name = LINE[phase.name]
+        if length is None and other is not None and name in phase.defaults:
+            phases[i] = replace(phase, parameters={**phase.parameters, name: other})

@@ -2,37 +2,60 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
-from dcone_cosim.reports import net_view, style
+from dcone_cosim.reports import net_view, side_by_side, style
+
+Figure = tuple[str, Callable[[Path], object]]
+"""File name, and what draws it there."""
 
 
-def draw_all(run: RunResult, folder: Path) -> list[Path]:
-    """Draw what the run has data for; returns the PNG files."""
+def draw_all(run: RunResult, folder: Path) -> list[str]:
+    """Draw what the run has data for, a PNG each; returns which could not be drawn, and why."""
+    style.load()
+    figures = list(_figures(run))
+    # The capture in space takes as long as the others together.
+    return side_by_side.halves(partial(_draw, folder), figures[:1], figures[1:])
+
+
+def _draw(folder: Path, figures: Iterable[Figure]) -> list[str]:
     import matplotlib as mpl
 
-    drawn = []
-    title = run.scene.title
+    failed = []
     with mpl.rc_context(style.SETTINGS):
-        capture, removal = run.phases.get("capture"), run.phases.get("removal")
-        if capture is not None and len(capture.recorder) > 1:
-            if capture.snapshots.times:
-                asked = any(p.options.get("snapshots") for p in run.scene.phases)
-                path = folder / "capture_in_space.png"
-                net_view.draw(capture, run.parameters.get("capture", {}), asked, title, path)
-                drawn.append(path)
-            if "mouth.area" in capture.recorder:
-                drawn.append(_mouth_and_energy(capture, title, folder / "mouth_and_energies.png"))
-        if removal is not None and len(removal.recorder) > 1:
-            if {"chaser.radius", "target.radius"} <= set(removal.recorder.names):
-                drawn.append(_orbit(removal, title, folder / "orbital_radius.png"))
-            if "tether.tension" in removal.recorder:
-                drawn.append(_tension(run, removal, title, folder / "tether_tension.png"))
-    return drawn
+        for name, draw in figures:
+            path = folder / name
+            try:
+                draw(path)
+            except Exception as error:
+                path.unlink(missing_ok=True)
+                failed.append(f"{name} could not be drawn: {type(error).__name__}: {error}")
+    return failed
+
+
+def _figures(run: RunResult) -> Iterator[Figure]:
+    """File name of each figure there is data for, and what draws it."""
+    title = run.scene.title
+    capture, removal = run.phases.get("capture"), run.phases.get("removal")
+    if capture is not None and len(capture.recorder) > 1:
+        if capture.snapshots.times:
+            asked = any(p.options.get("snapshots") for p in run.scene.phases)
+            parameters = run.parameters.get("capture", {})
+            yield "capture_in_space.png", partial(net_view.draw, capture, parameters, asked, title)
+        if "mouth.area" in capture.recorder:
+            yield "mouth_and_energies.png", partial(_mouth_and_energy, capture, title)
+    if removal is not None and len(removal.recorder) > 1:
+        if {"chaser.radius", "target.radius"} <= set(removal.recorder.names):
+            yield "orbital_radius.png", partial(_orbit, removal, title)
+        if "tether.tension" in removal.recorder:
+            yield "tether_tension.png", partial(_tension, run, removal, title)
 
 
 EVENTS = (
@@ -42,11 +65,12 @@ EVENTS = (
 )
 
 
-def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> Path:
+def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
     recorder = result.recorder
     time, last = recorder["time"], recorder.last()
     figure = style.new_figure(8.5, 6.5)
     above, below = figure.subplots(2, 1, sharex=True)
+    style.margins(figure, 0.2)
     above.plot(time, recorder["mouth.area"], color=style.NET, label="mouth area")
     if "mouth.area_ratio" in recorder and recorder["mouth.area_ratio"].max() > 0:
         widest = int(np.argmax(recorder["mouth.area_ratio"]))
@@ -54,9 +78,9 @@ def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> Path:
         above.axhline(0.8 * flat, color=style.MUTED, linewidth=0.8, linestyle=":", label="80 % of the flat net")
     above.set_ylabel("mouth area [m²]")
     above.set_ylim(bottom=0)
-    series: tuple[tuple[str, str, str, dict[str, float]], ...] = (
-        ("energy.total", "kinetic and elastic", style.CHASER, {"linewidth": 3.0, "alpha": 0.35}),
-        ("energy.kinetic", "kinetic", style.CHASER, {}),
+    series: tuple[tuple[str, str, str, dict[str, Any]], ...] = (
+        ("energy.total", "kinetic and elastic", "#9db8d2", {"linewidth": 3.0}),
+        ("energy.kinetic", "kinetic", style.CHASER, {"linestyle": (0, (5, 2)), "linewidth": 1.3}),
         ("energy.elastic", "elastic", style.ACCENT, {}),
         ("target.energy", "of the target", style.TARGET, {}),
         ("contact.loss", "lost in contact", style.BULLET, {}),
@@ -77,18 +101,18 @@ def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> Path:
             )  # fmt: skip
     above.legend(loc="upper left")
     below.legend(loc="upper left", ncols=2)
-    figure.suptitle(title)
+    style.head(figure, title)
     style.save(figure, path)
-    return path
 
 
-def _orbit(result: PhaseResult, title: str, path: Path) -> Path:
+def _orbit(result: PhaseResult, title: str, path: Path) -> None:
     """Orbital radius of both bodies, and of the chaser less the target: on the scale of the orbit they coincide."""
     recorder = result.recorder
     divisor, unit = style.time_axis(result.end - result.start)
     time = (recorder["time"] - result.start) / divisor
     figure = style.new_figure(8.5, 6.0)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    style.margins(figure, 0.2)
     above.plot(time, recorder["target.radius"] / 1e3, color=style.TARGET, label="target", linewidth=2.2, alpha=0.7)
     above.plot(time, recorder["chaser.radius"] / 1e3, color=style.CHASER, label="chaser", linewidth=0.9)
     if "center.semi_major_axis" in recorder:
@@ -100,22 +124,22 @@ def _orbit(result: PhaseResult, title: str, path: Path) -> Path:
     below.plot(time, recorder["chaser.radius"] - recorder["target.radius"], color=style.ACCENT, linewidth=1.0)
     below.set_ylabel("chaser over target [m]")
     below.set_xlabel(f"time since the removal began [{unit}]")
-    figure.suptitle(title)
+    style.head(figure, title)
     style.save(figure, path)
-    return path
 
 
 LEAST = 1e-6
 """Smallest tension that the logarithmic axis shows [N]."""
 
 
-def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> Path:
+def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> None:
     """Tension over the whole phase, logarithmic, and the time of the tugs apart, linear; tugs as stems."""
     recorder = result.recorder
     divisor, unit = style.time_axis(result.end - result.start)
     time = (recorder["time"] - result.start) / divisor
     figure = style.new_figure(8.5, 6.4)
     above, below = figure.subplots(2, 1, height_ratios=(3, 2))
+    style.margins(figure, 0.6)
     tension = recorder["tether.tension"]
     visible = np.where(tension > LEAST, tension, np.nan)
     above.plot(time, visible, color=style.CHASER, linewidth=0.9, label="tension at the macro steps")
@@ -144,9 +168,8 @@ def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> Pat
     below.set_ylim(bottom=0)
     below.set_ylabel("tether tension [N]")
     below.set_xlabel(f"the tugs apart: time since the removal began [{zoom_unit}]")
-    figure.suptitle(title)
+    style.head(figure, title)
     style.save(figure, path)
-    return path
 
 
 def _tug_sets(run: RunResult, result: PhaseResult) -> list[tuple[str, style.Array, str, bool]]:

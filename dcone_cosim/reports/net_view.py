@@ -13,6 +13,8 @@ from dcone_cosim.reports import style
 from dcone_cosim.reports.style import Array
 
 PANELS = 8
+LEAST_WIDTH = 9.0
+"""Width that the legend needs [inch]."""
 SHOWN = (1, 2, 0)
 """Axes of a panel: along-track to the right, cross-track into the page, radial up."""
 CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
@@ -33,21 +35,33 @@ def choose(times: list[float], asked: bool, located: float | None) -> list[int]:
     return sorted(set(chosen))
 
 
+def grid(panels: int) -> tuple[int, int]:
+    """Rows and columns that hold so many panels: one row of up to four, otherwise two."""
+    rows = 1 if panels <= 4 else 2
+    return rows, -(-panels // rows)
+
+
 def draw(result: PhaseResult, parameters: dict[str, float], asked: bool, title: str, path: Path) -> None:
     """PNG of the capture at up to eight times."""
     shots = result.snapshots
     chosen = choose(shots.times, asked, result.located)
     row_of = {i: int(np.argmin(np.abs(result.recorder["time"] - shots.times[i]))) for i in chosen}
-    figure = style.new_figure(14.0, 6.8, layout=None)
-    figure.subplots_adjust(left=0.02, right=0.97, bottom=0.07, top=0.92, wspace=0.06, hspace=0.1)
-    low, high = _limits(result, chosen, row_of, parameters)
+    rows, columns = grid(len(chosen))
+    wide, high = (3.5, 3.1) if len(chosen) > 2 else (4.5, 4.0)
+    width, height = max(wide * columns, LEAST_WIDTH), high * rows + 0.6
+    figure = style.new_figure(width, height)
+    side = 0.5 * (1.0 - wide * columns / width)
+    figure.subplots_adjust(
+        left=side + 0.02, right=0.97 - side, bottom=0.45 / height, top=1.0 - 0.55 / height, wspace=0.06, hspace=0.1
+    )
+    least, most = _limits(result, chosen, row_of, parameters)
     for panel, i in enumerate(chosen):
-        axes = figure.add_subplot(2, 4, panel + 1, projection="3d", computed_zorder=False)
+        axes = figure.add_subplot(rows, columns, panel + 1, projection="3d", computed_zorder=False)
         _panel(axes, result, i, row_of[i], parameters)
-        _frame(axes, low, high)
+        _frame(axes, least, most)
         mark = "  (hand-over)" if result.located is not None and shots.times[i] == result.located else ""
         axes.set_title(f"t = {shots.times[i]:.2f} s{mark}", y=0.99)
-    figure.suptitle(title)
+    style.head(figure, title)
     _legend(figure)
     style.save(figure, path)
 
@@ -132,7 +146,9 @@ def _frame(axes: Any, low: Array, high: Array) -> None:
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_zlim(low[2], high[2])
-    axes.set_box_aspect(high - low, zoom=1.3)
+    size = high - low
+    # a box that is not longer than high needs more of the panel's height
+    axes.set_box_aspect(size, zoom=1.3 if size[0] >= size[2] else 1.0)
     axes.view_init(elev=18, azim=-62)
     axes.tick_params(labelsize=7, pad=-3)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ BULLET = "#c0392b"
 ACCENT = "#2e8b57"
 MUTED = "#888888"
 DPI = 130
+MOST_LINES = 3
+"""Lines of a title; what is longer is cut."""
 
 SETTINGS: Any = {
     "font.size": 9,
@@ -37,18 +40,43 @@ def load() -> None:
     import mpl_toolkits.mplot3d.art3d  # noqa: F401
 
 
-def new_figure(width: float, height: float, layout: Any = "constrained") -> Any:
-    """A figure on the Agg canvas [inch], without pyplot and its global state."""
+def new_figure(width: float, height: float) -> Any:
+    """A figure on the Agg canvas [inch], without pyplot and its global state.
+
+    Its margins are set by hand (`margins`): a layout that is worked out draws everything three times.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout=layout)
+    figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
 
 
+def margins(figure: Any, between: float) -> None:
+    """Room for the labels of two axes, one above the other, with `between` for what stands between them [inch]."""
+    width, height = figure.get_size_inches()
+    figure.subplots_adjust(left=0.85 / width, right=1.0 - 0.15 / width, bottom=0.55 / height, top=1.0 - 0.45 / height)
+    figure.subplots_adjust(hspace=between / (0.5 * (height - between - 1.0)))
+    figure.align_ylabels()
+
+
+def head(figure: Any, title: str) -> None:
+    """Put the title over the figure as it is written (no mathematics in it), wrapped and made smaller when long."""
+    width = figure.get_figwidth()
+    size, lines = 11.0, [title]
+    for size in (11.0, 9.0, 7.5):
+        letters = int(width * 72.0 / (0.56 * size))
+        lines = [line for part in title.splitlines() for line in textwrap.wrap(part, letters)] or [""]
+        if len(lines) <= 2:
+            break
+    if len(lines) > MOST_LINES:
+        lines = [*lines[: MOST_LINES - 1], lines[MOST_LINES - 1] + " ..."]
+    figure.suptitle("\n".join(lines), fontsize=size, parse_math=False, y=1.0 - 0.1 / figure.get_figheight(), va="top")
+
+
 def save(figure: Any, path: Path) -> None:
-    figure.savefig(path, dpi=DPI, pil_kwargs={"compress_level": 3})
+    figure.savefig(path, dpi=DPI, pil_kwargs={"compress_level": 1})
 
 
 def time_axis(duration: float) -> tuple[float, str]:

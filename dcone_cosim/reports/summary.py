@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ import numpy as np
 from dcone_cosim.handoff import spin_energy
 from dcone_cosim.master import HandoffRecord, RunResult
 from dcone_cosim.phases import PhaseResult
+from orbital.constants import EARTH_MU
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -48,7 +50,7 @@ def findings(run: RunResult) -> list[Finding]:
 
 
 def as_dict(run: RunResult) -> dict[str, Any]:
-    """For machines: `{phase: {key: {value, unit}}}` beside the status."""
+    """For machines: `{phase: {key: {value, unit}}}` beside the status; a text has no unit, a pure number the unit 1."""
     content: dict[str, Any] = {
         "scene": run.scene.name,
         "title": run.scene.title,
@@ -57,20 +59,23 @@ def as_dict(run: RunResult) -> dict[str, Any]:
         "exit_code": run.exit_code,
     }
     for row in findings(run):
-        content.setdefault(row.phase, {})[row.key] = {"value": row.value, "unit": row.unit or "1"}
+        unit = {} if isinstance(row.value, str) else {"unit": row.unit or "1"}
+        content.setdefault(row.phase, {})[row.key] = {"value": row.value, **unit}
     return content
 
 
 def show(run: RunResult, console: Console) -> None:
     from rich.table import Table
+    from rich.text import Text
 
-    table = Table(title=run.scene.title, title_justify="left", show_header=False, box=None, pad_edge=False)
+    title = Text(run.scene.title, style="table.title")
+    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold")
     table.add_column()
     table.add_column(justify="right")
     previous = ""
     for row in findings(run):
-        table.add_row(row.phase if row.phase != previous else "", row.label, row.shown())
+        table.add_row(row.phase if row.phase != previous else "", Text(row.label), Text(row.shown()))
         previous = row.phase
     console.print(table)
 
@@ -86,6 +91,7 @@ _CAPTURE_ROWS = (
     ("mouth.cord_length", "mouth cord still out at the end", "m"),
     ("mouth.girth", "girth it would have to pass", "m"),
     ("contact.loss", "energy lost in contact", "J"),
+    ("closing.work", "work of the winches", "J"),
     ("tether.paid_out", "tether paid out", "m"),
     ("net.nodes", "nodes of the net", ""),
     ("net.threads", "threads of the net", ""),
@@ -99,8 +105,9 @@ def _of_capture(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
         yield Finding("capture", "located_by", "found by", result.located_by)
     for name, label, unit in _CAPTURE_ROWS:
-        if name in last and last[name] >= 0.0:
-            value = last[name] if unit else int(last[name])
+        if name in last and not last[name] < 0.0:
+            whole = not unit and math.isfinite(last[name])
+            value = int(last[name]) if whole else last[name]
             yield Finding("capture", name, label, value, unit)
     parameters = run.parameters.get("capture", {})
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
@@ -123,9 +130,9 @@ def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
     yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
     yield Finding("hand-off", "relative_speed", "relative speed", 1e3 * float(np.linalg.norm(relative)), "mm/s")
     yield Finding("hand-off", "spin_dropped", "spin dropped (a point target has none)", dropped, "N m s")
-    yield Finding("hand-off", "spin_energy_dropped", "its energy", spin_energy(handed.joint), "J")
-    yield Finding("hand-off", "attachment_speed", "it moves the tether's end at most", 1e3 * speed, "mm/s")
-    yield Finding("hand-off", "tug_speed", "first tug expected at about", 1e3 * spin.tug_speed, "mm/s")
+    yield Finding("hand-off", "spin_energy_dropped", "energy of the dropped spin", spin_energy(handed.joint), "J")
+    yield Finding("hand-off", "attachment_speed", "it moves the tether's end by at most", 1e3 * speed, "mm/s")
+    yield Finding("hand-off", "tug_speed", "speed of the first tug, estimated", 1e3 * spin.tug_speed, "mm/s")
     if record.rows:
         worst = max(record.rows, key=lambda row: row.closure)
         yield Finding("hand-off", "ledger_closure", "ledger closes to", worst.closure)
@@ -152,10 +159,35 @@ def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     ):
         if name in last:
             yield Finding("removal", name, label, scale * last[name], unit)
-    if "center.semi_major_axis" in recorder and elapsed > 0.0:
-        axis = recorder["center.semi_major_axis"]
-        lowered = float(axis[0] - axis[-1])
-        yield Finding("removal", "lowered", "orbit lowered by", lowered, "m")
+    yield from _of_lowering(result)
+
+
+NEAR = 1e-4
+"""Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
+
+
+def _of_lowering(result: PhaseResult) -> Iterator[Finding]:
+    """How far the semi-major axis of the pair fell, where that is an orbit's.
+
+    Gravity on the pair is not that on its mass at the centre: it differs by (3/2) (s/r)^2 at most, and moves the
+    osculating axis by some of that. What is smaller than this is not told, and nothing when the pair is far apart;
+    a rate per day needs a whole revolution.
+    """
+    recorder = result.recorder
+    if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
+        return
+    axis = recorder["center.semi_major_axis"]
+    share = float(np.max(recorder["separation"])) / float(np.min(axis))
+    if not 0.0 <= share <= NEAR:
+        text = f"not told: the pair is up to {share:.2g} of its orbit's radius apart, at most {NEAR:g} may be"
+        yield Finding("removal", "lowered", "orbit lowered by", text)
+        return
+    lowered, elapsed = float(axis[0] - axis[-1]), result.end - result.start
+    if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
+        yield Finding("removal", "lowered", "orbit lowered by", "too little to tell from the pair's own motion")
+        return
+    yield Finding("removal", "lowered", "orbit lowered by", lowered, "m")
+    if elapsed >= 2.0 * math.pi * math.sqrt(float(axis[0]) ** 3 / EARTH_MU):
         yield Finding("removal", "lowering_rate", "that is", lowered / elapsed * DAY, "m/day")
 
 
@@ -164,19 +196,36 @@ def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
     if tugs is None:
         return
     note = " (no recoil)" if suffix else ""
-    yield Finding("removal", f"tugs{suffix}", f"tugs{note}", tugs.count)
+    taut = _is_taut_from_start(result)
+    yield Finding("removal", f"tugs{suffix}", f"tugs{note}", tugs.count - taut)
+    if taut:
+        yield Finding("removal", f"taut_from_start{suffix}", f"line{note}", "taut from the start")
     if tugs.missed:
-        yield Finding(
-            "removal", f"tugs_missed{suffix}", f"of these not seen: shorten the macro step{note}", tugs.missed
-        )
-    if not tugs.rows:
+        label = f"of these not seen: more than {tugs.ring} in one macro step{note}"
+        yield Finding("removal", f"tugs_missed{suffix}", label, tugs.missed)
+    real = sorted(number for number in tugs.rows if not (taut and number == 1))
+    if real:
+        time, peak, speed = tugs.rows[real[0]]
+        seen, mark = ("_seen", " seen") if real[0] > 1 + taut else ("", "")
+        yield Finding("removal", f"first_tug{seen}{suffix}", f"first tug{mark} after{note}", time - result.start, "s")
+        yield Finding("removal", f"first_tug{seen}_speed{suffix}", f"its speed{note}", 1e3 * speed, "mm/s")
+        yield Finding("removal", f"first_tug{seen}_peak{suffix}", f"its peak{note}", peak, "N")
+    recorder = result.recorder
+    if tugs.missed and "tether.tension_peak" in recorder:
+        largest = float(np.max(recorder["tether.tension_peak"]))
+    elif tugs.rows:
+        largest = max(peak for _, peak, _ in tugs.rows.values())
+    else:
         return
-    first = tugs.rows[min(tugs.rows)]
-    largest = max(tugs.rows.values(), key=lambda row: row[1])
-    yield Finding("removal", f"first_tug{suffix}", f"first tug after{note}", first[0] - result.start, "s")
-    yield Finding("removal", f"first_tug_speed{suffix}", f"its speed{note}", 1e3 * first[2], "mm/s")
-    yield Finding("removal", f"first_tug_peak{suffix}", f"its peak{note}", first[1], "N")
-    yield Finding("removal", f"largest_tug_peak{suffix}", f"largest tug{note}", largest[1], "N")
+    label = "largest tension" if taut else "largest tug"
+    seen, mark = ("_seen", " seen") if tugs.missed and "tether.tension_peak" not in recorder else ("", "")
+    yield Finding("removal", f"largest_tug{seen}_peak{suffix}", f"{label}{mark}{note}", largest, "N")
+
+
+def _is_taut_from_start(result: PhaseResult) -> bool:
+    """Whether the line carried tension as the phase began; the FMU counts that as its first tug."""
+    recorder = result.recorder
+    return "tether.taut" in recorder and len(recorder) > 0 and bool(recorder["tether.taut"][0])
 
 
 def _of_effort(name: str, result: PhaseResult) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""Whether a shot can reach its target at all: necessary conditions, in closed form, for a clear refusal before any run.
+"""Whether a shot can work at all: necessary conditions, in closed form, for a clear refusal before any build or run.
 
 They are bounds, not a prediction: a scene that passes may still miss, and only the run tells.
 """
@@ -6,12 +6,18 @@ They are bounds, not a prediction: a scene that passes may still miss, and only 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
+
+from fmu_src.net_capture.terms import LARGEST_MESH
 
 FALLEN_BACK = 2.0
 """A net flies on about as far again as it took to open while it falls back: at Table 1's shot the mouth, full at 21.5
 m, is below a tenth of its area beyond 40 m (measured with this model, undisturbed, damping ratio 0.106)."""
+WHOLE = 1e-6
+"""Share of a mesh by which the side may miss a whole number of them, as in the kernel."""
+
+Parameters = Mapping[str, float]
 
 
 class Refusal(NamedTuple):
@@ -22,8 +28,12 @@ class Refusal(NamedTuple):
     expected: str
 
 
-def _vector(parameters: Mapping[str, float], name: str) -> list[float]:
-    return [float(parameters[f"{name}[{i}]"]) for i in (1, 2, 3)]
+def _vector(parameters: Parameters, name: str, size: int = 3) -> list[float]:
+    return [float(parameters[f"{name}[{i}]"]) for i in range(1, size + 1)]
+
+
+def _text(values: list[float], unit: str = "") -> str:
+    return "[" + ", ".join(f"{value:g}{unit}" for value in values) + "]"
 
 
 def opening_distance(side: float, fold_side: float, speed: float, angle: float) -> float:
@@ -41,56 +51,139 @@ def opening_distance(side: float, fold_side: float, speed: float, angle: float) 
     return (side - fold_side) / (math.sqrt(2.0) * math.tan(angle)) if speed > 0.0 and angle > 0.0 else math.inf
 
 
-def refusals(parameters: Mapping[str, float], duration: float = math.inf) -> list[Refusal]:
-    """Why a shot can not reach its target: empty if nothing speaks against it.
+def node_count(meshes: int, segments: int) -> int:
+    """Nodes of a square net: its knots, and the inner nodes of every thread cut into segments."""
+    knots = meshes + 1
+    return knots * knots + 2 * (segments - 1) * knots * meshes
+
+
+def refusals(parameters: Parameters, duration: float = math.inf, capacity: int | None = None) -> list[Refusal]:
+    """Why a shot can not work: empty if nothing speaks against it.
 
     parameters   values by FMI name [SI]; names of terms that are not in the scene may be missing
     duration     of the capture phase [s]
+    capacity     how many nodes the FMU has outputs for; None: it has none
     """
-    if "target.size[1]" not in parameters:
-        return []
-    found = []
+    found = list(_about_net(parameters, capacity))
+    if "target.size[1]" in parameters:
+        found += _about_target(parameters)
+        found += _about_place(parameters)
+        if not found:
+            found += _about_shot(parameters, duration)
+    return found
+
+
+def _about_net(parameters: Parameters, capacity: int | None) -> Iterator[Refusal]:
+    """Meshes, nodes and fold of the net."""
+    side, mesh = float(parameters["net.side"]), float(parameters["net.mesh"])
+    segments, fold = int(parameters["net.segments"]), float(parameters["net.fold_side"])
+    if fold >= side:
+        yield Refusal("net.fold_side", f"{fold:g} m", f"must be smaller than net.side, {side:g} m")
+    meshes = side / mesh
+    whole = round(meshes) if math.isfinite(meshes) else 0
+    if meshes * segments > LARGEST_MESH + 0.5:
+        cut = f", each cut into {segments} segments" if segments > 1 else ""
+        expected = f"net.side = {side:g} m holds {meshes:.4g} meshes{cut}; at most {LARGEST_MESH} pieces per side"
+        yield Refusal("net.mesh", f"{mesh:g} m", expected)
+    elif whole < 2 or abs(meshes - whole) > WHOLE * whole:
+        expected = f"must be a whole number of net.mesh, {mesh:g} m, and at least 2; it is {meshes:.6g}"
+        yield Refusal("net.side", f"{side:g} m", expected)
+    elif capacity is not None and node_count(whole, segments) > capacity:
+        expected = f"must be at least {node_count(whole, segments)}, the nodes of this net"
+        yield Refusal("nodes.capacity", str(capacity), expected)
+
+
+def _about_target(parameters: Parameters) -> Iterator[Refusal]:
+    """Inertia and attitude that no rigid body has."""
+    inertia = _vector(parameters, "target.principal_inertia")
+    if any(inertia):
+        largest, others = max(inertia), sum(inertia) - max(inertia)
+        if min(inertia) <= 0.0 or largest > others * (1.0 + 1e-12):
+            expected = "none may be zero or exceed the sum of the other two (leave it out for a uniform box)"
+            yield Refusal("target.principal_inertia", _text(inertia, " kg m2"), expected)
+    attitude = _vector(parameters, "target.start_attitude", 4)
+    squared = sum(part * part for part in attitude)
+    if any(attitude) and not abs(squared - 1.0) <= 1e-6:
+        expected = f"must be a quaternion of unit length, scalar first; its length is {math.sqrt(squared):.6g}"
+        yield Refusal("target.start_attitude", _text(attitude), expected)
+
+
+def _about_place(parameters: Parameters) -> Iterator[Refusal]:
+    """A muzzle that no shot can leave."""
+    chaser = _vector(parameters, "chaser.start_position")
+    half = [0.5 * edge for edge in _vector(parameters, "target.size")]
+    attitude = _vector(parameters, "target.start_attitude", 4)
+    name, shown = "chaser.start_position", _text(chaser, " m")
+    if not any(chaser) and not any(_vector(parameters, "shot.axis")):
+        yield Refusal(name, shown, "stands in the target's centre of mass, and shot.axis names no direction")
+    elif "contact.restitution" in parameters:
+        inside = _in_body_axes(attitude, chaser)
+        if all(abs(x) < h for x, h in zip(inside, half, strict=True)):
+            yield Refusal(name, shown, "must be outside the target: the folded net would begin inside it")
+
+
+def _in_body_axes(attitude: list[float], vector: list[float]) -> list[float]:
+    """A vector of the frame in the axes of a body with this attitude; zero: aligned."""
+    length = math.hypot(*attitude)
+    if length == 0.0:
+        return vector
+    w, x, y, z = (part / length for part in attitude)
+    a, b, c = vector
+    return [
+        (1 - 2 * (y * y + z * z)) * a + 2 * (x * y + w * z) * b + 2 * (x * z - w * y) * c,
+        2 * (x * y - w * z) * a + (1 - 2 * (x * x + z * z)) * b + 2 * (y * z + w * x) * c,
+        2 * (x * z + w * y) * a + 2 * (y * z - w * x) * b + (1 - 2 * (x * x + y * y)) * c,
+    ]
+
+
+def _about_shot(parameters: Parameters, duration: float) -> Iterator[Refusal]:
+    """Whether the net gets to the target, in time, open, and wide enough."""
     chaser = _vector(parameters, "chaser.start_position")
     size = _vector(parameters, "target.size")
     axis = _vector(parameters, "shot.axis")
     distance = math.hypot(*chaser)
-    where = f"{distance:.4g} m from the target"
-    side = float(parameters["net.side"])
-    speed = float(parameters["bullets.speed"])
-    angle = float(parameters["bullets.angle"])
-    near = distance - 0.5 * math.hypot(*size)
+    here = f"is {distance:.4g} m from the target"
+    side, fold = float(parameters["net.side"]), float(parameters["net.fold_side"])
+    speed, angle = float(parameters["bullets.speed"]), float(parameters["bullets.angle"])
+    half_diagonal = 0.5 * math.hypot(*size)
+    near = distance - half_diagonal
+    place, shown = "chaser.start_position", _text(chaser, " m")
     tether = parameters.get("tether.length")
     if tether is not None and tether < distance:
-        found.append(
-            Refusal("tether.length", f"{tether:g} m", f"at least {distance:.4g} m, the distance to the target")
-        )
+        expected = f"must be at least {distance:.4g} m, the distance to the target"
+        yield Refusal("tether.length", f"{tether:g} m", expected)
     girth = 2.0 * (sum(size) - max(size))
     if 4.0 * side <= girth:
-        found.append(
-            Refusal("net.side", f"{side:g} m", f"more than {girth / 4:.4g} m: the mouth must go round the target")
-        )
+        expected = f"must be more than {girth / 4:.4g} m: the mouth must go round the target"
+        yield Refusal("net.side", f"{side:g} m", expected)
     forward = speed * math.cos(angle)
-    if forward <= 1e-9:
-        found.append(
-            Refusal("bullets.speed", f"{speed:g} m/s", "a speed along the shot axis, or the net never arrives")
-        )
-    elif near / forward > duration:
-        expected = (
-            f"at most {forward * duration + distance - near:.4g} m: the net flies {forward:.3g} m/s for {duration:g} s"
-        )
-        found.append(Refusal("chaser.start_position", where, expected))
-    limit = FALLEN_BACK * opening_distance(side, float(parameters["net.fold_side"]), speed, angle)
-    if forward > 1e-9 and near > limit:
-        expected = f"at most {limit + distance - near:.4g} m: farther out the net has fallen back on itself"
-        found.append(Refusal("chaser.start_position", where, expected))
+    if angle <= 0.0:
+        expected = "must be greater than 0: bullets that fly side by side never open the net"
+        yield Refusal("bullets.angle", f"{math.degrees(angle):g} deg", expected)
+    elif speed <= 0.0:
+        yield Refusal("bullets.speed", f"{speed:g} m/s", "must be greater than 0, or the net never arrives")
+    elif forward <= 1e-9 * speed:
+        expected = "must be less than 90 deg: without speed along the shot axis the net never arrives"
+        yield Refusal("bullets.angle", f"{math.degrees(angle):g} deg", expected)
+    else:
+        if near / forward > duration:
+            expected = (
+                f"{here}; in {duration:g} s the net flies {forward * duration:.4g} m at {forward:.3g} m/s: "
+                f"come within {forward * duration + half_diagonal:.4g} m, or raise duration or bullets.speed"
+            )
+            yield Refusal(place, shown, expected)
+        limit = FALLEN_BACK * opening_distance(side, fold, speed, angle)
+        if near > limit:
+            expected = f"{here}; must be at most {limit + half_diagonal:.4g} m: farther out the net has fallen back"
+            yield Refusal(place, shown, f"{expected} on itself")
     length = math.hypot(*axis)
     if length > 0.0 and distance > 0.0:
         along = -sum(a * c for a, c in zip(axis, chaser, strict=True)) / length
         beside = math.sqrt(max(distance * distance - along * along, 0.0))
-        if along <= 0.0 or beside > 0.5 * side + 0.5 * math.hypot(*size):
-            found.append(
-                Refusal(
-                    "shot.axis", f"passes {beside:.4g} m beside the target", f"within {0.5 * side:.4g} m of its centre"
-                )
-            )
-    return found
+        widest = 0.5 * side + half_diagonal
+        if along <= 0.0:
+            expected = f"points away from the target, which lies along {_text([0.0 - c / distance for c in chaser])}"
+            yield Refusal("shot.axis", _text(axis), expected)
+        elif beside > widest:
+            expected = f"passes {beside:.4g} m beside the target's centre; must be within {widest:.4g} m of it"
+            yield Refusal("shot.axis", _text(axis), expected)

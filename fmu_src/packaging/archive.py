@@ -55,7 +55,7 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
         cache.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
     except OSError as error:
-        raise tools.BuildError(f"the FMU cache {cache} can not be written: {error.strerror}") from None
+        raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
     name = identifier(interface)
     guid = "{" + f"{key[:8]}-{key[8:12]}-{key[12:16]}-{key[16:20]}-{key[20:32]}" + "}"
     announce(f"building {interface.model.name} with {', '.join(interface.terms)} (once; kept in {cache})")

@@ -11,26 +11,26 @@ import pytest
 from dcone_cosim.scene import PhaseScene, Scene
 
 
+def scene_of(*phases: str, **handoff: Any) -> Scene:
+    """A scene for the stand-ins, of the named phases."""
+    options = {"hand_over": "captured", "after_capture": math.inf, "snapshots": []}
+    known = {
+        "capture": PhaseScene("capture", "mock", {}, {}, 0.5, 20.0, options),
+        "removal": PhaseScene(
+            "removal",
+            "mock",
+            {},
+            {"tether.rest_length": 20.0, "thrust.level": -0.01, "orbit.altitude": 800e3},
+            10.0,
+            100.0,
+            {},
+            {"tether.rest_length": 12.0},
+            {"start.condition": ("same_orbit", "handed_over")},
+        ),
+    }
+    return Scene("mock", "A scene of stand-ins", "title = 'mock'\n", tuple(known[p] for p in phases), handoff)
+
+
 @pytest.fixture
 def make_scene() -> Callable[..., Scene]:
-    """A scene for the stand-ins, of the named phases."""
-
-    def make(*phases: str, **handoff: Any) -> Scene:
-        options = {"hand_over": "captured", "after_capture": math.inf, "snapshots": []}
-        known = {
-            "capture": PhaseScene("capture", "mock", {}, {}, 0.5, 20.0, options),
-            "removal": PhaseScene(
-                "removal",
-                "mock",
-                {},
-                {"tether.rest_length": 20.0, "thrust.level": -0.01, "orbit.altitude": 800e3},
-                10.0,
-                100.0,
-                {},
-                {"tether.rest_length": 12.0},
-                {"start.condition": ("same_orbit", "handed_over")},
-            ),
-        }
-        return Scene("mock", "A scene of stand-ins", "title = 'mock'\n", tuple(known[p] for p in phases), handoff)
-
-    return make
+    return scene_of

@@ -61,3 +61,14 @@ def test_tugs_that_left_the_ring_are_counted_as_missed() -> None:
     tugs.update(5, np.array([[50.0, 1.0, 0.1], [40.0, 1.0, 0.1]]))
     assert sorted(tugs.rows) == [4, 5]
     assert tugs.missed == 3
+
+
+def test_no_memory_is_taken_for_rows_that_may_never_come() -> None:
+    recorder = Recorder(["a"], VARIABLES, expected_rows=10**15)
+    assert sum(block.nbytes for block in recorder._blocks) < 1e6
+    for i in range(3000):
+        recorder.add(float(i), np.array([2.0 * i]))
+    np.testing.assert_array_equal(recorder["time"], np.arange(3000))
+    np.testing.assert_array_equal(recorder["a"], 2.0 * np.arange(3000))
+    assert recorder.last() == {"a": 5998.0}
+    assert sum(block.nbytes for block in recorder._blocks) < 4 * 3000 * 2 * 8

@@ -77,14 +77,14 @@ def test_a_crash_while_replacing_leaves_the_old_run(result: RunResult, tmp_path:
         raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        put(result, tmp_path / "run", draw=crash)
+        put(result, tmp_path / "run", draw=crash, force=True)
     assert {p.name: p.read_bytes() for p in (tmp_path / "run").iterdir()} == before
     assert [p.name for p in tmp_path.iterdir()] == ["run"]
 
 
 def test_replacing_leaves_only_the_new_run(result: RunResult, tmp_path: Path) -> None:
     put(result, tmp_path / "run", with_csv=True)
-    put(result, tmp_path / "run")
+    put(result, tmp_path / "run", force=True)
     assert not (tmp_path / "run" / "capture.csv").exists()
     assert [p.name for p in tmp_path.iterdir()] == ["run"]
 
@@ -101,3 +101,46 @@ def test_a_failed_run_is_kept_and_says_so(make_scene: Callable[..., Scene], tmp_
     assert provenance["status"] == "capture failed"
     assert provenance["exit_code"] == 3
     assert (tmp_path / "run" / "capture.parquet").exists()
+
+
+def test_what_has_the_name_keeps_it(result: RunResult, tmp_path: Path) -> None:
+    """A full folder, an empty one that appeared meanwhile, a file, a link to nowhere: the results go beside each."""
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis.tex").write_text("years of work")
+    (tmp_path / "file").write_text("x")
+    (tmp_path / "link").symlink_to("nowhere")
+    for name in ("full", "file", "link"):
+        assert write(result, tmp_path / name, {}, {}, datetime.now(UTC)) == tmp_path / f"{name}-2"
+        assert (tmp_path / f"{name}-2" / "summary.json").exists()
+        assert write(result, tmp_path / name, {}, {}, datetime.now(UTC), force=True) == tmp_path / f"{name}-3"
+    assert (tmp_path / "full" / "thesis.tex").read_text() == "years of work"
+    put(result, tmp_path / "late", draw=lambda _: (tmp_path / "late").mkdir())
+    assert not list((tmp_path / "late").iterdir())
+    assert (tmp_path / "late-2" / "summary.json").exists()
+    assert not [p.name for p in tmp_path.iterdir() if p.name.startswith(".")]
+
+
+def test_an_interrupt_while_swapping_brings_the_old_run_back(
+    result: RunResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put(result, tmp_path / "run")
+    (tmp_path / "run" / "mine.txt").write_text("old")
+    rename = Path.rename
+
+    def interrupted(self: Path, target: Path) -> Path:
+        if target == tmp_path / "run" and self.name != "old":
+            raise KeyboardInterrupt
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "rename", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        put(result, tmp_path / "run", force=True)
+    assert (tmp_path / "run" / "mine.txt").read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["run"]
+
+
+def test_the_times_of_tugs_say_which_clock(result: RunResult, tmp_path: Path) -> None:
+    put(result, tmp_path / "run")
+    for name in ("tugs", "removal_without_recoil_tugs"):
+        field = pyarrow.parquet.read_table(tmp_path / "run" / f"{name}.parquet").schema.field("time")
+        assert b"since the shot" in field.metadata[b"clock"]

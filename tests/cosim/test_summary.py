@@ -1,0 +1,214 @@
+"""What is told of a run is so: tugs that were missed, a line taut from the start, orbits, titles as written."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from time import sleep
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from dcone_cosim.component import VariableInfo
+from dcone_cosim.master import RunResult, run_scene
+from dcone_cosim.phases import PhaseResult
+from dcone_cosim.progress import Progress
+from dcone_cosim.recorder import Recorder, TugLog
+from dcone_cosim.reports import net_view, side_by_side, style, summary
+from dcone_cosim.reports.figures import draw_all
+from dcone_cosim.run import as_json
+from dcone_cosim.scene import Scene
+from tests.cosim.mock_components import MockCapture, MockRemoval
+
+MakeScene = Callable[..., Scene]
+HOSTILE = "tow [/b] [red]x $\\frac{ $ \\n 100 % of it"
+
+
+def removal_run(scene: Scene, columns: dict[str, Sequence[float]], times: Sequence[float], tugs: TugLog) -> RunResult:
+    """A run of a removal with the given columns."""
+    names = list(columns)
+    kinds = {name: VariableInfo(name, i, "Real", "1", "output", "") for i, name in enumerate(names)}
+    recorder = Recorder(names, kinds)
+    for i, time in enumerate(times):
+        recorder.add(time, np.array([columns[name][i] for name in names]))
+    return RunResult(scene, {"removal": PhaseResult("removal", times[0], recorder, tugs=tugs)})
+
+
+def found(run: RunResult) -> dict[str, summary.Finding]:
+    return {row.key: row for row in summary.findings(run)}
+
+
+class TestTugs:
+    def columns(self, taut: float = 0.0) -> dict[str, Sequence[float]]:
+        return {"tether.tension_peak": [0.0, 30.0, 2.0], "tether.taut": [taut, 0.0, 1.0]}
+
+    def test_missed_ones_are_told_and_the_largest_is_of_the_whole_run(self, make_scene: MakeScene) -> None:
+        tugs = TugLog(2)
+        tugs.update(5, np.array([[90.0, 2.0, 0.01], [80.0, 3.0, 0.02]]))
+        rows = found(removal_run(make_scene("removal"), self.columns(), [0.0, 50.0, 100.0], tugs))
+        assert (rows["tugs"].value, rows["tugs_missed"].value) == (5, 3)
+        assert "first_tug" not in rows
+        assert rows["first_tug_seen"].label == "first tug seen after"
+        assert rows["first_tug_seen"].value == 80.0
+        assert rows["largest_tug_peak"].value == 30.0
+
+    def test_none_missed(self, make_scene: MakeScene) -> None:
+        tugs = TugLog(2)
+        tugs.update(1, np.array([[40.0, 30.0, 0.01], [0.0, 0.0, 0.0]]))
+        rows = found(removal_run(make_scene("removal"), self.columns(), [0.0, 50.0, 100.0], tugs))
+        assert (rows["first_tug"].value, rows["largest_tug_peak"].value) == (40.0, 30.0)
+        assert not [key for key in rows if "seen" in key or "missed" in key]
+
+    def test_a_line_taut_from_the_start_is_no_tug(self, make_scene: MakeScene) -> None:
+        tugs = TugLog(2)
+        tugs.update(2, np.array([[60.0, 2.0, 0.01], [0.0, 30.0, 0.0]]))
+        rows = found(removal_run(make_scene("removal"), self.columns(taut=1.0), [0.0, 50.0, 100.0], tugs))
+        assert rows["taut_from_start"].value == "taut from the start"
+        assert (rows["tugs"].value, rows["first_tug"].value) == (1, 60.0)
+        alone = TugLog(2)
+        alone.update(1, np.array([[0.0, 30.0, 0.0], [0.0, 0.0, 0.0]]))
+        rows = found(removal_run(make_scene("removal"), self.columns(taut=1.0), [0.0, 50.0, 100.0], alone))
+        assert rows["tugs"].value == 0
+        assert "first_tug" not in rows
+
+
+class TestLowering:
+    def rows(self, make_scene: MakeScene, separation: float, lowered: float, day: float) -> dict[str, summary.Finding]:
+        columns = {
+            "center.semi_major_axis": [7.178e6, 7.178e6 - lowered],
+            "separation": [separation, 0.5 * separation],
+            "altitude": [8e5, 8e5],
+        }
+        return found(removal_run(make_scene("removal"), columns, [0.0, 86400.0 * day], TugLog(1)))
+
+    def test_of_a_pair_close_together(self, make_scene: MakeScene) -> None:
+        rows = self.rows(make_scene, 12.0, 554.8, 1.0)
+        assert rows["lowered"].value == pytest.approx(554.8)
+        assert rows["lowering_rate"].value == pytest.approx(554.8)
+
+    def test_not_of_a_pair_far_apart(self, make_scene: MakeScene) -> None:
+        rows = self.rows(make_scene, 20e3, 554.8, 1.0)
+        assert "not told" in str(rows["lowered"].value)
+        assert "lowering_rate" not in rows
+
+    def test_no_rate_from_a_part_of_a_revolution(self, make_scene: MakeScene) -> None:
+        assert "lowering_rate" not in self.rows(make_scene, 12.0, 5.0, 0.01)
+
+    def test_not_where_it_is_noise(self, make_scene: MakeScene) -> None:
+        assert "too little" in str(self.rows(make_scene, 500.0, 0.01, 1.0)["lowered"].value)
+
+
+@pytest.fixture
+def whole(make_scene: MakeScene) -> RunResult:
+    def instantiate(phase: str, name: str):
+        return MockCapture(reports=True) if phase == "capture" else MockRemoval(tugs=[(12.0, 5.0, 0.01)])
+
+    return run_scene(make_scene("capture", "removal"), instantiate, Progress())
+
+
+def test_texts_carry_no_unit_and_numbers_do(whole: RunResult) -> None:
+    content = summary.as_dict(whole)
+    for phase in ("capture", "hand-off", "removal"):
+        for row in content[phase].values():
+            assert isinstance(row["value"], str) != ("unit" in row)
+
+
+def test_the_work_of_the_winches_is_told(make_scene: MakeScene) -> None:
+    class Winches(MockCapture):
+        def __init__(self) -> None:
+            super().__init__()
+            self.declare(["closing.work"], "output", 29.5)
+
+    rows = found(run_scene(make_scene("capture"), lambda *_: Winches(), Progress()))
+    assert (rows["closing.work"].value, rows["closing.work"].unit) == (29.5, "J")
+
+
+def test_a_title_is_printed_as_it_is_written(whole: RunResult) -> None:
+    whole.scene = replace(whole.scene, title=HOSTILE)
+    console = Console(file=io.StringIO(), width=200)
+    summary.show(whole, console)
+    assert HOSTILE in console.file.getvalue()  # type: ignore[attr-defined]
+
+
+def test_numbers_that_are_not_finite_are_told_and_written(make_scene: MakeScene) -> None:
+    columns = {"tether.tension": [1.0, np.nan], "separation": [np.inf, -np.inf], "altitude": [0.0, np.nan]}
+    run = removal_run(make_scene("removal"), columns, [0.0, 1.0], TugLog(1))
+    content = json.loads(as_json(summary.as_dict(run)))
+    assert content["removal"]["tether.tension"]["value"] == "nan"
+    assert content["removal"]["separation"]["value"] == "-inf"
+    summary.show(run, Console(file=io.StringIO()))
+    numbers = {"a": np.float64(np.inf), "b": np.array([1.0, np.nan]), "c": (1, True, None, Path("x"))}
+    assert json.loads(as_json(numbers)) == {"a": "inf", "b": [1.0, "nan"], "c": [1, True, None, "x"]}
+
+
+class TestFigures:
+    @pytest.fixture
+    def towed(self, make_scene: MakeScene) -> RunResult:
+        tugs = TugLog(1)
+        tugs.update(1, np.array([[0.5, 3.0, 0.1]]))
+        columns = {"tether.tension": [0.0, 1.0, 2.0], "chaser.radius": [7e6] * 3, "target.radius": [7e6] * 3}
+        return removal_run(make_scene("removal"), columns, [0.0, 1.0, 2.0], tugs)
+
+    @pytest.mark.parametrize("title", [HOSTILE, "$x^$", "", "long " * 200, "x" * 2000])
+    def test_any_title_can_be_drawn(self, towed: RunResult, tmp_path: Path, title: str) -> None:
+        towed.scene = replace(towed.scene, title=title)
+        assert draw_all(towed, tmp_path) == []
+        assert {p.name for p in tmp_path.iterdir()} == {"orbital_radius.png", "tether_tension.png"}
+
+    def test_one_that_fails_is_named_and_the_others_are_drawn(
+        self, towed: RunResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr("dcone_cosim.reports.figures._orbit", lambda *_: 1 / 0)
+        (note,) = draw_all(towed, tmp_path)
+        assert "orbital_radius.png" in note
+        assert "ZeroDivisionError" in note
+        assert [p.name for p in tmp_path.iterdir()] == ["tether_tension.png"]
+
+    @pytest.mark.parametrize("panels", range(1, 9))
+    def test_the_grid_holds_its_panels_and_no_empty_row(self, panels: int) -> None:
+        rows, columns = net_view.grid(panels)
+        assert rows * columns >= panels > (rows - 1) * columns
+        assert columns <= 4
+
+    def test_long_titles_stay_within_the_figure(self) -> None:
+        figure = style.new_figure(8.5, 6.5)
+        style.head(figure, "a title that is rather long and goes on " * 5)
+        figure.canvas.draw()
+        box = figure._suptitle.get_window_extent()
+        assert box.x0 >= 0.0
+        assert box.x1 <= figure.bbox.x1
+
+
+class TestSideBySide:
+    def test_both_parts_are_reported_in_order(self) -> None:
+        assert side_by_side.halves(lambda tasks: [f"{t}!" for t in tasks], "a", "bc") == ["a!", "b!", "c!"]
+        assert side_by_side.halves(lambda tasks: [f"{t}!" for t in tasks], "", "bc") == ["b!", "c!"]
+
+    def test_what_the_other_process_fails_to_do_is_done_here(self) -> None:
+        here = os.getpid()
+
+        def work(tasks: Sequence[str]) -> list[str]:
+            if os.getpid() != here:
+                os._exit(1)
+            return list(tasks)
+
+        assert side_by_side.halves(work, "a", "b") == ["a", "b"]
+
+    def test_an_interrupt_leaves_no_process(self) -> None:
+        here = os.getpid()
+
+        def work(tasks: Sequence[str]) -> list[str]:
+            if os.getpid() == here:
+                raise KeyboardInterrupt
+            sleep(30.0)
+            return []
+
+        with pytest.raises(KeyboardInterrupt):
+            side_by_side.halves(work, "a", "b")
+        with pytest.raises(ChildProcessError):
+            os.waitpid(-1, os.WNOHANG)
