@@ -104,7 +104,7 @@ def _start(component: Steppable, parameters: Mapping[str, float], start: float, 
     return parameters_of(component, parameters)
 
 
-def _cannot_begin(scene: Scene, phase: str, error: FmuError) -> InputError:
+def cannot_begin(scene: Scene, phase: str, error: FmuError) -> InputError:
     """An FMU's refusal of its parameters, in the scene's terms: the file, the lines, the FMU's words."""
     source = scene.source or scene.name
     if not isinstance(error, CallError):
@@ -130,7 +130,7 @@ def _run_capture(
             )
             loop = CaptureLoop(component, plan, progress)
         except FmuError as error:
-            raise _cannot_begin(run.scene, "capture", error) from error
+            raise cannot_begin(run.scene, "capture", error) from error
         progress.begin("capture", 0.0, phase.duration)
         result = loop.run()
         progress.end()
@@ -191,7 +191,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
             loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress)
         except FmuError as error:
             if record is None:
-                raise _cannot_begin(run.scene, "removal", error) from error
+                raise cannot_begin(run.scene, "removal", error) from error
             record.failure = str(error)
             run.fail("hand-off violated", f"the removal does not accept what is handed over\n  {error}", HANDOFF_FAILED)
             return

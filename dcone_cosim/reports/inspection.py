@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from dcone_cosim import build
 from dcone_cosim.component import Archive
+from dcone_cosim.errors import FmuError
+from dcone_cosim.master import cannot_begin
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import PhaseScene, Scene
 
@@ -27,8 +29,11 @@ def show(scene: Scene, console: Console, progress: Progress) -> None:
             table.add_column(header, overflow="fold")
         for row in _terms(phase):
             table.add_row(*(Text(cell) for cell in row))
-        with Archive(paths[phase.name]) as archive:
-            sizes = _sizes(phase, archive)
+        try:
+            with Archive(paths[phase.name]) as archive:
+                sizes = _sizes(phase, archive)
+        except FmuError as error:
+            raise cannot_begin(scene, phase.name, error) from None
         console.print(table)
         for label, text in sizes:
             console.print(f"  {label}: {text}", markup=False, highlight=False, soft_wrap=True)
