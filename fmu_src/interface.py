@@ -223,9 +223,6 @@ class Interface:
                 yield (name if v.at_interface else "@" + name), slot, v, start
                 slot += 1
 
-    def has(self, group: str) -> bool:
-        return group in self.terms
-
     def make_record(self) -> npt.NDArray[Any]:
         """A record with every start value, as an array of length 1."""
         record = np.zeros(1, self.dtype)

@@ -23,11 +23,6 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]
 
 
-def identifier(interface: Interface) -> str:
-    """FMI model identifier: the model's name, a C name."""
-    return interface.model.name
-
-
 def fingerprint(interface: Interface, platform: link.Platform) -> str:
     """Hash of all that goes into an FMU: kernels, shim, table, terms, tools, platform."""
     digest = hashlib.sha256()
@@ -56,14 +51,14 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
         folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
     except OSError as error:
         raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
-    name = identifier(interface)
+    name = interface.model.name
     guid = "{" + f"{key[:8]}-{key[8:12]}-{key[12:16]}-{key[16:20]}-{key[20:32]}" + "}"
     announce(f"building {interface.model.name} with {', '.join(interface.terms)} (once; kept in {cache})")
     try:
         ir = folder / "model.ll"
         compile.emit(interface.model.name, interface.terms, ir)
         header = folder / "model.h"
-        header.write_text(description.header(interface, name, guid, platform.processors))
+        header.write_text(description.header(interface, name, guid))
         library = folder / f"{name}{platform.suffix}"
         announce(f"linking {interface.model.name} for {platform.folder}")
         link.link(ir, header, library, platform)

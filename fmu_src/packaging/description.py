@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from fmu_src.interface import HEAD, Interface, Value, Variable
+from fmu_src.interface import Interface, Value, Variable
 
 GENERATOR = "D-CoNe co-simulation"
 STYLE = (
@@ -145,7 +145,7 @@ def _c_string(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def header(interface: Interface, identifier: str, guid: str, processors: tuple[str, ...]) -> str:
+def header(interface: Interface, identifier: str, guid: str) -> str:
     """The C header that tells the shim about one model: slots, start values, bounds, faults."""
     rows = list(interface.scalars())
     lines = [
@@ -153,8 +153,6 @@ def header(interface: Interface, identifier: str, guid: str, processors: tuple[s
         f"#define DCONE_IDENTIFIER {_c_string(identifier)}",
         f"#define DCONE_GUID {_c_string(guid)}",
         f"#define DCONE_SLOTS {len(rows)}",
-        f"#define DCONE_HEAD {len(HEAD)}",
-        *(f"#define DCONE_HAS_{processor} 1" for processor in processors),
     ]
     kinds = {"Real": 1, "Integer": 2, "Boolean": 3}
     access = {"state": 0, "output": 1, "parameter": 2, "input": 3}

@@ -54,7 +54,6 @@ typedef struct {
 #define ARRAY void *, void *, int64_t, int64_t, slot *, int64_t, int64_t
 typedef int32_t entry_function(int32_t *result, void **exception, int64_t command, ARRAY, ARRAY, double time, double step);
 
-#ifdef DCONE_HAS_x86_64_v3
 #include <cpuid.h>
 entry_function dcone_entry_x86_64, dcone_entry_x86_64_v3;
 
@@ -71,10 +70,6 @@ static int runs_v3(void) {
 }
 
 static entry_function *entry(void) { return runs_v3() ? dcone_entry_x86_64_v3 : dcone_entry_x86_64; }
-#else
-entry_function DCONE_ONLY_ENTRY;
-static entry_function *entry(void) { return DCONE_ONLY_ENTRY; }
-#endif
 
 static int32_t run(instance *i, int64_t command, double time, double step) {
     int32_t result = 0;
