@@ -26,7 +26,7 @@ class Archives:
     """The unpacked FMU of every phase of a scene; closing removes the temporary folders."""
 
     def __init__(self, scene: Scene, progress: Progress) -> None:
-        paths = build.ensure_fmus({phase.name: phase.terms for phase in scene.phases}, progress.say)
+        paths = build.ensure_fmus({phase.name: phase.main.terms for phase in scene.phases}, progress.say)
         self._of: dict[str, Archive] = {}
         try:
             for phase, path in paths.items():
@@ -132,7 +132,7 @@ def write_fmus(name: str, out: Path, progress: Progress) -> list[Path]:
     scene = named(name)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
-    terms = {phase.name: phase.terms for phase in scene.phases}
+    terms = {phase.name: phase.main.terms for phase in scene.phases}
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)

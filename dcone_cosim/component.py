@@ -56,19 +56,26 @@ class Readable(Protocol):
 
 
 class Steppable(Protocol):
-    """What the master asks of a component."""
+    """What the master asks of a component. All values are SI.
+
+    can_save          its state can be kept and restored, under several keys at a time
+    can_interpolate   it takes input derivatives
+    """
 
     name: str
     variables: Mapping[str, VariableInfo]
     can_save: bool
+    can_interpolate: bool
 
     def set(self, values: Mapping[str, float]) -> None: ...
+    def set_rates(self, rates: Mapping[str, float]) -> None: ...
     def get(self, names: Sequence[str]) -> dict[str, float]: ...
     def reader(self, names: Sequence[str]) -> Readable: ...
-    def initialise(self, start: float, stop: float | None = None) -> None: ...
+    def enter_initialisation(self, start: float, stop: float | None = None) -> None: ...
+    def exit_initialisation(self) -> None: ...
     def step(self, time: float, size: float) -> None: ...
-    def save(self) -> None: ...
-    def restore(self) -> None: ...
+    def save(self, key: str = "") -> None: ...
+    def restore(self, key: str = "") -> None: ...
     def close(self) -> None: ...
 
 
@@ -161,7 +168,8 @@ class Component:
         self.variables: Mapping[str, VariableInfo] = archive.variables
         about = archive.description.coSimulation
         self.can_save = bool(about.canGetAndSetFMUstate)
-        self._state: Any = None
+        self.can_interpolate = bool(about.canInterpolateInputs)
+        self._states: dict[str, Any] = {}
         self._environment = next(_environment)
         _messages[self._environment] = deque(maxlen=20)
         callbacks = fmi2.fmi2CallbackFunctions.from_buffer_copy(_callbacks)
@@ -207,9 +215,22 @@ class Component:
 
     def initialise(self, start: float, stop: float | None = None) -> None:
         """Take the parameters as set and begin at `start` [s]."""
+        self.enter_initialisation(start, stop)
+        self.exit_initialisation()
+
+    def enter_initialisation(self, start: float, stop: float | None = None) -> None:
+        """Take the parameters as set and prepare to begin at `start` [s]."""
         self._call("setupExperiment", startTime=start, stopTime=stop)
         self._call("enterInitializationMode")
+
+    def exit_initialisation(self) -> None:
+        """Begin, with what was set meanwhile."""
         self._call("exitInitializationMode")
+
+    def set_rates(self, rates: Mapping[str, float]) -> None:
+        """Let inputs move at these rates [SI/s] over the next step."""
+        references = [self.reference(name).reference for name in rates]
+        self._call("setRealInputDerivatives", references, [1] * len(rates), list(rates.values()))
 
     def step(self, time: float, size: float) -> None:
         """Advance from `time` by `size` [s]; a step refused is an error with the FMU's own words, never tried again."""
@@ -221,30 +242,29 @@ class Component:
                 reached = self._discarded_at()
             raise self._error(error, f" stopped at t = {time:.9g} s in a step of {size:.6g} s{reached}") from None
 
-    def save(self) -> None:
-        """Keep the present state, replacing the one kept before."""
-        if self._state is None:
-            self._state = fmi2.fmi2FMUstate()
+    def save(self, key: str = "") -> None:
+        """Keep the present state, replacing the one kept before under this key."""
+        state = self._states.setdefault(key, fmi2.fmi2FMUstate())
         try:
-            self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(self._state))
+            self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(state))
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
 
-    def restore(self) -> None:
-        """Go back to the state kept last."""
-        self._call("setFMUstate", self._state)
+    def restore(self, key: str = "") -> None:
+        """Go back to the state kept last under this key."""
+        self._call("setFMUstate", self._states[key])
 
     def state_size(self) -> int:
         """Bytes of a serialised state: what an instance holds."""
         self.save()
         size = ctypes.c_size_t()
-        self._fmu.fmi2SerializedFMUstateSize(self._fmu.component, self._state, ctypes.byref(size))
+        self._fmu.fmi2SerializedFMUstateSize(self._fmu.component, self._states[""], ctypes.byref(size))
         return size.value
 
     def close(self) -> None:
         if self._fmu is not None:
-            if self._state is not None:
-                self._fmu.freeFMUstate(self._state)
+            for state in self._states.values():
+                self._fmu.freeFMUstate(state)
             self._fmu.freeInstance()
             self._fmu = None
             _messages.pop(self._environment)

@@ -100,7 +100,8 @@ def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> Run
 def _start(component: Steppable, parameters: Mapping[str, float], start: float, duration: float) -> dict[str, float]:
     """Set parameters and initialise; returns every parameter read back."""
     component.set(parameters)
-    component.initialise(start, start + duration)
+    component.enter_initialisation(start, start + duration)
+    component.exit_initialisation()
     return parameters_of(component, parameters)
 
 
@@ -119,7 +120,7 @@ def _run_capture(
     component = instantiate("capture", "capture")
     try:
         try:
-            run.parameters["capture"] = _start(component, phase.parameters, 0.0, phase.duration)
+            run.parameters["capture"] = _start(component, phase.main.parameters, 0.0, phase.duration)
             plan = CapturePlan(
                 phase.macro_step,
                 phase.duration,
@@ -165,17 +166,17 @@ def _words(name: str) -> str:
 
 
 def _altitude(run: RunResult, removal: PhaseScene) -> float:
-    given = removal.parameters.get("orbit.altitude")
-    return float(removal.defaults["orbit.altitude"] if given is None else given)
+    given = removal.main.parameters.get("orbit.altitude")
+    return float(removal.main.defaults["orbit.altitude"] if given is None else given)
 
 
 def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress) -> None:
-    parameters, start = dict(phase.parameters), 0.0
+    parameters, start = dict(phase.main.parameters), 0.0
     record = run.handoff
     if record is not None:
         start = record.time
         parameters |= record.handed.parameters
-        anomaly = parameters.get("orbit.true_anomaly", phase.defaults.get("orbit.true_anomaly", 0.0))
+        anomaly = parameters.get("orbit.true_anomaly", phase.main.defaults.get("orbit.true_anomaly", 0.0))
         parameters["orbit.true_anomaly"] = advanced(anomaly, record.handed.turning[2] * start)
         parameters["start.condition"] = phase.choice("start.condition", HANDED_OVER)
         try:
@@ -223,7 +224,7 @@ def _check_before(run: RunResult, phase: PhaseScene, record: HandoffRecord) -> N
     """Refuse a hand-off that the removal could not carry truthfully."""
 
     def value(name: str, absent: float) -> float:
-        return float(phase.parameters.get(name, phase.defaults.get(name, absent)))
+        return float(phase.main.parameters.get(name, phase.main.defaults.get(name, absent)))
 
     capture = run.parameters["capture"]
     size = np.array([capture[f"target.size[{i}]"] for i in (1, 2, 3)])
@@ -234,7 +235,7 @@ def _check_before(run: RunResult, phase: PhaseScene, record: HandoffRecord) -> N
     slack = rest_length if np.isfinite(rest_length) else distance
     spin = check_spin(handed, size, slack, value("thrust.level", 0.0), tolerance)
     record.spin = spin
-    if "tether.rest_length" in phase.defaults and distance > rest_length:
+    if "tether.rest_length" in phase.main.defaults and distance > rest_length:
         raise HandoffError(
             f"hand-off refused: at t = {record.time:.6g} s target and chaser are {distance:.6g} m apart, "
             f"the tether is {rest_length:.6g} m long; give it more, or shoot from nearer"

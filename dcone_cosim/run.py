@@ -358,7 +358,7 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         phase = settings[name]
         phases[name] = {
             "fmu": fmus.get(name, {}),
-            "terms": dict(phase.terms),
+            "terms": dict(phase.main.terms),
             "macro_step": {"value": phase.macro_step, "unit": "s"},
             "duration": {"value": phase.duration, "unit": "s"},
             "steps": result.steps,

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from dcone_cosim.coupling import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.names import did_you_mean
 
@@ -27,29 +28,56 @@ UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 @dataclass(frozen=True)
+class ComponentScene:
+    """One FMU of a phase: a model of ours to be built, or a file.
+
+    name         of the instance; that of the phase for its main component
+    model        name of a model of ours, "" when `fmu` is given
+    terms        of a model of ours: group and the term of it that the scene names
+    fmu          path of an FMU file, None for a model of ours
+    isolate      run it in a child process
+    timeout      longest time one call to an isolated FMU may take [s]
+    parameters   FMI name: value, SI, of what the scene says; inputs may be among them
+    defaults     FMI name: start value, SI, of every parameter there is
+    choices      FMI name: names of the values of an Integer choice
+    """
+
+    name: str
+    model: str = ""
+    terms: Mapping[str, str] = field(default_factory=dict)
+    fmu: Path | None = None
+    isolate: bool = False
+    timeout: float = 60.0
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    defaults: Mapping[str, float] = field(default_factory=dict)
+    choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class PhaseScene:
     """One phase of a scene, all values SI.
 
-    terms        group of the model: term that the scene names
-    parameters   FMI name: value, of what the scene says
-    defaults     FMI name: start value, of every parameter there is
-    choices      FMI name: names of the values of an Integer choice
+    main         the component that the phase is about: it offers what `contract` asks of the phase
+    others       further components, connected to it and to one another
     options      what concerns the master: hand_over, after_capture, snapshots
     """
 
     name: str
-    model: str
-    terms: Mapping[str, str]
-    parameters: Mapping[str, float]
+    main: ComponentScene
     macro_step: float
     duration: float
     options: Mapping[str, Any] = field(default_factory=dict)
-    defaults: Mapping[str, float] = field(default_factory=dict)
-    choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    others: tuple[ComponentScene, ...] = ()
+    connections: tuple[Connection, ...] = ()
+    coupling: Coupling = field(default_factory=Coupling)
+
+    @property
+    def components(self) -> tuple[ComponentScene, ...]:
+        return (self.main, *self.others)
 
     def choice(self, name: str, label: str) -> float:
-        """Value of an Integer choice by its name."""
-        return float(self.choices[name].index(label))
+        """Value of an Integer choice of the main component by its name."""
+        return float(self.main.choices[name].index(label))
 
 
 @dataclass(frozen=True)

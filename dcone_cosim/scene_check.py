@@ -20,7 +20,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import REMOVAL_SETS
 from dcone_cosim.mistakes import Mistake, message, shown
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scene import PHASES, PhaseScene, Scene
+from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene
 from dcone_cosim.toml_lines import Path
 from dcone_cosim.units import LARGEST_INTEGER, Expected, Unexpected, example_of
 
@@ -355,10 +355,10 @@ def _about_steps(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
 def _about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
     """Values, each within its bounds, with which a phase cannot work."""
     for phase in scene.phases:
-        values = {**phase.defaults, **phase.parameters}
+        values = {**phase.main.defaults, **phase.main.parameters}
         handed_over = phase is not scene.phases[0]
         must_arrive_in = math.inf if phase.options.get("hand_over") == NEVER else phase.duration
-        for refusal in build.cannot_work(phase.name, values, must_arrive_in, phase.terms, handed_over):
+        for refusal in build.cannot_work(phase.name, values, must_arrive_in, phase.main.terms, handed_over):
             section, _, key = refusal.variable.partition(".")
             path = (section, key) if section == SHARED else (phase.name, section, key.partition("[")[0])
             yield Mistake(path, _given(document, path), refusal.expected, refusal.given)
@@ -368,7 +368,7 @@ def _about_line(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
     """The one line of two phases: the same length in both, and more than the distance it has to span at the shot."""
     if len(scene.phases) < len(PHASES):
         return
-    capture, removal = ({**phase.defaults, **phase.parameters} for phase in scene.phases)
+    capture, removal = ({**phase.main.defaults, **phase.main.parameters} for phase in scene.phases)
     paths = {phase: (phase, *name.split(".")) for phase, name in LINE.items()}
     told = {phase: _given(document, path) for phase, path in paths.items()}
     length = removal.get(LINE["removal"])
@@ -430,14 +430,17 @@ def _assemble(values: Any, phases: Mapping[str, _Phase], chosen: list[str], text
         made.append(
             PhaseScene(
                 phase_name,
-                phase.interface.model.name,
-                dict(phase.interface.terms),
-                parameters,
+                ComponentScene(
+                    phase_name,
+                    phase.interface.model.name,
+                    dict(phase.interface.terms),
+                    parameters=parameters,
+                    defaults=build.defaults(phase.interface),
+                    choices={v.name: v.choices for v in phase.rows.values() if v.choices},
+                ),
                 tables.macro_step,
                 tables.duration,
                 options,
-                build.defaults(phase.interface),
-                {v.name: v.choices for v in phase.rows.values() if v.choices},
             )
         )
     if len(made) == len(PHASES):
@@ -452,8 +455,9 @@ def _assemble(values: Any, phases: Mapping[str, _Phase], chosen: list[str], text
 
 def _share_line(phases: list[PhaseScene]) -> None:
     """Give the phase that does not tell the line's length what the other tells."""
-    given = [phase.parameters.get(LINE[phase.name]) for phase in phases]
+    given = [phase.main.parameters.get(LINE[phase.name]) for phase in phases]
     for i, (phase, length, other) in enumerate(zip(phases, given, reversed(given), strict=True)):
         name = LINE[phase.name]
-        if length is None and other is not None and name in phase.defaults:
-            phases[i] = replace(phase, parameters={**phase.parameters, name: other})
+        if length is None and other is not None and name in phase.main.defaults:
+            main = replace(phase.main, parameters={**phase.main.parameters, name: other})
+            phases[i] = replace(phase, main=main)

@@ -34,6 +34,10 @@ class Variable:
     start        one value for all elements, or one per element in C order; parameters and inputs only
     minimum      least permitted value; `open_minimum` excludes the bound itself
     choices      for an Integer choice: name of each permitted value, as a scene writes it
+    nominal      a typical size, 0 when none is told
+    rate         variable or state of the same shape that holds the time derivative: of an output, filled by the kernel;
+                 of an input, filled by the shim with what the importer says, for the next step only
+    partials     of an output: input and the state that holds the output's derivative by it
     """
 
     name: str
@@ -49,6 +53,9 @@ class Variable:
     display_unit: str = ""
     choices: tuple[str, ...] = ()
     discrete: bool = False
+    nominal: float = 0.0
+    rate: str = ""
+    partials: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         if self.name.count(INDEX) != len(self.shape):
@@ -146,13 +153,14 @@ HEAD = (
 )
 """Every record begins with these; the C shim knows them by their place."""
 
-SIZE, INITIALISE, STEP, REFRESH = range(4)
+SIZE, INITIALISE, STEP, REFRESH, DIFFERENTIATE = range(5)
 """Commands of a model's entry `entry(command, record, work, time, step) -> status`.
 
-SIZE        set `work_size` from the parameters
-INITIALISE  fill state and outputs from parameters; `time` is the start time [s]
-STEP        advance from `time` by `step` [s], with the inputs held
-REFRESH     recompute the outputs that depend directly on inputs, at `time`
+SIZE           set `work_size` from the parameters
+INITIALISE     fill state and outputs from parameters; `time` is the start time [s]
+STEP           advance from `time` by `step` [s], with the inputs held, or moving at their rates
+REFRESH        recompute the outputs that depend directly on inputs, at `time`
+DIFFERENTIATE  fill the states that `rate` of outputs and `partials` name, at `time`
 """
 
 

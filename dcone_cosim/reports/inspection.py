@@ -21,9 +21,9 @@ def show(scene: Scene, console: Console, progress: Progress) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    paths = build.ensure_fmus({phase.name: phase.terms for phase in scene.phases}, progress.say)
+    paths = build.ensure_fmus({phase.name: phase.main.terms for phase in scene.phases}, progress.say)
     for phase in scene.phases:
-        title = Text(f"{scene.name}, {phase.name}: {phase.model}", style="table.title")
+        title = Text(f"{scene.name}, {phase.name}: {phase.main.model}", style="table.title")
         table = Table(title=title, title_justify="left", box=None, pad_edge=False)
         for header in ("", "term", "what it adds"):
             table.add_column(header, overflow="fold")
@@ -43,7 +43,7 @@ def show(scene: Scene, console: Console, progress: Progress) -> None:
 def _terms(phase: PhaseScene) -> Iterator[tuple[str, str, str]]:
     """What is in the FMU and what is left out: where, the term, what it adds."""
     for group_name, group in build.MODELS[phase.name].groups.items():
-        named = phase.terms.get(group_name)
+        named = phase.main.terms.get(group_name)
         if named is not None:
             yield "in", f"{group_name}: {named}", group.terms[named].summary
         others = [term for term in group.terms if term != named]
@@ -59,10 +59,10 @@ STATE_HEAD = 96
 
 def _sizes(phase: PhaseScene, archive: Archive) -> list[tuple[str, str]]:
     counts = Counter(v.causality for v in archive.variables.values())
-    interface = build.MODELS[phase.name].interface(phase.terms)
+    interface = build.MODELS[phase.name].interface(phase.main.terms)
     hidden = sum(v.size for v in interface.variables if v.causality == "state")
     with archive.instantiate(phase.name) as component:
-        component.set(phase.parameters)
+        component.set(phase.main.parameters)
         component.initialise(0.0)
         sizes = [n for n in ("net.nodes", "net.threads") if n in component.variables]
         found = {name.partition(".")[2]: int(v) for name, v in component.get(sizes).items()}

@@ -8,24 +8,25 @@ from typing import Any
 
 import pytest
 
-from dcone_cosim.scene import PhaseScene, Scene
+from dcone_cosim.scene import ComponentScene, PhaseScene, Scene
 
 
 def scene_of(*phases: str, **handoff: Any) -> Scene:
     """A scene for the stand-ins, of the named phases."""
     options = {"hand_over": "captured", "after_capture": math.inf, "snapshots": []}
     known = {
-        "capture": PhaseScene("capture", "mock", {}, {}, 0.5, 20.0, options),
+        "capture": PhaseScene("capture", ComponentScene("capture", "mock"), 0.5, 20.0, options),
         "removal": PhaseScene(
             "removal",
-            "mock",
-            {},
-            {"tether.rest_length": 20.0, "thrust.level": -0.01, "orbit.altitude": 800e3},
+            ComponentScene(
+                "removal",
+                "mock",
+                parameters={"tether.rest_length": 20.0, "thrust.level": -0.01, "orbit.altitude": 800e3},
+                defaults={"tether.rest_length": 12.0},
+                choices={"start.condition": ("same_orbit", "handed_over")},
+            ),
             10.0,
             100.0,
-            {},
-            {"tether.rest_length": 12.0},
-            {"start.condition": ("same_orbit", "handed_over")},
         ),
     }
     return Scene("mock", "A scene of stand-ins", "title = 'mock'\n", tuple(known[p] for p in phases), handoff)

@@ -36,9 +36,12 @@ class KernelComponent:
     def reader(self, names: Sequence[str]) -> KernelReader:
         return KernelReader(self, names)
 
-    def initialise(self, start: float, stop: float | None = None) -> None:
+    def enter_initialisation(self, start: float, stop: float | None = None) -> None:
+        self._start = start
+
+    def exit_initialisation(self) -> None:
         try:
-            self.instance.initialise(start)
+            self.instance.initialise(self._start)
         except ModelFault as fault:
             raise FmuError(str(fault)) from None
 
@@ -49,10 +52,10 @@ class KernelComponent:
         except ModelFault as fault:
             raise FmuError(str(fault)) from None
 
-    def save(self) -> None:
+    def save(self, key: str = "") -> None:
         self._kept = (self.instance.record.copy(), self.instance.work.copy())
 
-    def restore(self) -> None:
+    def restore(self, key: str = "") -> None:
         self.instance.record[:] = self._kept[0]
         self.instance.work[:] = self._kept[1]
 

@@ -22,12 +22,13 @@ class MockComponent:
     def __init__(self, name: str, can_save: bool = True) -> None:
         self.name = name
         self.can_save = can_save
+        self.can_interpolate = False
         self.values: dict[str, float] = {}
         self.variables: dict[str, VariableInfo] = {}
         self.time = 0.0
         self.calls: list[tuple[float, float]] = []
         self.closed = False
-        self._kept: tuple[float, dict[str, float]] | None = None
+        self._kept: dict[str, tuple[float, dict[str, float]]] = {}
 
     def declare(self, names: Iterable[str], causality: str, value: float = 0.0, kind: str = "Real") -> None:
         for name in names:
@@ -46,8 +47,10 @@ class MockComponent:
     def reader(self, names: Sequence[str]) -> MockReader:
         return MockReader(self, names)
 
-    def initialise(self, start: float, stop: float | None = None) -> None:
+    def enter_initialisation(self, start: float, stop: float | None = None) -> None:
         self.time = start
+
+    def exit_initialisation(self) -> None:
         self.refresh()
 
     def step(self, time: float, size: float) -> None:
@@ -59,13 +62,13 @@ class MockComponent:
     def refresh(self) -> None:
         """Bring the outputs up to the present time."""
 
-    def save(self) -> None:
+    def save(self, key: str = "") -> None:
         assert self.can_save
-        self._kept = (self.time, copy.copy(self.values))
+        self._kept[key] = (self.time, copy.copy(self.values))
 
-    def restore(self) -> None:
-        assert self._kept is not None
-        self.time, self.values = self._kept[0], copy.copy(self._kept[1])
+    def restore(self, key: str = "") -> None:
+        time, values = self._kept[key]
+        self.time, self.values = time, copy.copy(values)
 
     def close(self) -> None:
         self.closed = True
@@ -155,9 +158,9 @@ class MockRemoval(MockComponent):
         for i in range(1, self.RING + 1):
             self.declare([f"tug[{i}].{field}" for field in ("time", "peak", "speed")], "output")
 
-    def initialise(self, start: float, stop: float | None = None) -> None:
+    def exit_initialisation(self) -> None:
         self.values |= {name: factor * self.values[name] for name, factor in self.tampered.items()}
-        super().initialise(start, stop)
+        super().exit_initialisation()
 
     def refresh(self) -> None:
         self.values["separation"] = float(np.linalg.norm([self.values[n] for n in elements("start.relative_position")]))

@@ -126,9 +126,9 @@ def test_a_line_shorter_than_the_way_is_refused_before_the_shot() -> None:
 
 def test_the_line_is_told_once_or_alike() -> None:
     removal_only = parse(changed("mission", (PAID_OUT, 'state = "slack"')), "a", "a")
-    assert removal_only.phases[0].parameters["tether.length"] == 14.0
+    assert removal_only.phases[0].main.parameters["tether.length"] == 14.0
     capture_only = parse(changed("mission", (REST, "")), "a", "a")
-    assert capture_only.phases[1].parameters["tether.rest_length"] == 14.0
+    assert capture_only.phases[1].main.parameters["tether.rest_length"] == 14.0
     assert parse(changed("mission", (REST, 'rest_length = "1400 cm"')), "a", "a").phases
     neither = complaint(changed("mission", (PAID_OUT, 'state = "slack"'), (REST, "")))
     assert "removal.tether.rest_length missing" in neither
@@ -156,7 +156,7 @@ def test_nodes_are_counted_as_the_kernel_counts_them() -> None:
 def test_a_muzzle_is_judged_in_the_targets_own_axes() -> None:
     """3 m along y lie within a box 8 m long, and outside the same box turned by a quarter about z."""
     phase = load("table1-capture").phases[0]
-    values = {**phase.defaults, **phase.parameters, "chaser.start_position[2]": -3.0}
+    values = {**phase.main.defaults, **phase.main.parameters, "chaser.start_position[2]": -3.0}
     assert [r.name for r in refusals(values)] == ["chaser.start_position"]
     turned = values | {f"target.start_attitude[{i}]": part for i, part in ((1, 0.5**0.5), (4, 0.5**0.5))}
     assert not refusals(turned)
@@ -242,7 +242,7 @@ class TestWhatOnlyAnFmuRefuses:
             def set(self, values: object) -> None:
                 pass
 
-            def initialise(self, start: float, stop: float | None = None) -> None:
+            def enter_initialisation(self, start: float, stop: float | None = None) -> None:
                 raise CallError("capture", "", "net.mass is too small", "x.fmu: fmi2ExitInitializationMode gave Error")
 
         scene = parse(find("table1-capture").read_text(), "mine", "folder/mine.toml")

@@ -12,7 +12,8 @@ INSTANT = 7.1234567
 
 
 def run(component: MockCapture, **plan: object) -> PhaseResult:
-    component.initialise(0.0)
+    component.enter_initialisation(0.0)
+    component.exit_initialisation()
     return CaptureLoop(component, CapturePlan(0.5, 20.0, **plan), Progress()).run()  # type: ignore[arg-type]
 
 
@@ -64,7 +65,8 @@ def test_a_failed_capture_ends_the_phase_at_once() -> None:
 
 def test_communication_points_do_not_accumulate() -> None:
     component = MockCapture(1e9)
-    component.initialise(0.0)
+    component.enter_initialisation(0.0)
+    component.exit_initialisation()
     CaptureLoop(component, CapturePlan(0.1, 100.0), Progress()).run()
     assert [time for time, _ in component.calls] == [i * 0.1 for i in range(1000)]
 
@@ -73,5 +75,6 @@ def test_the_last_step_is_shortened_to_the_duration() -> None:
     assert grid_steps(1.0, 0.3) == 4
     assert grid_steps(0.9, 0.3) == 3
     component = MockCapture(1e9)
-    component.initialise(0.0)
+    component.enter_initialisation(0.0)
+    component.exit_initialisation()
     assert CaptureLoop(component, CapturePlan(0.3, 1.0), Progress()).run().end == 1.0

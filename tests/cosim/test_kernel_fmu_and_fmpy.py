@@ -38,7 +38,7 @@ def test_kernel_and_fmu_give_the_same_bits(run_by_fmu: tuple[Scene, PhaseResult]
     (phase,) = scene.phases
 
     def instantiate(_: str, name: str) -> Steppable:
-        return KernelComponent(phase.name, name, phase.terms)
+        return KernelComponent(phase.name, name, phase.main.terms)
 
     by_kernel = run_scene(scene, instantiate, Progress()).phases[phase.name]
     assert len(by_fmu.recorder) > 100
@@ -51,7 +51,7 @@ def test_kernel_and_fmu_give_the_same_bits(run_by_fmu: tuple[Scene, PhaseResult]
 def test_fmpy_gives_the_masters_numbers(run_by_fmu: tuple[Scene, PhaseResult]) -> None:
     scene, ours = run_by_fmu
     (phase,) = scene.phases
-    path = build.ensure_fmus({phase.name: phase.terms}, lambda _: None)[phase.name]
+    path = build.ensure_fmus({phase.name: phase.main.terms}, lambda _: None)[phase.name]
     names = [name for name in ours.recorder.names[1:] if ours.recorder.kinds[name] == "Real"]
     whole = {"Real": float, "Integer": int, "Boolean": bool}
     kinds = {v.name: v.type for v in fmpy.read_model_description(str(path)).modelVariables}
@@ -59,7 +59,7 @@ def test_fmpy_gives_the_masters_numbers(run_by_fmu: tuple[Scene, PhaseResult]) -
         str(path),
         stop_time=phase.duration,
         output_interval=phase.macro_step,
-        start_values={name: whole[kinds[name]](value) for name, value in phase.parameters.items()},
+        start_values={name: whole[kinds[name]](value) for name, value in phase.main.parameters.items()},
         output=names,
     )
     assert len(theirs) == len(ours.recorder)

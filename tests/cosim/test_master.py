@@ -87,7 +87,7 @@ def test_a_spin_that_matters_is_refused(make_scene: Make) -> None:
 
 def test_a_tether_too_short_is_refused(make_scene: Make) -> None:
     scene = make_scene("capture", "removal")
-    scene.phases[1].parameters["tether.rest_length"] = 5.0  # type: ignore[index]
+    scene.phases[1].main.parameters["tether.rest_length"] = 5.0  # type: ignore[index]
     result, _ = run(scene, MockCapture())
     assert result.exit_code == HANDOFF_FAILED
     assert "apart" in result.message
@@ -117,7 +117,7 @@ def test_an_fmu_that_fails_leaves_what_was_reached(make_scene: Make) -> None:
 
 def test_parameters_an_fmu_refuses_are_bad_input(make_scene: Make) -> None:
     class Refusing(MockCapture):
-        def initialise(self, start: float, stop: float | None = None) -> None:
+        def exit_initialisation(self) -> None:
             raise FmuError("net.side must be a whole number of net.mesh")
 
     with pytest.raises(InputError, match="whole number"):

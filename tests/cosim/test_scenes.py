@@ -22,14 +22,14 @@ def test_a_shipped_scene_says_only_what_its_model_has(name: str) -> None:
     scene = load(name)
     assert scene.text == find(name).read_text()
     for phase in scene.phases:
-        interface = build.MODELS[phase.name].interface(phase.terms)
-        assert set(phase.parameters) <= set(interface.references)
-        assert set(phase.parameters) <= set(phase.defaults)
+        interface = build.MODELS[phase.name].interface(phase.main.terms)
+        assert set(phase.main.parameters) <= set(interface.references)
+        assert set(phase.main.parameters) <= set(phase.main.defaults)
 
 
 def test_table_2_is_the_papers() -> None:
     (phase,) = load("table2-deorbit").phases
-    assert phase.parameters == {
+    assert phase.main.parameters == {
         "chaser.mass": 2000.0,
         "target.mass": 1000.0,
         "orbit.altitude": 800e3,
@@ -43,7 +43,7 @@ def test_table_2_is_the_papers() -> None:
         "tether.damping_ratio": 0.05,
         "thrust.level": -0.01,
     }
-    assert phase.terms == {"reel": "locked", "thrust": "along_track"}
+    assert phase.main.terms == {"reel": "locked", "thrust": "along_track"}
     assert (phase.macro_step, phase.duration) == (60.0, 86400.0)
 
 
@@ -60,22 +60,22 @@ def test_table_1_is_the_papers() -> None:
         "target.size[2]": 8.0,
         "target.size[3]": 4.0,
     }
-    assert expected.items() <= phase.parameters.items()
+    assert expected.items() <= phase.main.parameters.items()
     assert phase.options["snapshots"] == [0.0, 5.32, 7.24, 9.13, 11.21, 12.32, 13.8, 15.0]
 
 
 def test_the_orbit_goes_to_every_phase_that_has_it() -> None:
     capture, removal = load("mission").phases
-    assert capture.parameters["orbit.altitude"] == removal.parameters["orbit.altitude"] == 800e3
-    assert "orbit.inclination" not in capture.parameters
-    assert "orbit.inclination" in removal.parameters
+    assert capture.main.parameters["orbit.altitude"] == removal.main.parameters["orbit.altitude"] == 800e3
+    assert "orbit.inclination" not in capture.main.parameters
+    assert "orbit.inclination" in removal.main.parameters
 
 
 def test_what_is_not_named_is_not_in_the_fmu() -> None:
     text = find("table1-capture").read_text()
     less = text.replace('[capture.contact]\nlaw = "inelastic"\n', "")
-    assert "contact" in parse(text, "a", "a").phases[0].terms
-    assert "contact" not in parse(less, "a", "a").phases[0].terms
+    assert "contact" in parse(text, "a", "a").phases[0].main.terms
+    assert "contact" not in parse(less, "a", "a").phases[0].main.terms
 
 
 def test_a_phase_can_be_run_alone() -> None:

@@ -129,7 +129,7 @@ class TestComponent:
     @pytest.fixture
     def archive(self):
         (phase,) = load("table2-deorbit").phases
-        with Archive(build.ensure_fmus({"removal": phase.terms}, lambda _: None)["removal"]) as archive:
+        with Archive(build.ensure_fmus({"removal": phase.main.terms}, lambda _: None)["removal"]) as archive:
             yield archive
 
     def test_an_unknown_name_is_told_the_nearest(self, archive: Archive) -> None:
