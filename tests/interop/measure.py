@@ -57,7 +57,7 @@ TOOLS = {
     "fmuloader": Tool("fmuloader, a loop t += h around it", "fmuloader", added_up, "t += h"),
     "libcosimpy": Tool("libcosimpy (libcosim; time in nanoseconds)", "libcosimpy"),
     "ecospy": Tool("ecospy (Ecos)", "ecospy", added_up, "t += h"),
-    "syssimx": Tool("syssimx", "syssimx", added_up_to_the_end, "t += h, the last to the end", coarse=4),
+    "syssimx": Tool("syssimx", "syssimx", added_up_to_the_end, "t += h, the last to the end", coarse=8),
     "container": Tool(
         "fmu-manipulation-toolbox, an FMU container run by fmpy",
         "fmu-manipulation-toolbox",
@@ -106,7 +106,8 @@ def verdict(tool: str, case: str, which: str) -> str:
         return f"same bits over {length}"
     own = ours(tool, case, which, about.points)
     if not differing(own, found_here) and farthest(master, found_here, CASES[case].figures) <= SPREAD:
-        return f"within {SPREAD:g} over {length}: it steps {about.arithmetic}; same bits as the master's at those times"
+        spread = f"{SPREAD:g}".replace("e-0", "e-")
+        return f"within {spread} over {length}: it steps {about.arithmetic}; same bits as the master's at those times"
     return "differs"
 
 
