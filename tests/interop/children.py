@@ -14,7 +14,7 @@ from tests.interop.job import Job, Row, write
 
 ROOT = Path(__file__).parents[2]
 TIMEOUT = 300.0
-"""Longest time a tool may take for its jobs [s]: against hangs. It needs a few, syssimx ten, on a machine of its own."""
+"""Longest time a tool may take for its jobs [s]: against hangs. On a machine of its own it needs a few, syssimx ten."""
 
 
 @dataclass(frozen=True)
