@@ -116,10 +116,13 @@ class Variable:
 
 @dataclass(frozen=True)
 class Fault:
-    """A reason for which a kernel may stop: its status code, FMI severity and text (what went wrong, what to try)."""
+    """A reason for which a kernel may stop: its status code, FMI severity and text (what went wrong, what to try).
+
+    severity   error; discard: this step is refused; end: the model came to its own end, at the record's `fault_time`
+    """
 
     code: int
-    severity: Literal["discard", "error"]
+    severity: Literal["discard", "end", "error"]
     text: str
 
 

@@ -14,7 +14,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from fmu_src.interface import Interface
-from fmu_src.packaging import compile, description, link, tools
+from fmu_src.packaging import c_header, compile, description, documentation, link, picture, tools
 
 PACKAGES = ("numba", "llvmlite", "ziglang", "numpy", "fmpy")
 """Tools whose version settles what comes out."""
@@ -27,7 +27,7 @@ def fingerprint(interface: Interface, platform: link.Platform) -> str:
     """Hash of all that goes into an FMU: kernels, shim, table, terms, tools, platform."""
     digest = hashlib.sha256()
     model = SOURCES / interface.model.name
-    shared = sorted([*SOURCES.glob("*.py"), *(SOURCES / "packaging").glob("*.[pc]*")])
+    shared = sorted([*SOURCES.glob("*.py"), *(SOURCES / "packaging").glob("*.[pch]*")])
     formulas = sorted((SOURCES.parent / "orbital").glob("*.py"))
     for path in [*shared, *formulas, *sorted(p for p in model.iterdir() if p.suffix in (".py", ".md"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
@@ -58,7 +58,7 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
         ir = folder / "model.ll"
         compile.emit(interface.model.name, interface.terms, ir)
         header = folder / "model.h"
-        header.write_text(description.header(interface, name, guid))
+        header.write_text(c_header.header(interface, name, guid))
         library = folder / f"{name}{platform.suffix}"
         announce(f"linking {interface.model.name} for {platform.folder}")
         link.link(ir, header, library, platform)
@@ -66,7 +66,8 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
         files = {
             "modelDescription.xml": description.model_description(interface, name, guid, package),
             f"binaries/{platform.folder}/{library.name}": library.read_bytes(),
-            "documentation/index.html": description.documentation(interface, SOURCES / interface.model.name).encode(),
+            "documentation/index.html": documentation.page(interface, SOURCES / interface.model.name).encode(),
+            "model.png": picture.png(interface),
         }
         finished = folder / path.name
         pack(files, finished)
