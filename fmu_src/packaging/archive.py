@@ -16,7 +16,7 @@ from pathlib import Path
 from fmu_src.interface import Interface
 from fmu_src.packaging import c_header, compile, description, documentation, link, picture, tools
 
-PACKAGES = ("numba", "llvmlite", "ziglang", "numpy", "fmpy")
+PACKAGES = ("numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow")
 """Tools whose version settles what comes out."""
 SOURCES = Path(__file__).parents[1]
 EPOCH = (1980, 1, 1, 0, 0, 0)

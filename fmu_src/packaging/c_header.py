@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Sequence
 
 from fmu_src.interface import Fault, Interface, Value, Variable
 from fmu_src.packaging.dependence import first_slots, partials, rates
@@ -37,7 +38,9 @@ def header(interface: Interface, identifier: str, guid: str) -> str:
         f"#define DCONE_PARTIALS {len(partial_table)}",
         f"#define DCONE_DIRECT {int(bool(partials(interface)))}",
         "static const unsigned char slot_code[DCONE_SLOTS] = {" + ",".join(codes) + "};",
-        "static const uint64_t slot_start[DCONE_SLOTS] = {" + ",".join(_bits(v, start) for _, _, v, start in scalars) + "};",
+        "static const uint64_t slot_start[DCONE_SLOTS] = {"
+        + ",".join(_bits(v, start) for _, _, v, start in scalars)
+        + "};",
         *_table("struct row row_table[]", [_row(slot, v) for slot, v in first_slots(interface).values()]),
         *_table("struct rate rate_table[]", [*pairs, (-1, -1)]),
         *_table("struct rate moving_table[]", [*moving, (-1, -1)]),
@@ -48,7 +51,7 @@ def header(interface: Interface, identifier: str, guid: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _table(declared: str, rows: list[tuple[object, ...]] | list[str]) -> list[str]:
+def _table(declared: str, rows: Sequence[tuple[object, ...]] | Sequence[str]) -> list[str]:
     """A constant array, one row a line."""
     text = [row if isinstance(row, str) else "{" + ", ".join(map(str, row)) + "}" for row in rows]
     return [f"static const {declared} = {{", *(f"    {line}," for line in text), "};"]
@@ -70,7 +73,7 @@ def _row(slot: int, v: Variable) -> tuple[object, ...]:
 
 
 def _fault(fault: Fault) -> tuple[object, ...]:
-    return fault.code, SEVERITY[fault.severity], _string(fault.text)
+    return fault.code, SEVERITY[fault.severity], int(bool(fault.variable)), _string(fault.text)
 
 
 def _number(value: float) -> str:

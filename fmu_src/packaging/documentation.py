@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from fmu_src.interface import INDEX, Interface, Variable
-from fmu_src.packaging.description import LOG_CATEGORIES, number, sentence, typed
 from fmu_src.packaging.dependence import inputs_of, names_by_slot
+from fmu_src.packaging.description import LOG_CATEGORIES, number, sentence, typed
 
 STYLE = """
 body{font:16px/1.55 system-ui,sans-serif;max-width:64em;margin:2em auto;padding:0 1em;color:#1b2733;background:#fff}

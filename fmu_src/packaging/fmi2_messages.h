@@ -51,8 +51,13 @@ static fmi2Status tell_fault(instance *i, int64_t command) {
         i->at.ended = 1;
         if (r[FAULT_TIME].real >= i->at.time) i->at.time = r[FAULT_TIME].real;
     }
-    return say(i, refused ? fmi2Discard : fmi2Error, "%s (index %lld, value %.9g, at %.9g s)", f->text,
-               (long long)r[FAULT_INDEX].integer, r[FAULT_VALUE].real, r[FAULT_TIME].real);
+    fmi2Status status = refused ? fmi2Discard : fmi2Error;
+    double value = r[FAULT_VALUE].real, when = r[FAULT_TIME].real;
+    int64_t index = r[FAULT_INDEX].integer;
+    char name[NAME_LENGTH];
+    if (f->names && index > FAULT_VALUE && index < DCONE_SLOTS)
+        return say(i, status, "%s (%s = %.9g, at %.9g s)", f->text, name_of((fmi2ValueReference)index, name), value, when);
+    return say(i, status, "%s (index %lld, value %.9g, at %.9g s)", f->text, (long long)index, value, when);
 }
 
 /* Whether a call may be made now; `phases` are those in which it may. */

@@ -6,21 +6,21 @@
 /* What a saved state begins with, in memory and serialised; the block follows. */
 typedef struct {
     char magic[8];
+    uint64_t check;      /* of all that follows it, in a serialised state */
     char guid[48];
     int64_t version;
-    uint64_t check;      /* of all that follows it, in a serialised state */
     condition at;
 } saved;
 
 static size_t state_size(int64_t work) { return sizeof(saved) + block_size(work); }
 
-/* Check word over condition and block, eight bytes at a time (the FNV-1a hash with words for bytes). */
+/* Check word over all that follows it, eight bytes at a time (the FNV-1a hash with words for bytes). */
 static uint64_t check_word(const void *state) {
     const unsigned char *bytes = state;
     saved head;
     memcpy(&head, bytes, sizeof head);
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
-    for (size_t at = offsetof(saved, at); at < state_size(head.at.work); at += 8) {
+    for (size_t at = offsetof(saved, guid); at < state_size(head.at.work); at += 8) {
         uint64_t word;
         memcpy(&word, bytes + at, 8);
         hash = (hash ^ word) * UINT64_C(0x100000001b3);

@@ -5,27 +5,18 @@ enum { ASKED_PHASES = STEPPING | FAILED | TERMINATED };
 /* Two times that a master adding up steps may take for one another. */
 static double drift(double one, double other) { return 1e-9 * (fabs(one) + fabs(other)) + 1e-9; }
 
-/* Where each input that moves will end; an error if that is out of its bounds. */
-static fmi2Status find_ends(instance *i, double span, double end[]) {
+/* An error if an input that moves would end out of its bounds. */
+static fmi2Status check_ends(instance *i, double span) {
     for (int k = 0; k < DCONE_MOVING; k++) {
         fmi2ValueReference input = (fmi2ValueReference)moving_table[k].slot;
-        end[k] = i->block[input].real + i->block[moving_table[k].rate].real * span;
-        if (!fits(row_of(input), end[k])) return refuse_value(i, input, end[k]);
+        double end = i->block[input].real + i->block[moving_table[k].rate].real * span;
+        if (!fits(row_of(input), end)) return refuse_value(i, input, end);
     }
     return fmi2OK;
 }
 
-/* Leave the inputs where they have come to, and at rest. */
-static void rest_inputs(instance *i, const double end[]) {
-    for (int k = 0; k < DCONE_MOVING; k++) {
-        i->block[moving_table[k].slot].real = end[k];
-        i->block[moving_table[k].rate].real = 0.0;
-    }
-}
-
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_return) {
     instance *i = c;
-    double end[DCONE_MOVING + 1];
     (void)no_return;
     if (!allowed(i, STEPPING, "fmi2DoStep")) return fmi2Error;
     if (!isfinite(time) || !(step >= 0.0) || !isfinite(step))
@@ -37,11 +28,12 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     if (step == 0.0) return fmi2OK;
     /* a master that adds up times drifts by rounding: the gap is closed, so that the model sees none */
     double span = (time - i->at.time) + step;
-    if (find_ends(i, span, end) != fmi2OK) return fmi2Error;
+    if (check_ends(i, span) != fmi2OK) return fmi2Error;
     i->block[FAULT_CODE].integer = 0;
     i->at.derived = 0;
     if (run(i, STEP, i->at.time, span)) return tell_fault(i, STEP);
-    rest_inputs(i, end);
+    /* the model has left the inputs where they have come to; from here on they are held */
+    for (int k = 0; k < DCONE_MOVING; k++) i->block[moving_table[k].rate].real = 0.0;
     i->at.moved = 0;
     i->at.time = time + step;
     return fmi2OK;
