@@ -26,7 +26,7 @@ def header(interface: Interface, identifier: str, guid: str) -> str:
     rate_table = rates(interface)
     pairs = [(r.slot, r.rate) for r in rate_table]
     moving = [(r.slot, r.rate) for r in rate_table if r.is_input]
-    partial_table = [(p.output, p.input, p.slot) for p in partials(interface) if p.slot is not None]
+    partial_table = [(p.output, p.input, p.slot) for p in partials(interface)]
     lines = [
         "/* generated from the model's table of variables */",
         f"#define DCONE_IDENTIFIER {_string(identifier)}",
@@ -36,7 +36,6 @@ def header(interface: Interface, identifier: str, guid: str) -> str:
         f"#define DCONE_RATES {len(pairs)}",
         f"#define DCONE_MOVING {len(moving)}",
         f"#define DCONE_PARTIALS {len(partial_table)}",
-        f"#define DCONE_DIRECT {int(bool(partials(interface)))}",
         "static const unsigned char slot_code[DCONE_SLOTS] = {" + ",".join(codes) + "};",
         "static const uint64_t slot_start[DCONE_SLOTS] = {"
         + ",".join(_bits(v, start) for _, _, v, start in scalars)

@@ -19,14 +19,11 @@ class Rate:
 
 @dataclass(frozen=True)
 class Partial:
-    """An output, an input it depends on directly, and the slot that holds the derivative of one by the other.
-
-    slot   None where there is none to hold: the output is no Real, so that it depends but has no derivative
-    """
+    """An output, an input it depends on directly, and the slot that holds the derivative of one by the other."""
 
     output: int
     input: int
-    slot: int | None
+    slot: int
 
 
 def first_slots(interface: Interface) -> dict[str, tuple[int, Variable]]:
@@ -69,12 +66,8 @@ def partials(interface: Interface) -> list[Partial]:
         for by, held in v.partials:
             if by not in rows or rows[by][1].causality != "input" or rows[by][1].shape:
                 raise ValueError(f"{v.name} is said to depend on {by}, which is no scalar input of this model")
-            if not held and v.kind == "Real":
-                raise ValueError(f"{v.name} depends on {by}: the row that holds the derivative is missing")
-            first = _named(interface, v, held) if held else None
-            for k in range(v.size):
-                holder = None if first is None else first + k
-                found.append(Partial(rows[v.name][0] + k, rows[by][0], holder))
+            first = _named(interface, v, held)
+            found += [Partial(rows[v.name][0] + k, rows[by][0], first + k) for k in range(v.size)]
     return sorted(found, key=lambda p: (p.output, p.input))
 
 

@@ -88,7 +88,7 @@ def model_description(interface: Interface, identifier: str, guid: str, version:
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
-    ET.SubElement(root, "CoSimulation", modelIdentifier=identifier, **_capabilities(interface))
+    ET.SubElement(root, "CoSimulation", {"modelIdentifier": identifier} | _capabilities(interface))
     _unit_definitions(root, [v for v in interface.variables if v.at_interface])
     categories = ET.SubElement(root, "LogCategories")
     for name, meaning in (*LOG_CATEGORIES, ("logAll", "all of these")):
@@ -107,6 +107,7 @@ def model_description(interface: Interface, identifier: str, guid: str, version:
 def _capabilities(interface: Interface) -> dict[str, str]:
     """What the shim can do for this model."""
     moving = [r for r in rates(interface) if r.is_input]
+    smooth = {slot for _, slot, v, _ in interface.scalars() if v.kind == "Real"}
     growing = [r for r in rates(interface) if not r.is_input]
     return {
         "canHandleVariableCommunicationStepSize": "true",
@@ -116,7 +117,7 @@ def _capabilities(interface: Interface) -> dict[str, str]:
         "canNotUseMemoryManagementFunctions": "true",
         "canGetAndSetFMUstate": "true",
         "canSerializeFMUstate": "true",
-        "providesDirectionalDerivative": number(any(p.slot is not None for p in partials(interface))),
+        "providesDirectionalDerivative": number(any(p.output in smooth for p in partials(interface))),
     }
 
 
@@ -143,7 +144,7 @@ def _type_attributes(v: Variable, start: Value) -> dict[str, str]:
     if v.kind == "Real" and v.nominal:
         typed["nominal"] = number(float(v.nominal))
     if v.causality != "output":
-        typed["start"] = number(typed(v, start))
+        typed["start"] = number(as_typed(v, start))
     return typed
 
 
@@ -171,7 +172,7 @@ def _dependencies(index: int, on: list[int]) -> dict[str, str]:
     return attributes | {"dependenciesKind": " ".join(["dependent"] * len(on))} if on else attributes
 
 
-def typed(v: Variable, value: Value) -> Value:
+def as_typed(v: Variable, value: Value) -> Value:
     """A start value in the type of its variable."""
     return float(value) if v.kind == "Real" else bool(value) if v.kind == "Boolean" else int(value)
 

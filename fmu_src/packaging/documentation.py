@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from fmu_src.interface import INDEX, Interface, Variable
 from fmu_src.packaging.dependence import inputs_of, names_by_slot
-from fmu_src.packaging.description import LOG_CATEGORIES, number, sentence, typed
+from fmu_src.packaging.description import LOG_CATEGORIES, as_typed, number, sentence
 
 STYLE = """
 body{font:16px/1.55 system-ui,sans-serif;max-width:64em;margin:2em auto;padding:0 1em;color:#1b2733;background:#fff}
@@ -65,14 +66,14 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     lines = [head, ("---",) * len(head), *rows]
     return "\n".join("| " + " | ".join(map(_cell, row)) + " |" for row in lines)
 
 
 def _terms(interface: Interface) -> str:
     """Which terms of physics are in this FMU."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name, group in interface.model.groups.items():
         term = interface.terms.get(name)
         rows.append((name, f"`{term}`", group.terms[term].summary) if term else (name, "left out", ""))
@@ -107,7 +108,7 @@ def _variable(v: Variable, on: str) -> tuple[str, ...]:
         unit += f" (shown in {v.display_unit})"
     if v.causality == "output":
         return f"`{name}`", unit, f"`{v.rate}`" if v.rate else "", on, sentence(v)
-    starts = list(dict.fromkeys(number(typed(v, start)) for start in v.starts()))
+    starts = list(dict.fromkeys(number(as_typed(v, start)) for start in v.starts()))
     return f"`{name}`", unit, ", ".join(starts), _bounds(v), sentence(v)
 
 

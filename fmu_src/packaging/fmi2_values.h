@@ -14,7 +14,7 @@ static fmi2Status ready(instance *i, int phases, const char *call) {
     if (!allowed(i, phases, call)) return fmi2Error;
     if (i->at.phase == INITIALISING) return settle(i);
     if (i->at.phase == BROKEN) return say(i, fmi2Warning, "%s: what an earlier error left, for debugging only", call);
-    if (DCONE_DIRECT && i->at.phase == STEPPING && i->at.moved) {
+    if (DCONE_PARTIALS > 0 && i->at.phase == STEPPING && i->at.moved) {
         i->block[FAULT_CODE].integer = 0;
         if (run(i, REFRESH, i->at.time, 0.0)) return tell_fault(i, REFRESH);
         i->at.moved = 0;
