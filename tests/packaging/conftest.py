@@ -1,0 +1,31 @@
+"""FMUs built once for all processes of a session."""
+
+from pathlib import Path
+
+import pytest
+from fmpy import extract
+
+from fmu_src.catalogue import MODELS
+from fmu_src.packaging import archive
+from tests.packaging.driven import CASES, TERMS
+
+
+@pytest.fixture(scope="session")
+def fmu(tmp_path_factory):
+    """Path and unpacked folder of an FMU, by model; built once for all processes of the session."""
+    cache = Path(tmp_path_factory.getbasetemp()).parent / "fmus"
+    made = {}
+
+    def make(name):
+        if name not in made:
+            path = archive.build(MODELS[name].interface(TERMS[name]), cache)
+            made[name] = (path, str(extract(str(path), unzipdir=str(tmp_path_factory.mktemp(name)))))
+        return made[name]
+
+    return make
+
+
+@pytest.fixture(params=list(CASES))
+def case(request, fmu):
+    terms, parameters, step, count = CASES[request.param]
+    return request.param, *fmu(request.param), terms, parameters, step, count
