@@ -72,7 +72,7 @@ def _row(slot: int, v: Variable) -> tuple[object, ...]:
 
 
 def _fault(fault: Fault) -> tuple[object, ...]:
-    return fault.code, SEVERITY[fault.severity], int(bool(fault.variable)), _string(fault.text)
+    return fault.code, SEVERITY[fault.severity], int(fault.names_variable), _string(fault.text)
 
 
 def _number(value: float) -> str:

@@ -203,7 +203,7 @@ def test_a_discarded_step_can_be_taken_back(running):
 def test_an_error_breaks_the_instance_until_it_is_reset(running, toy):
     running.set({"pull": 6.0})
     assert running.step(0.0, 1.0) == ERROR
-    assert "the cart broke under (pull = 6, at 0 s)" in running.last
+    assert "the cart broke under (pull, value 6, at 0 s)" in running.last
     assert running.step(0.0, 1.0) == ERROR
     value = doubles(0.0)
     assert running.call("GetReal", references(toy.references["x"]), Count(1), value) == WARNING

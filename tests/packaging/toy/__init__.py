@@ -41,7 +41,7 @@ MODEL = Model(
     faults=(
         Fault(ENDED, "end", "the cart has arrived"),
         Fault(REFUSED, "discard", "the cart is stuck"),
-        Fault(BROKE, "error", "the cart broke under", variable="pull"),
+        Fault(BROKE, "error", "the cart broke under", names_variable=True),
     ),
     module="none",
     stop_time=10.0,
