@@ -54,6 +54,7 @@ static fmi2Status settle(instance *i) {
     if (fault) return tell_fault(i, SIZE);
     if (!resize(i, work)) return say(i, fmi2Error, "no memory for %lld numbers", (long long)work);
     i->block[WORK_SIZE].integer = work;
+    memset(i->block + DCONE_SLOTS, 0, (size_t)work * sizeof(slot)); /* so that the same start is the same to the bit */
     if (run(i, INITIALISE, i->at.time, 0.0)) return tell_fault(i, INITIALISE);
     i->at.stale = i->at.moved = i->at.derived = 0;
     return fmi2OK;

@@ -7,6 +7,7 @@ from fmpy import extract
 
 from fmu_src.catalogue import MODELS
 from fmu_src.packaging import archive
+from tests.packaging import toy
 from tests.packaging.driven import CASES, TERMS
 
 
@@ -29,3 +30,9 @@ def fmu(tmp_path_factory):
 def case(request, fmu):
     terms, parameters, step, count = CASES[request.param]
     return request.param, *fmu(request.param), terms, parameters, step, count
+
+
+@pytest.fixture(scope="session")
+def built_toy(tmp_path_factory):
+    """The toy's library."""
+    return toy.build(tmp_path_factory.mktemp("toy"))

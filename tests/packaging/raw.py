@@ -169,6 +169,7 @@ class Raw:
         self.library.library.fmi2FreeInstance.restype = None
         self.call("FreeInstance")
         self.component = c_void_p()
+        self._logger = None
 
 
 __all__ = ["POINTER", "Count", "Library", "Raw", "doubles", "integers", "references"]

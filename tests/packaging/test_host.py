@@ -2,7 +2,6 @@
 
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -17,8 +16,8 @@ VALGRIND = ["valgrind", "--error-exitcode=99", "--leak-check=full", "--errors-fo
 
 def compile_host(folder, *flags):
     program = folder / "host"
-    command = [sys.executable, "-m", "ziglang", "cc", "-std=c99", "-D_POSIX_C_SOURCE=200809L", "-Wall", "-Wextra"]
-    command += ["-Werror", "-O1", "-mcpu=baseline", "-gdwarf-4", "-I", link.HEADERS, *flags, HOST, "-o", program, "-ldl", "-lm"]
+    command = [*toy.COMPILER, "-std=c99", "-D_POSIX_C_SOURCE=200809L", "-Wall", "-Wextra"]
+    command += ["-Werror", "-O1", "-gdwarf-4", "-I", link.HEADERS, *flags, HOST, "-o", program, "-ldl", "-lm"]
     subprocess.run(list(map(str, command)), check=True, capture_output=True)
     return program
 
@@ -29,13 +28,12 @@ def host(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def hosted(tmp_path_factory, fmu):
+def hosted(built_toy, fmu):
     """Arguments of the host for an FMU, or the toy."""
 
     def arguments(name):
         if name == "toy":
-            built = toy.build(tmp_path_factory.mktemp("toy"))
-            r = built.references
+            built, r = built_toy, built_toy.references
             return [
                 str(built.library),
                 built.guid,

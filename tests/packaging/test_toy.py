@@ -5,15 +5,14 @@ import math
 
 import pytest
 
-from tests.packaging import toy as toy_model
 from tests.packaging.raw import DISCARD, ERROR, OK, WARNING, Count, Library, Raw, doubles, integers, references
 
 NULL = ctypes.c_void_p()
 
 
 @pytest.fixture(scope="module")
-def toy(tmp_path_factory):
-    return toy_model.build(tmp_path_factory.mktemp("toy"))
+def toy(built_toy):
+    return built_toy
 
 
 @pytest.fixture(scope="module")

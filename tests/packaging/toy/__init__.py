@@ -49,6 +49,9 @@ MODEL = Model(
 )
 INTERFACE = MODEL.interface({})
 
+COMPILER = [sys.executable, "-m", "ziglang", "cc", "-target", link.LINUX64.target]
+"""Whoever builds FMUs has it; the target is theirs, whose C library is then at hand."""
+
 
 @dataclass(frozen=True)
 class Toy:
@@ -69,13 +72,8 @@ def build(folder: Path) -> Toy:
     (folder / "model.h").write_text(c_header.header(INTERFACE, "toy", GUID))
     ir = folder / "model.ll"
     flags = ["-O1", "-S", "-emit-llvm", "-ffp-contract=off", "-I", folder]
-    tools.run("clang", [*link_command(), *map(str, flags), str(Path(__file__).parent / "kernel.c"), "-o", str(ir)])
+    tools.run("clang", [*COMPILER, *map(str, flags), str(Path(__file__).parent / "kernel.c"), "-o", str(ir)])
     ir.write_text(re.sub(r'"target-(cpu|features)"="[^"]*" ?', "", ir.read_text()))
     library = folder / "toy.so"
     link.link(ir, folder / "model.h", library, link.host())
     return Toy(library, INTERFACE.references)
-
-
-def link_command() -> list[str]:
-    """The compiler every machine has that can build FMUs."""
-    return [sys.executable, "-m", "ziglang", "cc"]
