@@ -1,7 +1,7 @@
-"""Instances made and freed in a process of its own, `python -m tests.packaging.cycles JSON`; prints the bytes grown.
+"""Instances made and freed in a process of its own: `python -m tests.packaging.cycles JSON`; prints bytes grown.
 
-The life is `bare` (instantiate, free), `whole` (set, initialise, step, save, restore, serialise, free) or `crowd` (fifty at
-once, stepped in turn, each freed). The leak is `none`, or what is left unfreed: `instance`, `state`.
+The life is `bare` (instantiate, free), `whole` (set, initialise, step, save, restore, serialise, free) or `crowd`
+(fifty at once, stepped in turn, each freed). The leak is `none`, or what is left unfreed: `instance`, `state`.
 """
 
 import gc
@@ -11,7 +11,7 @@ import sys
 
 from tests.packaging.raw import OK, Library, Raw
 
-WARM, CYCLES, CROWD = 1000, 2000, 50
+WARM, CYCLES, CROWD = 3000, 2000, 50
 """Cycles before memory is looked at (Python and malloc have then found their size), cycles that count, and how many
 instances a crowd has."""
 
@@ -23,7 +23,7 @@ def resident():
 
 
 def begin(library, guid, names):
-    return Raw(library, guid, names, logging=False)
+    return Raw(library, guid, names, logging=False, hears=False)
 
 
 def live(raw, values, size, leak):
@@ -70,7 +70,9 @@ def grown(library, guid, life, leak, names, values, size):
         return begin(library, guid, names)
 
     def run(count):
-        for _ in range(count):
+        for k in range(count):
+            if k % 100 == 0:
+                gc.collect()
             if life == "crowd":
                 crowd(make, leak, values, size)
             else:

@@ -58,10 +58,10 @@ def references(*values):
 class Raw:
     """One instance driven by variable name, each call giving its status; `said` holds (status, category, text)."""
 
-    def __init__(self, library, guid, names=None, logging=True, name="raw", kind=CO_SIMULATION):
+    def __init__(self, library, guid, names=None, logging=True, hears=True, name="raw", kind=CO_SIMULATION):
         self.said = []
         self._logger = LOGGER(lambda env, who, status, category, form, text: self._hear(status, category, form, text))
-        functions = Callbacks(logger=ctypes.cast(self._logger, c_void_p).value)
+        functions = Callbacks(logger=ctypes.cast(self._logger, c_void_p).value if hears else None)
         self.library = library
         self.names = names or {}
         self.component = c_void_p(
