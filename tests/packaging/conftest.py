@@ -9,6 +9,7 @@ from fmu_src.catalogue import MODELS
 from fmu_src.packaging import archive
 from tests.packaging import toy
 from tests.packaging.driven import CASES, TERMS
+from tests.packaging.raw import OK, Library, Raw
 
 
 @pytest.fixture(scope="session")
@@ -36,3 +37,30 @@ def case(request, fmu):
 def built_toy(tmp_path_factory):
     """The toy's library."""
     return toy.build(tmp_path_factory.mktemp("toy"))
+
+
+@pytest.fixture(scope="session")
+def library(built_toy):
+    return Library(built_toy.library)
+
+
+@pytest.fixture
+def make(built_toy, library):
+    """Make instances of the toy, freed at the end."""
+    made = []
+
+    def new(**more):
+        made.append(Raw(library, built_toy.guid, built_toy.references, **more))
+        return made[-1]
+
+    yield new
+    for raw in made:
+        raw.free()
+
+
+@pytest.fixture
+def running(make):
+    """An instance of the toy that is initialised."""
+    raw = make()
+    assert raw.start() == OK
+    return raw
