@@ -1,8 +1,9 @@
 /* The FMI 2.0 co-simulation interface of every model here, free of any model.
 
-   An instance is one block of 8-byte slots: first the record (parameters, inputs, state, outputs; a value reference is a
-   slot), then the work memory, whose size the model tells once its parameters are known. Getting, setting and serialising
-   the FMU state are copies of that block. The generated model.h tells slots, start values, bounds, derivatives and faults.
+   An instance is one block of 8-byte slots: first the record (parameters, inputs, state, outputs; a value reference is
+   a slot), then the work memory, whose size the model tells once its parameters are known. Getting, setting and
+   serialising the FMU state are copies of that block. The generated model.h tells slots, start values, bounds,
+   derivatives and faults.
 
    This file holds the instance and the way into the model; the parts at its end hold the functions of FMI, by idea.
    Nothing is global but constants, so instances may live side by side, in one thread or in several. */
@@ -19,7 +20,7 @@
 
 /* One row of the model's table: the slots it takes, and what they may hold. A `#` in its name stands for an index. */
 struct row { int first, count, columns, bounded, open; double low, high; const char *name, *unit; };
-struct fault { int code, severity, names; const char *text; }; /* names: its index is a value reference */
+struct fault { int code, severity, names; const char *text; };   /* names: its index is a value reference */
 struct rate { int slot, rate; };               /* an input or output, and the slot of its time derivative */
 struct partial { int output, input, slot; };   /* an output, an input it depends on, and the slot of the derivative */
 
@@ -60,31 +61,17 @@ typedef struct {
 /* ---- the model's entry, one for each processor it was compiled for ------------------------------------------------ */
 
 #define ARRAY void *, void *, int64_t, int64_t, slot *, int64_t, int64_t
-typedef int32_t entry_function(int32_t *result, void **exception, int64_t command, ARRAY, ARRAY, double time, double step);
+typedef int32_t entry_function(int32_t *result, void **exception, int64_t command, ARRAY, ARRAY, double time,
+                               double step);
 
-#include <cpuid.h>
-entry_function dcone_entry_x86_64, dcone_entry_x86_64_v3;
-
-/* AVX2, FMA, BMI1, BMI2, F16C, LZCNT and MOVBE, and an operating system that saves the wide registers. */
-static int runs_v3(void) {
-    unsigned a, b, c, d, low, high;
-    const unsigned basic = bit_FMA | bit_MOVBE | bit_OSXSAVE | bit_AVX | bit_F16C;
-    const unsigned extended = bit_AVX2 | bit_BMI | bit_BMI2;
-    if (!__get_cpuid(1, &a, &b, &c, &d) || (c & basic) != basic) return 0;
-    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
-    if ((low & 6) != 6) return 0;
-    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || (b & extended) != extended) return 0;
-    return __get_cpuid(0x80000001, &a, &b, &c, &d) && (c & bit_LZCNT);
-}
-
-static entry_function *entry(void) { return runs_v3() ? dcone_entry_x86_64_v3 : dcone_entry_x86_64; }
+#include "processor.h"
 
 static int32_t run(instance *i, int64_t command, double time, double step) {
     int32_t result = 0;
     void *exception = NULL;
-    int32_t status = entry()(&result, &exception, command,
-                             NULL, NULL, 1, DCONE_SLOTS * 8, i->block, 1, DCONE_SLOTS * 8,
-                             NULL, NULL, i->at.work, 8, i->block + DCONE_SLOTS, i->at.work, 8, time, step);
+    int32_t status = entry(&result, &exception, command,
+                           NULL, NULL, 1, DCONE_SLOTS * 8, i->block, 1, DCONE_SLOTS * 8,
+                           NULL, NULL, i->at.work, 8, i->block + DCONE_SLOTS, i->at.work, 8, time, step);
     return status ? -1 : result;
 }
 

@@ -25,7 +25,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     instance *i = c;
     char name[NAME_LENGTH];
     const char *call = "fmi2SetRealInputDerivatives";
-    if (!allowed(i, WRITE_PHASES, call) || !given(i, n, vr, value, call) || !given(i, n, order, order, call)) return fmi2Error;
+    if (!allowed(i, WRITE_PHASES, call)) return fmi2Error;
+    if (!given(i, n, vr, value, call) || !given(i, n, order, order, call)) return fmi2Error;
     for (size_t k = 0; k < n; k++) {
         if (!is_real(i, vr[k], INPUT, "input")) return fmi2Error;
         if (order[k] != 1) return say(i, fmi2Error, "%s: order %d, expected 1", name_of(vr[k], name), order[k]);
@@ -67,8 +68,9 @@ static double partial_of(const instance *i, fmi2ValueReference output, fmi2Value
         else high = middle;
     }
     const struct partial *p = &partial_table[low];
-    int found = low < DCONE_PARTIALS && (fmi2ValueReference)p->output == output && (fmi2ValueReference)p->input == input;
-    return found ? i->block[p->slot].real : 0.0;
+    if (low == DCONE_PARTIALS || (fmi2ValueReference)p->output != output) return 0.0;
+    if ((fmi2ValueReference)p->input != input) return 0.0;
+    return i->block[p->slot].real;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,

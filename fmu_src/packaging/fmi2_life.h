@@ -29,7 +29,8 @@ static fmi2Status refuse_value(instance *i, fmi2ValueReference reference, double
     char name[NAME_LENGTH];
     const struct row *row = row_of(reference);
     return say(i, fmi2Error, "%s = %.9g %s is out of its bounds: it must be finite, %s %.9g and at most %.9g",
-               name_of(reference, name), value, row->unit, row->open ? "greater than" : "at least", row->low, row->high);
+               name_of(reference, name), value, row->unit, row->open ? "greater than" : "at least", row->low,
+               row->high);
 }
 
 /* Whether all parameters and inputs are within their bounds. */

@@ -59,8 +59,8 @@ static fmi2Status usable(instance *i, const saved *s, size_t size) {
     if (strncmp(s->guid, DCONE_GUID, sizeof s->guid))
         return say(i, fmi2Error, "the saved state belongs to the FMU %.47s, not to %s", s->guid, DCONE_GUID);
     if (work < 0 || work > INT64_C(1) << 40 || (size != SIZE_MAX && size != state_size(work)))
-        return say(i, fmi2Error, "the saved state is damaged: its size, %.0f bytes, does not fit its %lld numbers of memory",
-                   size == SIZE_MAX ? 0.0 : (double)size, (long long)work);
+        return say(i, fmi2Error, "the saved state is damaged: its size does not fit its %lld numbers of memory",
+                   (long long)work);
     if (phase <= 0 || phase > BROKEN || (phase & (phase - 1)))
         return say(i, fmi2Error, "the saved state is damaged: there is no phase %lld", (long long)phase);
     if (!isfinite(s->at.time) || !isfinite(s->at.stop))
@@ -120,10 +120,11 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
     saved head;
     if (!c || !given(c, 1, bytes, state, "fmi2DeSerializeFMUstate")) return fmi2Error;
-    if (size < sizeof head) return say(c, fmi2Error, "this is no saved state of such an FMU: only %.0f bytes", (double)size);
+    if (size < sizeof head) return say(c, fmi2Error, "this is no saved state of such an FMU: it is too short");
     memcpy(&head, bytes, sizeof head);
     if (usable(c, &head, size) != fmi2OK) return fmi2Error;
-    if (check_word(bytes) != head.check) return say(c, fmi2Error, "the saved state is damaged: its check word does not fit");
+    if (check_word(bytes) != head.check)
+        return say(c, fmi2Error, "the saved state is damaged: its check word does not fit");
     saved *copy = malloc(size);
     if (!copy) return say(c, fmi2Error, "no memory for the FMU state");
     memcpy(copy, bytes, size);

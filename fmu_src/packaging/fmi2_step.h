@@ -45,7 +45,8 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     instance *i = c;
-    if (!allowed(i, ASKED_PHASES, "fmi2GetRealStatus") || !given(i, 1, value, value, "fmi2GetRealStatus")) return fmi2Error;
+    if (!allowed(i, ASKED_PHASES, "fmi2GetRealStatus") || !given(i, 1, value, value, "fmi2GetRealStatus"))
+        return fmi2Error;
     if (kind != fmi2LastSuccessfulTime) return say(i, fmi2Discard, "the one Real status is fmi2LastSuccessfulTime");
     *value = i->at.time;
     return fmi2OK;

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable
-from fmu_src.packaging import c_header, link, tools
+from fmu_src.packaging import c_header, link, platforms, tools
 
 GUID = "{toy}"
 ENDED, REFUSED, BROKE = 1, 2, 3
@@ -49,7 +49,7 @@ MODEL = Model(
 )
 INTERFACE = MODEL.interface({})
 
-COMPILER = [sys.executable, "-m", "ziglang", "cc", "-target", link.LINUX64.target]
+COMPILER = [sys.executable, "-m", "ziglang", "cc", "-target", platforms.host().targets[0].triple]
 """Whoever builds FMUs has it; the target is theirs, whose C library is then at hand."""
 
 
@@ -75,5 +75,5 @@ def build(folder: Path) -> Toy:
     tools.run("clang", [*COMPILER, *map(str, flags), str(Path(__file__).parent / "kernel.c"), "-o", str(ir)])
     ir.write_text(re.sub(r'"target-(cpu|features)"="[^"]*" ?', "", ir.read_text()))
     library = folder / "toy.so"
-    link.link(ir, folder / "model.h", library, link.host())
+    link.link(ir, folder / "model.h", library, platforms.host())
     return Toy(library, INTERFACE.references)

@@ -1,4 +1,4 @@
-/* A toy's kernel: x' = push, which may move; y = x + gain push + 2 pull. It looks to the shim like any kernel of numba. */
+/* A toy's kernel: x' = push, which may move; y = x + gain push + 2 pull. To the shim it is like any kernel of numba. */
 
 #include <stdint.h>
 
@@ -7,7 +7,9 @@
 enum { SIZE, INITIALISE, STEP, REFRESH, DIFFERENTIATE };
 enum { ENDED = 1, REFUSED = 2, BROKE = 3 };
 
-#define ARRAY(NAME) void *m_##NAME, void *p_##NAME, int64_t n_##NAME, int64_t i_##NAME, union slot *NAME, int64_t s_##NAME, int64_t t_##NAME
+#define ARRAY(NAME)                                                                                                    \
+    void *m_##NAME, void *p_##NAME, int64_t n_##NAME, int64_t i_##NAME, union slot *NAME, int64_t s_##NAME,            \
+        int64_t t_##NAME
 union slot { double real; int64_t integer; };
 
 static int32_t stop(union slot *r, int32_t code, int64_t index, double time, double value) {
@@ -38,7 +40,8 @@ static int32_t advance(union slot *r, union slot *work, double time, double step
     return 0;
 }
 
-int32_t dcone_entry(int32_t *result, void **exception, int64_t command, ARRAY(r), ARRAY(work), double time, double step) {
+int32_t dcone_entry(int32_t *result, void **exception, int64_t command, ARRAY(r), ARRAY(work), double time,
+                    double step) {
     int32_t code = 0;
     if (command == SIZE) r[WORK_SIZE].integer = r[ROOM].integer;
     if (command == INITIALISE) {
