@@ -29,7 +29,7 @@ SMALL = {
         0.05,
     ),
     "tethered_deorbit": (REMOVAL, {"thrust.level": -0.5, "start.separation": 11.9}, 20.0),
-    "reel_control": ({}, {"reel.length": 11.0, "gain.derivative": 1.0}, 1.0),
+    "reel_control": ({}, {"reel.length": 11.0, "gain.derivative": 1.0, "length": 12.5, "length_rate": 0.01}, 1.0),
 }
 """Terms, parameters and macro step of a short life: for what is done thousands of times, or under valgrind."""
 
