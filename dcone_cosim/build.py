@@ -6,11 +6,12 @@ No other module of this package knows `fmu_src`: everything else works on an FMU
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from dcone_cosim.errors import FmuError
+from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.names import did_you_mean
 from fmu_src.interface import Group, Interface, Model, Variable
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
@@ -84,9 +85,52 @@ def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str
 
     interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
     try:
-        return dict(zip(phases, build_all(interfaces, cache_folder(), announce), strict=True))
+        return {
+            phase: fmu for phase, (fmu,) in zip(phases, build_all(interfaces, cache_folder(), announce), strict=True)
+        }
     except BuildError as error:
         raise FmuError(str(error)) from None
+
+
+def platform_names(text: str) -> tuple[str, ...]:
+    """Platforms by the names the command line gives, `all` or a list with commas; InputError if one is unknown."""
+    from fmu_src.packaging.platforms import PLATFORMS
+
+    if text == "all":
+        return tuple(PLATFORMS)
+    names = dict.fromkeys(name.strip() for name in text.split(","))
+    for name in names:
+        if name not in PLATFORMS:
+            expected = f"expected all, or some of {', '.join(PLATFORMS)}"
+            raise InputError(f"--platforms {text}: {name!r} is no platform; {expected}{did_you_mean(name, PLATFORMS)}")
+    return tuple(names)
+
+
+def write_fmus(
+    phases: Mapping[str, Mapping[str, str]], platforms: Sequence[str], folder: Path, announce: Callable[[str], None]
+) -> list[Path]:
+    """Write the FMUs of phases, `{phase: terms}`, to a folder under readable names, each for all platforms named.
+
+    With no platforms named they are for this machine. Linux on arm64 has archives of its own.
+    """
+    from fmu_src.packaging.archive import build_all, unite
+    from fmu_src.packaging.platforms import PLATFORMS, archives, host
+    from fmu_src.packaging.tools import BuildError
+
+    interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
+    written = []
+    try:
+        chosen = [PLATFORMS[name] for name in platforms] or [host()]
+        built = build_all(interfaces, cache_folder(), announce, chosen)
+    except BuildError as error:
+        raise FmuError(str(error)) from None
+    for (phase, terms), fmus in zip(phases.items(), built, strict=True):
+        of = dict(zip(chosen, fmus, strict=True))
+        for ending, together in archives(chosen):
+            name = Path(readable_name(phase, terms))
+            written.append(folder / f"{name.stem}{ending}.fmu")
+            unite([of[platform] for platform in together], written[-1])
+    return written
 
 
 def readable_name(phase: str, terms: Mapping[str, str]) -> str:

@@ -74,13 +74,21 @@ def run(
 def build(
     scene: SceneName,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .fmu files.")],
+    platforms: Annotated[
+        str,
+        typer.Option(
+            "--platforms",
+            metavar="LIST",
+            help="all, or some of linux64,win64,darwin64,linux-aarch64; this machine's alone.",
+        ),
+    ] = "",
 ) -> None:
     """Write the FMUs of a scene, for use in other tools."""
     from dcone_cosim.commands import write_fmus
 
     progress = _progress()
     try:
-        paths = write_fmus(scene, out, progress)
+        paths = write_fmus(scene, out, progress, platforms)
     finally:
         progress.close()
     with _reader_may_leave():

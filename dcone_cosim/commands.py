@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import shutil
 import tempfile
 import threading
 from dataclasses import dataclass, field
@@ -127,8 +125,9 @@ def _draw(result: RunResult, folder: Path) -> list[str]:
         return [f"no figure could be drawn: {type(error).__name__}: {error}"]
 
 
-def write_fmus(name: str, out: Path, progress: Progress) -> list[Path]:
-    """Copy the FMUs of a scene to a folder under readable names."""
+def write_fmus(name: str, out: Path, progress: Progress, platforms: str = "") -> list[Path]:
+    """Write the FMUs of a scene to a folder under readable names, for the platforms named or for this machine's."""
+    chosen = build.platform_names(platforms) if platforms else ()
     scene = named(name)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
@@ -137,13 +136,11 @@ def write_fmus(name: str, out: Path, progress: Progress) -> list[Path]:
     try:
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
-            built = build.ensure_fmus(terms, progress.say)
-            copies = {out / build.readable_name(phase, terms[phase]): fmu for phase, fmu in built.items()}
-            for path, fmu in copies.items():
-                os.replace(shutil.copyfile(fmu, Path(draft) / path.name), path)
+            drafts = build.write_fmus(terms, chosen, Path(draft), progress.say)
+            paths = [path.replace(out / path.name) for path in drafts]
     except BaseException:
         for folder in made:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
-    return list(copies)
+    return paths

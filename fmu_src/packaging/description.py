@@ -1,22 +1,24 @@
-"""The model description, the generated C header and the documentation page of one FMU, from its table of variables."""
+"""The model description of one FMU, from its table of variables."""
 
 from __future__ import annotations
 
 import math
-import re
-import struct
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 from fmu_src.interface import Interface, Value, Variable
+from fmu_src.packaging.dependence import inputs_of, partials, rates
 
 GENERATOR = "D-CoNe co-simulation"
-STYLE = (
-    "body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}"
-    "td,th{padding:.1em .6em;text-align:left}"
+LOG_CATEGORIES = (
+    ("logStatusError", "why a call was refused, or the model failed"),
+    ("logStatusDiscard", "why a step was discarded, or that the model came to its own end"),
+    ("logStatusWarning", "what is to be taken with care"),
+    ("logEvents", "what the instance does: initialised, terminated, reset, put back into a state"),
 )
+"""Name and meaning of each category, in the order the shim counts them."""
+LONGEST_LISTED = 1000
+"""Elements of an output, beyond which its initial dependencies are left out: that means all, which holds too."""
 SI_BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -57,148 +59,126 @@ def _scalars(interface: Interface) -> Iterator[tuple[str, int, Variable, Value]]
     return (row for row in interface.scalars() if row[2].at_interface)
 
 
-def model_description(interface: Interface, identifier: str, guid: str, version: str) -> bytes:
-    """modelDescription.xml of an FMI 2.0 co-simulation unit."""
+def summary(interface: Interface) -> str:
+    """What the model is, and the terms that are in this FMU and left out of it."""
     left_out = [name for name in interface.model.groups if name not in interface.terms]
     terms = ", ".join(f"{group} {term}" for group, term in interface.terms.items())
-    text = f"{interface.model.summary} Built with: {terms}."
+    text = interface.model.summary
+    if terms:
+        text += f" Built with: {terms}."
     if left_out:
         text += f" Left out: {', '.join(left_out)}."
+    return text
+
+
+def model_description(interface: Interface, identifier: str, guid: str, version: str) -> bytes:
+    """modelDescription.xml of an FMI 2.0 co-simulation unit.
+
+    Checked  tests/packaging/test_description.py
+    """
+    model = interface.model
     root = ET.Element(
         "fmiModelDescription",
         fmiVersion="2.0",
-        modelName=interface.model.name,
+        modelName=model.name,
         guid=guid,
-        description=text,
+        description=summary(interface),
         version=version,
         generationTool=GENERATOR,
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
-    ET.SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=identifier,
-        canHandleVariableCommunicationStepSize="true",
-        canInterpolateInputs="false",
-        maxOutputDerivativeOrder="0",
-        canBeInstantiatedOnlyOncePerProcess="false",
-        canNotUseMemoryManagementFunctions="true",
-        canGetAndSetFMUstate="true",
-        canSerializeFMUstate="true",
-        providesDirectionalDerivative="false",
-    )
+    ET.SubElement(root, "CoSimulation", {"modelIdentifier": identifier} | _capabilities(interface))
     _unit_definitions(root, [v for v in interface.variables if v.at_interface])
     categories = ET.SubElement(root, "LogCategories")
-    ET.SubElement(categories, "Category", name="logStatusError", description="why a call was refused")
-    ET.SubElement(categories, "Category", name="logStatusDiscard", description="why a step was discarded")
-    model = interface.model
+    for name, meaning in (*LOG_CATEGORIES, ("logAll", "all of these")):
+        ET.SubElement(categories, "Category", name=name, description=meaning)
     experiment = {"startTime": "0.0", "stopTime": number(model.stop_time), "stepSize": number(model.macro_step)}
     ET.SubElement(root, "DefaultExperiment", experiment)
     variables = ET.SubElement(root, "ModelVariables")
-    outputs: list[int] = []
-    for index, (name, slot, v, start) in enumerate(_scalars(interface), 1):
-        attributes = {"name": name, "valueReference": str(slot), "description": _sentence(v)}
-        continuous = v.kind == "Real" and not v.discrete
-        if v.causality == "parameter":
-            attributes |= {"causality": "parameter", "variability": "fixed", "initial": "exact"}
-        elif v.causality == "input":
-            attributes |= {"causality": "input", "variability": "continuous" if continuous else "discrete"}
-        else:
-            outputs.append(index)
-            attributes |= {"causality": "output", "variability": "continuous" if continuous else "discrete"}
-            attributes["initial"] = "calculated"
-        scalar = ET.SubElement(variables, "ScalarVariable", attributes)
-        typed: dict[str, str] = {}
-        if v.kind == "Real" and v.unit != "1":
-            typed["unit"] = v.unit
-            if v.display_unit:
-                typed["displayUnit"] = v.display_unit
-        if v.kind != "Boolean":
-            if math.isfinite(v.minimum):
-                typed["min"] = number(float(v.minimum) if v.kind == "Real" else int(v.minimum))
-            if math.isfinite(v.maximum):
-                typed["max"] = number(float(v.maximum) if v.kind == "Real" else int(v.maximum))
-        if v.causality != "output":
-            typed["start"] = number(_typed(v, start))
-        ET.SubElement(scalar, v.kind, typed)
-    structure = ET.SubElement(root, "ModelStructure")
-    for tag in ("Outputs", "InitialUnknowns"):
-        element = ET.SubElement(structure, tag)
-        for index in outputs:
-            ET.SubElement(element, "Unknown", index=str(index))
+    for name, slot, v, start in _scalars(interface):
+        scalar = ET.SubElement(variables, "ScalarVariable", _attributes(v, name, slot))
+        ET.SubElement(scalar, v.kind, _type_attributes(v, start))
+    _structure(root, interface)
     ET.indent(root)
     return bytes(ET.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
-def _typed(v: Variable, value: Value) -> Value:
+def _capabilities(interface: Interface) -> dict[str, str]:
+    """What the shim can do for this model."""
+    moving = [r for r in rates(interface) if r.is_input]
+    smooth = {slot for _, slot, v, _ in interface.scalars() if v.kind == "Real"}
+    growing = [r for r in rates(interface) if not r.is_input]
+    return {
+        "canHandleVariableCommunicationStepSize": "true",
+        "canInterpolateInputs": number(bool(moving)),
+        "maxOutputDerivativeOrder": str(int(bool(growing))),
+        "canBeInstantiatedOnlyOncePerProcess": "false",
+        "canNotUseMemoryManagementFunctions": "true",
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+        "providesDirectionalDerivative": number(any(p.output in smooth for p in partials(interface))),
+    }
+
+
+def _attributes(v: Variable, name: str, slot: int) -> dict[str, str]:
+    """Name, causality and variability of one scalar."""
+    attributes = {"name": name, "valueReference": str(slot), "description": sentence(v), "causality": v.causality}
+    if v.causality == "parameter":
+        return attributes | {"variability": "fixed", "initial": "exact"}
+    attributes["variability"] = "continuous" if v.kind == "Real" and not v.discrete else "discrete"
+    return attributes if v.causality == "input" else attributes | {"initial": "calculated"}
+
+
+def _type_attributes(v: Variable, start: Value) -> dict[str, str]:
+    """Unit, bounds, typical size and start value of one scalar."""
+    typed: dict[str, str] = {}
+    if v.kind == "Real" and v.unit != "1":
+        typed["unit"] = v.unit
+        if v.display_unit:
+            typed["displayUnit"] = v.display_unit
+    if v.kind != "Boolean":
+        for key, bound in (("min", v.minimum), ("max", v.maximum)):
+            if math.isfinite(bound):
+                typed[key] = number(float(bound) if v.kind == "Real" else int(bound))
+    if v.kind == "Real" and v.nominal:
+        typed["nominal"] = number(float(v.nominal))
+    if v.causality != "output":
+        typed["start"] = number(as_typed(v, start))
+    return typed
+
+
+def _structure(root: ET.Element, interface: Interface) -> None:
+    """Which inputs each output depends on directly, and what it depends on at the start: these and all parameters."""
+    indices = {slot: index for index, (_, slot, _, _) in enumerate(_scalars(interface), 1)}
+    parameters = [indices[slot] for _, slot, v, _ in _scalars(interface) if v.causality == "parameter"]
+    direct = inputs_of(interface)
+    structure = ET.SubElement(root, "ModelStructure")
+    outputs = ET.SubElement(structure, "Outputs")
+    unknowns = ET.SubElement(structure, "InitialUnknowns")
+    for _, slot, v, _ in _scalars(interface):
+        if v.causality != "output":
+            continue
+        inputs = [indices[s] for s in direct.get(slot, ())]
+        ET.SubElement(outputs, "Unknown", _dependencies(indices[slot], inputs))
+        at_start = {"index": str(indices[slot])}
+        if v.size <= LONGEST_LISTED:
+            at_start = _dependencies(indices[slot], sorted(parameters + inputs))
+        ET.SubElement(unknowns, "Unknown", at_start)
+
+
+def _dependencies(index: int, on: list[int]) -> dict[str, str]:
+    attributes = {"index": str(index), "dependencies": " ".join(map(str, on))}
+    return attributes | {"dependenciesKind": " ".join(["dependent"] * len(on))} if on else attributes
+
+
+def as_typed(v: Variable, value: Value) -> Value:
+    """A start value in the type of its variable."""
     return float(value) if v.kind == "Real" else bool(value) if v.kind == "Boolean" else int(value)
 
 
-def _sentence(v: Variable) -> str:
+def sentence(v: Variable) -> str:
+    """Meaning of a variable, with the names of its choices."""
     if not v.choices:
         return v.description
     return f"{v.description}: " + ", ".join(f"{i} {choice}" for i, choice in enumerate(v.choices))
-
-
-def _c_string(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
-
-
-def header(interface: Interface, identifier: str, guid: str) -> str:
-    """The C header that tells the shim about one model: slots, start values, bounds, faults."""
-    rows = list(interface.scalars())
-    lines = [
-        "/* generated from the model's table of variables */",
-        f"#define DCONE_IDENTIFIER {_c_string(identifier)}",
-        f"#define DCONE_GUID {_c_string(guid)}",
-        f"#define DCONE_SLOTS {len(rows)}",
-    ]
-    kinds = {"Real": 1, "Integer": 2, "Boolean": 3}
-    access = {"state": 0, "output": 1, "parameter": 2, "input": 3}
-    codes, starts = [], []
-    for _, _, v, start in rows:
-        codes.append(str(kinds[v.kind] + 4 * access[v.causality]))
-        raw = struct.pack("<d", float(start)) if v.kind == "Real" else struct.pack("<q", int(start))
-        starts.append(f"0x{struct.unpack('<Q', raw)[0]:x}u")
-    lines.append("static const unsigned char slot_code[DCONE_SLOTS] = {" + ",".join(codes) + "};")
-    lines.append("static const uint64_t slot_start[DCONE_SLOTS] = {" + ",".join(starts) + "};")
-    lines.append("static const struct bound slot_bound[] = {")
-    for name, slot, v, _ in rows:
-        if v.causality in ("parameter", "input") and v.kind != "Boolean":
-            low, high = (_c_number(bound) for bound in (v.minimum, v.maximum))
-            entries = [str(slot), low, high, str(int(v.open_minimum)), _c_string(name), _c_string(v.unit)]
-            lines.append("    {" + ", ".join(entries) + "},")
-    lines.append('    {-1, 0, 0, 0, "", ""}};')
-    lines.append("static const struct fault fault_table[] = {")
-    for fault in interface.model.faults:
-        lines.append(f"    {{{fault.code}, {int(fault.severity == 'discard')}, {_c_string(fault.text)}}},")
-    lines.append('    {0, 0, "the kernel gave a fault that is not in its table"}};')
-    return "\n".join(lines) + "\n"
-
-
-def _c_number(value: float) -> str:
-    if math.isinf(value):
-        return "INFINITY" if value > 0 else "-INFINITY"
-    return repr(float(value))
-
-
-def documentation(interface: Interface, folder: Path) -> str:
-    """Documentation page: the model's README and the table of this FMU's variables, as HTML."""
-    from markdown_it import MarkdownIt
-
-    text = (folder / "README.md").read_text() if (folder / "README.md").exists() else interface.model.summary
-    table = [
-        "\n## Variables of this FMU\n",
-        "| name | unit | causality | start | meaning |",
-        "| --- | --- | --- | --- | --- |",
-    ]
-    for v in interface.variables:
-        if v.at_interface:
-            size = "".join(f"[1..{n}]" for n in v.shape[:1]) if v.shape else ""
-            start = "" if v.causality == "output" else number(_typed(v, v.starts()[0]))
-            name = re.sub(r"\[#\]", "[i]", v.name) + (f" {size}" if size else "")
-            table.append(f"| `{name}` | {v.unit} | {v.causality} | {start} | {_sentence(v)} |")
-    body: Any = MarkdownIt("commonmark").enable("table").render(text + "\n".join(table))
-    head = f'<meta charset="utf-8"><title>{interface.model.name}</title><style>{STYLE}</style>'
-    return f"<!DOCTYPE html><html><head>{head}</head><body>{body}</body></html>\n"

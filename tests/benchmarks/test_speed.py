@@ -12,7 +12,7 @@ from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
 from fmu_src.packaging import archive
 from tests.conftest import FREE
-from tests.packaging.test_fmu import Driven
+from tests.packaging.driven import Driven
 
 pytestmark = pytest.mark.bench
 MESH = {"net.mesh": 0.5}

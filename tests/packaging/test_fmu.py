@@ -8,80 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import extract, read_model_description, simulate_fmu
+from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
-from fmu_src.packaging import archive, link
+from fmu_src.packaging import archive
 from tests.conftest import CAPTURE
-
-REMOVAL = {"reel": "locked", "thrust": "along_track"}
-CASES = {
-    "net_capture": (CAPTURE, {"net.mesh": 2.0, "closing.time": 9.0, "target.start_rate[1]": 0.02}, 0.25, 60),
-    "tethered_deorbit": (REMOVAL, {"tether.damping_ratio": 0.05, "thrust.level": -0.01}, 60.0, 70),
-}
-
-
-class Driven:
-    """An FMU driven by variable name."""
-
-    def __init__(self, path, folder, parameters):
-        self.description = read_model_description(str(path))
-        self.variables = {v.name: v for v in self.description.modelVariables}
-        self.slave = FMU2Slave(
-            guid=self.description.guid,
-            unzipDirectory=folder,
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            instanceName="tested",
-        )
-        self.messages = []
-        self.slave.instantiate(callbacks=None, loggingOn=False, visible=False)
-        self.time = 0.0
-        self.set(parameters)
-        self.slave.setupExperiment(startTime=0.0)
-        self.slave.enterInitializationMode()
-        self.slave.exitInitializationMode()
-
-    def set(self, values):
-        for name, value in values.items():
-            v = self.variables[name]
-            getattr(self.slave, "set" + v.type)([v.valueReference], [value])
-
-    def outputs(self):
-        rows = {}
-        for kind in ("Real", "Integer", "Boolean"):
-            chosen = [v for v in self.variables.values() if v.causality == "output" and v.type == kind]
-            values = getattr(self.slave, "get" + kind)([v.valueReference for v in chosen])
-            rows |= {v.name: value for v, value in zip(chosen, values, strict=True)}
-        return rows
-
-    def step(self, size):
-        self.slave.doStep(self.time, size)
-        self.time += size
-
-
-@pytest.fixture(scope="session")
-def fmu(tmp_path_factory):
-    """Path and unpacked folder of an FMU, by model; built once for all processes of the session."""
-    cache = Path(tmp_path_factory.getbasetemp()).parent / "fmus"
-    made = {}
-
-    def make(name):
-        if name not in made:
-            path = archive.build(MODELS[name].interface(CASES[name][0]), cache)
-            made[name] = (path, str(extract(str(path), unzipdir=str(tmp_path_factory.mktemp(name)))))
-        return made[name]
-
-    return make
-
-
-@pytest.fixture(params=list(CASES))
-def case(request, fmu):
-    terms, parameters, step, count = CASES[request.param]
-    return request.param, *fmu(request.param), terms, parameters, step, count
+from tests.packaging.driven import CASES, REMOVAL, Driven
 
 
 def test_description_is_valid(case):
@@ -145,7 +80,7 @@ def test_state_replays_in_process_and_in_another_one(case, tmp_path):
     program = tmp_path / "replay.py"
     program.write_text(
         "import json, sys\n"
-        "from tests.packaging.test_fmu import Driven\n"
+        "from tests.packaging.driven import Driven\n"
         "path, folder, state, time, step, count = json.loads(sys.argv[1])\n"
         "driven = Driven(path, folder, {})\n"  # default parameters: another mesh, so another size of memory
         "saved = driven.slave.deSerializeFMUstate(open(state, 'rb').read())\n"
@@ -247,13 +182,13 @@ def test_term_left_out_is_not_in_the_fmu(fmu):
     assert b"fmi2SetContinuousStates" in library
 
 
-def test_fingerprint_follows_terms_and_processors(monkeypatch):
+def test_fingerprint_follows_terms_and_tools(monkeypatch):
     model = MODELS["net_capture"]
-    first = archive.fingerprint(model.interface(CAPTURE), link.LINUX64)
-    assert first == archive.fingerprint(model.interface(dict(reversed(CAPTURE.items()))), link.LINUX64)
-    assert first != archive.fingerprint(model.interface(CAPTURE | {"gravity": "hill"}), link.LINUX64)
+    first = archive.fingerprint(model.interface(CAPTURE))
+    assert first == archive.fingerprint(model.interface(dict(reversed(CAPTURE.items()))))
+    assert first != archive.fingerprint(model.interface(CAPTURE | {"gravity": "hill"}))
     monkeypatch.setattr(archive, "version", lambda name: "0")
-    assert first != archive.fingerprint(model.interface(CAPTURE), link.LINUX64)
+    assert first != archive.fingerprint(model.interface(CAPTURE))
 
 
 def test_damaged_fmu_in_the_cache_is_built_again(fmu, tmp_path, monkeypatch):

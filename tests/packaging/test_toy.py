@@ -1,0 +1,198 @@
+"""The shim alone, on a toy whose kernel is known in closed form: values, derivatives, ramps, ends and refusals."""
+
+import math
+
+import pytest
+
+from tests.packaging.raw import DISCARD, ERROR, OK, WARNING, Count, doubles, references
+
+
+def test_it_computes_what_its_kernel_says(running):
+    assert running.set({"push": 2.0, "pull": 0.5}) == OK
+    assert running.step(0.0, 0.5) == OK
+    assert running.get("x") == 1.0
+    assert running.get("y") == 1.0 + 3.0 * 2.0 + 2.0 * 0.5
+    assert running.get("grid[3].at[2]") == 5.0
+    assert running.get("steps", kind="Integer") == 1
+    assert running.get("lit", kind="Boolean") == 1
+
+
+def test_outputs_follow_inputs_before_the_next_step(running):
+    """An output that depends on an input directly is worked out anew once it was set."""
+    running.step(0.0, 1.0)
+    assert running.get("y") == 0.0
+    running.set({"pull": 1.0})
+    assert running.get("y") == 2.0
+    assert running.get("x") == 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("gain", 1.0, "gain is a parameter, fixed once the initialisation is over"),
+        ("grid[2].at[1]", 1.0, "grid[2].at[1] is an output and can not be set"),
+        ("push", math.nan, "push was given a number that is not finite"),
+        ("push", 10.1, "push = 10.1 m/s is out of its bounds"),
+        ("steps", 1.0, "is no variable of the type asked for"),
+    ],
+)
+def test_a_value_that_can_not_be_set_is_named(running, name, value, words):
+    assert running.set({name: value}) == ERROR
+    assert words in running.last
+    assert running.set({"push": 10.0}) == OK
+
+
+def test_a_call_sets_all_or_nothing(running, built_toy):
+    both = references(built_toy.references["push"], built_toy.references["gain"])
+    assert running.call("SetReal", both, Count(2), doubles(7.0, 1.0)) == ERROR
+    assert running.get("push") == 0.0
+
+
+@pytest.mark.parametrize("reference", [0, 5, 10, 29, 10**6, 2**32 - 1])
+def test_hidden_and_unknown_references_are_refused(running, reference):
+    value = doubles(0.0)
+    assert running.call("GetReal", references(reference), Count(1), value) == ERROR
+    assert running.call("SetReal", references(reference), Count(1), value) == ERROR
+
+
+def test_parameters_are_checked_when_they_are_used(make):
+    raw = make()
+    assert raw.start({"gain": 0.0}) == ERROR
+    assert "gain = 0 1 is out of its bounds: it must be finite, greater than 0 and at most 100" in raw.last
+    assert raw.set({"gain": 1.0}) == OK
+    assert raw.call("ExitInitializationMode") == OK
+
+
+# ---- derivatives --------------------------------------------------------------------------------------------------
+
+
+def test_a_ramp_is_integrated_exactly_and_two_halves_are_one_whole(make):
+    ends = []
+    for parts in (1, 2):
+        raw = make()
+        raw.start()
+        raw.set({"push": 1.0})
+        for k in range(parts):
+            assert raw.ramp("push", 4.0) == OK
+            assert raw.step(2.0 * k / parts, 2.0 / parts) == OK
+        assert raw.get("push") == 9.0
+        ends.append(raw.get("x", "y"))
+    assert ends[0] == ends[1] == [10.0, 10.0 + 3.0 * 9.0]
+
+
+def test_a_ramp_lasts_one_step(running):
+    running.ramp("push", 1.0)
+    running.step(0.0, 1.0)
+    running.step(1.0, 1.0)
+    assert running.get("x") == 0.5 + 1.0
+    running.ramp("push", 1.0)
+    running.set({"push": 0.0})  # which takes the rate back
+    running.step(2.0, 1.0)
+    assert running.get("x") == 1.5
+
+
+def test_a_ramp_that_leaves_the_bounds_is_refused_and_the_instance_lives(running):
+    running.ramp("push", 6.0)
+    assert running.step(0.0, 2.0) == ERROR
+    assert "push = 12 m/s is out of its bounds" in running.last
+    assert running.step(0.0, 1.0) == OK
+
+
+def test_ramps_of_other_inputs_and_orders_are_refused(running):
+    assert running.ramp("pull", 1.0) == ERROR
+    assert "pull is held over a step" in running.last
+    assert running.ramp("push", 1.0, order=2) == ERROR
+    assert "order 2, expected 1" in running.last
+    assert running.ramp("x", 1.0) == ERROR
+    assert running.ramp("push", math.inf) == ERROR
+
+
+def test_output_derivatives(running):
+    running.set({"push": 2.0})
+    running.ramp("push", 0.5)
+    assert running.output_rate("x") == (OK, 2.0)
+    assert running.output_rate("y") == (OK, 2.0 + 3.0 * 0.5)
+    assert running.output_rate("sum")[0] == DISCARD
+    assert "sum has no derivative" in running.last
+    assert running.output_rate("x", order=2)[0] == ERROR
+    assert running.output_rate("push")[0] == ERROR
+
+
+def test_directional_derivatives_equal_differences(running):
+    at = {"push": 1.0, "pull": -1.0}
+    along = {"push": 0.25, "pull": 4.0}
+    status, slopes = running.directional(["y", "x"], along)
+    sides = []
+    for sign in (1.0, -1.0):
+        running.set({n: at[n] + sign * along[n] for n in at})
+        sides.append(running.get("y", "x"))
+    assert status == OK
+    assert slopes == [(a - b) / 2.0 for a, b in zip(*sides, strict=True)] == [3.0 * 0.25 + 2.0 * 4.0, 0.0]
+    assert running.directional(["lit"], along)[0] == ERROR
+    assert running.directional(["y"], {"gain": 1.0})[0] == ERROR
+    assert "gain is no input" in running.last
+
+
+# ---- ends and refusals ----------------------------------------------------------------------------------------------
+
+
+def test_the_models_own_end_is_a_discard_with_terminated_and_time(make):
+    raw = make()
+    raw.start({"end": 1.25})
+    assert raw.step(0.0, 1.0) == OK
+    assert not raw.ended()
+    assert raw.step(1.0, 1.0) == DISCARD
+    assert raw.said[-1] == (DISCARD, "logStatusDiscard", "the cart has arrived (index 0, value 0, at 1.25 s)")
+    assert raw.ended()
+    assert raw.real_status() == (OK, 1.25)
+    assert raw.get("x") == 0.0
+    assert raw.step(1.25, 0.1) == ERROR  # a tool that goes on does not loop
+    assert "at its own end" in raw.last
+    assert raw.call("Terminate") == OK
+
+
+def test_a_discarded_step_can_be_taken_back(running):
+    state = running.save()
+    running.set({"pull": 5.0})
+    assert running.step(0.0, 1.0) == DISCARD
+    assert not running.ended()
+    assert running.real_status() == (OK, 0.0)
+    assert running.step(0.0, 0.5) == ERROR
+    assert running.restore(state) == OK
+    assert running.step(0.0, 0.5) == OK
+    running.drop(state)
+
+
+def test_an_error_breaks_the_instance_until_it_is_reset(running, built_toy):
+    running.set({"pull": 6.0})
+    assert running.step(0.0, 1.0) == ERROR
+    assert "the cart broke under (pull, value 6, at 0 s)" in running.last
+    assert running.step(0.0, 1.0) == ERROR
+    value = doubles(0.0)
+    assert running.call("GetReal", references(built_toy.references["x"]), Count(1), value) == WARNING
+    assert running.said[-1][1] == "logStatusWarning"
+    assert running.call("Reset") == OK
+    assert running.start() == OK
+    assert running.step(0.0, 1.0) == OK
+
+
+def test_the_stop_time_holds(make):
+    raw = make()
+    raw.start(stop=1.0)
+    assert raw.step(0.0, 0.5) == OK
+    assert raw.step(0.5, 0.6) == ERROR
+    assert "beyond the stop time" in raw.last
+    assert raw.step(0.5, 0.5 + 1e-10) == OK  # masters that add up times drift
+    assert raw.step(1.0, 0.1) == ERROR
+    late = make()
+    assert late.call("SetupExperiment", False, 0.0, 1.0, True, 0.5) == ERROR
+    free = make()
+    free.start()
+    assert free.step(0.0, 100.0) == OK
+
+
+@pytest.mark.parametrize(("time", "size"), [(1.0, 1.0), (0.0, -1.0), (math.nan, 1.0), (0.0, math.nan), (0.0, math.inf)])
+def test_a_step_that_can_not_be_is_refused(running, time, size):
+    assert running.step(time, size) == ERROR
+    assert running.step(0.0, 0.0) == OK
+    assert running.get("steps", kind="Integer") == 0
