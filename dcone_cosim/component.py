@@ -97,6 +97,7 @@ class Component:
         self.archive = archive
         self.variables: Mapping[str, VariableInfo] = archive.variables
         self.can_save = archive.can_save
+        self.can_vary_step = archive.can_vary_step
         self.can_interpolate = archive.can_interpolate
         self.time = 0.0
         self._states: dict[str, Any] = {}

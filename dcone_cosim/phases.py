@@ -105,6 +105,8 @@ class CaptureLoop:
         self.place = {name: i for i, name in enumerate(self.read.names)}
         nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
         self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
+        # only a component that is a single FMU can say that it takes steps of one length
+        self.can_locate = component.can_save and getattr(component, "can_vary_step", True)
         self._kept: Row = self.read.values
         self.tether_length = math.inf
         if plan.hand_over == "tether_taut":
@@ -175,7 +177,7 @@ class CaptureLoop:
             if begin >= last:
                 break
             searching = result.located is None and plan.hand_over != NEVER
-            if searching and component.can_save:
+            if searching and self.can_locate:
                 self._save()
             component.step(begin, end - begin)
             result.steps += 1
@@ -209,8 +211,9 @@ class CaptureLoop:
         component, result = self.component, self.result
         place = self.place.get("t_capture")
         reported = float(self.read.values[place]) if place is not None and self.plan.hand_over == "captured" else -1.0
-        if not component.can_save:
-            result.located_by = f"end of the macro step of {end - begin:g} s: this FMU cannot save its state"
+        if not self.can_locate:
+            why = "takes only steps of one length" if component.can_save else "cannot save its state"
+            result.located_by = f"end of the macro step of {end - begin:g} s: this FMU {why}"
             if begin < reported <= end:
                 result.located_by += f" (it reports {reported:.9g} s)"
             return end

@@ -199,6 +199,14 @@ class TestCapture:
         assert result.located == 5.5
         assert "cannot save its state" in result.located_by
 
+    def test_one_of_fixed_steps_is_taken_at_them(self, tmp_path: Path) -> None:
+        def fixed(xml: str) -> str:
+            return xml.replace('canHandleVariableCommunicationStepSize="true"', "")
+
+        result = self.run(build(tmp_path, "capture", change=fixed))
+        assert result.located == 5.5
+        assert "takes only steps of one length (it reports 5.33333333 s)" in result.located_by
+
 
 class TestComponent:
     def test_no_call_after_fatal(self, tmp_path: Path) -> None:
