@@ -17,8 +17,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from dcone_cosim.component import Archive, Component, Reader, listeners
+from dcone_cosim.component import Archive, Component, Reader
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu_messages import listeners
 from dcone_cosim.isolation import receive, send
 
 CALLS = frozenset(

@@ -32,7 +32,7 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.steppable import CallError, Row, Terminated, VariableInfo
 
 LAST_WORDS = 600
-"""Characters of what an FMU wrote last that an error quotes."""
+"""Characters that an error quotes at most of the last three lines an FMU wrote."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
 KEEPING = frozenset({"read", "reader", "get", "save"})
@@ -206,9 +206,9 @@ class IsolatedComponent:
             said = f"its process was ended by {signal.Signals(-code).name}"
         else:
             said = f"its process ended itself with exit code {code}"
-        words = self._noise.decode("utf-8", "replace").strip()
-        if words:
-            said += f"; its last words: {words[-LAST_WORDS:]}"
+        lines = [line.strip() for line in self._noise.decode("utf-8", "replace").splitlines() if line.strip()]
+        if lines:
+            said += f"; its last words: {'; '.join(lines[-3:])[-LAST_WORDS:]}"
         detail = f"{self.archive.path.name}, run in a process of its own"
         return CallError(self.name, where or f" at t = {self.time:.9g} s", said, detail, "Dead")
 
