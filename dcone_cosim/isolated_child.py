@@ -38,6 +38,8 @@ class Server:
         self.readers: list[Reader] = []
 
     def answer(self, call: str, *arguments: Any) -> Any:
+        if call == "hello":
+            return None
         if call == "instantiate":
             path, folder, name = arguments
             self.component = Archive(Path(path), Path(folder)).instantiate(name)

@@ -33,6 +33,8 @@ from dcone_cosim.steppable import CallError, Row, Terminated, VariableInfo
 
 LAST_WORDS = 600
 """Characters that an error quotes at most of the last three lines an FMU wrote."""
+START = 120.0
+"""How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
 KEEPING = frozenset({"read", "reader", "get", "save"})
@@ -65,7 +67,7 @@ def _exactly(stream: BinaryIO, size: int) -> bytes:
 class IsolatedComponent:
     """One instance of an FMU in a process of its own, with the face of a `Component`.
 
-    timeout    longest time one call may take, the start included [s]
+    timeout    longest time one call to the FMU may take, its instantiation included [s]
     """
 
     def __init__(self, archive: Archive, name: str, timeout: float = 60.0) -> None:
@@ -91,6 +93,7 @@ class IsolatedComponent:
         self._listener.start()
         threading.Thread(target=self._guard, daemon=True).start()
         try:
+            self._ask(" could not be started", "hello")
             self._ask(" could not be instantiated", "instantiate", str(archive.path), str(archive.folder), name)
         except BaseException:
             self.close()
@@ -181,7 +184,7 @@ class IsolatedComponent:
             raise FmuError(f"{self.name}: the instance is closed")
         if call[0] not in KEEPING:
             self._fresh.clear()
-        self._deadline = clock.monotonic() + self.timeout
+        self._deadline = clock.monotonic() + (START if call[0] == "hello" else self.timeout)
         try:
             send(self._child.stdin, call)  # type: ignore[arg-type]
             error, answer = receive(self._child.stdout)  # type: ignore[arg-type]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dcone_cosim import restoring
-from dcone_cosim.component import Readable, Row, Steppable, Terminated, output_names
+from dcone_cosim.component import KINDS, Readable, Row, Steppable, Terminated, output_names
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.progress import Progress
@@ -312,6 +312,6 @@ class RemovalLoop:
 
 def parameters_of(component: Steppable, given: Mapping[str, float]) -> dict[str, float]:
     """Every parameter of the component as it now stands: what was given and what was left at its start value."""
-    names = [v.name for v in component.variables.values() if v.causality == "parameter"]
+    names = [v.name for v in component.variables.values() if v.causality == "parameter" and v.kind in KINDS]
     present = component.get(names) if names else {}
     return {name: present.get(name, float(np.nan)) for name in dict.fromkeys((*given, *names))}
