@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dcone_cosim.component import Readable, Steppable, output_names
-from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
+from dcone_cosim import restoring
+from dcone_cosim.component import KINDS, Readable, Row, Steppable, Terminated, output_names
+from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
@@ -44,9 +45,10 @@ class CapturePlan:
 class PhaseResult:
     """What a phase leaves: its columns, and how it came out.
 
-    outcome      capture: name of its outcome; removal: "towed"
+    outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
     located      instant of the hand-over [s] and how it was found, None when there was none
     error        the failure that ended the phase early
+    ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
     """
 
     name: str
@@ -61,6 +63,13 @@ class PhaseResult:
     cpu: float = 0.0
     wall: float = 0.0
     error: FmuError | None = None
+    ended_by: str = ""
+    ended_at: float = math.nan
+
+    def ended(self, end: Terminated) -> None:
+        """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:
+        the last row stays that of the communication point before."""
+        self.outcome, self.ended_by, self.ended_at = ENDED, end.said, end.time
 
     @property
     def end(self) -> float:
@@ -96,6 +105,9 @@ class CaptureLoop:
         self.place = {name: i for i, name in enumerate(self.read.names)}
         nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
         self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
+        # only a component that is a single FMU can say that it takes steps of one length
+        self.can_locate = component.can_save and getattr(component, "can_vary_step", True)
+        self._kept: Row = self.read.values
         self.tether_length = math.inf
         if plan.hand_over == "tether_taut":
             self._need("tether.paid_out")
@@ -137,9 +149,17 @@ class CaptureLoop:
         with _Stopwatch(result):
             try:
                 self._run()
+            except Terminated as end:
+                result.ended(end)
             except FmuError as error:
                 result.error = error
         return result
+
+    def _save(self) -> None:
+        self._kept = restoring.save(self.component, self.read)
+
+    def _restore(self, time: float) -> None:
+        restoring.restore(self.component, self.read, self._kept, time)
 
     def _record(self, time: float, force: bool = False) -> None:
         self.result.recorder.add(time, self.read())
@@ -157,8 +177,8 @@ class CaptureLoop:
             if begin >= last:
                 break
             searching = result.located is None and plan.hand_over != NEVER
-            if searching and component.can_save:
-                component.save()
+            if searching and self.can_locate:
+                self._save()
             component.step(begin, end - begin)
             result.steps += 1
             self.read()
@@ -191,13 +211,14 @@ class CaptureLoop:
         component, result = self.component, self.result
         place = self.place.get("t_capture")
         reported = float(self.read.values[place]) if place is not None and self.plan.hand_over == "captured" else -1.0
-        if not component.can_save:
-            result.located_by = f"end of the macro step of {end - begin:g} s: this FMU cannot save its state"
+        if not self.can_locate:
+            why = "takes only steps of one length" if component.can_save else "cannot save its state"
+            result.located_by = f"end of the macro step of {end - begin:g} s: this FMU {why}"
             if begin < reported <= end:
                 result.located_by += f" (it reports {reported:.9g} s)"
             return end
         low, high = begin, end
-        component.restore()
+        restoring.replay(component, self.read, self._kept, begin, end)
         if begin < reported < end:
             component.step(begin, reported - begin)
             self.read()
@@ -205,7 +226,7 @@ class CaptureLoop:
                 result.located_by = "the FMU's own t_capture, reached from its saved state"
                 return reported
             low = reported
-            component.save()
+            self._save()
         elif reported == end:
             component.step(begin, end - begin)
             result.located_by = "the FMU's own t_capture"
@@ -216,10 +237,10 @@ class CaptureLoop:
             self.read()
             if self.triggered():
                 high = middle
-                component.restore()
+                self._restore(low)
             else:
                 low = middle
-                component.save()
+                self._save()
         component.step(low, high - low)
         result.located_by = f"halving the macro step to {high - low:.2g} s"
         return high
@@ -255,6 +276,8 @@ class RemovalLoop:
             try:
                 self._run()
                 result.outcome = "towed"
+            except Terminated as end:
+                result.ended(end)
             except FmuError as error:
                 result.error = error
                 result.outcome = "stopped"
@@ -289,6 +312,6 @@ class RemovalLoop:
 
 def parameters_of(component: Steppable, given: Mapping[str, float]) -> dict[str, float]:
     """Every parameter of the component as it now stands: what was given and what was left at its start value."""
-    names = [v.name for v in component.variables.values() if v.causality == "parameter"]
+    names = [v.name for v in component.variables.values() if v.causality == "parameter" and v.kind in KINDS]
     present = component.get(names) if names else {}
     return {name: present.get(name, float(np.nan)) for name in dict.fromkeys((*given, *names))}
