@@ -11,15 +11,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dcone_cosim.errors import FmuError
+from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.interface import Group, Interface, Model, Variable
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["MODELS", "Group", "Interface", "Model", "Variable"]
+__all__ = ["CATALOGUE", "MODELS", "Group", "Interface", "Model", "Variable"]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""
+
+SETTABLE = ("parameter", "input")
+"""Causality of what a scene may give a value: an input keeps it from the start."""
 
 
 @dataclass(frozen=True)
@@ -31,16 +35,29 @@ class Refusal:
     expected: str
 
 
-def parameters(interface: Interface) -> Iterator[Variable]:
+def settable(interface: Interface) -> Iterator[Variable]:
     """The rows a scene may set."""
-    return (v for v in interface.variables if v.causality == "parameter")
+    return (v for v in interface.variables if v.causality in SETTABLE)
+
+
+def term_rows(group: Group, term: str) -> tuple[Variable, ...]:
+    """The rows a term brings; none for a name that is no term."""
+    return group.terms[term].variables if term in group.terms else ()
+
+
+def all_rows(model: Model) -> Iterator[Variable]:
+    """Every row the model can have: those that are always there, and those of every term."""
+    yield from model.base
+    for group in model.groups.values():
+        for term in group.terms:
+            yield from term_rows(group, term)
 
 
 def defaults(interface: Interface) -> dict[str, float]:
-    """Start value of every parameter by FMI name, SI."""
+    """Start value of every parameter and input by FMI name, SI."""
     return {
         name: float(start)
-        for v in parameters(interface)
+        for v in settable(interface)
         for name, start in zip(v.element_names(), v.starts(), strict=True)
     }
 

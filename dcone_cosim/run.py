@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 PACKAGES = (
-    *("dcone-cosim", "numpy", "fmpy", "astropy", "pydantic", "pyarrow", "matplotlib", "typer"),
+    *("dcone-cosim", "numpy", "fmpy", "astropy", "tomlkit", "pyarrow", "matplotlib", "typer"),
     *("numba", "llvmlite", "ziglang"),
 )
 

@@ -31,6 +31,21 @@ def unit_of(fmi_unit: str) -> Any:
     return u.dimensionless_unscaled if fmi_unit == "1" else u.Unit(fmi_unit)
 
 
+def is_unit(name: str, like: str) -> bool:
+    """Whether a name is that of a unit of the same dimension as another, and as large."""
+    try:
+        return bool(unit_of(name) == unit_of(like))
+    except (ValueError, TypeError):
+        return False
+
+
+def fit(one: str, other: str) -> bool:
+    """Whether a value in the one SI unit can be a value in the other; an angle is a number, and a number fits all."""
+    if one == other or "1" in (one, other):
+        return True
+    return bool(unit_of(one).is_equivalent(unit_of(other), equivalencies=u.dimensionless_angles()))
+
+
 def spoken(fmi_unit: str) -> str:
     """An FMI unit as a person writes it: "N.m.s" is "N m s"."""
     return fmi_unit.replace(".", " ").replace("1/s", "/s") if fmi_unit != "1" else ""
@@ -159,7 +174,7 @@ class Expected:
         written = match[2].strip()
         try:
             unit = u.Unit(written)
-            number = float(unit.to(unit_of(self.unit), float(match[1])))
+            number = float(unit.to(unit_of(self.unit), float(match[1]), equivalencies=u.temperature()))
         except u.UnitConversionError:
             raise Unexpected(f"is {_article(dimension_of(unit))}; expected {self._wanted()}") from None
         except (TypeError, ValueError, ArithmeticError):
