@@ -6,7 +6,7 @@ No other module of this package knows `fmu_src`: everything else works on an FMU
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -94,18 +94,27 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
-def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
-    """Path of the FMU of each phase, `{phase: terms}`; those that the cache has not are built side by side."""
+def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[str], None]) -> list[Path]:
+    """Path of the FMU of each model with its terms; those that the cache has not are built side by side, each once."""
     from fmu_src.packaging.archive import build_all
     from fmu_src.packaging.tools import BuildError
 
-    interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
+    keys = [(model, tuple(terms.items())) for model, terms in wanted]
+    unlike = list(dict.fromkeys(keys))
+    interfaces = [CATALOGUE[model].interface(dict(terms)) for model, terms in unlike]
     try:
-        return dict(zip(phases, build_all(interfaces, cache_folder(), announce), strict=True))
+        paths = dict(zip(unlike, build_all(interfaces, cache_folder(), announce), strict=True))
     except BuildError as error:
         raise FmuError(str(error)) from None
+    return [paths[key] for key in keys]
 
 
-def readable_name(phase: str, terms: Mapping[str, str]) -> str:
+def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
+    """Path of the FMU of each phase, `{phase: terms}`, with the model of that phase."""
+    paths = ensure([(MODELS[phase].name, terms) for phase, terms in phases.items()], announce)
+    return dict(zip(phases, paths, strict=True))
+
+
+def readable_name(model: str, terms: Mapping[str, str]) -> str:
     """File name of an FMU for others: the model and its terms."""
-    return "-".join([MODELS[phase].name, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"
+    return "-".join([model, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"

@@ -8,13 +8,13 @@ Nothing is built for it: what a model of ours takes is known from its rows, what
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path as File
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER
+from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER, check_contract
 from dcone_cosim.coupling import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.mistakes import Mistake, Places, SceneError, unknown
@@ -104,6 +104,7 @@ def check(document: dict[str, Any], text: str, name: str, places: Places, folder
     if len(chosen) == len(PHASES):
         mistakes += set_by_handoff(document, mains["removal"])
     mistakes += about_hand_over(document, mains, chosen)
+    mistakes += _about_contract(document, phases, chosen)
     if not mistakes and not chosen:
         raise InputError(f"{places.source} holds no phase; expected [capture], [removal] or both")
     if not mistakes:
@@ -166,7 +167,6 @@ def _read_component(
     part: Part, tables: dict[str, Any], orbit: Mapping[str, Any], folder: File, mistakes: list[Mistake]
 ) -> _Component:
     """What a component is, and what the scene says of it."""
-    before = len(mistakes)
     read = _Component(part)
     for key, expected in COMPONENT_KEYS.items():
         if key in tables:
@@ -182,8 +182,6 @@ def _read_component(
     elif not _named_model(part, tables, mistakes):
         return read
     read.parameters = read_part(part, tables, orbit, mistakes)
-    if part.fmu is not None and len(mistakes) == before:
-        _check_contract(part, mistakes)
     return read
 
 
@@ -197,13 +195,19 @@ def _foreign(part: Part, tables: dict[str, Any], folder: File, mistakes: list[Mi
     if archive is None:
         return False
     with archive:
-        part.fmu = file
+        part.fmu, part.archive = file, archive
         of_fmu(part, offer(archive.variables, part.model))
     return True
 
 
-def _check_contract(part: Part, mistakes: list[Mistake]) -> None:
-    """What a phase needs of the FMU that takes the place of our model."""
+def _about_contract(document: dict[str, Any], phases: Mapping[str, _Phase], chosen: list[str]) -> Iterator[Mistake]:
+    """What a phase needs of the FMU that takes the place of our model, and does not find there."""
+    for name in chosen:
+        part = phases[name].main.part
+        if part.archive is not None:
+            hand_over = _hand_over(phases[name]) if name == "capture" else NEVER
+            for text in check_contract(part.archive, name, len(chosen) == len(PHASES), hand_over):
+                yield Mistake((name, "fmu"), document[name]["fmu"], text)
 
 
 def _named_model(part: Part, tables: dict[str, Any], mistakes: list[Mistake]) -> bool:
@@ -224,10 +228,7 @@ def _phase_scene(name: str, read: _Phase) -> PhaseScene:
     options = {key: read.options.get(key) for key in PHASE_KEYS[name] if key not in REQUIRED}
     if name == "capture":
         options["snapshots"] = read.options.get("snapshots") or []
-        part = read.main.part
-        can_capture = part.fmu is not None or all(group in part.terms for group in CAPTURE_NEEDS)
-        told = options["hand_over"]
-        options["hand_over"] = HAND_OVER[int(told)] if told is not None else HAND_OVER[0] if can_capture else NEVER
+        options["hand_over"] = _hand_over(read)
         options["after_capture"] = math.inf if options["after_capture"] is None else options["after_capture"]
     return PhaseScene(
         name,
@@ -239,6 +240,15 @@ def _phase_scene(name: str, read: _Phase) -> PhaseScene:
         read.connections,
         read.coupling,
     )
+
+
+def _hand_over(read: _Phase) -> str:
+    """When the capture hands over: as told, otherwise at capture, or never where no capture can be reported."""
+    told, part = read.options.get("hand_over"), read.main.part
+    if told is not None:
+        return HAND_OVER[int(told)]
+    can_capture = all(group in part.terms for group in CAPTURE_NEEDS) if part.fmu is None else "captured" in part.slots
+    return HAND_OVER[0] if can_capture else NEVER
 
 
 def _share_line(phases: list[PhaseScene]) -> None:

@@ -127,7 +127,16 @@ def expected_of(row: build.Variable) -> Expected:
     example = f"{start:g}" if row.kind == "Integer" else example_of(start, row.unit, row.display_unit)
     size = row.size if row.shape else 0
     return Expected(
-        row.unit, row.kind, size, row.choices, example, row.minimum, row.maximum, row.open_minimum, row.refusal
+        row.unit,
+        row.kind,
+        size,
+        row.choices,
+        example,
+        row.minimum,
+        row.maximum,
+        row.open_minimum,
+        row.refusal,
+        row.display_unit,
     )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path as File
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
 from dcone_cosim.mistakes import Mistake, unknown
@@ -17,6 +17,9 @@ from dcone_cosim.scene_fmus import Offer
 from dcone_cosim.scene_keys import PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
 from dcone_cosim.toml_lines import Path, dotted
 from dcone_cosim.units import LARGEST_INTEGER
+
+if TYPE_CHECKING:
+    from dcone_cosim.archive import Archive
 
 
 @dataclass
@@ -30,6 +33,7 @@ class Part:
     reserved     keys of its table that are no parameters
     keys         by the name a scene gives them: "bullets.speed"
     slots        every scalar variable, for connections
+    archive      of the FMU, closed again: its model description is read
     given        where the value of each variable was given
     """
 
@@ -41,6 +45,7 @@ class Part:
     reserved: frozenset[str] = frozenset()
     keys: dict[str, Key] = field(default_factory=dict)
     slots: dict[str, Slot] = field(default_factory=dict)
+    archive: Archive | None = None
     given: dict[str, Path] = field(default_factory=dict)
 
     @property
