@@ -12,7 +12,7 @@ from pathlib import Path
 
 from dcone_cosim.errors import FmuError
 from fmu_src.catalogue import MODELS as CATALOGUE
-from fmu_src.interface import Group, Interface, Model, Variable
+from fmu_src.interface import Group, Interface, Model, Value, Variable
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
@@ -60,6 +60,22 @@ def defaults(interface: Interface) -> dict[str, float]:
         for v in settable(interface)
         for name, start in zip(v.element_names(), v.starts(), strict=True)
     }
+
+
+def known_variables(phase: str) -> dict[str, tuple[Variable, Value]]:
+    """Row and start value of every variable that the phase's model can have, with whatever terms, by FMI name."""
+    model = MODELS[phase]
+    rows = list(model.base)
+    for name, group in model.groups.items():
+        # a term for any number of nodes is a family of its own: one node stands for all
+        terms = [group.terms["1"]] if name == "nodes" else group.terms.values()
+        rows += [v for term in terms for v in term.variables]
+    found: dict[str, tuple[Variable, Value]] = {}
+    for v in rows:
+        for element, start in zip(v.element_names(), v.starts(), strict=True):
+            if v.at_interface:
+                found.setdefault(element, (v, start))
+    return found
 
 
 def cannot_work(

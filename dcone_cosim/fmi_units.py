@@ -7,6 +7,7 @@ an FMU names without defining it is taken by its name where that is a known one;
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -31,6 +32,14 @@ _NAMED: Mapping[Dimension, str] = {
     (1, 1, -1, 0, 0, 0, 0, 0): "N.s",
     (1, 0, -2, 0, 0, 0, 0, 0): "N/m",
 }
+
+
+_SYMBOLS: Mapping[str, Dimension] = {
+    **{name: tuple(int(name == base) for base in BASE) for name in BASE},
+    **{name: dimension for dimension, name in _NAMED.items() if name.isalnum()},
+    "Hz": (0, 0, -1, 0, 0, 0, 0, 0),
+}
+"""Unit symbols that need no factor."""
 
 
 @dataclass(frozen=True)
@@ -109,14 +118,30 @@ def read_units(definitions: Iterable[Any], file: str) -> dict[str, Unit]:
     return units
 
 
+def _of_symbols(name: str) -> Dimension | None:
+    """Dimension of a product of SI symbols such as "N.s/m" or "kg.m2", None for any other name."""
+    found = list(PURE)
+    over, *under = name.split("/")
+    if len(under) > 1:
+        return None
+    for sign, part in ((1, over), *((-1, part) for part in under)):
+        for piece in part.strip("()").split("."):
+            match = re.fullmatch(r"([A-Za-z]+|1)(-?\d*)", piece)
+            if match is None or match[1] not in _SYMBOLS:
+                return None
+            power = sign * int(match[2] or 1)
+            found = [n + power * p for n, p in zip(found, _SYMBOLS[match[1]], strict=True)]
+    return tuple(found)
+
+
 @lru_cache(maxsize=256)
 def by_name(name: str) -> Unit:
     """A unit that an FMU names and does not define, taken by its name; of an unknown name nothing is known."""
     if name in ("", "1", "-"):
         return NO_UNIT
-    for dimension, known in _NAMED.items():
-        if name == known:
-            return Unit(name, dimension)
+    dimension = _of_symbols(name)
+    if dimension is not None:
+        return Unit(name, dimension)
     from astropy import units  # slow to load, and only an FMU without unit definitions needs it
 
     try:

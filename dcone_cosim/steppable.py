@@ -90,7 +90,7 @@ class CallError(FmuError):
 
     said      the FMU's own words
     detail    the call, its status and the FMU's file
-    status    Discard, Error, Fatal, Pending; Dead when its process is gone; "" when no status was given
+    status    Discard, Error, Fatal, Pending; Dead when its process is gone; "" when a call went well and gave nonsense
     reached   last time it reached in a step it discarded [s], None when it does not tell
     """
 
@@ -100,6 +100,11 @@ class CallError(FmuError):
         super().__init__(f"{name}{where}:\n  {said}\n  ({detail})")
         self.name, self.where, self.said, self.detail = name, where, said, detail
         self.status, self.reached = status, reached
+
+    @property
+    def broken(self) -> bool:
+        """Whether the FMU itself is at fault, whatever it was given: it refused nothing, it broke."""
+        return self.status not in ("Discard", "Error")
 
     def __reduce__(self) -> tuple[type[CallError], tuple[object, ...]]:
         return type(self), (self.name, self.where, self.said, self.detail, self.status, self.reached)
