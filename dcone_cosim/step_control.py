@@ -81,9 +81,10 @@ class ControlledSteps:
 
         error = max |y_1 - y_2| / (2^p - 1) / (tolerance |y|max + 1e-12 SI) * macro step / h
 
-    over the connected outputs, p the order of convergence, |y|max the largest size of that output so far. The last
-    factor makes the tolerance that of a macro step, so that the error reached goes with the tolerance, not with a power
-    of it. A step with an error above 1 is rolled back and tried shorter, as is one that an FMU discards.
+    over the connected outputs, p the order of convergence, |y|max the largest size of that output so far, the very
+    first trial included, since an output may begin at zero. The last factor makes the tolerance that of a macro step:
+    the error reached goes with the tolerance, not with a power of it. A step with an error above 1 is rolled back and
+    tried shorter, as is one that an FMU discards.
 
     A jump in a connected output is met by no step. One of `smallest_step` is then taken as it is, and counted as
     forced: the error it can leave is the jump over that time.
@@ -97,7 +98,7 @@ class ControlledSteps:
         self.exchange, self.coupling, self.statistics = exchange, coupling, statistics
         self.power = coupling.convergence_order
         self._next = coupling.step or math.inf
-        self._largest = [0.0] * len(exchange.links)
+        self._largest: list[float] = []
         self._forced = 0
         self._smallest = coupling.smallest_step
         self._kept: dict[str, tuple[float, list[float], int]] = {}
@@ -132,6 +133,7 @@ class ControlledSteps:
                 self.statistics.discarded += 1
                 error = math.inf
             else:
+                self._largest = self._largest or largest
                 if error <= 1.0 or smallest:
                     break
                 self.exchange.go_back(TRIAL, time)
@@ -154,7 +156,8 @@ class ControlledSteps:
         middle = time + 0.5 * (until - time)
         exchange.take(time, middle - time)
         exchange.take(middle, until - middle)
-        largest = [max(m, abs(y)) for m, y in zip(self._largest, exchange.out, strict=True)]
+        known = self._largest or [0.0] * len(exchange.out)
+        largest = [max(m, abs(y)) for m, y in zip(known, exchange.out, strict=True)]
         share = (2.0**self.power - 1.0) * (until - time) / macro_step
         errors = [
             abs(one - two) / (share * (self.coupling.tolerance * size + SMALLEST_SIZE))
