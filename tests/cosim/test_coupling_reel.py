@@ -10,6 +10,7 @@ import pytest
 from tests.cosim.in_process import KernelComponent
 from tests.cosim.reel_pair import CASES, Law, Outcome, pair, whole
 
+pytestmark = pytest.mark.slow
 STEPS = (20.0, 10.0, 5.0, 2.5)
 
 
