@@ -67,7 +67,7 @@ class Exchange:
             for i, reader in enumerate(self._readers)
         ]
         taking = [i for i in places if self._into[i] and self._readers[i] is None]
-        self._last = [components[i].reader(names) for i in taking if (names := _reals(components[i]))]
+        self._last = [components[i].reader(shown) for i in taking if (shown := _reals(components[i]))]
         self.out = [UNSET] * len(links)
         self._held = [UNSET] * len(links)
         self._rate = [0.0] * len(links)
