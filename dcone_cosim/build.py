@@ -12,15 +12,19 @@ from pathlib import Path
 
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
+from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.interface import Group, Interface, Model, Value, Variable
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["MODELS", "Group", "Interface", "Model", "Variable"]
+__all__ = ["CATALOGUE", "MODELS", "Group", "Interface", "Model", "Variable"]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""
+
+SETTABLE = ("parameter", "input")
+"""Causality of what a scene may give a value: an input keeps it from the start."""
 
 
 @dataclass(frozen=True)
@@ -32,16 +36,29 @@ class Refusal:
     expected: str
 
 
-def parameters(interface: Interface) -> Iterator[Variable]:
+def settable(interface: Interface) -> Iterator[Variable]:
     """The rows a scene may set."""
-    return (v for v in interface.variables if v.causality == "parameter")
+    return (v for v in interface.variables if v.causality in SETTABLE)
+
+
+def term_rows(group: Group, term: str) -> tuple[Variable, ...]:
+    """The rows a term brings; none for a name that is no term."""
+    return group.terms[term].variables if term in group.terms else ()
+
+
+def all_rows(model: Model) -> Iterator[Variable]:
+    """Every row the model can have: those that are always there, and those of every term."""
+    yield from model.base
+    for group in model.groups.values():
+        for term in group.terms:
+            yield from term_rows(group, term)
 
 
 def defaults(interface: Interface) -> dict[str, float]:
-    """Start value of every parameter by FMI name, SI."""
+    """Start value of every parameter and input by FMI name, SI."""
     return {
         name: float(start)
-        for v in parameters(interface)
+        for v in settable(interface)
         for name, start in zip(v.element_names(), v.starts(), strict=True)
     }
 
@@ -94,18 +111,19 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
-def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
-    """Path of the FMU of each phase, `{phase: terms}`; those that the cache has not are built side by side."""
+def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[str], None]) -> list[Path]:
+    """Path of the FMU of each model with its terms; those that the cache has not are built side by side, each once."""
     from fmu_src.packaging.archive import build_all
     from fmu_src.packaging.tools import BuildError
 
-    interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
+    keys = [(model, tuple(terms.items())) for model, terms in wanted]
+    unlike = list(dict.fromkeys(keys))
+    interfaces = [CATALOGUE[model].interface(dict(terms)) for model, terms in unlike]
     try:
-        return {
-            phase: fmu for phase, (fmu,) in zip(phases, build_all(interfaces, cache_folder(), announce), strict=True)
-        }
+        paths = dict(zip(unlike, (fmu for (fmu,) in build_all(interfaces, cache_folder(), announce)), strict=True))
     except BuildError as error:
         raise FmuError(str(error)) from None
+    return [paths[key] for key in keys]
 
 
 def platform_names(text: str) -> tuple[str, ...]:
@@ -123,9 +141,12 @@ def platform_names(text: str) -> tuple[str, ...]:
 
 
 def write_fmus(
-    phases: Mapping[str, Mapping[str, str]], platforms: Sequence[str], folder: Path, announce: Callable[[str], None]
+    wanted: Sequence[tuple[str, Mapping[str, str]]],
+    platforms: Sequence[str],
+    folder: Path,
+    announce: Callable[[str], None],
 ) -> list[Path]:
-    """Write the FMUs of phases, `{phase: terms}`, to a folder under readable names, each for all platforms named.
+    """Write FMUs, `(model, terms)`, to a folder under readable names, each for all platforms named.
 
     With no platforms named they are for this machine. Linux on arm64 has archives of its own.
     """
@@ -133,22 +154,29 @@ def write_fmus(
     from fmu_src.packaging.platforms import PLATFORMS, archives, host
     from fmu_src.packaging.tools import BuildError
 
-    interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
+    unlike = [w for i, w in enumerate(wanted) if w not in wanted[:i]]
+    interfaces = [CATALOGUE[model].interface(terms) for model, terms in unlike]
     written = []
     try:
         chosen = [PLATFORMS[name] for name in platforms] or [host()]
         built = build_all(interfaces, cache_folder(), announce, chosen)
     except BuildError as error:
         raise FmuError(str(error)) from None
-    for (phase, terms), fmus in zip(phases.items(), built, strict=True):
+    for (model, terms), fmus in zip(unlike, built, strict=True):
         of = dict(zip(chosen, fmus, strict=True))
         for ending, together in archives(chosen):
-            name = Path(readable_name(phase, terms))
+            name = Path(readable_name(model, terms))
             written.append(folder / f"{name.stem}{ending}.fmu")
             unite([of[platform] for platform in together], written[-1])
     return written
 
 
-def readable_name(phase: str, terms: Mapping[str, str]) -> str:
+def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
+    """Path of the FMU of each phase, `{phase: terms}`, with the model of that phase."""
+    paths = ensure([(MODELS[phase].name, terms) for phase, terms in phases.items()], announce)
+    return dict(zip(phases, paths, strict=True))
+
+
+def readable_name(model: str, terms: Mapping[str, str]) -> str:
     """File name of an FMU for others: the model and its terms."""
-    return "-".join([MODELS[phase].name, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"
+    return "-".join([model, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"

@@ -88,7 +88,7 @@ def build(
 
     progress = _progress()
     try:
-        paths = write_fmus(scene, out, progress, platforms)
+        paths = write_fmus(scene, out, progress, platforms=platforms)
     finally:
         progress.close()
     with _reader_may_leave():

@@ -29,7 +29,7 @@ from dcone_cosim.handoff import (
     without_recoil,
 )
 from dcone_cosim.ledger import LedgerRow, ledger
-from dcone_cosim.mistakes import lines_named
+from dcone_cosim.mistakes import places_named
 from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import PhaseScene, Scene
@@ -113,7 +113,7 @@ def cannot_begin(scene: Scene, phase: str, error: FmuError) -> FmuError | InputE
     source = scene.source or scene.name
     if not isinstance(error, CallError):
         return InputError(f"{source}: the {phase} cannot begin\n  {error}")
-    where = lines_named(error.said, scene.text, phase)
+    where = places_named(error.said, scene.places, phase)
     return InputError(f"{source}: the {phase} cannot begin\n  {where}{error.said}\n  ({error.detail})")
 
 
