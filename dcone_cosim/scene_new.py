@@ -37,8 +37,8 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
     lines += [
         f"# A scene begun from {origin!r}. Check it with `dcone validate {name}`, run it with `dcone run {name}`.",
         '# A dimensional value is a text with its unit, such as "24 m"; a pure number is bare.',
-        "# Lines that begin with a # and a key show what counts when nothing is said; a table that is marked so is left",
-        "# out of the FMU altogether.",
+        "# A line that begins with a # and a key shows what counts when nothing is said; a table that is marked so is",
+        "# left out of the FMU altogether.",
         "",
         _line("title", _toml(document.get("title", "")), MEANING["title"]),
     ]
@@ -57,7 +57,9 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
 
 def _owned(present: Sequence[str]) -> tuple[str, ...]:
     """Beginnings of names that the hand-off sets when both phases run."""
-    return tuple(name.partition("[")[0] for name in REMOVAL_SETS) + ("start.",) if len(present) == len(PHASES) else ()
+    if len(present) < len(PHASES):
+        return ()
+    return ("start.", *(name.partition("[")[0] for name in REMOVAL_SETS))
 
 
 def _somewhere(document: Mapping[str, Any], name: str) -> bool:
@@ -177,4 +179,4 @@ def _toml(value: Any) -> str:
     """A value of a scene as TOML: texts, numbers, flags and lists of them."""
     import tomlkit
 
-    return tomlkit.item(value).as_string()
+    return str(tomlkit.item(value).as_string())
