@@ -10,7 +10,7 @@ import typer
 
 from dcone_cosim import exits
 from dcone_cosim.cli_cache import cache_app
-from dcone_cosim.completion import scenes_like
+from dcone_cosim.completion import phases_like, scenes_like
 from dcone_cosim.errors import BAD_INPUT, DconeError
 from dcone_cosim.exits import complain as _complain
 from dcone_cosim.exits import reader_may_leave as _reader_may_leave
@@ -222,6 +222,27 @@ def schema(
     text = write_schema(out)
     with _reader_may_leave():
         typer.echo(text if out is None else out)
+
+
+@app.command()
+def interface(
+    phase: Annotated[str, typer.Argument(metavar="PHASE", help="capture or removal", autocompletion=phases_like)],
+    template: Annotated[
+        str | None, typer.Option("--template", metavar="KIND", help="Write an empty FMU too: c or pythonfmu.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="Folder for the template; my_PHASE if not given.")
+    ] = None,
+) -> None:
+    """Show what the master looks for in the FMU of a phase, or write an empty FMU that has it."""
+    from dcone_cosim.interface_kit import show, write_template
+
+    with _reader_may_leave():
+        if template is None:
+            show(phase, _console())
+            return
+        for path in write_template(phase, template, out if out is not None else Path(f"my_{phase}")):
+            typer.echo(path)
 
 
 def _promise(offline: bool) -> None:
