@@ -42,6 +42,11 @@ def settable(interface: Interface) -> Iterator[Variable]:
     return (v for v in interface.variables if v.causality in SETTABLE)
 
 
+def scene_name(row: Variable) -> str:
+    """Name of a row as a scene says it, table and key: `target.size`; without a table for a name of one part."""
+    return f"{row.section}.{row.key}" if row.key else row.section
+
+
 def term_rows(group: Group, term: str) -> tuple[Variable, ...]:
     """The rows a term brings; none for a name that is no term."""
     return group.terms[term].variables if term in group.terms else ()

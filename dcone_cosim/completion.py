@@ -10,7 +10,7 @@ PHASE_NAMES = ("capture", "removal")
 def scenes_like(incomplete: str) -> list[str]:
     """Scenes that come with the program, and TOML files and folders that begin so."""
     shipped = [path.stem for path in (Path(__file__).parent / "scenes").glob("*.toml")]
-    above = Path(incomplete).parent if "/" in incomplete else Path()
+    above = Path(incomplete.rpartition("/")[0] or ("/" if incomplete.startswith("/") else ""))
     try:
         beside = [path for path in above.iterdir() if path.suffix == ".toml" or path.is_dir()]
     except OSError:

@@ -65,7 +65,7 @@ def _owned(present: Sequence[str]) -> tuple[str, ...]:
 def _somewhere(document: Mapping[str, Any], name: str) -> bool:
     """Whether a phase of the document has this variable."""
     return any(
-        f"{row.section}.{row.key}" == name
+        build.scene_name(row) == name
         for phase in PHASES
         if phase in document
         for row in build.settable(build.MODELS[phase].interface(_terms(phase, document[phase])))
@@ -81,7 +81,7 @@ def _phase(phase: str, tables: Mapping[str, Any], skip: tuple[str, ...]) -> Iter
     model = build.MODELS[phase]
     terms = _terms(phase, tables)
     rows = [row for row in build.settable(model.interface(terms)) if row.section != SHARED]
-    rows = [row for row in rows if not f"{row.section}.{row.key}".startswith(skip or ("\0",))]
+    rows = [row for row in rows if not build.scene_name(row).startswith(skip or ("\0",))]
     yield f"[{phase}]"
     for key, expected in PHASE_KEYS[phase].items():
         yield _option(key, tables.get(key), expected)
