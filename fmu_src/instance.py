@@ -37,6 +37,7 @@ class Instance:
         rows = list(self.interface.scalars())
         self._slots = {n: (slot, v.kind == "Real") for n, slot, v, _ in rows if v.at_interface}
         self._by_name = {n.removeprefix("@"): (slot, v) for n, slot, v, _ in rows}
+        self._moving: set[str] = set()
         self._names = {slot: n for n, slot, _, _ in rows}
         for name, value in (parameters or {}).items():
             self[name] = value
@@ -79,9 +80,9 @@ class Instance:
         """Advance by one macro step [s]; rates of inputs hold for this step only."""
         self._call(STEP, self.time, size)
         self.time += size
-        for v in self.interface.variables:
-            if v.causality == "input" and v.rate:
-                self._whole(v.rate)[...] = 0.0
+        for rate in self._moving:
+            self._whole(rate)[...] = 0.0
+        self._moving.clear()
 
     def refresh(self) -> None:
         """Outputs for the inputs of now."""
@@ -94,6 +95,7 @@ class Instance:
             if v.causality != "input" or not v.rate:
                 raise ValueError(f"{name} is no input with a rate")
             self._whole(v.rate).reshape(-1)[slot - self._first(v)] = rate
+            self._moving.add(v.rate)
 
     def differentiate(self) -> None:
         """Work out the derivatives that `rate` and `partial` read."""
