@@ -204,7 +204,9 @@ def test_a_saved_state_replays_to_the_last_bit(control: str, extrapolation: str)
 
 def test_coupling_steps_come_from_integers_and_land_exactly() -> None:
     components, connections = by_motion()
-    whole = coupled(components, connections, step=0.3)
+    whole = Coupled("pair", components, connections, Coupling(step=0.3))
+    whole.enter_initialisation(2.0)
+    whole.exit_initialisation()
     whole.step(2.0, 1.0)
     begins = [time for time, _ in components[0].calls]
     assert begins == [2.0 + k * 0.3 for k in range(4)]
