@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.archive import Archive
 from dcone_cosim.component import CallError, Steppable
-from dcone_cosim.errors import InputError
+from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.mistakes import places_named
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import ComponentScene, PhaseScene, Scene
@@ -28,8 +29,10 @@ class Archives:
         paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
         try:
             for phase, component in components:
-                path = component.fmu if component.fmu is not None else paths[phase, component.name]
-                self._of[phase, component.name] = Archive(path)
+                key = (phase, component.name)
+                self._of[key] = (
+                    Archive(component.fmu) if component.fmu is not None else self._ours(paths[key], component)
+                )
         except BaseException:
             self.close()
             raise
@@ -59,6 +62,17 @@ class Archives:
             raise
         self._coupled.setdefault(phase, coupled)
         return coupled
+
+    @staticmethod
+    def _ours(path: Path, component: ComponentScene) -> Archive:
+        """One of ours from the cache; built again should somebody have cleared it away in between."""
+        try:
+            return Archive(path)
+        except FmuError:
+            if path.exists():
+                raise
+            (path,) = build.ensure([(component.model, component.terms)], lambda _: None)
+            return Archive(path)
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]

@@ -226,3 +226,23 @@ def test_inspect_tells_what_is_known_of_it(dcone: Dcone, folder: Path) -> None:
     assert "removal: my_removal, isolated" in out
     assert "its state can be saved: yes" in out
     assert "set by the scene, SI: orbit.altitude = 700000" in out
+
+
+def test_error_control_needs_states_of_all(folder: Path, tmp_path: Path) -> None:
+    """Told before anything runs; the twin can save its state and passes."""
+    coupled = '[removal.components.other]\nfmu = "{}"\n[removal.coupling]\ncontrol = "error"\n'
+    assert read(folder, SCENE + coupled.format("my_capture.fmu")).phases
+    cannot = build(
+        tmp_path / "cannot",
+        "capture",
+        change=lambda xml: xml.replace('GetAndSetFMUstate="true"', 'GetAndSetFMUstate="false"'),
+    )
+    with pytest.raises(InputError, match=r'control = "error": rolls steps back, but the FMU of other cannot save'):
+        read(folder, SCENE + coupled.format(cannot))
+
+
+def test_a_component_must_not_be_named_like_a_table_of_the_main_one(folder: Path) -> None:
+    flat = build(folder / "flat", "capture", change=lambda xml: xml.replace('name="chaser.mass"', 'name="mass"'))
+    text = f'{SCENE}[removal.components.chaser]\nfmu = "{flat}"\n'
+    with pytest.raises(InputError, match=r"removal has a variable chaser\.mass too: expected another name"):
+        read(folder, text)
