@@ -41,8 +41,17 @@ class Archives:
         """A component of that phase: its one FMU under this name, or all of its FMUs coupled.
 
         The values that the scene gives to further components are set here, since a phase knows its main one alone.
+        What they refuse is bad input, save in a phase that follows another: that one's results are kept.
         """
         plan = self._phases[phase]
+        try:
+            return self._together(plan, name)
+        except InputError as error:
+            if plan is self._scene.phases[0]:
+                raise
+            raise FmuError(str(error)) from error
+
+    def _together(self, plan: PhaseScene, name: str) -> Steppable:
         made: list[Steppable] = []
         try:
             for component in plan.components:
@@ -60,7 +69,7 @@ class Archives:
             for instance in reversed(made):
                 instance.close()
             raise
-        self._coupled.setdefault(phase, coupled)
+        self._coupled.setdefault(plan.name, coupled)
         return coupled
 
     @staticmethod
@@ -84,7 +93,7 @@ class Archives:
         except CallError as error:
             if error.broken:
                 raise
-            where = places_named(error.said, self._scene.places, phase.name)
+            where = places_named(error.said, self._scene.places, phase.name, "components", component.name)
             text = f"{self._scene.source}: {component.name} of the {phase.name} cannot begin"
             raise InputError(f"{text}\n  {where}{error.said}\n  ({error.detail})") from error
 

@@ -24,6 +24,7 @@ app = typer.Typer(
     help="Net capture and tethered removal of space debris, as a co-simulation of FMI 2.0 units.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help takes half the time: rich would load its Markdown reader for it
 )
 app.add_typer(cache_app, name="cache")
 
@@ -144,7 +145,10 @@ def list_scenes() -> None:
 
 @app.command()
 def inspect(scene: SceneName, settings: Settings = None, offline: Offline = False) -> None:
-    """Show what a scene puts into its FMUs, what it leaves out, and how large they are."""
+    """Show what is in the FMUs of a scene, and what is left out.
+
+    Terms, nodes, threads, states, variables, bytes; of an FMU from elsewhere what it tells of itself.
+    """
     _promise(offline)
     from dcone_cosim.commands import named
     from dcone_cosim.reports.inspection import show
@@ -164,7 +168,10 @@ def new(
         str, typer.Option("--from", metavar="SCENE", help="Scene to begin from.", autocompletion=scenes_like)
     ] = "mission",
 ) -> None:
-    """Write a scene to start from: every key there is, with its meaning, unit and bounds."""
+    """Write a scene to start from, with every key explained.
+
+    What is left at its default stands there as a comment with that default. Never replaces a file.
+    """
     from dcone_cosim.commands import write_scene
 
     path, next_steps = write_scene(name, origin)
@@ -180,7 +187,9 @@ def validate(
     settings: Settings = None,
     json: Json = False,
 ) -> None:
-    """Check scenes and tell all mistakes at once. FMUs that a scene names are opened; none is built or run.
+    """Check scenes and tell all mistakes at once.
+
+    FMUs that a scene names are opened; none is built or run.
 
     Exit code: 0 all are good, 2 there is a mistake.
     """
@@ -212,10 +221,11 @@ def validate(
 def schema(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if not given.")] = None,
 ) -> None:
-    """Give the JSON schema of scenes: with it an editor completes keys, explains them and marks mistakes.
+    """Give the JSON schema of scenes, for editors.
 
-    For editors that use taplo (such as VS Code with Even Better TOML) put `#:schema ./dcone-schema.json` at the top of
-    a scene; `dcone new` does so when there is a file of that name beside it.
+    With it an editor completes keys, explains them and marks mistakes. For editors that use taplo (such as VS Code
+    with Even Better TOML) put `#:schema ./dcone-schema.json` at the top of a scene; `dcone new` does so when there is a
+    file of that name beside it.
     """
     from dcone_cosim.commands import write_schema
 
@@ -234,7 +244,10 @@ def interface(
         Path | None, typer.Option("-o", "--out", help="Folder for the template; my_PHASE if not given.")
     ] = None,
 ) -> None:
-    """Show what the master looks for in the FMU of a phase, or write an empty FMU that has it."""
+    """Show what a phase asks of its FMU, or write an empty one.
+
+    The table has name, unit, causality and meaning of everything that the master looks for.
+    """
     from dcone_cosim.interface_kit import show, write_template
 
     with _reader_may_leave():

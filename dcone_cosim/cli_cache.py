@@ -9,7 +9,7 @@ import typer
 
 from dcone_cosim.exits import reader_may_leave
 
-cache_app = typer.Typer(help="Look at the FMUs that are kept, or clear them away.")
+cache_app = typer.Typer(help="Look at the FMUs that are kept, or clear them away.", rich_markup_mode=None)
 
 
 @cache_app.callback(invoke_without_command=True)

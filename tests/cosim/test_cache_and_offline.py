@@ -229,7 +229,7 @@ class TestCommandLine:
         program = (
             "import sys\nfrom dcone_cosim import cli\nsys.argv = ['dcone', '--help']\n"
             "try:\n    cli.main()\nexcept SystemExit:\n    pass\n"
-            "heavy = {'numpy', 'astropy', 'fmpy', 'pyarrow', 'numba', 'matplotlib', 'tomlkit', 'lxml', 'fmu_src'}\n"
+            "heavy = {'numpy', 'astropy', 'fmpy', 'pyarrow', 'numba', 'matplotlib', 'tomlkit', 'lxml', 'rich'}\n"
             "sys.exit(', '.join(sorted(heavy & set(sys.modules))) or 0)"
         )
         done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
