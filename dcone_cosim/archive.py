@@ -76,6 +76,11 @@ class Archive:
     def can_interpolate(self) -> bool:
         return _flag(self.description.coSimulation.canInterpolateInputs)
 
+    @property
+    def can_vary_step(self) -> bool:
+        """Whether its steps may differ in length."""
+        return _flag(self.description.coSimulation.canHandleVariableCommunicationStepSize)
+
     def variable(self, name: str, instance: str) -> VariableInfo:
         """The variable of that name; an unknown one is an error that names the nearest."""
         try:

@@ -14,8 +14,7 @@ import ctypes
 import itertools
 import math
 import os
-from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any
@@ -25,10 +24,10 @@ import fmpy.fmi1
 import fmpy.fmi2 as fmi2
 import numpy as np
 import numpy.typing as npt
-from fmpy.logging import addLoggerProxy
 
 from dcone_cosim.archive import Archive
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu_messages import STATUS, Messages
 from dcone_cosim.steppable import (
     KINDS,
     CallError,
@@ -54,40 +53,6 @@ __all__ = [
     "output_names",
 ]
 
-STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
-
-# fmpy's proxy formats the variadic message in C and hands it to one Python function per process; the environment
-# pointer tells the instances apart.
-_messages: dict[int, deque[tuple[int, str]]] = {}
-_late: set[int] = set()
-_environment = itertools.count(1)
-listeners: list[Callable[[str], None]] = []
-"""Called with every message of an FMU as it comes; a child process passes them on before it may die."""
-
-
-def _log(environment: int | None, instance: bytes | None, status: int, category: bytes | None, message: Any) -> None:
-    """Keep what an FMU says; any of the texts may be NULL, and no bytes may stop us."""
-    kept = _messages.get(environment or 0)
-    text = (message or b"").decode("utf-8", "replace").strip()
-    if kept is not None:
-        kept.append((status, text))
-        for listener in listeners:
-            listener(text)
-    elif status in range(len(STATUS)):
-        fmpy.fmi1.printLogMessage(environment, instance, status, category, text.encode())
-
-
-def _finished(environment: int | None, status: int) -> None:
-    _late.add(environment or 0)
-
-
-_callbacks = fmi2.fmi2CallbackFunctions()
-_callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(_log)
-_callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-_callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
-_callbacks.stepFinished = fmi2.fmi2StepFinishedTYPE(_finished)
-addLoggerProxy(ctypes.byref(_callbacks))
-
 
 class Component:
     """One instance of an FMU."""
@@ -97,16 +62,14 @@ class Component:
         self.archive = archive
         self.variables: Mapping[str, VariableInfo] = archive.variables
         self.can_save = archive.can_save
+        self.can_vary_step = archive.can_vary_step
         self.can_interpolate = archive.can_interpolate
         self.time = 0.0
         self._states: dict[str, Any] = {}
         self._times: dict[str, float] = {}
         self._stepping = False
         self._dead = ""
-        self._environment = next(_environment)
-        _messages[self._environment] = deque(maxlen=20)
-        callbacks = fmi2.fmi2CallbackFunctions.from_buffer_copy(_callbacks)
-        callbacks.componentEnvironment = self._environment
+        self._messages = Messages()
         self._fmu: Any = None
         place = os.getcwd()
         try:
@@ -116,7 +79,7 @@ class Component:
                 modelIdentifier=archive.identifier,
                 instanceName=name,
             )
-            self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
+            self._fmu.instantiate(callbacks=self._messages.callbacks(), loggingOn=True)
         except Exception as error:
             os.chdir(place)  # fmpy stays in the binary's folder when that does not load
             raise self._not_instantiated(error) from None
@@ -124,11 +87,12 @@ class Component:
     def _not_instantiated(self, error: Exception) -> FmuError:
         """Why there is no instance: the loader's words, or the FMU's own."""
         loaded, self._fmu = self._fmu is not None, None
-        messages, file = _messages.pop(self._environment), self.archive.path.name
+        self._messages.close()
+        file = self.archive.path.name
         if not loaded:
             reason = str(error).replace(f"{self.archive.folder}{os.sep}", "")
             return FmuError(f"{self.name}: the binary of {file} cannot be used\n  {reason}")
-        said = _words(messages)
+        said = self._messages.words()
         return CallError(self.name, " could not be instantiated", said, f"{file}: {error}", "Error")
 
     def reference(self, name: str) -> VariableInfo:
@@ -179,12 +143,12 @@ class Component:
         Raises `Terminated` when the FMU says that this is its end.
         """
         self._alive()
+        self._messages.forget()
         try:
             self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2False)
         except fmpy.fmi1.FMICallException as error:
             raise self._refused(error, time, size) from None
-        if _late and self._environment in _late:
-            _late.discard(self._environment)
+        if self._messages.late:
             raise self._asynchronous("it called stepFinished", time, size)
         self.time = time + size
 
@@ -222,8 +186,7 @@ class Component:
                 if self._stepping:
                     fmu.terminate()
             fmu.freeInstance()
-        _messages.pop(self._environment, None)
-        _late.discard(self._environment)
+        self._messages.close()
 
     def __enter__(self) -> Component:
         return self
@@ -248,7 +211,7 @@ class Component:
     def _error(self, error: Any, where: str = "", reached: float | None = None, end: bool = False) -> CallError:
         """What a refused call becomes. `where`: what was asked; without it, the time stands there."""
         status = STATUS[error.status] if error.status in range(len(STATUS)) else f"status {error.status}"
-        said = _words(_messages[self._environment])
+        said = self._messages.words()
         if status not in ("Discard", "Warning"):
             self._stepping = False
         if status in ("Fatal", "Pending"):
@@ -291,13 +254,6 @@ class Component:
 def _own(info: VariableInfo, value: float) -> float:
     """An SI value as the FMU counts it."""
     return float(value) if info.is_si else (float(value) - info.offset) / info.factor
-
-
-def _words(messages: Sequence[tuple[int, str]]) -> str:
-    """An FMU's latest complaints, or its latest words when none is a complaint."""
-    told = [text for status, text in messages if status >= fmi2.fmi2Warning] or [text for _, text in messages]
-    told = [text for text in told if text]
-    return "; ".join(dict.fromkeys(told[-3:])) if told else "the FMU gave no message"
 
 
 class Reader:

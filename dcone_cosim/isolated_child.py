@@ -17,8 +17,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from dcone_cosim.component import Archive, Component, Reader, listeners
+from dcone_cosim.component import Archive, Component, Reader
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu_messages import listeners
 from dcone_cosim.isolation import receive, send
 
 CALLS = frozenset(
@@ -37,6 +38,8 @@ class Server:
         self.readers: list[Reader] = []
 
     def answer(self, call: str, *arguments: Any) -> Any:
+        if call == "hello":
+            return None
         if call == "instantiate":
             path, folder, name = arguments
             self.component = Archive(Path(path), Path(folder)).instantiate(name)

@@ -4,7 +4,8 @@
 a fresh interpreter. Both sides send frames over the child's first two streams: length, then a pickled call or answer.
 What the FMU writes goes to the third stream, of which the last words are kept; nothing of it reaches our own streams.
 
-The numbers are the same to the last bit. A call costs some 40 us more than in this process, a start 0.5 s.
+The numbers are the same to the last bit. A step with the reading after it costs some 0.1 ms more than in this process,
+a start 0.3 s more (measured on two quiet cores by tests/benchmarks/test_isolation_cost.py).
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.steppable import CallError, Row, Terminated, VariableInfo
 
 LAST_WORDS = 600
-"""Characters of what an FMU wrote last that an error quotes."""
+"""Characters that an error quotes at most of the last three lines an FMU wrote."""
+START = 120.0
+"""How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
 KEEPING = frozenset({"read", "reader", "get", "save"})
@@ -64,7 +67,7 @@ def _exactly(stream: BinaryIO, size: int) -> bytes:
 class IsolatedComponent:
     """One instance of an FMU in a process of its own, with the face of a `Component`.
 
-    timeout    longest time one call may take, the start included [s]
+    timeout    longest time one call to the FMU may take, its instantiation included [s]
     """
 
     def __init__(self, archive: Archive, name: str, timeout: float = 60.0) -> None:
@@ -73,6 +76,7 @@ class IsolatedComponent:
         self.timeout = timeout
         self.variables: Mapping[str, VariableInfo] = archive.variables
         self.can_save = archive.can_save
+        self.can_vary_step = archive.can_vary_step
         self.can_interpolate = archive.can_interpolate
         self.time = 0.0
         self._times: dict[str, float] = {}
@@ -89,6 +93,7 @@ class IsolatedComponent:
         self._listener.start()
         threading.Thread(target=self._guard, daemon=True).start()
         try:
+            self._ask(" could not be started", "hello")
             self._ask(" could not be instantiated", "instantiate", str(archive.path), str(archive.folder), name)
         except BaseException:
             self.close()
@@ -179,7 +184,7 @@ class IsolatedComponent:
             raise FmuError(f"{self.name}: the instance is closed")
         if call[0] not in KEEPING:
             self._fresh.clear()
-        self._deadline = clock.monotonic() + self.timeout
+        self._deadline = clock.monotonic() + (START if call[0] == "hello" else self.timeout)
         try:
             send(self._child.stdin, call)  # type: ignore[arg-type]
             error, answer = receive(self._child.stdout)  # type: ignore[arg-type]
@@ -204,9 +209,9 @@ class IsolatedComponent:
             said = f"its process was ended by {signal.Signals(-code).name}"
         else:
             said = f"its process ended itself with exit code {code}"
-        words = self._noise.decode("utf-8", "replace").strip()
-        if words:
-            said += f"; its last words: {words[-LAST_WORDS:]}"
+        lines = [line.strip() for line in self._noise.decode("utf-8", "replace").splitlines() if line.strip()]
+        if lines:
+            said += f"; its last words: {'; '.join(lines[-3:])[-LAST_WORDS:]}"
         detail = f"{self.archive.path.name}, run in a process of its own"
         return CallError(self.name, where or f" at t = {self.time:.9g} s", said, detail, "Dead")
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dcone_cosim import restoring
-from dcone_cosim.component import Readable, Row, Steppable, Terminated, output_names
+from dcone_cosim.component import KINDS, Readable, Row, Steppable, Terminated, output_names
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.progress import Progress
@@ -105,6 +105,8 @@ class CaptureLoop:
         self.place = {name: i for i, name in enumerate(self.read.names)}
         nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
         self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
+        # only a component that is a single FMU can say that it takes steps of one length
+        self.can_locate = component.can_save and getattr(component, "can_vary_step", True)
         self._kept: Row = self.read.values
         self.tether_length = math.inf
         if plan.hand_over == "tether_taut":
@@ -175,7 +177,7 @@ class CaptureLoop:
             if begin >= last:
                 break
             searching = result.located is None and plan.hand_over != NEVER
-            if searching and component.can_save:
+            if searching and self.can_locate:
                 self._save()
             component.step(begin, end - begin)
             result.steps += 1
@@ -209,8 +211,9 @@ class CaptureLoop:
         component, result = self.component, self.result
         place = self.place.get("t_capture")
         reported = float(self.read.values[place]) if place is not None and self.plan.hand_over == "captured" else -1.0
-        if not component.can_save:
-            result.located_by = f"end of the macro step of {end - begin:g} s: this FMU cannot save its state"
+        if not self.can_locate:
+            why = "takes only steps of one length" if component.can_save else "cannot save its state"
+            result.located_by = f"end of the macro step of {end - begin:g} s: this FMU {why}"
             if begin < reported <= end:
                 result.located_by += f" (it reports {reported:.9g} s)"
             return end
@@ -309,6 +312,6 @@ class RemovalLoop:
 
 def parameters_of(component: Steppable, given: Mapping[str, float]) -> dict[str, float]:
     """Every parameter of the component as it now stands: what was given and what was left at its start value."""
-    names = [v.name for v in component.variables.values() if v.causality == "parameter"]
+    names = [v.name for v in component.variables.values() if v.causality == "parameter" and v.kind in KINDS]
     present = component.get(names) if names else {}
     return {name: present.get(name, float(np.nan)) for name in dict.fromkeys((*given, *names))}

@@ -41,8 +41,8 @@ def replay(component: Steppable, read: Readable, kept: Row, begin: float, end: f
     found = _differing(read.names, first, read())
     if found is not None:
         name, before, after = found
-        text = f"the step from {begin:.9g} s to {end:.9g} s gave its output {name} as {before:.12g} before, {after:.12g} after"
-        raise _liar(component, text)
+        step = f"the step from {begin:.9g} s to {end:.9g} s"
+        raise _liar(component, f"{step} gave its output {name} as {before:.12g} before, {after:.12g} after")
     restore(component, read, kept, begin)
 
 

@@ -52,6 +52,29 @@ def test_a_sound_one_tows(make_scene: Make, tmp_path: Path) -> None:
         np.testing.assert_array_equal(here.phases["removal"].recorder[name], isolated.phases["removal"].recorder[name])
 
 
+def test_what_is_no_number_is_left_alone(make_scene: Make, tmp_path: Path) -> None:
+    """A String parameter and an Enumeration beside what the master knows."""
+
+    def change(xml: str) -> str:
+        more = (
+            '<ScalarVariable name="note" valueReference="900" causality="parameter" variability="fixed">'
+            '<String start="hello"/></ScalarVariable>'
+            '<ScalarVariable name="mode" valueReference="14" causality="parameter" variability="fixed">'
+            '<Enumeration declaredType="modes" start="1"/></ScalarVariable>'
+        )
+        modes = '<SimpleType name="modes"><Enumeration><Item name="on" value="1"/></Enumeration></SimpleType>'
+        xml = xml.replace("<LogCategories>", f"<TypeDefinitions>{modes}</TypeDefinitions><LogCategories>")
+        return xml.replace("</ModelVariables>", f"{more}</ModelVariables>")
+
+    with Archive(build(tmp_path, change=change)) as archive:
+        assert archive.variables["note"].kind == "String"
+        assert archive.variables["mode"].kind == "Integer"
+        result = run_scene(make_scene("removal"), lambda _, name: archive.instantiate(name), Progress())
+    assert result.exit_code == SUCCESS
+    assert "mode" in result.parameters["removal"]
+    assert "note" not in result.parameters["removal"]
+
+
 @pytest.mark.parametrize(
     ("switch", "isolate", "words"),
     [
@@ -59,7 +82,7 @@ def test_a_sound_one_tows(make_scene: Make, tmp_path: Path) -> None:
         ("ABORT", ISOLATED, ["ended by SIGABRT"]),
         ("EXIT=3", ISOLATED, ["ended itself with exit code 3"]),
         ("EXIT=0", ISOLATED, ["ended itself with exit code 0"]),
-        ("HANG", ISOLATED, ["did not answer within 1 s and was killed"]),
+        ("HANG", ISOLATED, ["did not answer within 3 s and was killed"]),
         ("NOT_A_NUMBER=SEPARATION", HERE, ["its output separation is nan"]),
         ("NOT_A_NUMBER=SEPARATION", ISOLATED, ["its output separation is nan"]),
         ("INFINITE=RELATIVE_POSITION_2", HERE, ["its output relative.position[2] is -inf"]),
@@ -76,7 +99,7 @@ def test_a_sound_one_tows(make_scene: Make, tmp_path: Path) -> None:
 )
 def test_one_clear_error(make_scene: Make, tmp_path: Path, switch: str, isolate: bool, words: list[str]) -> None:
     """Each names the instance and the time; what was reached before it is in the folder, marked as failed."""
-    timeout = 1.0 if switch == "HANG" else 20.0
+    timeout = 3.0 if switch == "HANG" else 20.0
     scene = make_scene("capture", "removal")
     result = swap_in(scene, build(tmp_path / "fmu", "removal", switch), isolate, timeout)
     assert result.exit_code == FMU_FAILED
@@ -198,6 +221,14 @@ class TestCapture:
         assert result.error is None
         assert result.located == 5.5
         assert "cannot save its state" in result.located_by
+
+    def test_one_of_fixed_steps_is_taken_at_them(self, tmp_path: Path) -> None:
+        def fixed(xml: str) -> str:
+            return xml.replace('canHandleVariableCommunicationStepSize="true"', "")
+
+        result = self.run(build(tmp_path, "capture", change=fixed))
+        assert result.located == 5.5
+        assert "takes only steps of one length (it reports 5.33333333 s)" in result.located_by
 
 
 class TestComponent:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 import zipfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import fmpy
@@ -23,33 +25,42 @@ def build(
     when: float | None = None,
     change: Callable[[str], str] = lambda xml: xml,
 ) -> Path:
-    """`my_PHASE.fmu` in a new folder.
+    """`my_PHASE.fmu` in a folder.
 
     switches    how it goes wrong, see misbehaving.c: "CRASH", "EXIT=3"; "IGNORES_STATE": it restores nothing;
                 none: it works as the template does
     when        from which time on [s]
     change      of the text of its model description
     """
-    source = folder / "source"
-    write_template(phase, "c", source)
-    if "IGNORES_STATE" in switches:
-        shim = (source / "fmu.c").read_text()
-        restoring = "    memcpy(i->m.values, s + 1, block());\n"
-        assert restoring in shim
-        (source / "fmu.c").write_text(shim.replace(restoring, ""))
-    name = f"my_{phase}"
-    binary = source / f"{name}.so"
-    defines = [f"-D{switch}" for switch in (*switches, *([f"WHEN={when!r}"] if when is not None else []))]
-    subprocess.run(
-        [
-            *(sys.executable, "-m", "ziglang", "cc", "-std=c99", "-O1", "-fno-sanitize=undefined", "-shared", "-fPIC"),
-            *("-Wall", "-Wextra", "-D_POSIX_C_SOURCE=200809L", f"-I{HEADERS}", f"-I{source}", *defines),
-            *(str(SOURCE), str(source / "fmu.c"), "-lm", "-o", str(binary)),
-        ],
-        check=True,
-    )
-    path = folder / f"{name}.fmu"
+    defines = switches if when is None else (*switches, f"WHEN={when!r}")
+    description, binary = _compiled(phase, defines)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"my_{phase}.fmu"
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", change((source / "modelDescription.xml").read_text()))
-        archive.write(binary, f"binaries/{fmpy.platform}/{binary.name}")
+        archive.writestr("modelDescription.xml", change(description))
+        archive.writestr(f"binaries/{fmpy.platform}/my_{phase}.so", binary)
     return path
+
+
+@cache
+def _compiled(phase: str, switches: tuple[str, ...]) -> tuple[str, bytes]:
+    """Model description and binary; each is compiled once."""
+    with tempfile.TemporaryDirectory() as place:
+        source = Path(place) / "source"
+        write_template(phase, "c", source)
+        if "IGNORES_STATE" in switches:
+            shim = (source / "fmu.c").read_text()
+            restoring = "    memcpy(i->m.values, s + 1, block());\n"
+            assert restoring in shim
+            (source / "fmu.c").write_text(shim.replace(restoring, ""))
+        binary = source / "it.so"
+        subprocess.run(
+            [
+                *(sys.executable, "-m", "ziglang", "cc", "-std=c99", "-O1", "-fno-sanitize=undefined", "-shared"),
+                *("-fPIC", "-Wall", "-Wextra", "-D_POSIX_C_SOURCE=200809L", f"-I{HEADERS}", f"-I{source}"),
+                *(f"-D{switch}" for switch in switches),
+                *(str(SOURCE), str(source / "fmu.c"), "-lm", "-o", str(binary)),
+            ],
+            check=True,
+        )
+        return (source / "modelDescription.xml").read_text(), binary.read_bytes()

@@ -39,6 +39,7 @@ fmi2Status model_start(model *m) {
 #ifdef LIES
     never_restored = 0.0;
 #endif
+    model_say(m, fmi2Warning, "old news");
     return example_start(m);
 }
 

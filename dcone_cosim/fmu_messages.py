@@ -1,0 +1,87 @@
+"""What an FMU says while it works: its messages, and whether it promises an answer for later.
+
+fmpy formats the variadic message in C and hands it to one Python function per process; the environment pointer that
+every instance is given tells them apart.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import fmpy
+import fmpy.fmi1
+import fmpy.fmi2 as fmi2
+from fmpy.logging import addLoggerProxy
+
+STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
+KEPT = 20
+"""How many of an instance's latest messages are kept."""
+
+listeners: list[Callable[[str], None]] = []
+"""Called with every message as it comes; a child process passes them on before it may die."""
+
+_open: dict[int, Messages] = {}
+_keys = itertools.count(1)
+
+
+class Messages:
+    """The messages of one instance since it was last asked to do something, and the callbacks that gather them.
+
+    late      it called stepFinished, which is for steps that go on after they have returned
+    """
+
+    def __init__(self) -> None:
+        self._key = next(_keys)
+        self._said: deque[tuple[int, str]] = deque(maxlen=KEPT)
+        self.late = False
+        _open[self._key] = self
+
+    def callbacks(self) -> Any:
+        made = fmi2.fmi2CallbackFunctions.from_buffer_copy(_callbacks)
+        made.componentEnvironment = self._key
+        return made
+
+    def add(self, status: int, text: str) -> None:
+        self._said.append((status, text))
+
+    def forget(self) -> None:
+        self._said.clear()
+
+    def words(self) -> str:
+        """Its latest complaints, or its latest words when none is a complaint."""
+        told = [text for status, text in self._said if status >= fmi2.fmi2Warning and text]
+        told = told or [text for _, text in self._said if text]
+        return "; ".join(dict.fromkeys(told[-3:])) if told else "the FMU gave no message"
+
+    def close(self) -> None:
+        _open.pop(self._key, None)
+
+
+def _log(key: int | None, instance: bytes | None, status: int, category: bytes | None, message: bytes | None) -> None:
+    """Take one message; any of the texts may be NULL, and no bytes may stop us."""
+    text = (message or b"").decode("utf-8", "replace").strip()
+    kept = _open.get(key or 0)
+    if kept is not None:
+        kept.add(status, text)
+        for listener in listeners:
+            listener(text)
+    elif status in range(len(STATUS)):
+        fmpy.fmi1.printLogMessage(key, instance, status, category, text.encode())
+
+
+def _finished(key: int | None, status: int) -> None:
+    kept = _open.get(key or 0)
+    if kept is not None:
+        kept.late = True
+
+
+_callbacks = fmi2.fmi2CallbackFunctions()
+_callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(_log)
+_callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+_callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
+_callbacks.stepFinished = fmi2.fmi2StepFinishedTYPE(_finished)
+addLoggerProxy(ctypes.byref(_callbacks))
