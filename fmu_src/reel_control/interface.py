@@ -16,8 +16,8 @@ NO_COMMAND, BAD_PARAMETER, NOT_FINITE = range(1, 4)
 
 FAULTS = (
     Fault(NO_COMMAND, "error", "there is no such command of the kernel"),
-    Fault(BAD_PARAMETER, "error", "a parameter is out of its bounds or not finite"),
-    Fault(NOT_FINITE, "error", "an input or the tension is not finite"),
+    Fault(BAD_PARAMETER, "error", "a parameter is out of its bounds or not finite", True),
+    Fault(NOT_FINITE, "error", "an input or the tension is not finite", True),
 )
 
 

@@ -23,14 +23,26 @@ class KernelComponent:
             for n, slot, v, _ in self.instance.interface.scalars()
             if not n.startswith("@")
         }
-        self.can_save = True
-        self._kept = None
+        self.can_save = self.can_interpolate = True
+        self._begun = self._stale = False
+        self._kept = {}
 
     def set(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             self.instance[name] = value if self.variables[name].kind == "Real" else int(value)
+        self._stale = True
+
+    def set_rates(self, rates: Mapping[str, float]) -> None:
+        self.instance.set_rates(rates)
+
+    def refresh(self) -> None:
+        """As in the FMU: outputs that depend directly on inputs follow them when they are read."""
+        if self._begun and self._stale:
+            self.instance.refresh()
+        self._stale = False
 
     def get(self, names: Sequence[str]) -> dict[str, float]:
+        self.refresh()
         return {name: float(self.instance[name]) for name in names}
 
     def reader(self, names: Sequence[str]) -> KernelReader:
@@ -44,6 +56,7 @@ class KernelComponent:
             self.instance.initialise(self._start)
         except ModelFault as fault:
             raise FmuError(str(fault)) from None
+        self._begun = True
 
     def step(self, time: float, size: float) -> None:
         self.instance.time = time
@@ -53,11 +66,12 @@ class KernelComponent:
             raise FmuError(str(fault)) from None
 
     def save(self, key: str = "") -> None:
-        self._kept = (self.instance.record.copy(), self.instance.work.copy())
+        self.refresh()
+        self._kept[key] = (self.instance.record.copy(), self.instance.work.copy(), self.instance.time)
 
     def restore(self, key: str = "") -> None:
-        self.instance.record[:] = self._kept[0]
-        self.instance.work[:] = self._kept[1]
+        self.instance.record[:], self.instance.work[:], self.instance.time = self._kept[key]
+        self._stale = False
 
     def close(self) -> None:
         pass
@@ -69,10 +83,11 @@ class KernelReader:
         self.names = tuple(sorted(names, key=lambda n: order[component.variables[n].kind]))
         self._reals = [component.variables[n].reference for n in self.names if component.variables[n].kind == "Real"]
         self._others = [component.variables[n].reference for n in self.names if component.variables[n].kind != "Real"]
-        self._record = component.instance.record
+        self._component, self._record = component, component.instance.record
         self.values = np.zeros(len(self.names))
 
     def __call__(self):
+        self._component.refresh()
         count = len(self._reals)
         self.values[:count] = self._record.view(np.float64)[self._reals]
         self.values[count:] = self._record.view(np.int64)[self._others]

@@ -19,14 +19,14 @@ SIZE = 6
 
 
 @kernel
-def kepler(context: Any, state: Any, rate: Any) -> None:
+def kepler(context: Any, state: Any, rate: Any, elapsed: float) -> None:
     two_body_acceleration(rate[3:6], state[0:3], 1.0)
     for i in range(3):
         rate[i] = state[3 + i]
 
 
 @kernel
-def oscillator(context: Any, state: Any, rate: Any) -> None:
+def oscillator(context: Any, state: Any, rate: Any, elapsed: float) -> None:
     """Frequency 1, damping ratio from the context."""
     rate[0] = state[1]
     rate[1] = -state[0] - 2.0 * context[0] * state[1]
@@ -46,7 +46,7 @@ def fixed_steps(derivative: Callable[..., Any], scheme: AdaptiveScheme, start: A
     stages = np.zeros(DOP853_ROWS * len(start))
     for _ in range(count):
         state = end.copy()
-        derivative(np.zeros(1), state, stages[: len(start)])
+        derivative(np.zeros(1), state, stages[: len(start)], 0.0)
         scheme.attempt(np.zeros(1), state, step, stages, end)
     return state, end, stages
 
@@ -117,6 +117,31 @@ def test_dense_output_order(scheme: AdaptiveScheme) -> None:
     assert slope(steps, rates) == pytest.approx(7.0, abs=0.1)
 
 
+@kernel
+def drive(context: Any, state: Any, rate: Any, elapsed: float) -> None:
+    """x' = y, y' = cos t, the time of a step's begin in the context: the time of each stage counts."""
+    rate[0] = state[1]
+    rate[1] = math.cos(context[0] + context[1] * elapsed)
+
+
+def test_order_with_time_in_the_equations() -> None:
+    """Result and dense output at the order of the scheme; with stage times 1 % off the order is lost."""
+    moving = make_dop853(drive, squared, 2)
+    for factor, order in ((1.0, True), (1.01, False)):
+        steps, errors, within = [2.0, 1.6, 1.3, 1.0], [], []
+        for step in steps:
+            context, start, end = np.array([0.3, factor]), np.array([-math.cos(0.3), math.sin(0.3)]), np.zeros(2)
+            stages, dense, out = np.zeros(DOP853_ROWS * 2), np.zeros(DOP853_DENSE_ROWS * 2), np.zeros(2)
+            drive(context, start, stages[:2], 0.0)
+            moving.attempt(context, start, step, stages, end)
+            errors.append(abs(end[1] - math.sin(0.3 + step)))
+            moving.prepare_dense(context, start, end, step, stages, dense, np.zeros(2))
+            moving.dense_value(start, dense, 0.4, 0, 2, out)
+            within.append(abs(out[1] - math.sin(0.3 + 0.4 * step)))
+        assert (slope(steps, errors) > 8.5) == order
+        assert (slope(steps, within) > 7.5) == order
+
+
 def test_edges_of_stability() -> None:
     """h |lambda| = 5.97 on the imaginary axis, 6.4 on the real one; the decay below it is the one stated."""
     small = make_dop853(oscillator, squared, 2)
@@ -125,7 +150,7 @@ def test_edges_of_stability() -> None:
         columns = []
         for start in np.eye(2):
             end, stages = np.zeros(2), np.zeros(DOP853_ROWS * 2)
-            oscillator(np.array([zeta]), start, stages[:2])
+            oscillator(np.array([zeta]), start, stages[:2], 0.0)
             small.attempt(np.array([zeta]), start, step, stages, end)
             columns.append(end.copy())
         return float(abs(np.linalg.eigvals(np.array(columns).T)).max())

@@ -86,7 +86,7 @@ def test_thrust_directions(direction: str) -> None:
     way = {"along_track": np.cross(np.cross(r, v), r), "velocity": v, "tether": STATE[6:9]}[direction]
     force = -0.01 * way / np.linalg.norm(way)
     rate = np.zeros(12)
-    make_thrust(direction).add(masses(), STATE, rate)
+    make_thrust(direction).add(masses(), STATE, rate, 0.0)
     assert rate[3:6] == pytest.approx(force / 3000.0, rel=1e-12)
     assert rate[9:] == pytest.approx(-force / 2000.0, rel=1e-12)
     assert not rate[:3].any()

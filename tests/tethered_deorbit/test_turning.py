@@ -98,7 +98,10 @@ def _uneven(record: Any, state: Any, rate: Any) -> None:
 def test_laws_look_the_same_from_any_axes(direction: str) -> None:
     """f(Q x) = Q f(x) for gravity and every thrust; a force fixed in space would not be so."""
     by, record = np.array([0.3, -1.0, 0.7]), taut_record()
-    add = make_thrust(direction).add
+    push = make_thrust(direction).add
+
+    def add(record: Any, state: Any, rate: Any) -> None:
+        push(record, state, rate, 0.0)
 
     def difference(*laws: Callable[..., Any]) -> Any:
         here, there = np.zeros(12), np.zeros(12)
@@ -136,7 +139,7 @@ def test_a_line_at_rest_is_stepped_by_its_vibration_alone() -> None:
 
 
 @kernel
-def _oscillator(context: Any, state: Any, rate: Any) -> None:
+def _oscillator(context: Any, state: Any, rate: Any, elapsed: float) -> None:
     rate[0] = state[1]
     rate[1] = -state[0] - 2.0 * context[0] * state[1]
 
@@ -155,7 +158,7 @@ def test_longest_step() -> None:
         columns = []
         for start in np.eye(2):
             end, stages = np.zeros(2), np.zeros(DOP853_ROWS * 2)
-            _oscillator(np.array([zeta]), start, stages[:2])
+            _oscillator(np.array([zeta]), start, stages[:2], 0.0)
             scheme.attempt(np.array([zeta]), start, reach, stages, end)
             columns.append(end.copy())
         growth = float(abs(np.linalg.eigvals(np.array(columns).T)).max())

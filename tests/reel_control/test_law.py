@@ -1,0 +1,131 @@
+"""The controller by itself: its law, moving inputs, derivatives, refusals, and where its default gains come from."""
+
+import math
+
+import control
+import numpy as np
+import pytest
+
+from fmu_src.instance import Instance, ModelFault
+from fmu_src.reel_control.interface import (
+    BAD_PARAMETER,
+    DAMPING,
+    FEED_FORWARD,
+    MODEL,
+    NO_COMMAND,
+    NOT_FINITE,
+    STIFFNESS,
+)
+from fmu_src.tethered_deorbit import interface as removal
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.references import equilibrium_tension
+
+RATE = math.sqrt(EARTH_MU / (EARTH_EQUATORIAL_RADIUS + 800e3) ** 3)
+REDUCED = 2000.0 / 3.0
+
+
+def controller(length: float = 0.0, length_rate: float = 0.0, **parameters: float) -> Instance:
+    i = Instance(MODEL, {}, {k.replace("__", "."): v for k, v in parameters.items()})
+    i["length"], i["length_rate"] = length, length_rate
+    return i.initialise()
+
+
+def test_law() -> None:
+    i = controller(12.4, 0.003)
+    expected = FEED_FORWARD + STIFFNESS * 0.4 + DAMPING * 0.003
+    assert i["tension"] == pytest.approx(expected, rel=1e-14)
+    assert controller(12.4, -0.003)["tension"] != pytest.approx(expected, rel=1e-3)
+    assert controller()["tension"] == 0.0  # nothing asked
+    assert controller(12.0, -0.1)["tension"] == 0.0  # a line never pushes
+    other = controller(20.0, 0.0, reel__length=19.0, gain__proportional=2.0, feed_forward=0.5)
+    assert other["tension"] == pytest.approx(2.5, rel=1e-14)
+
+
+def test_an_output_follows_its_inputs_at_once() -> None:
+    i = controller(12.0)
+    i["length"] = 12.5
+    assert i["tension"] == pytest.approx(FEED_FORWARD, rel=1e-14)
+    i.refresh()
+    assert i["tension"] == pytest.approx(FEED_FORWARD + 0.5 * STIFFNESS, rel=1e-14)
+    i.step(10.0)
+    assert i["tension"] == pytest.approx(FEED_FORWARD + 0.5 * STIFFNESS, rel=1e-14)
+
+
+def test_moving_inputs() -> None:
+    """The tension after a step is that of the inputs at its end, and its derivative that of the step."""
+    i = controller(12.0)
+    rates = {"length": 0.01, "length_rate": 2e-4}
+    i.set_rates(rates)
+    i.step(20.0)
+    assert (i["length"], i["length_rate"]) == pytest.approx((12.2, 4e-3), rel=1e-14)
+    assert i["tension"] == pytest.approx(FEED_FORWARD + 0.2 * STIFFNESS + 4e-3 * DAMPING, rel=1e-13)
+    before = i["tension"]
+    i.differentiate()
+    slope = i.rate("tension")
+    i["length"] = 12.2 + 1e-9
+    i.differentiate()
+    assert i.rate("tension") == pytest.approx(2e-4 * DAMPING, rel=1e-14)  # the other input still goes on
+    i["length"] = 12.2
+    i.set_rates(rates)
+    i.step(20.0)
+    assert slope == pytest.approx((i["tension"] - before) / 20.0, rel=1e-12)
+    assert slope != pytest.approx(1.01 * (i["tension"] - before) / 20.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(("length", "pulls"), [(12.4, True), (2.0, False), (0.0, False)])
+def test_derivatives(length: float, pulls: bool) -> None:
+    i = controller(length)
+    i.differentiate()
+    told = [i.partial("tension", name) for name in ("length", "length_rate")]
+    assert told == ([STIFFNESS, DAMPING] if pulls else [0.0, 0.0])
+    before = i["tension"]
+    i["length"], i["length_rate"] = length + 1e-3, 2e-3
+    i.refresh()
+    change = told[0] * 1e-3 + told[1] * 2e-3
+    if length != 0.0:
+        assert i["tension"] - before == pytest.approx(change, rel=1e-9, abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    ("code", "name", "value"),
+    [
+        (BAD_PARAMETER, "reel.length", 0.0),
+        (BAD_PARAMETER, "gain.proportional", -1e-3),
+        (BAD_PARAMETER, "gain.derivative", math.nan),
+        (BAD_PARAMETER, "feed_forward", math.inf),
+        (NOT_FINITE, "length", math.nan),
+    ],
+)
+def test_refusals(code: int, name: str, value: float) -> None:
+    i = Instance(MODEL, {}, {"length": 12.0, name: value})
+    with pytest.raises(ModelFault, match=name.replace(".", r"\.")):
+        i.initialise()
+    assert i.record["fault_code"][0] == code
+    i[name] = 12.0
+    assert math.isfinite(i.initialise()["tension"])
+    with pytest.raises(ModelFault, match="no such command"):
+        i._call(9, 0.0, 0.0)
+    assert {NO_COMMAND, BAD_PARAMETER, NOT_FINITE} == {f.code for f in MODEL.faults}
+
+
+def regulator(weight: float = 1.0) -> np.ndarray:
+    """Gains of the quadratic regulator about the equilibrium: state (l, l', phi, phi'), lengths in l0, times in 1/n.
+
+    l'' = 3 l + 2 phi' - u,   phi'' = -3 phi - 2 l',   u the tension over m_r n^2 l0, beyond that at rest
+    """
+    a = np.array([[0.0, 1.0, 0.0, 0.0], [3.0, 0.0, 0.0, 2.0], [0.0, 0.0, 0.0, 1.0], [0.0, -2.0, -3.0, 0.0]])
+    b = np.array([[0.0], [-1.0], [0.0], [0.0]])
+    gains, _, _ = control.lqr(a, b, weight * np.eye(4), np.eye(1))
+    return np.asarray(gains)[0]
+
+
+def test_default_gains_are_the_regulators() -> None:
+    """Those on length and rate; its other two gains a reel can not have. Other weights give other gains."""
+    gains = regulator()
+    assert gains == pytest.approx([-5.78290, -3.41930, 2.93980, -0.21854], abs=1e-4)  # physics.md, section 2
+    scale = REDUCED * RATE
+    assert pytest.approx(-gains[0] * scale * RATE, rel=2e-4) == STIFFNESS
+    assert pytest.approx(-gains[1] * scale, rel=2e-4) == DAMPING
+    assert pytest.approx(-regulator(1.02)[1] * scale, rel=2e-4) != DAMPING
+    assert (STIFFNESS, DAMPING) == (removal.REEL_STIFFNESS, removal.REEL_DAMPING)
+    assert pytest.approx(equilibrium_tension(RATE, 12.0, REDUCED), rel=1e-12) == FEED_FORWARD
