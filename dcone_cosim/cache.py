@@ -10,6 +10,7 @@ import json
 import os
 import re
 import shutil
+import statistics
 import tempfile
 import time as clock
 import zipfile
@@ -24,6 +25,7 @@ ABANDONED = 86400.0
 """Age from which the folder of an unfinished build is that of one that was killed [s]."""
 HALF_BUILT = ".*-*"
 DAY = 86400.0
+UNKNOWN = "this may take a minute or two"
 
 
 @dataclass(frozen=True)
@@ -116,12 +118,8 @@ class Times:
         try:
             times = [float(t) for t in json.loads(self._path.read_text())["seconds"]]
         except (OSError, ValueError, KeyError, TypeError):
-            return "this may take a minute or two"
-        return (
-            f"it took {min(times):.0f} to {max(times):.0f} s before"
-            if len(times) > 1
-            else (f"it took {times[0]:.0f} s before" if times else "this may take a minute or two")
-        )
+            return UNKNOWN
+        return f"it took {statistics.median(times):.0f} s before" if times else UNKNOWN
 
     def keep(self, seconds: float) -> None:
         """Add how long a build took; the last few count."""
