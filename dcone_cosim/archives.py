@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.archive import Archive
 from dcone_cosim.component import CallError, Steppable
-from dcone_cosim.errors import InputError
+from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.mistakes import places_named
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import ComponentScene, PhaseScene, Scene
@@ -23,12 +24,15 @@ class Archives:
         self._coupled: dict[str, Any] = {}
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
-        built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
+        with progress.working("building"):
+            built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
         paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
         try:
             for phase, component in components:
-                path = component.fmu if component.fmu is not None else paths[phase, component.name]
-                self._of[phase, component.name] = Archive(path)
+                key = (phase, component.name)
+                self._of[key] = (
+                    Archive(component.fmu) if component.fmu is not None else self._ours(paths[key], component)
+                )
         except BaseException:
             self.close()
             raise
@@ -37,8 +41,17 @@ class Archives:
         """A component of that phase: its one FMU under this name, or all of its FMUs coupled.
 
         The values that the scene gives to further components are set here, since a phase knows its main one alone.
+        What they refuse is bad input, save in a phase that follows another: that one's results are kept.
         """
         plan = self._phases[phase]
+        try:
+            return self._together(plan, name)
+        except InputError as error:
+            if plan is self._scene.phases[0]:
+                raise
+            raise FmuError(str(error)) from error
+
+    def _together(self, plan: PhaseScene, name: str) -> Steppable:
         made: list[Steppable] = []
         try:
             for component in plan.components:
@@ -56,8 +69,19 @@ class Archives:
             for instance in reversed(made):
                 instance.close()
             raise
-        self._coupled.setdefault(phase, coupled)
+        self._coupled.setdefault(plan.name, coupled)
         return coupled
+
+    @staticmethod
+    def _ours(path: Path, component: ComponentScene) -> Archive:
+        """One of ours from the cache; built again should somebody have cleared it away in between."""
+        try:
+            return Archive(path)
+        except FmuError:
+            if path.exists():
+                raise
+            (path,) = build.ensure([(component.model, component.terms)], lambda _: None)
+            return Archive(path)
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]
@@ -69,7 +93,7 @@ class Archives:
         except CallError as error:
             if error.broken:
                 raise
-            where = places_named(error.said, self._scene.places, phase.name)
+            where = places_named(error.said, self._scene.places, phase.name, "components", component.name)
             text = f"{self._scene.source}: {component.name} of the {phase.name} cannot begin"
             raise InputError(f"{text}\n  {where}{error.said}\n  ({error.detail})") from error
 

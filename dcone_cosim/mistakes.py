@@ -121,11 +121,15 @@ def message(mistakes: Sequence[Mistake], places: Places) -> str:
     return "\n".join(rows)
 
 
-def places_named(said: str, places: Places, phase: str) -> str:
-    """Where the parameters stand that an FMU's words name: "line 4: ", "--set capture.net.side=3 m: ", or nothing."""
+def places_named(said: str, places: Places, *table: str) -> str:
+    """Where the parameters stand that an FMU's words name: "line 4: ", "--set capture.net.side=3 m: ", or nothing.
+
+    table     path of its table in the scene: a phase, or a component of one
+    """
     lines, arguments = set(), []
     for section, key in re.findall(r"\b([a-z_]+)\.([a-z_]+)", said):
-        for path in ((phase, section, key), (section, key)):
+        spelt = ((section, key), ("parameters", section, key), ("parameters", f"{section}.{key}"))
+        for path in (*((*table, *names) for names in spelt), (section, key)):
             override = places.override(path)
             if override is not None and override.path == path:
                 arguments.append(f"--set {override.argument}")

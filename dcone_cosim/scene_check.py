@@ -19,7 +19,7 @@ from dcone_cosim.coupling import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.mistakes import Mistake, Places, SceneError, unknown
 from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene
-from dcone_cosim.scene_coupling import read_connections, read_coupling
+from dcone_cosim.scene_coupling import about_components, read_connections, read_coupling
 from dcone_cosim.scene_fmus import file_of, offer, opened
 from dcone_cosim.scene_keys import (
     COMPONENT_KEYS,
@@ -145,6 +145,7 @@ def _read_phase(
             read.others.append(_read_component(Part(at, name, reserved=RESERVED), table, orbit, folder, mistakes))
     parts = [main.part, *(component.part for component in read.others)]
     read.coupling = read_coupling(tables, path, parts, mistakes)
+    mistakes += about_components(read.coupling, parts, tables)
     if "connections" in tables:
         read.connections = read_connections(tables["connections"], (*path, "connections"), parts, mistakes)
     return read

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from dcone_cosim.coupling import Connection, Coupling
@@ -135,6 +135,21 @@ def read_coupling(tables: Mapping[str, Any], path: Path, parts: Sequence[Part], 
         if key in table and found.get("control", "fixed") != "error":
             mistakes.append(Mistake((*path, key), table[key], 'says nothing to fixed steps; add control = "error"'))
     return Coupling(**found)
+
+
+def about_components(coupling: Coupling, parts: Sequence[Part], tables: Mapping[str, Any]) -> Iterator[Mistake]:
+    """Components that cannot be stepped as asked, or whose variables could not be told from those of the main one."""
+    main, *others = parts
+    if coupling.control == "error":
+        for part in parts:
+            if part.archive is not None and not part.archive.can_save:
+                text = f'rolls steps back, but the FMU of {part.name} cannot save its state; use control = "fixed"'
+                yield Mistake((*main.path, "coupling", "control"), "error", text)
+    for part in others:
+        alike = next((name for name in part.slots if f"{part.name}.{name}" in main.slots), None)
+        if alike is not None:
+            text = f"{main.name} has a variable {part.name}.{alike} too: expected another name for this component"
+            yield Mistake(part.path, tables["components"][part.name], text)
 
 
 def _order(given: object, path: Path, parts: Sequence[Part], mistakes: list[Mistake]) -> tuple[str, ...]:

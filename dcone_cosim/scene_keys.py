@@ -69,8 +69,6 @@ COUPLING_KEYS: Mapping[str, Expected] = {
     "smallest_step": _positive("s", "1 ms"),
     "extrapolation": _one_of("constant", "linear"),
 }
-PHASE_TABLES = ("components", "connections", "coupling", "parameters", "snapshots", "fmu")
-"""What else a phase may hold that is no parameter of its model."""
 
 MEANING: Mapping[str, str] = {
     "title": "what the scene is about, for tables and figures",

@@ -132,6 +132,8 @@ class _Walk:
         if self.text.startswith(",", self.at):
             self.at += 1
             self._skip(_TRIVIA)
+        if self.at == len(self.text):
+            raise _Lost
         if self.text.startswith(end, self.at):
             self.at += 1
             return False

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import tomllib
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
 from dcone_cosim import build
 from dcone_cosim.contract import HANDED_OVER, OUTCOMES
 from dcone_cosim.scene import find, load, parse, shipped, title_of
-from dcone_cosim.toml_lines import key_lines, line_of
+from dcone_cosim.toml_lines import Path, dotted, key_lines, line_of
 
 
 def test_the_three_scenes_are_there() -> None:
@@ -107,3 +110,61 @@ def test_lines_of_keys() -> None:
     }
     assert line_of(lines, ("capture", "net", "missing")) == 6
     assert line_of(lines, ("nowhere",)) is None
+
+
+ODD = '''"odd [key]" = """
+[no]
+x = 1"""
+when = 1979-05-27 07:32:00 # a date
+[a . "b.c"] # = [
+size = [
+  "1 m", # , ]
+  ["a]", {b = 1, "c.d".e = "}"}],
+]
+p = {x = "}", y = [1, 2]}
+[[t]]
+k = 1
+[[t]]
+k = \'\'\'
+]\'\'\'
+[t.u]
+v = ""
+w = "\\""
+'''
+
+
+def paths(value: Any, above: Path = ()) -> Iterator[Path]:
+    """Every key and element of a document."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, below in inner:
+        yield (*above, key)
+        yield from paths(below, (*above, key))
+
+
+def test_every_key_and_element_has_its_line() -> None:
+    lines = key_lines(ODD)
+    assert set(lines) == set(paths(tomllib.loads(ODD)))
+    shown = {dotted(path): line for path, line in lines.items()}
+    assert shown['"odd [key]"'] == 1
+    assert shown['a."b.c".size[1]'] == 7
+    assert shown['a."b.c".size[2][2]."c.d".e'] == 8
+    assert shown['a."b.c".p.y[2]'] == 10
+    assert (shown["t[1].k"], shown["t[2].k"], shown["t[2].u.w"]) == (12, 14, 18)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_every_key_of_a_shipped_scene_has_a_line(name: str) -> None:
+    text = find(name).read_text()
+    lines = key_lines(text)
+    assert set(lines) == set(paths(tomllib.loads(text)))
+    rows = text.splitlines()
+    for path, line in lines.items():
+        key = next(str(part) for part in reversed(path) if isinstance(part, str))
+        assert key in rows[line - 1] or isinstance(path[-1], int)
+
+
+@pytest.mark.parametrize("cut", range(0, 200, 7))
+def test_a_text_cut_short_has_the_lines_before_the_cut(cut: int) -> None:
+    """Nothing loops or fails, whatever the text."""
+    whole = key_lines(ODD)
+    assert all(whole.get(path, line) == line for path, line in key_lines(ODD[:cut]).items() if path[:1] != ("t",))

@@ -1,0 +1,180 @@
+"""FMUs in the place of ours, as a user runs them: ours from a file give the same bits, faulty ones one clear error."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pyarrow.parquet
+import pytest
+
+from dcone_cosim import cli
+from dcone_cosim.scene import find
+from tests.cosim.fmus.build import build
+
+pytestmark = pytest.mark.slow
+
+Dcone = Callable[..., tuple[int, str, str]]
+MISSION = find("mission").read_text()
+FOREIGN = """[removal]
+fmu = "{fmu}"
+isolate = {isolate}
+{more}
+macro_step = "10 s"
+duration = "100 s"
+
+[removal.tether]
+rest_length = "14 m"
+
+"""
+
+
+@pytest.fixture
+def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Dcone:
+    """Run the command line in an empty folder; returns exit code, stdout and stderr."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
+        with pytest.raises(SystemExit) as stop:
+            cli.main()
+        written = capfd.readouterr()
+        return int(stop.value.code or 0), written.out, written.err
+
+    return run
+
+
+def towed_by(fmu: Path, isolate: bool, timeout: str = "") -> str:
+    """The mission with another removal; whoever wants its results needs nothing else."""
+    more = f'timeout = "{timeout}"' if timeout else ""
+    part = FOREIGN.format(fmu=fmu, isolate=str(isolate).lower(), more=more)
+    begin, end = MISSION.index("[removal]"), MISSION.index("[handoff]")
+    return MISSION[:begin] + part + MISSION[end:]
+
+
+def test_ours_from_a_file_gives_the_same_bits(dcone: Dcone, tmp_path: Path) -> None:
+    """Built, copied away and named in the scene: what comes out is what came out before, to the last bit."""
+    assert dcone("build", "mission", "-o", "fmus")[0] == 0
+    capture, removal = (next(Path("fmus").glob(f"{model}-*.fmu")) for model in ("net_capture", "tethered_deorbit"))
+    text = MISSION.replace("[capture]\n", f'[capture]\nfmu = "{capture}"\n')
+    (tmp_path / "mine.toml").write_text(text.replace("[removal]\n", f'[removal]\nfmu = "{removal}"\n'))
+    assert dcone("run", "mission", "-o", "ours", "--no-figures")[0] == 0
+    code, _, err = dcone("run", "mine.toml", "-o", "theirs", "--no-figures")
+    assert code == 0, err
+    for name in ("capture", "nodes", "removal", "tugs", "removal_without_recoil_tugs"):
+        ours, theirs = ((tmp_path / run / f"{name}.parquet").read_bytes() for run in ("ours", "theirs"))
+        assert ours == theirs, name
+    facts = json.loads((tmp_path / "theirs" / "provenance.json").read_text())["phases"]
+    assert [facts[phase]["fmu"]["ours"] for phase in ("capture", "removal")] == [False, False]
+    other = dcone("run", "mine.toml", "-o", "other", "--no-figures", "--set", "capture.bullets.speed=3.1 m/s")
+    assert other[0] == 0
+    assert (tmp_path / "other" / "capture.parquet").read_bytes() != (tmp_path / "ours" / "capture.parquet").read_bytes()
+
+
+def test_the_scene_kept_runs_again_to_the_same(dcone: Dcone, tmp_path: Path) -> None:
+    """With changes of the command line and an FMU named relative to the scene, from another folder."""
+    (tmp_path / "scenes").mkdir()
+    fmu = build(tmp_path / "scenes")
+    (tmp_path / "scenes" / "mine.toml").write_text(towed_by(Path(fmu.name), isolate=False))
+    change = ("--set", "capture.bullets.speed=3.1 m/s", "--set", "removal.duration=60 s")
+    code, _, err = dcone("run", "scenes/mine.toml", "-o", "first", "--no-figures", *change)
+    assert code == 0, err
+    assert dcone("run", "first/scene.toml", "-o", "second", "--no-figures")[0] == 0
+    for name in ("capture", "removal"):
+        assert (tmp_path / "first" / f"{name}.parquet").read_bytes() == (
+            tmp_path / "second" / f"{name}.parquet"
+        ).read_bytes()
+    told = json.loads((tmp_path / "first" / "provenance.json").read_text())
+    assert told["settings"] == ["capture.bullets.speed=3.1 m/s", "removal.duration=60 s"]
+    assert pyarrow.parquet.read_table(tmp_path / "first" / "removal.parquet").num_rows == 7
+
+
+@pytest.mark.parametrize(
+    ("switch", "isolate", "timeout", "told"),
+    [
+        ("CRASH", True, "", "ended by SIGSEGV"),
+        ("HANG", True, "5 s", "did not answer within 5 s and was killed"),
+        ("EXIT=3", True, "", "ended itself with exit code 3"),
+        ("NOT_A_NUMBER=SEPARATION", False, "", "its output separation is nan"),
+        ("ERROR", False, "", "the winch jammed"),
+        ("CRASH_AT_START", True, "", "ended by SIGSEGV"),
+    ],
+)
+def test_a_faulty_one_is_one_error_and_costs_no_results(
+    dcone: Dcone, tmp_path: Path, switch: str, isolate: bool, timeout: str, told: str
+) -> None:
+    """The capture before it is whole, and so are the rows of the removal up to the fault."""
+    (tmp_path / "mine.toml").write_text(towed_by(build(tmp_path / "fmu", "removal", switch), isolate, timeout))
+    code, out, err = dcone("run", "mine.toml", "-o", "out", "--no-figures")
+    assert code == 5, err
+    assert "Traceback" not in err
+    assert err.count(told) == 1
+    assert "my_removal.fmu" in err
+    assert "results in out" in out
+    captured = pyarrow.parquet.read_table(tmp_path / "out" / "capture.parquet")
+    assert captured["captured"].to_pylist()[-1]
+    facts = json.loads((tmp_path / "out" / "provenance.json").read_text())
+    assert (facts["status"], facts["exit_code"]) == ("FMU failed", 5)
+    assert told in facts["message"]
+    if switch != "CRASH_AT_START":
+        assert pyarrow.parquet.read_table(tmp_path / "out" / "removal.parquet").num_rows >= 4
+
+
+def test_a_sound_one_is_towed(dcone: Dcone, tmp_path: Path) -> None:
+    """The twin of all above."""
+    (tmp_path / "mine.toml").write_text(towed_by(build(tmp_path / "fmu"), isolate=True))
+    code, _, err = dcone("run", "mine.toml", "-o", "out", "--no-figures")
+    assert code == 0, err
+    assert pyarrow.parquet.read_table(tmp_path / "out" / "removal.parquet").num_rows == 11
+
+
+@pytest.mark.parametrize(("switch", "code"), [("LIES=TETHER_PAID_OUT", 5), ("IGNORES_STATE", 5), ("", 0)])
+def test_a_capture_that_lies_about_its_state(dcone: Dcone, tmp_path: Path, switch: str, code: int) -> None:
+    fmu = build(tmp_path / "fmu", "capture", *([switch] if switch else []))
+    text = f'[capture]\nfmu = "{fmu}"\nmacro_step = "0.5 s"\nduration = "20 s"\n'
+    (tmp_path / "mine.toml").write_text(text)
+    given, _, err = dcone("run", "mine.toml", "-o", "out", "--no-figures")
+    assert given == code, err
+    assert ("its state does not restore" in err) == bool(switch)
+    assert pyarrow.parquet.read_table(tmp_path / "out" / "capture.parquet").num_rows >= 10
+
+
+def test_a_controller_beside_the_removal(dcone: Dcone, tmp_path: Path) -> None:
+    """Ours as a second component: told in the provenance with its connections and the steps it took."""
+    (tmp_path / "mine.toml").write_text(
+        find("table2-deorbit")
+        .read_text()
+        .split("[removal.reel]")[0]
+        .replace('duration = "1 day"', 'duration = "20 min"')
+        + """
+[removal.reel]
+law = "commanded"
+[removal.components.controller]
+model = "reel_control"
+[removal.components.controller.gain]
+proportional = "4e-3 N/m"
+"""
+    )
+    wires = [
+        "removal.tether.length -> controller.length",
+        "removal.tether.length_rate -> controller.length_rate",
+        "controller.tension -> removal.reel.tension",
+    ]
+    code, _, err = dcone(
+        "run", "mine.toml", "-o", "out", "--no-figures", "--set", f"removal.connections={json.dumps(wires)}",
+        "--set", "removal.coupling.step=5 s",
+    )  # fmt: skip
+    assert code == 0, err
+    phase = json.loads((tmp_path / "out" / "provenance.json").read_text())["phases"]["removal"]
+    assert phase["connections"] == wires
+    assert phase["components"]["controller"]["parameters"]["gain.proportional"] == 4e-3
+    assert phase["components"]["controller"]["fmu"]["model"] == "reel_control"
+    assert phase["coupling"]["step"] == {"value": 5.0, "unit": "s"}
+    assert phase["coupling"]["statistics"]["steps"] == 240
+    columns = pyarrow.parquet.read_table(tmp_path / "out" / "removal.parquet").column_names
+    assert "controller.tension" in columns
+    code, out, err = dcone("inspect", "out/scene.toml")
+    assert code == 0, err
+    assert "removal, controller: reel_control" in out
+    assert "controller.tension -> removal.reel.tension" in out
