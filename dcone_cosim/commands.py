@@ -26,7 +26,9 @@ class Archives:
     """The unpacked FMU of every phase of a scene; closing removes the temporary folders."""
 
     def __init__(self, scene: Scene, progress: Progress) -> None:
-        paths = build.ensure_fmus({phase.name: phase.main.terms for phase in scene.phases}, progress.say)
+        models = {phase.name: phase.main.terms for phase in scene.phases if phase.main.fmu is None}
+        paths = build.ensure_fmus(models, progress.say)
+        paths |= {phase.name: phase.main.fmu for phase in scene.phases if phase.main.fmu is not None}
         self._of: dict[str, Archive] = {}
         try:
             for phase, path in paths.items():

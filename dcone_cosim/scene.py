@@ -60,6 +60,7 @@ class PhaseScene:
     main         the component that the phase is about: it offers what `contract` asks of the phase
     others       further components, connected to it and to one another
     options      what concerns the master: hand_over, after_capture, snapshots
+    start        when it begins [s], unless another phase hands over to it
     """
 
     name: str
@@ -70,6 +71,7 @@ class PhaseScene:
     others: tuple[ComponentScene, ...] = ()
     connections: tuple[Connection, ...] = ()
     coupling: Coupling = field(default_factory=Coupling)
+    start: float = 0.0
 
     @property
     def components(self) -> tuple[ComponentScene, ...]:
@@ -127,6 +129,10 @@ def find(name: str) -> Path:
 def load(name: str) -> Scene:
     """The scene of that name or path, checked; an `InputError` lists every mistake found."""
     path = find(name)
+    if path.suffix.lower() == ".ssp":
+        from dcone_cosim.ssp import system
+
+        return system.load(path)
     return parse(read_text(path), path.stem, str(path))
 
 
