@@ -1,8 +1,8 @@
 """System Structure and Parameterization (SSP) 1.0: a phase as a package for other tools, and theirs run here.
 
 An .ssp is a zip archive: `SystemStructure.ssd` says which FMUs there are, how they are connected and with which values
-they start; the FMUs lie in `resources/`. The subset written and read is the one that OMSimulator, libcosim and ecos have
-in common:
+they start; the FMUs lie in `resources/`. The subset written and read is what OMSimulator, libcosim and ecos have in
+common:
 
 - one flat system of FMI 2.0 co-simulation FMUs, no nested systems, no connectors of the system itself
 - connectors Real, Integer and Boolean of the kinds input, output and parameter
