@@ -6,20 +6,24 @@ No other module of this package knows `fmu_src`: everything else works on an FMU
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from dcone_cosim.errors import FmuError
-from fmu_src.interface import Group, Interface, Model, Variable
+from fmu_src.catalogue import MODELS as CATALOGUE
+from fmu_src.interface import Group, Interface, Model, Value, Variable
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["MODELS", "Group", "Interface", "Model", "Variable"]
+__all__ = ["CATALOGUE", "MODELS", "Group", "Interface", "Model", "Variable"]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""
+
+SETTABLE = ("parameter", "input")
+"""Causality of what a scene may give a value: an input keeps it from the start."""
 
 
 @dataclass(frozen=True)
@@ -31,18 +35,47 @@ class Refusal:
     expected: str
 
 
-def parameters(interface: Interface) -> Iterator[Variable]:
+def settable(interface: Interface) -> Iterator[Variable]:
     """The rows a scene may set."""
-    return (v for v in interface.variables if v.causality == "parameter")
+    return (v for v in interface.variables if v.causality in SETTABLE)
+
+
+def term_rows(group: Group, term: str) -> tuple[Variable, ...]:
+    """The rows a term brings; none for a name that is no term."""
+    return group.terms[term].variables if term in group.terms else ()
+
+
+def all_rows(model: Model) -> Iterator[Variable]:
+    """Every row the model can have: those that are always there, and those of every term."""
+    yield from model.base
+    for group in model.groups.values():
+        for term in group.terms:
+            yield from term_rows(group, term)
 
 
 def defaults(interface: Interface) -> dict[str, float]:
-    """Start value of every parameter by FMI name, SI."""
+    """Start value of every parameter and input by FMI name, SI."""
     return {
         name: float(start)
-        for v in parameters(interface)
+        for v in settable(interface)
         for name, start in zip(v.element_names(), v.starts(), strict=True)
     }
+
+
+def known_variables(phase: str) -> dict[str, tuple[Variable, Value]]:
+    """Row and start value of every variable that the phase's model can have, with whatever terms, by FMI name."""
+    model = MODELS[phase]
+    rows = list(model.base)
+    for name, group in model.groups.items():
+        # a term for any number of nodes is a family of its own: one node stands for all
+        terms = [group.terms["1"]] if name == "nodes" else group.terms.values()
+        rows += [v for term in terms for v in term.variables]
+    found: dict[str, tuple[Variable, Value]] = {}
+    for v in rows:
+        for element, start in zip(v.element_names(), v.starts(), strict=True):
+            if v.at_interface:
+                found.setdefault(element, (v, start))
+    return found
 
 
 def cannot_work(
@@ -77,18 +110,27 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
-def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
-    """Path of the FMU of each phase, `{phase: terms}`; those that the cache has not are built side by side."""
+def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[str], None]) -> list[Path]:
+    """Path of the FMU of each model with its terms; those that the cache has not are built side by side, each once."""
     from fmu_src.packaging.archive import build_all
     from fmu_src.packaging.tools import BuildError
 
-    interfaces = [MODELS[phase].interface(terms) for phase, terms in phases.items()]
+    keys = [(model, tuple(terms.items())) for model, terms in wanted]
+    unlike = list(dict.fromkeys(keys))
+    interfaces = [CATALOGUE[model].interface(dict(terms)) for model, terms in unlike]
     try:
-        return dict(zip(phases, build_all(interfaces, cache_folder(), announce), strict=True))
+        paths = dict(zip(unlike, build_all(interfaces, cache_folder(), announce), strict=True))
     except BuildError as error:
         raise FmuError(str(error)) from None
+    return [paths[key] for key in keys]
 
 
-def readable_name(phase: str, terms: Mapping[str, str]) -> str:
+def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
+    """Path of the FMU of each phase, `{phase: terms}`, with the model of that phase."""
+    paths = ensure([(MODELS[phase].name, terms) for phase, terms in phases.items()], announce)
+    return dict(zip(phases, paths, strict=True))
+
+
+def readable_name(model: str, terms: Mapping[str, str]) -> str:
     """File name of an FMU for others: the model and its terms."""
-    return "-".join([MODELS[phase].name, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"
+    return "-".join([model, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"

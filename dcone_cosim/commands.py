@@ -7,61 +7,19 @@ import os
 import shutil
 import tempfile
 import threading
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.component import Archive, Component
+from dcone_cosim.archives import Archives
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import style, summary
 from dcone_cosim.run import atomic_folder, check_free, default_folder, fill
 from dcone_cosim.scene import Scene, load
-
-
-class Archives:
-    """The unpacked FMU of every phase of a scene; closing removes the temporary folders."""
-
-    def __init__(self, scene: Scene, progress: Progress) -> None:
-        models = {phase.name: phase.main.terms for phase in scene.phases if phase.main.fmu is None}
-        paths = build.ensure_fmus(models, progress.say)
-        paths |= {phase.name: phase.main.fmu for phase in scene.phases if phase.main.fmu is not None}
-        self._of: dict[str, Archive] = {}
-        try:
-            for phase, path in paths.items():
-                self._of[phase] = Archive(path)
-        except BaseException:
-            self.close()
-            raise
-
-    def instantiate(self, phase: str, name: str) -> Component:
-        return self._of[phase].instantiate(name)
-
-    def facts(self) -> dict[str, dict[str, Any]]:
-        """What identifies each FMU, for the provenance."""
-        return {
-            phase: {
-                "file": archive.path.name,
-                "sha256": archive.sha256,
-                "guid": archive.guid,
-                "model": archive.description.modelName,
-                "generation_tool": archive.description.generationTool,
-            }
-            for phase, archive in self._of.items()
-        }
-
-    def __enter__(self) -> Archives:
-        return self
-
-    def close(self) -> None:
-        for archive in self._of.values():
-            archive.close()
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
 
 @dataclass
@@ -73,11 +31,11 @@ class Written:
     notes: list[str] = field(default_factory=list)
 
 
-def named(scene: str) -> Scene:
-    """The scene of that name or file."""
+def named(scene: str, settings: Sequence[str] = ()) -> Scene:
+    """The scene of that name or file, with settings `KEY.KEY=VALUE` in the place of what it says."""
     if not scene.strip():
         raise InputError("the name of the scene is empty; `dcone list` shows the scenes there are")
-    return load(scene)
+    return load(scene, settings)
 
 
 def run_and_write(
@@ -87,10 +45,11 @@ def run_and_write(
     with_csv: bool = False,
     with_figures: bool = True,
     force: bool = False,
+    settings: Sequence[str] = (),
 ) -> Written:
     """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing."""
     started = datetime.now(UTC)
-    scene = named(name)
+    scene = named(name, settings)
     folder = out if out is not None else default_folder(scene.name)
     check_free(folder, force and out is not None)
     threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
@@ -129,18 +88,18 @@ def _draw(result: RunResult, folder: Path) -> list[str]:
         return [f"no figure could be drawn: {type(error).__name__}: {error}"]
 
 
-def write_fmus(name: str, out: Path, progress: Progress) -> list[Path]:
-    """Copy the FMUs of a scene to a folder under readable names."""
-    scene = named(name)
+def write_fmus(name: str, out: Path, progress: Progress, settings: Sequence[str] = ()) -> list[Path]:
+    """Copy the FMUs of a scene to a folder under readable names; files that the scene names are there already."""
+    scene = named(name, settings)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
-    terms = {phase.name: phase.main.terms for phase in scene.phases}
+    ours = [(c.model, c.terms) for phase in scene.phases for c in phase.components if c.fmu is None]
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
-            built = build.ensure_fmus(terms, progress.say)
-            copies = {out / build.readable_name(phase, terms[phase]): fmu for phase, fmu in built.items()}
+            built = build.ensure(ours, progress.say)
+            copies = {out / build.readable_name(*wanted): fmu for wanted, fmu in zip(ours, built, strict=True)}
             for path, fmu in copies.items():
                 os.replace(shutil.copyfile(fmu, Path(draft) / path.name), path)
     except BaseException:

@@ -1,23 +1,24 @@
-"""One FMU driven by variable name, through fmpy and its modelDescription alone.
+"""One instance of an FMU driven by variable name, in this process, through fmpy.
 
-An `Archive` is an FMU unpacked once; it makes `Component`s, its instances. Nothing here knows a model: a foreign FMU is
-as good as ours. Call order: `Archive`, `instantiate`, `set`, `initialise`, then `step` with `read`, `set` of inputs and
-`save`/`restore` in between, at last `close`.
+Nothing here knows a model: a foreign FMU is as good as ours. Call order: `Archive`, `instantiate`, `set`, `initialise`,
+then `step` with `read`, `set` of inputs and `save`/`restore` in between, at last `close`. All values are SI: an FMU
+that counts in other units is converted by its own unit definitions, one that counts in SI is passed through untouched.
+
+An FMU's misbehaviour is a `CallError` with its own words, the instance and the time: a refused call, an output that is
+no finite number, an answer promised for later. After a fatal error no further call is made, not even to free it.
 """
 
 from __future__ import annotations
 
 import ctypes
-import hashlib
 import itertools
-import shutil
+import math
+import os
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from pathlib import Path
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from types import TracebackType
-from typing import Any, Protocol
+from typing import Any
 
 import fmpy
 import fmpy.fmi1
@@ -26,137 +27,66 @@ import numpy as np
 import numpy.typing as npt
 from fmpy.logging import addLoggerProxy
 
+from dcone_cosim.archive import Archive
 from dcone_cosim.errors import FmuError
-from dcone_cosim.names import did_you_mean
+from dcone_cosim.steppable import (
+    KINDS,
+    CallError,
+    Readable,
+    Row,
+    Steppable,
+    Terminated,
+    VariableInfo,
+    output_names,
+)
 
-Row = npt.NDArray[np.float64]
+__all__ = [
+    "KINDS",
+    "Archive",
+    "CallError",
+    "Component",
+    "Readable",
+    "Reader",
+    "Row",
+    "Steppable",
+    "Terminated",
+    "VariableInfo",
+    "output_names",
+]
+
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
-KINDS = ("Real", "Integer", "Boolean")
-
-
-@dataclass(frozen=True)
-class VariableInfo:
-    """What the model description says of one scalar variable."""
-
-    name: str
-    reference: int
-    kind: str
-    unit: str
-    causality: str
-    description: str
-
-
-class Readable(Protocol):
-    """Fetches the same variables again and again; `values` is overwritten by each call."""
-
-    names: tuple[str, ...]
-    values: Row
-
-    def __call__(self) -> Row: ...
-
-
-class Steppable(Protocol):
-    """What the master asks of a component. All values are SI.
-
-    can_save          its state can be kept and restored, under several keys at a time
-    can_interpolate   it takes input derivatives
-    """
-
-    name: str
-    variables: Mapping[str, VariableInfo]
-    can_save: bool
-    can_interpolate: bool
-
-    def set(self, values: Mapping[str, float]) -> None: ...
-    def set_rates(self, rates: Mapping[str, float]) -> None: ...
-    def get(self, names: Sequence[str]) -> dict[str, float]: ...
-    def reader(self, names: Sequence[str]) -> Readable: ...
-    def enter_initialisation(self, start: float, stop: float | None = None) -> None: ...
-    def exit_initialisation(self) -> None: ...
-    def step(self, time: float, size: float) -> None: ...
-    def save(self, key: str = "") -> None: ...
-    def restore(self, key: str = "") -> None: ...
-    def close(self) -> None: ...
-
 
 # fmpy's proxy formats the variadic message in C and hands it to one Python function per process; the environment
 # pointer tells the instances apart.
 _messages: dict[int, deque[tuple[int, str]]] = {}
+_late: set[int] = set()
 _environment = itertools.count(1)
+listeners: list[Callable[[str], None]] = []
+"""Called with every message of an FMU as it comes; a child process passes them on before it may die."""
 
 
-def _log(environment: int | None, instance: bytes, status: int, category: bytes, message: bytes) -> None:
+def _log(environment: int | None, instance: bytes | None, status: int, category: bytes | None, message: Any) -> None:
+    """Keep what an FMU says; any of the texts may be NULL, and no bytes may stop us."""
     kept = _messages.get(environment or 0)
-    if kept is None:
-        fmpy.fmi1.printLogMessage(environment, instance, status, category, message)
-    else:
-        kept.append((status, message.decode("utf-8", "replace").strip()))
+    text = (message or b"").decode("utf-8", "replace").strip()
+    if kept is not None:
+        kept.append((status, text))
+        for listener in listeners:
+            listener(text)
+    elif status in range(len(STATUS)):
+        fmpy.fmi1.printLogMessage(environment, instance, status, category, text.encode())
+
+
+def _finished(environment: int | None, status: int) -> None:
+    _late.add(environment or 0)
 
 
 _callbacks = fmi2.fmi2CallbackFunctions()
 _callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(_log)
 _callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
 _callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
+_callbacks.stepFinished = fmi2.fmi2StepFinishedTYPE(_finished)
 addLoggerProxy(ctypes.byref(_callbacks))
-
-
-class CallError(FmuError):
-    """A call that an FMU refused.
-
-    said      the FMU's own words
-    detail    the call, its status and the FMU's file
-    """
-
-    def __init__(self, name: str, where: str, said: str, detail: str) -> None:
-        super().__init__(f"{name}{where}:\n  {said}\n  ({detail})")
-        self.said = said
-        self.detail = detail
-
-
-class Archive:
-    """An FMU file, unpacked to a temporary folder that `close` removes."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.folder: Path | None = None
-        try:
-            self.folder = Path(fmpy.extract(str(path)))
-            self.description: Any = fmpy.read_model_description(str(self.folder), validate=False)
-        except Exception as error:
-            self.close()
-            raise FmuError(f"{path}: not a readable FMU ({error})") from error
-        if self.description.fmiVersion != "2.0" or self.description.coSimulation is None:
-            version = self.description.fmiVersion
-            self.close()
-            raise FmuError(f"{path}: expected an FMI 2.0 co-simulation unit, this is FMI {version}")
-        self.variables: dict[str, VariableInfo] = {
-            v.name: VariableInfo(
-                v.name, int(v.valueReference), v.type, v.unit or "1", v.causality or "local", v.description or ""
-            )
-            for v in self.description.modelVariables
-        }
-
-    @cached_property
-    def sha256(self) -> str:
-        return hashlib.sha256(self.path.read_bytes()).hexdigest()
-
-    @property
-    def guid(self) -> str:
-        return str(self.description.guid)
-
-    def instantiate(self, name: str) -> Component:
-        return Component(self, name)
-
-    def close(self) -> None:
-        if self.folder is not None:
-            shutil.rmtree(self.folder, ignore_errors=True)
-            self.folder = None
-
-    def __enter__(self) -> Archive:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        self.close()
 
 
 class Component:
@@ -166,45 +96,59 @@ class Component:
         self.name = name
         self.archive = archive
         self.variables: Mapping[str, VariableInfo] = archive.variables
-        about = archive.description.coSimulation
-        self.can_save = bool(about.canGetAndSetFMUstate)
-        self.can_interpolate = bool(about.canInterpolateInputs)
+        self.can_save = archive.can_save
+        self.can_interpolate = archive.can_interpolate
+        self.time = 0.0
         self._states: dict[str, Any] = {}
+        self._times: dict[str, float] = {}
+        self._stepping = False
+        self._dead = ""
         self._environment = next(_environment)
         _messages[self._environment] = deque(maxlen=20)
         callbacks = fmi2.fmi2CallbackFunctions.from_buffer_copy(_callbacks)
         callbacks.componentEnvironment = self._environment
         self._fmu: Any = None
+        place = os.getcwd()
         try:
             self._fmu = fmi2.FMU2Slave(
                 guid=archive.guid,
                 unzipDirectory=str(archive.folder),
-                modelIdentifier=about.modelIdentifier,
+                modelIdentifier=archive.identifier,
                 instanceName=name,
             )
             self._fmu.instantiate(callbacks=callbacks, loggingOn=True)
         except Exception as error:
-            said = self._said()
-            self._fmu = None
-            _messages.pop(self._environment)
-            raise CallError(name, " could not be instantiated", said, f"{archive.path.name}: {error}") from error
+            os.chdir(place)  # fmpy stays in the binary's folder when that does not load
+            raise self._not_instantiated(error) from None
+
+    def _not_instantiated(self, error: Exception) -> FmuError:
+        """Why there is no instance: the loader's words, or the FMU's own."""
+        loaded, self._fmu = self._fmu is not None, None
+        messages, file = _messages.pop(self._environment), self.archive.path.name
+        if not loaded:
+            reason = str(error).replace(f"{self.archive.folder}{os.sep}", "")
+            return FmuError(f"{self.name}: the binary of {file} cannot be used\n  {reason}")
+        said = _words(messages)
+        return CallError(self.name, " could not be instantiated", said, f"{file}: {error}", "Error")
 
     def reference(self, name: str) -> VariableInfo:
         """The variable of that name; an unknown one is an error that names the nearest."""
-        try:
-            return self.variables[name]
-        except KeyError:
-            hint = did_you_mean(name, self.variables)
-            raise FmuError(f"{self.name}: {self.archive.path.name} has no variable {name!r}{hint}") from None
+        return self.archive.variable(name, self.name)
 
     def set(self, values: Mapping[str, float]) -> None:
         """Set variables by name, all Reals in one call, then Integers, then Booleans."""
         for kind in KINDS:
-            chosen = [(self.reference(n).reference, v) for n, v in values.items() if self.reference(n).kind == kind]
+            chosen = [(info, v) for n, v in values.items() if (info := self.reference(n)).kind == kind]
             if chosen:
-                references, numbers = zip(*chosen, strict=True)
-                cast = float if kind == "Real" else int
-                self._call(f"set{kind}", list(references), [cast(n) for n in numbers])
+                references = [info.reference for info, _ in chosen]
+                numbers = [_own(info, v) if kind == "Real" else int(v) for info, v in chosen]
+                self._call(f"set{kind}", references, numbers)
+
+    def set_rates(self, rates: Mapping[str, float]) -> None:
+        """Let inputs move at these rates [SI/s] over the next step."""
+        infos = [self.reference(name) for name in rates]
+        numbers = [rate if info.is_si else rate / info.factor for info, rate in zip(infos, rates.values(), strict=True)]
+        self._call("setRealInputDerivatives", [info.reference for info in infos], [1] * len(infos), numbers)
 
     def get(self, names: Sequence[str]) -> dict[str, float]:
         reader = self.reader(names)
@@ -220,39 +164,44 @@ class Component:
 
     def enter_initialisation(self, start: float, stop: float | None = None) -> None:
         """Take the parameters as set and prepare to begin at `start` [s]."""
+        self.time = start
         self._call("setupExperiment", startTime=start, stopTime=stop)
         self._call("enterInitializationMode")
 
     def exit_initialisation(self) -> None:
         """Begin, with what was set meanwhile."""
         self._call("exitInitializationMode")
-
-    def set_rates(self, rates: Mapping[str, float]) -> None:
-        """Let inputs move at these rates [SI/s] over the next step."""
-        references = [self.reference(name).reference for name in rates]
-        self._call("setRealInputDerivatives", references, [1] * len(rates), list(rates.values()))
+        self._stepping = True
 
     def step(self, time: float, size: float) -> None:
-        """Advance from `time` by `size` [s]; a step refused is an error with the FMU's own words, never tried again."""
+        """Advance from `time` by `size` [s]; a step refused is an error with the FMU's own words, never tried again.
+
+        Raises `Terminated` when the FMU says that this is its end.
+        """
+        self._alive()
         try:
             self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2False)
         except fmpy.fmi1.FMICallException as error:
-            reached = ""
-            if error.status == fmi2.fmi2Discard:
-                reached = self._discarded_at()
-            raise self._error(error, f" stopped at t = {time:.9g} s in a step of {size:.6g} s{reached}") from None
+            raise self._refused(error, time, size) from None
+        if _late and self._environment in _late:
+            _late.discard(self._environment)
+            raise self._asynchronous("it called stepFinished", time, size)
+        self.time = time + size
 
     def save(self, key: str = "") -> None:
         """Keep the present state, replacing the one kept before under this key."""
+        self._alive()
         state = self._states.setdefault(key, fmi2.fmi2FMUstate())
         try:
             self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(state))
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
+        self._times[key] = self.time
 
     def restore(self, key: str = "") -> None:
         """Go back to the state kept last under this key."""
         self._call("setFMUstate", self._states[key])
+        self.time = self._times[key]
 
     def state_size(self) -> int:
         """Bytes of a serialised state: what an instance holds."""
@@ -262,12 +211,19 @@ class Component:
         return size.value
 
     def close(self) -> None:
-        if self._fmu is not None:
-            for state in self._states.values():
-                self._fmu.freeFMUstate(state)
-            self._fmu.freeInstance()
-            self._fmu = None
-            _messages.pop(self._environment)
+        """Free the instance; one that is dead is left where it is, since no call may be made to it."""
+        fmu, self._fmu = self._fmu, None
+        if fmu is None:
+            return
+        if not self._dead:
+            with suppress(fmpy.fmi1.FMICallException):
+                for state in self._states.values():
+                    fmu.freeFMUstate(state)
+                if self._stepping:
+                    fmu.terminate()
+            fmu.freeInstance()
+        _messages.pop(self._environment, None)
+        _late.discard(self._environment)
 
     def __enter__(self) -> Component:
         return self
@@ -275,35 +231,80 @@ class Component:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
 
+    def _alive(self) -> None:
+        """Refuse any call after a fatal error."""
+        if self._dead:
+            raise CallError(self.name, " takes no further call", self._dead, self.archive.path.name, "Fatal")
+        if self._fmu is None:
+            raise FmuError(f"{self.name}: the instance is closed")
+
     def _call(self, function: str, *arguments: Any, **named: Any) -> Any:
+        self._alive()
         try:
             return getattr(self._fmu, function)(*arguments, **named)
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
 
-    def _error(self, error: Any, where: str = "") -> CallError:
-        status = STATUS[error.status] if error.status in range(len(STATUS)) else str(error.status)
-        return CallError(self.name, where, self._said(), f"{self.archive.path.name}: {error.function} gave {status}")
+    def _error(self, error: Any, where: str = "", reached: float | None = None, end: bool = False) -> CallError:
+        """What a refused call becomes. `where`: what was asked; without it, the time stands there."""
+        status = STATUS[error.status] if error.status in range(len(STATUS)) else f"status {error.status}"
+        said = _words(_messages[self._environment])
+        if status not in ("Discard", "Warning"):
+            self._stepping = False
+        if status in ("Fatal", "Pending"):
+            self._dead = f"it ended in a fatal error at t = {self.time:.9g} s: {said}"
+        detail = f"{self.archive.path.name}: {error.function} gave {status}"
+        kind = Terminated if end else CallError
+        return kind(self.name, where or f" at t = {self.time:.9g} s", said, detail, status, reached)
 
-    def _said(self) -> str:
-        """The FMU's latest complaints, or its latest words when none is a complaint."""
-        messages = list(_messages[self._environment])
-        told = [text for status, text in messages if status >= fmi2.fmi2Warning] or [text for _, text in messages]
-        return "; ".join(dict.fromkeys(told[-3:])) if told else "the FMU gave no message"
+    def _refused(self, error: Any, time: float, size: float) -> CallError:
+        """What a refused step becomes; a discarded one is asked how far it came, and whether this is the end."""
+        reached, ended = None, False
+        if error.status == fmi2.fmi2Discard:
+            with suppress(Exception):
+                reached = float(self._fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime))
+            with suppress(Exception):
+                ended = bool(self._fmu.getBooleanStatus(fmi2.fmi2Terminated))
+            if reached is not None and not time <= reached <= time + size * (1.0 + 1e-9):
+                reached = None
+        elif error.status == fmi2.fmi2Pending:
+            return self._asynchronous("fmi2DoStep gave Pending", time, size)
+        if ended:
+            self.time = time if reached is None else reached
+            return self._error(error, f" ended itself at t = {self.time:.9g} s", self.time, end=True)
+        got = "" if reached is None else f", got at {reached:.9g} s"
+        return self._error(error, f" stopped at t = {time:.9g} s in a step of {size:.6g} s{got}", reached)
 
-    def _discarded_at(self) -> str:
-        try:
-            time = self._fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime)
-            ended = self._fmu.getBooleanStatus(fmi2.fmi2Terminated)
-        except fmpy.fmi1.FMICallException:
-            return ""
-        return f", {'terminated' if ended else 'got'} at {time:.9g} s"
+    def _asynchronous(self, how: str, time: float, size: float) -> CallError:
+        """An answer promised for later. A step that may still be running leaves nothing to call."""
+        said = "it answers its steps later; this master takes only FMUs whose step is over when it returns"
+        self._dead = said
+        where = f" at t = {time:.9g} s in a step of {size:.6g} s"
+        return CallError(self.name, where, said, f"{self.archive.path.name}: {how}", "Pending")
+
+    def not_finite(self, info: VariableInfo, value: float) -> CallError:
+        """The error for an output that is no finite number."""
+        said = f"its output {info.name} is {value}, which is no finite number"
+        return CallError(self.name, f" at t = {self.time:.9g} s", said, self.archive.path.name)
+
+
+def _own(info: VariableInfo, value: float) -> float:
+    """An SI value as the FMU counts it."""
+    return float(value) if info.is_si else (float(value) - info.offset) / info.factor
+
+
+def _words(messages: Sequence[tuple[int, str]]) -> str:
+    """An FMU's latest complaints, or its latest words when none is a complaint."""
+    told = [text for status, text in messages if status >= fmi2.fmi2Warning] or [text for _, text in messages]
+    told = [text for text in told if text]
+    return "; ".join(dict.fromkeys(told[-3:])) if told else "the FMU gave no message"
 
 
 class Reader:
     """Reads a fixed set of variables into one row of doubles: Reals first, then Integers, then Booleans.
 
     The ctypes arrays are made once, so that a macro step costs a few microseconds whatever the number of variables.
+    Parameters may be infinite; anything else that is read must be a finite number.
     """
 
     def __init__(self, component: Component, names: Sequence[str]) -> None:
@@ -311,13 +312,19 @@ class Reader:
         for info in infos:
             if info.kind not in KINDS:
                 raise FmuError(f"{component.name}: {info.name} is a {info.kind}; only numbers can be read")
-        ordered = sorted(infos, key=lambda info: KINDS.index(info.kind))
-        self.names = tuple(info.name for info in ordered)
-        self.values: Row = np.zeros(len(ordered))
+        component._alive()
+        self._infos = sorted(infos, key=lambda info: KINDS.index(info.kind))
+        self.names = tuple(info.name for info in self._infos)
+        self.values: Row = np.zeros(len(self._infos))
         self._component = component
+        reals = [info for info in self._infos if info.kind == "Real"]
+        self._reals = self.values[: len(reals)]
+        self._to_si: tuple[Row, Row] | None = None
+        if not all(info.is_si for info in reals):
+            self._to_si = np.array([info.factor for info in reals]), np.array([info.offset for info in reals])
         self._blocks: list[tuple[Any, Any, int, Any, npt.NDArray[Any], slice]] = []
         begin = 0
-        for kind, group in itertools.groupby(ordered, key=lambda info: info.kind):
+        for kind, group in itertools.groupby(self._infos, key=lambda info: info.kind):
             references = [info.reference for info in group]
             count = len(references)
             buffer: Any = ((ctypes.c_double if kind == "Real" else ctypes.c_int) * count)()
@@ -334,21 +341,26 @@ class Reader:
             begin += count
 
     def __call__(self) -> Row:
-        instance = self._component._fmu.component
+        component = self._component
+        component._alive()
+        instance = component._fmu.component
         try:
             for getter, references, count, buffer, view, part in self._blocks:
                 getter(instance, references, count, buffer)
                 self.values[part] = view
         except fmpy.fmi1.FMICallException as error:
-            raise self._component._error(error) from None
+            raise component._error(error) from None
+        reals = self._reals
+        # the product is no finite number if an element is none: one pass, where a look at each would take three
+        if not math.isfinite(reals.dot(reals)):
+            self._check()
+        if self._to_si is not None:
+            factors, offsets = self._to_si
+            reals *= factors
+            reals += offsets
         return self.values
 
-
-def output_names(variables: Mapping[str, VariableInfo], without: Iterable[str] = ()) -> list[str]:
-    """Names of all numeric outputs, save those that begin with one of the prefixes."""
-    prefixes = tuple(without)
-    return [
-        v.name
-        for v in variables.values()
-        if v.causality == "output" and v.kind in KINDS and not v.name.startswith(prefixes or ("\0",))
-    ]
+    def _check(self) -> None:
+        for info, value in zip(self._infos, self._reals.tolist(), strict=False):
+            if not math.isfinite(value) and not info.causality.endswith("arameter"):
+                raise self._component.not_finite(info, value)

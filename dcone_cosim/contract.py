@@ -2,6 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Literal
+
+from dcone_cosim.fmi_units import PURE, by_name, same_dimension, spoken_dimension
+from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS
+from dcone_cosim.names import nearest
+from dcone_cosim.steppable import VariableInfo
+
+if TYPE_CHECKING:
+    from dcone_cosim.archive import Archive
+
 OUTCOMES = ("flying", "captured", "settled", "missed", "slipped_off", "not_closed", "tether_taut")
 """Meaning of the capture's Integer output `outcome`."""
 
@@ -17,6 +30,9 @@ NEVER = "none"
 FLOWN = "flown"
 """Outcome of such a phase when its FMU has none to tell."""
 
+ENDED = "ended"
+"""Outcome of a phase whose FMU came to an end of its own, by fmi2Discard and fmi2Terminated."""
+
 CAPTURE_NEEDS = ("target", "closing")
 """Tables of a scene without which no capture can ever be reported."""
 
@@ -29,3 +45,122 @@ HANDED_OVER = "handed_over"
 NODE_PREFIX = "node["
 TUG_PREFIX = "tug["
 TUG_FIELDS = ("time", "peak", "speed")
+
+
+Need = Literal["hand-over", "captured", "settled", "tether_taut", "optional"]
+NEEDS: Mapping[str, str] = {
+    "hand-over": "for a hand-over to the removal",
+    "captured": "to hand over, unless hand_over says otherwise",
+    "settled": 'for hand_over = "settled"',
+    "tether_taut": 'for hand_over = "tether_taut"',
+    "optional": "reported if it is there",
+}
+"""What a variable is needed for."""
+
+_EACH = tuple(f"[{i}]" for i in (1, 2, 3))
+_WANTED: Mapping[str, Sequence[tuple[Need, Sequence[str]]]] = {
+    "capture": (
+        ("captured", ("captured",)),
+        ("settled", ("settled",)),
+        ("tether_taut", ("tether.length", "tether.paid_out")),
+        ("hand-over", (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)),
+        ("optional", ("t_capture", "outcome", "net.nodes", "net.threads", "contact.first_time", "contact.loss")),
+        ("optional", ("mouth.t80", "mouth.t_max", "mouth.area_max", "mouth.cord_length", "mouth.girth")),
+        ("optional", ("thread.tension_max", "cord.tension_max", "closing.t_start", "closing.work")),
+    ),
+    "removal": (
+        ("hand-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
+        ("optional", ("tether.rest_length", "thrust.level", "separation")),
+        ("optional", tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in _EACH)),
+        ("optional", ("tether.tension", "tether.tension_peak", "tether.taut", "tether.tug_count")),
+        ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
+        ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One variable that the master looks for in the FMU of a phase.
+
+    unit      SI unit of its dimension; the FMU may count in any other of the same
+    need      what it is needed for (see `NEEDS`)
+    start     a sensible value of a parameter, SI
+    """
+
+    name: str
+    kind: str
+    unit: str
+    causality: str
+    meaning: str
+    need: Need
+    start: float
+
+    def needed(self, then_removal: bool, hand_over: str) -> bool:
+        if self.need == "hand-over":
+            return then_removal
+        if self.need == "captured":
+            return hand_over in ("captured", "tether_taut")
+        return self.need == hand_over
+
+
+@cache
+def asked(phase: str) -> tuple[Asked, ...]:
+    """The interface of a phase's FMU; unit and meaning are those of our own model of the phase."""
+    from dcone_cosim.build import known_variables
+
+    known = known_variables(phase)
+    rows = []
+    for need, names in _WANTED[phase]:
+        for name in names:
+            v, start = known[name]
+            meaning = v.description
+            if v.choices:
+                meaning += ": " + ", ".join(f"{i} {choice}" for i, choice in enumerate(v.choices))
+            rows.append(Asked(name, v.kind, v.unit, v.causality, meaning, need, float(start)))
+    return tuple(rows)
+
+
+def check_contract(archive: Archive, phase: str, then_removal: bool = False, hand_over: str = NEVER) -> list[str]:
+    """Every way in which an FMU does not offer what the phase asks of it; empty when it can be swapped in.
+
+    then_removal   a hand-over takes place, which the capture has to feed and the removal to take
+    hand_over      when the capture hands over, one of `HAND_OVER`
+    """
+    found = []
+    missing = []
+    for row in asked(phase):
+        info = archive.variables.get(row.name)
+        needed = row.needed(then_removal, hand_over if phase == "capture" else NEVER)
+        if info is not None and (needed or row.need == "optional"):
+            found += [f"{row.name}: {fault}" for fault in _faults(row, info)]
+        elif info is None and needed:
+            missing.append(row)
+    names = [row.name for row in asked(phase)]
+    spare = [name for name in archive.variables if name not in names]
+    for row in missing:
+        like = nearest(row.name, spare)
+        hint = f"; did you mean its {like!r}?" if like is not None else ""
+        found.append(f"{row.name}: missing; expected {_words(row)}, {NEEDS[row.need]}{hint}")
+    return found
+
+
+def _faults(row: Asked, info: VariableInfo) -> list[str]:
+    faults = []
+    if info.kind != row.kind:
+        faults.append(f"its type is {info.kind}; expected {row.kind}")
+    if info.causality != row.causality:
+        faults.append(f"its causality is {info.causality}; expected {row.causality}")
+    wanted = by_name(row.unit)
+    dimension = PURE if wanted.dimension is None else wanted.dimension
+    if info.kind == row.kind == "Real" and not same_dimension(info.dimension, dimension):
+        theirs = spoken_dimension(info.dimension)
+        counted = f" ({theirs})" if theirs != info.declared_unit else ""
+        faults.append(f"its unit is {info.declared_unit}{counted}; expected {spoken_dimension(dimension)}")
+    return faults
+
+
+def _words(row: Asked) -> str:
+    unit = f" in {row.unit}" if row.unit != "1" else ""
+    article = "an" if row.causality[0] in "aeiou" else "a"
+    return f"{article} {row.causality}, {row.kind}{unit}"

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim.component import CallError, Steppable
-from dcone_cosim.contract import FAILED_OUTCOMES, FLOWN, HANDED_OVER, NEVER, OUTCOMES
+from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HANDED_OVER, NEVER, OUTCOMES
 from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
 from dcone_cosim.handoff import (
     CAPTURE_OUTPUTS,
@@ -29,7 +29,7 @@ from dcone_cosim.handoff import (
     without_recoil,
 )
 from dcone_cosim.ledger import LedgerRow, ledger
-from dcone_cosim.mistakes import lines_named
+from dcone_cosim.mistakes import places_named
 from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import PHASES, PhaseScene, Scene
@@ -107,12 +107,15 @@ def _start(component: Steppable, parameters: Mapping[str, float], start: float, 
     return parameters_of(component, parameters)
 
 
-def cannot_begin(scene: Scene, phase: str, error: FmuError) -> InputError:
-    """An FMU's refusal of its parameters, in the scene's terms: the file, the lines, the FMU's words."""
+def cannot_begin(scene: Scene, phase: str, error: FmuError) -> FmuError | InputError:
+    """An FMU's refusal of its parameters, in the scene's terms: the file, the lines, the FMU's words. What broke
+    instead of refusing stays what it is."""
+    if isinstance(error, CallError) and error.broken:
+        return error
     source = scene.source or scene.name
     if not isinstance(error, CallError):
         return InputError(f"{source}: the {phase} cannot begin\n  {error}")
-    where = lines_named(error.said, scene.text, phase)
+    where = places_named(error.said, scene.places, phase)
     return InputError(f"{source}: the {phase} cannot begin\n  {where}{error.said}\n  ({error.detail})")
 
 
@@ -143,7 +146,12 @@ def _run_capture(
         elif plan.hand_over == NEVER:
             result.outcome = FLOWN if result.outcome == OUTCOMES[0] else result.outcome
         elif result.located is None:
-            if result.outcome in FAILED_OUTCOMES:
+            if result.outcome == ENDED:
+                waited = _words(plan.hand_over)
+                text = (
+                    f"capture failed: its FMU ended at t = {result.ended_at:.6g} s, not {waited}\n  {result.ended_by}"
+                )
+            elif result.outcome in FAILED_OUTCOMES:
                 text = f"capture failed: {_words(result.outcome)} at t = {result.end:.6g} s"
             else:
                 waited, stands = _words(plan.hand_over), _words(result.outcome)
@@ -157,7 +165,12 @@ def _run_capture(
                 run.fail("hand-off refused", text, HANDOFF_FAILED)
                 return
             removal = next(p for p in run.scene.phases if p.name == "removal")
-            handed = prepare(component.get(names), mean_motion(_altitude(run, removal)))
+            try:
+                values = component.get(names)
+            except FmuError as error:
+                run.fail("FMU failed", str(error), FMU_FAILED)
+                return
+            handed = prepare(values, mean_motion(_altitude(run, removal)))
             run.handoff = HandoffRecord(result.located, result.located_by, handed, SpinCheck(0.0, 0.0, 0.0))
     finally:
         component.close()
@@ -187,7 +200,13 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
             record.failure = str(error)
             run.fail("hand-off refused", str(error), HANDOFF_FAILED)
             return
-    component = instantiate("removal", "removal")
+    try:
+        component = instantiate("removal", "removal")
+    except FmuError as error:
+        if record is None:
+            raise
+        run.fail("FMU failed", str(error), FMU_FAILED)
+        return
     try:
         try:
             run.parameters["removal"] = _start(component, parameters, start, phase.duration)
@@ -195,6 +214,9 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
         except FmuError as error:
             if record is None:
                 raise cannot_begin(run.scene, "removal", error) from error
+            if isinstance(error, CallError) and error.broken:
+                run.fail("FMU failed", str(error), FMU_FAILED)
+                return
             record.failure = str(error)
             run.fail("hand-off violated", f"the removal does not accept what is handed over\n  {error}", HANDOFF_FAILED)
             return
@@ -204,6 +226,9 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
             except HandoffError as error:
                 record.failure = str(error)
                 run.fail("hand-off violated", str(error), HANDOFF_FAILED)
+                return
+            except FmuError as error:
+                run.fail("FMU failed", str(error), FMU_FAILED)
                 return
         progress.begin("removal", start, start + phase.duration)
         result = loop.run()
@@ -326,7 +351,10 @@ def _compare(
     assert record is not None
     capture = run.parameters["capture"]
     velocity = np.array([capture[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
-    component = instantiate("removal", "removal without recoil")
+    try:
+        component = instantiate("removal", "removal without recoil")
+    except FmuError:
+        return None
     try:
         _start(component, parameters | without_recoil(record.handed, velocity), record.time, phase.duration)
         loop = RemovalLoop(component, phase.macro_step, record.time, phase.duration, progress)

@@ -1,12 +1,16 @@
-"""What is wrong with a scene, told all at once: file and line, key, the value given, what was expected."""
+"""What is wrong with a scene, told all at once: place, key, the value given, what was expected, the nearest match."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
-from dcone_cosim.toml_lines import Path, key_lines, line_of
+from dcone_cosim.errors import InputError
+from dcone_cosim.names import did_you_mean, nearest
+from dcone_cosim.toml_lines import Lines, Path, dotted, key_lines, line_of
 
 
 @dataclass(frozen=True)
@@ -14,39 +18,124 @@ class Mistake:
     """One thing wrong: where, what was given (None when something is missing), and what was expected.
 
     default    value that counts when nothing is given
+    nearest    the known name that was probably meant
     """
 
     path: Path
     given: object
     expected: str
     default: str = ""
+    nearest: str | None = None
 
 
-def message(mistakes: Sequence[Mistake], text: str, source: str) -> str:
-    """One text for all mistakes in a scene, in the order of its lines."""
-    lines = key_lines(text)
-    found = sorted(mistakes, key=lambda m: line_of(lines, m.path) or 0)
-    rows = [f"{source}: {len(found)} mistake{'s' if len(found) > 1 else ''}"]
-    for mistake in found:
-        line = line_of(lines, mistake.path)
-        where = f"line {line}: " if line is not None else ""
+def unknown(path: Path, given: object, what: str, name: str, known: Iterable[str]) -> Mistake:
+    """A name that is not known, with the nearest that is."""
+    names = list(known)
+    return Mistake(path, given, f"{what}{did_you_mean(name, names)}", nearest=nearest(name, names))
+
+
+@dataclass(frozen=True)
+class Override:
+    """A key set on the command line: its path, and the argument as given, `capture.bullets.speed=4 m/s`."""
+
+    path: Path
+    argument: str
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where the keys of a scene were written: on a line of its file, or on the command line.
+
+    source     names the file in messages
+    text       of the file as it stands on disk
+    """
+
+    source: str
+    text: str
+    overrides: tuple[Override, ...] = ()
+
+    @cached_property
+    def lines(self) -> Lines:
+        return key_lines(self.text)
+
+    def override(self, path: Path) -> Override | None:
+        """The argument that set this key, a part of it, or, for a table the file does not have, something in it."""
+        for override in reversed(self.overrides):
+            shared = min(len(path), len(override.path))
+            if path[:shared] == override.path[:shared] and (shared == len(override.path) or path not in self.lines):
+                return override
+        return None
+
+    def line(self, path: Path) -> int | None:
+        return None if self.override(path) else line_of(self.lines, path)
+
+    def of(self, path: Path) -> str:
+        """`line 12`, `--set capture.bullets.speed=4 m/s`, or nothing."""
+        override = self.override(path)
+        if override is not None:
+            return f"--set {override.argument}"
+        line = line_of(self.lines, path)
+        return f"line {line}" if line is not None else ""
+
+
+class SceneError(InputError):
+    """A scene with mistakes, each of which can be looked at: by an editor, or a machine."""
+
+    def __init__(self, mistakes: Sequence[Mistake], places: Places) -> None:
+        found = sorted(_unlike(mistakes), key=lambda m: places.line(m.path) or 0)
+        self.mistakes, self.places = tuple(found), places
+        super().__init__(message(self.mistakes, places))
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The mistakes as plain data."""
+        return [
+            {
+                "place": self.places.of(mistake.path),
+                "line": self.places.line(mistake.path),
+                "key": dotted(mistake.path),
+                "given": None if mistake.given is None else shown(mistake.given),
+                "expected": mistake.expected,
+                "nearest": mistake.nearest,
+            }
+            for mistake in self.mistakes
+        ]
+
+
+def _unlike(mistakes: Sequence[Mistake]) -> list[Mistake]:
+    """Without those that say the same of the same key; values need not be hashable."""
+    kept: dict[tuple[Path, str], Mistake] = {}
+    for mistake in mistakes:
+        kept.setdefault((mistake.path, mistake.expected), mistake)
+    return list(kept.values())
+
+
+def message(mistakes: Sequence[Mistake], places: Places) -> str:
+    """One text for all mistakes in a scene."""
+    rows = [f"{places.source}: {len(mistakes)} mistake{'s' if len(mistakes) > 1 else ''}"]
+    for mistake in mistakes:
+        place = places.of(mistake.path)
         value = f"= {shown(mistake.given)}" if mistake.given is not None else "missing"
         if mistake.given is None and mistake.default:
             value = f"left at {mistake.default}"
-        rows.append(f"  {where}{'.'.join(mistake.path)} {value}: {mistake.expected}")
+        rows.append(f"  {place}{place and ': '}{dotted(mistake.path)} {value}: {mistake.expected}")
     return "\n".join(rows)
 
 
-def lines_named(said: str, text: str, phase: str) -> str:
-    """Lines of the scene on which the parameters stand that an FMU's words name: "line 4: ", or nothing."""
-    lines = key_lines(text)
-    found = set()
+def places_named(said: str, places: Places, phase: str) -> str:
+    """Where the parameters stand that an FMU's words name: "line 4: ", "--set capture.net.side=3 m: ", or nothing."""
+    lines, arguments = set(), []
     for section, key in re.findall(r"\b([a-z_]+)\.([a-z_]+)", said):
-        number = lines.get((phase, section, key)) or lines.get((section, key))
-        if number is not None:
-            found.add(number)
-    numbers = ", ".join(map(str, sorted(found)))
-    return f"line{'s' if len(found) > 1 else ''} {numbers}: " if found else ""
+        for path in ((phase, section, key), (section, key)):
+            override = places.override(path)
+            if override is not None and override.path == path:
+                arguments.append(f"--set {override.argument}")
+                break
+            if path in places.lines:
+                lines.add(places.lines[path])
+                break
+    numbers = ", ".join(map(str, sorted(lines)))
+    found = [f"line{'s' if len(lines) > 1 else ''} {numbers}"] if lines else []
+    return "".join(f"{place}: " for place in [*found, *dict.fromkeys(arguments)])
 
 
 def shown(value: object) -> str:

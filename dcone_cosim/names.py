@@ -8,8 +8,13 @@ from collections.abc import Iterable
 
 def nearest(given: str, known: Iterable[str]) -> str | None:
     """The known name closest to the given one, or None when none resembles it."""
-    found = difflib.get_close_matches(given, list(known), n=1, cutoff=0.5)
-    return found[0] if found else None
+    names = list(known)
+    found = difflib.get_close_matches(given, names, n=1, cutoff=0.5)
+    if found:
+        return found[0]
+    # a name said with too few or too many of its parts: `altitude` for `orbit.altitude`
+    ends = [name for name in names if name.endswith("." + given) or given.endswith("." + name)]
+    return min(ends, key=len) if ends else None
 
 
 def did_you_mean(given: str, known: Iterable[str]) -> str:

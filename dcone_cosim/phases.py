@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dcone_cosim.component import Readable, Steppable, output_names
-from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
+from dcone_cosim import restoring
+from dcone_cosim.component import Readable, Row, Steppable, Terminated, output_names
+from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
@@ -44,9 +45,10 @@ class CapturePlan:
 class PhaseResult:
     """What a phase leaves: its columns, and how it came out.
 
-    outcome      capture: name of its outcome; removal: "towed"
+    outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
     located      instant of the hand-over [s] and how it was found, None when there was none
     error        the failure that ended the phase early
+    ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
     """
 
     name: str
@@ -61,6 +63,13 @@ class PhaseResult:
     cpu: float = 0.0
     wall: float = 0.0
     error: FmuError | None = None
+    ended_by: str = ""
+    ended_at: float = math.nan
+
+    def ended(self, end: Terminated) -> None:
+        """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:
+        the last row stays that of the communication point before."""
+        self.outcome, self.ended_by, self.ended_at = ENDED, end.said, end.time
 
     @property
     def end(self) -> float:
@@ -96,6 +105,7 @@ class CaptureLoop:
         self.place = {name: i for i, name in enumerate(self.read.names)}
         nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
         self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
+        self._kept: Row = self.read.values
         self.tether_length = math.inf
         if plan.hand_over == "tether_taut":
             self._need("tether.paid_out")
@@ -137,9 +147,17 @@ class CaptureLoop:
         with _Stopwatch(result):
             try:
                 self._run()
+            except Terminated as end:
+                result.ended(end)
             except FmuError as error:
                 result.error = error
         return result
+
+    def _save(self) -> None:
+        self._kept = restoring.save(self.component, self.read)
+
+    def _restore(self, time: float) -> None:
+        restoring.restore(self.component, self.read, self._kept, time)
 
     def _record(self, time: float, force: bool = False) -> None:
         self.result.recorder.add(time, self.read())
@@ -158,7 +176,7 @@ class CaptureLoop:
                 break
             searching = result.located is None and plan.hand_over != NEVER
             if searching and component.can_save:
-                component.save()
+                self._save()
             component.step(begin, end - begin)
             result.steps += 1
             self.read()
@@ -197,7 +215,7 @@ class CaptureLoop:
                 result.located_by += f" (it reports {reported:.9g} s)"
             return end
         low, high = begin, end
-        component.restore()
+        self._restore(begin)
         if begin < reported < end:
             component.step(begin, reported - begin)
             self.read()
@@ -205,7 +223,7 @@ class CaptureLoop:
                 result.located_by = "the FMU's own t_capture, reached from its saved state"
                 return reported
             low = reported
-            component.save()
+            self._save()
         elif reported == end:
             component.step(begin, end - begin)
             result.located_by = "the FMU's own t_capture"
@@ -216,10 +234,10 @@ class CaptureLoop:
             self.read()
             if self.triggered():
                 high = middle
-                component.restore()
+                self._restore(low)
             else:
                 low = middle
-                component.save()
+                self._save()
         component.step(low, high - low)
         result.located_by = f"halving the macro step to {high - low:.2g} s"
         return high
@@ -255,6 +273,8 @@ class RemovalLoop:
             try:
                 self._run()
                 result.outcome = "towed"
+            except Terminated as end:
+                result.ended(end)
             except FmuError as error:
                 result.error = error
                 result.outcome = "stopped"

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 PACKAGES = (
-    *("dcone-cosim", "numpy", "fmpy", "astropy", "pydantic", "pyarrow", "matplotlib", "typer"),
+    *("dcone-cosim", "numpy", "fmpy", "astropy", "tomlkit", "pyarrow", "matplotlib", "typer"),
     *("numba", "llvmlite", "ziglang"),
 )
 
@@ -358,7 +358,7 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
     for name, result in run.phases.items():
         phase = settings[name]
         phases[name] = {
-            "fmu": fmus.get(name, {}),
+            **fmus.get(name, {}),
             "terms": dict(phase.main.terms),
             "macro_step": {"value": phase.macro_step, "unit": "s"},
             "duration": {"value": phase.duration, "unit": "s"},
@@ -369,6 +369,7 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         }
     return {
         "scene": run.scene.name,
+        "settings": [override.argument for override in run.scene.places.overrides],
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,

@@ -6,19 +6,21 @@
     [removal]  [removal.reel] law = "locked" ...
     [handoff]
 
-Which tables and keys there are follows from the models' own tables of variables, through `build`.
+Which tables and keys there are follows from the models' own tables of variables, through `build`; where an FMU file
+takes a model's place (`fmu = "path.fmu"`), from its model description.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from dcone_cosim.coupling import Connection, Coupling
 from dcone_cosim.errors import InputError
+from dcone_cosim.mistakes import Places
 from dcone_cosim.names import did_you_mean
 
 SHIPPED = Path(__file__).parent / "scenes"
@@ -38,7 +40,7 @@ class ComponentScene:
     isolate      run it in a child process
     timeout      longest time one call to an isolated FMU may take [s]
     parameters   FMI name: value, SI, of what the scene says; inputs may be among them
-    defaults     FMI name: start value, SI, of every parameter there is
+    defaults     FMI name: start value, SI, of every parameter and input there is
     choices      FMI name: names of the values of an Integer choice
     """
 
@@ -87,9 +89,10 @@ class Scene:
     """A scene that has passed every check.
 
     name       its file's name without the suffix
-    text       the file as read, kept with the results
+    text       the scene as run, kept with the results: the file, with what the command line changed
     handoff    options of the hand-off: spin_tolerance, compare_without_recoil
     source     where it was read from, for messages
+    places     where each key was written
     """
 
     name: str
@@ -98,6 +101,7 @@ class Scene:
     phases: tuple[PhaseScene, ...]
     handoff: Mapping[str, Any] = field(default_factory=dict)
     source: str = ""
+    places: Places = field(default_factory=lambda: Places("", ""))
 
 
 def shipped() -> dict[str, Path]:
@@ -126,14 +130,17 @@ def find(name: str) -> Path:
     raise InputError(f"no scene named {name!r}{did_you_mean(name, known)}")
 
 
-def load(name: str) -> Scene:
-    """The scene of that name or path, checked; an `InputError` lists every mistake found."""
+def load(name: str, settings: Sequence[str] = ()) -> Scene:
+    """The scene of that name or path, checked; a `SceneError` lists every mistake found.
+
+    settings     `KEY.KEY=VALUE`, each in the place of what the file says
+    """
     path = find(name)
     if path.suffix.lower() == ".ssp":
         from dcone_cosim.ssp import system
 
-        return system.load(path)
-    return parse(read_text(path), path.stem, str(path))
+        return system.load(path, settings)
+    return parse(read_text(path), path.stem, str(path), path.parent, settings)
 
 
 def read_text(path: Path) -> str:
@@ -150,8 +157,12 @@ def read_text(path: Path) -> str:
         raise InputError(f"{path} cannot be read as text: {what}; save it as UTF-8") from error
 
 
-def parse(text: str, name: str, source: str) -> Scene:
-    """A scene from its text; `source` names it in messages."""
+def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Sequence[str] = ()) -> Scene:
+    """A scene from its text.
+
+    source       names it in messages
+    folder       paths of FMUs are relative to it
+    """
     if not text.strip():
         raise InputError(f"{source} is empty; expected a scene with at least [capture] or [removal]")
     try:
@@ -164,9 +175,12 @@ def parse(text: str, name: str, source: str) -> Scene:
         raise InputError(f"{source} is no scene: its lists or tables are nested too deeply") from error
     except ValueError as error:
         raise InputError(f"{source} is no scene: a number in it has thousands of digits") from error
-    from dcone_cosim.scene_check import check  # astropy and pydantic are loaded only for a text that parses
+    from dcone_cosim.scene_check import check  # astropy is loaded only for a text that parses
+    from dcone_cosim.scene_text import as_run, override
 
-    return check(document, text, name, source)
+    overrides = override(document, settings)
+    places = Places(source, text, tuple(overrides))
+    return check(document, as_run(text, document, overrides, folder), name, places, folder)
 
 
 def title_of(path: Path) -> str:

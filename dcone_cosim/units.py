@@ -31,6 +31,21 @@ def unit_of(fmi_unit: str) -> Any:
     return u.dimensionless_unscaled if fmi_unit == "1" else u.Unit(fmi_unit)
 
 
+def is_unit(name: str, like: str) -> bool:
+    """Whether a name is that of a unit of the same dimension as another, and as large."""
+    try:
+        return bool(unit_of(name) == unit_of(like))
+    except (ValueError, TypeError):
+        return False
+
+
+def fit(one: str, other: str) -> bool:
+    """Whether a value in the one SI unit can be a value in the other; an angle is a number, and a number fits all."""
+    if one == other or "1" in (one, other):
+        return True
+    return bool(unit_of(one).is_equivalent(unit_of(other), equivalencies=u.dimensionless_angles()))
+
+
 def spoken(fmi_unit: str) -> str:
     """An FMI unit as a person writes it: "N.m.s" is "N m s"."""
     return fmi_unit.replace(".", " ").replace("1/s", "/s") if fmi_unit != "1" else ""
@@ -62,6 +77,7 @@ class Expected:
     example    a value as a scene would write it
     minimum    least permitted SI value; `open_minimum` excludes the bound itself
     refusal    why else an SI value is refused, or None
+    display_unit  FMI unit in which a person would write it, "" for the unit itself
     """
 
     unit: str
@@ -73,6 +89,7 @@ class Expected:
     maximum: float = math.inf
     open_minimum: bool = False
     refusal: Callable[[float], str | None] = lambda value: None
+    display_unit: str = ""
 
     def read(self, value: object) -> float | list[float]:
         """SI value, or `Unexpected`."""
@@ -119,6 +136,45 @@ class Expected:
             raise Unexpected(f"{reason}; expected {self._wanted()}")
         return number
 
+    def bounds(self) -> str:
+        """The bounds in words, in the unit in which a person would write them; nothing when there are none."""
+        found = []
+        if self.choices or self.kind == "Boolean":
+            return ""
+        if math.isfinite(self.minimum):
+            found.append(f"{'greater than' if self.open_minimum else 'at least'} {self._number(self.minimum)}")
+        if math.isfinite(self.maximum):
+            found.append(f"at most {self._number(self.maximum)}")
+        return ", ".join(found)
+
+    def _number(self, value: float) -> str:
+        if self.unit == "1":
+            return f"{value:.10g}"
+        shown = self.display_unit or self.unit
+        return f"{unit_of(self.unit).to(unit_of(shown), value):.10g} {spoken(shown)}"
+
+    def written(self, values: Sequence[float]) -> str:
+        """SI values as TOML; what is read back are the same values."""
+        texts = [self._written(value) for value in values]
+        return f"[{', '.join(texts)}]" if self.size else texts[0]
+
+    def _written(self, value: float) -> str:
+        if self.choices:
+            return f'"{self.choices[int(value)]}"'
+        if self.kind == "Boolean":
+            return "true" if value else "false"
+        if self.kind == "Integer":
+            return str(int(value))
+        if self.unit == "1":
+            return repr(value)
+        for shown in dict.fromkeys((self.display_unit or self.unit, self.unit)):
+            scaled = float(unit_of(self.unit).to(unit_of(shown), value))
+            for digits in (6, 9, 12, 15, 16, 17):
+                text = f"{scaled:.{digits}g} {spoken(shown)}"
+                if self._quantity(text)[0] == value:
+                    return f'"{text}"'
+        return f'"{value!r} {spoken(self.unit)}"'
+
     def _out_of_bounds(self, number: float, unit: str) -> str | None:
         """Why an SI value is out of bounds, told in the unit it was written with."""
         if not math.isfinite(number):
@@ -159,7 +215,7 @@ class Expected:
         written = match[2].strip()
         try:
             unit = u.Unit(written)
-            number = float(unit.to(unit_of(self.unit), float(match[1])))
+            number = float(unit.to(unit_of(self.unit), float(match[1]), equivalencies=u.temperature()))
         except u.UnitConversionError:
             raise Unexpected(f"is {_article(dimension_of(unit))}; expected {self._wanted()}") from None
         except (TypeError, ValueError, ArithmeticError):

@@ -102,6 +102,7 @@ _CAPTURE_ROWS = (
 def _of_capture(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     last = result.recorder.last() if len(result.recorder) else {}
     yield Finding("capture", "outcome", "outcome", result.outcome.replace("_", " "))
+    yield from _of_end("capture", result)
     if result.located is not None:
         yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
         yield Finding("capture", "located_by", "found by", result.located_by)
@@ -115,6 +116,13 @@ def _of_capture(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))
         yield Finding("capture", "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+
+
+def _of_end(phase: str, result: PhaseResult) -> Iterator[Finding]:
+    """What is told of a phase that its FMU ended itself."""
+    if result.ended_by:
+        yield Finding(phase, "ended_at", "the FMU ended at", result.ended_at, "s")
+        yield Finding(phase, "ended_by", "it says", result.ended_by)
 
 
 def _vector(values: dict[str, float], name: str) -> Any:
@@ -163,6 +171,7 @@ def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     recorder = result.recorder
     elapsed = result.end - result.start
     yield Finding("removal", "simulated", "simulated", elapsed, "s")
+    yield from _of_end("removal", result)
     yield from _of_tugs(result, "")
     if run.comparison is not None:
         yield from _of_tugs(run.comparison, "_without_recoil")

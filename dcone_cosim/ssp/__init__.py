@@ -14,8 +14,9 @@ What is outside of it is refused by element and line. Prefixes matter: libcosim 
 and `osp:` literally, and libcosim takes an attribute of a list, a namespace among them, for an item of it. So all
 namespaces stand at the root.
 
-    markup.py     names of the format            units.py     units of SSP and FMI
-    writing.py    the XML of a phase             export.py    packages of a scene
-    package.py    the archive, read safely       parsing.py   from XML to rows
-    values.py     parameter sets and mappings    system.py    from a package to a scene
+    markup.py     names of the format             writing.py    the XML of a phase
+    export.py     packages of a scene             package.py    the archive, read safely
+    parsing.py    from XML to rows                values.py     parameter sets and mappings
+    matching.py   rows against the FMUs           planning.py   times, steps and options of the phase
+    system.py     from a package to a scene
 """

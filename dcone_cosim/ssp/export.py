@@ -12,18 +12,21 @@ import os
 import re
 import tempfile
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.component import Archive
+from dcone_cosim.archive import Archive
 from dcone_cosim.errors import InputError
+from dcone_cosim.fmi_units import read_units
+from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene, load
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
-from dcone_cosim.ssp.units import Unit, units_of
+from dcone_cosim.steppable import VariableInfo
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -47,34 +50,40 @@ def export_scene(
     from_run: Path | None = None,
     form: str = "inline",
     open_inputs: bool = True,
+    settings: Sequence[str] = (),
 ) -> Exported:
     """Write `SCENE-PHASE.ssp` for every phase of a scene.
 
     from_run       folder of a run of this scene: its removal begins as it was handed over there
     form           which of `FORMS` the structure binds its values in
     open_inputs    list inputs that nothing is connected to; fmpy's `simulate_ssp` cannot have them
+    settings       `KEY.KEY=VALUE`, each in the place of what the scene says
     """
     if form not in FORMS:
-        raise InputError(f"parameters = {form!r}: expected one of {', '.join(FORMS)}")
-    scene = load(name)
+        raise InputError(f"--parameters {form}: expected {' or '.join(FORMS)}{did_you_mean(form, FORMS)}")
+    scene = load(name, settings)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
     done = Exported()
     phases = _phases(scene, from_run, done.notes)
-    models = {phase.name: phase.main.terms for phase in phases if phase.main.fmu is None}
-    built = build.ensure_fmus(models, progress.say)
-    contents = {
-        phase.name: _package(
-            scene, phase, {phase.name: built[phase.name]} if phase.name in built else {}, form, open_inputs
-        )
-        for phase in phases
-    }
-    out.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
-        for phase_name, content in contents.items():
-            path = out / f"{scene.name}-{phase_name}.ssp"
-            os.replace(_zip(Path(draft) / path.name, content), path)
-            done.paths.append(path)
+    ours = [(p.name, c) for p in phases for c in p.components if c.fmu is None]
+    built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
+    fmus = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
+    fmus |= {(p.name, c.name): c.fmu for p in phases for c in p.components if c.fmu is not None}
+    contents = [(phase.name, _package(scene, phase, fmus, form, open_inputs)) for phase in phases]
+    made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
+            drafts = [_zip(Path(draft) / f"{scene.name}-{phase}.ssp", content) for phase, content in contents]
+            for path in drafts:
+                os.replace(path, out / path.name)
+                done.paths.append(out / path.name)
+    except BaseException:
+        for folder in made:
+            with suppress(OSError):
+                folder.rmdir()
+        raise
     return done
 
 
@@ -129,18 +138,17 @@ def _json(folder: Path, name: str) -> dict[str, Any]:
 
 
 def _package(
-    scene: Scene, phase: PhaseScene, built: Mapping[str, Path], form: str, open_inputs: bool
+    scene: Scene, phase: PhaseScene, fmus: Mapping[tuple[str, str], Path], form: str, open_inputs: bool
 ) -> dict[str, bytes]:
     """Files of a package by their path in it."""
     files: dict[str, bytes] = {}
-    parts, units = [], {}
+    parts = []
     connected = {(c.target, c.input) for c in phase.connections}
     for component in phase.components:
-        path = component.fmu or built[component.name]
+        path = fmus[phase.name, component.name]
         source = f"{RESOURCES}/{component.name}.fmu"
         with Archive(path) as archive:
-            units[component.name] = units_of(archive.description)
-            part = _part(component, archive, source, units[component.name], None if open_inputs else connected)
+            part = _part(component, archive, source, None if open_inputs else connected)
         files[source] = path.read_bytes()
         if part.values:
             values_at = f"{RESOURCES}/{component.name}.ssv"
@@ -167,31 +175,35 @@ def identifier(name: str) -> str:
 
 
 def _part(
-    component: ComponentScene,
-    archive: Archive,
-    source: str,
-    units: Mapping[str, Unit],
-    connected: set[tuple[str, str]] | None,
+    component: ComponentScene, archive: Archive, source: str, connected: set[tuple[str, str]] | None
 ) -> Part:
     """connected: inputs to list, by instance and name; None for all"""
-    rows = {row.name: row for row in archive.description.modelVariables if row.type in KINDS}
+    known = read_units(archive.description.unitDefinitions, str(archive.path))
+    units = {name: unit for name, unit in known.items() if unit.dimension is not None}
+    kinds = {row.name: row.type for row in archive.description.modelVariables if row.type in KINDS}
+    rows = {name: archive.variables[name] for name in kinds}
 
     def unit(name: str) -> str:
-        row = rows[name]
-        return str(row.unit) if row.type == "Real" and row.unit in units else ""
+        declared = rows[name].declared_unit
+        return declared if kinds[name] == "Real" and declared in units else ""
 
     ports = [
-        Port(row.name, row.causality, row.type, unit(row.name))
+        Port(row.name, row.causality, row.kind, unit(row.name))
         for row in rows.values()
         if row.causality == "output"
         or (row.causality == "input" and (connected is None or (component.name, row.name) in connected))
     ]
-    values = []
-    for name, value in component.parameters.items():
-        if name in rows and not math.isnan(value):
-            own = units.get(unit(name))
-            values.append(Value(name, rows[name].type, own.from_si(value) if own else value, unit(name)))
+    values = [
+        Value(name, rows[name].kind, own_value(rows[name], value), unit(name))
+        for name, value in component.parameters.items()
+        if name in rows and not math.isnan(value)
+    ]
     return Part(component.name, source, ports, values, units)
+
+
+def own_value(info: VariableInfo, value: float) -> float:
+    """A value in SI in the unit that the FMU counts in."""
+    return value if info.is_si else (value - info.offset) / info.factor
 
 
 def _ours(phase: PhaseScene) -> dict[str, dict[str, str]]:
@@ -205,7 +217,8 @@ def _ours(phase: PhaseScene) -> dict[str, dict[str, str]]:
             plan[key] = " ".join(map(repr, value))
     ours = {"Plan": plan}
     if phase.others:
-        ours["Coupling"] = {key: str(value) for key, value in vars(phase.coupling).items() if value}
+        told = {key: value for key, value in vars(phase.coupling).items() if value}
+        ours["Coupling"] = {k: " ".join(v) if isinstance(v, tuple) else str(v) for k, v in told.items()}
     return ours
 
 

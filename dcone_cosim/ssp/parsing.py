@@ -10,9 +10,9 @@ from pathlib import Path
 import fmpy.ssp
 from lxml import etree
 
+from dcone_cosim.fmi_units import BASE, Unit
 from dcone_cosim.ssp.markup import FMU_TYPE, KINDS, OMS_TYPE, OSP_TYPE, OUR_TYPE, READ, VERSION, plain, tag
 from dcone_cosim.ssp.package import Mistakes
-from dcone_cosim.ssp.units import Unit, read_unit
 
 SCHEMA = Path(fmpy.ssp.__file__).parent / "schema"
 """Schema files of SSP 1.0, as fmpy brings them."""
@@ -250,8 +250,9 @@ def units(root: etree._Element, prefix: str) -> dict[str, Unit]:
     for row in root.iterfind(f"{prefix}:Units/ssc:Unit", READ):
         base = row.find("ssc:BaseUnit", READ)
         if base is not None:
-            name = row.get("name", "")
-            found[name] = read_unit(name, {str(key): str(value) for key, value in base.attrib.items()})
+            name, factor, offset = row.get("name", ""), _number(base, "factor"), _number(base, "offset")
+            dimension = tuple(int(base.get(key, 0)) for key in BASE)
+            found[name] = Unit(name, dimension, 1.0 if factor is None else factor, offset or 0.0)
     return found
 
 

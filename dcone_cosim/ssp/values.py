@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 from lxml import etree
 
+from dcone_cosim.fmi_units import Unit
 from dcone_cosim.ssp.markup import KINDS, MAPPING_TYPE, READ, STRUCTURE, VALUES_TYPE, plain
 from dcone_cosim.ssp.package import Mistakes, Package, entry_of, parsed
 from dcone_cosim.ssp.parsing import BindingRow, check_file, units
-from dcone_cosim.ssp.units import Unit
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Given:
 
     owner       component that is meant, "" when the name begins with it
     type        Real, Integer or Boolean, as the parameter set has it
-    unit        of the value; None when it is that of the variable
+    unit        of the value; None when it is that of the variable; without a dimension when the file defines none
     suppress    take the number as it is, whatever the units
     """
 
@@ -102,8 +102,7 @@ def _values(binding: BindingRow, root: etree._Element, file: str, mistakes: Mist
         unit = typed.get("unit")
         if unit is not None and unit not in known:
             # only its name is known: it has to be the one that the FMU knows too
-            yield Given(binding.owner, name, kind, value, Unit(unit, (99,) * 8), file, line)
-            continue
+            known[unit] = Unit(unit)
         yield Given(binding.owner, name, kind, value, known[unit] if unit is not None else None, file, line)
 
 

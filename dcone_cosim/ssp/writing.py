@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 from lxml import etree
 
+from dcone_cosim.fmi_units import BASE, PURE, Unit
 from dcone_cosim.ssp.markup import (
     FMU_TYPE,
     NAMESPACES,
@@ -20,7 +21,6 @@ from dcone_cosim.ssp.markup import (
     VERSION,
     tag,
 )
-from dcone_cosim.ssp.units import BASE, Unit
 
 MASTER = "master"
 """Name of the stepping in OMSimulator's annotations."""
@@ -186,7 +186,9 @@ def _add_wire(connections: etree._Element, wire: Wire) -> None:
 
 
 def _units_named(parts: Iterable[Part]) -> dict[str, Unit]:
-    return {row.unit: part.units[row.unit] for part in parts for row in (*part.ports, *part.values) if row.unit}
+    named = [(row.unit, part) for part in parts for row in part.ports if row.unit]
+    named += [(row.unit, part) for part in parts for row in part.values if row.unit]
+    return {name: part.units[name] for name, part in named}
 
 
 def _add_units(root: etree._Element, prefix: str, units: Mapping[str, Unit]) -> None:
@@ -194,7 +196,7 @@ def _add_units(root: etree._Element, prefix: str, units: Mapping[str, Unit]) -> 
         return
     rows = _add(root, prefix, "Units")
     for name, unit in sorted(units.items()):
-        base = {key: str(power) for key, power in zip(BASE, unit.exponents, strict=True) if power}
+        base = {key: str(power) for key, power in zip(BASE, unit.dimension or PURE, strict=True) if power}
         if unit.factor != 1.0:
             base["factor"] = repr(unit.factor)
         if unit.offset != 0.0:

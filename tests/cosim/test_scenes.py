@@ -98,8 +98,11 @@ def test_lines_of_keys() -> None:
         ("title",): 2,
         ("orbit",): 4,
         ("orbit", "height"): 5,
+        ("capture",): 6,
         ("capture", "net"): 6,
         ("capture", "net", "size"): 7,
+        ("capture", "net", "size", 0): 8,
+        ("capture", "net", "a"): 10,
         ("capture", "net", "a", "b"): 10,
     }
     assert line_of(lines, ("capture", "net", "missing")) == 6

@@ -174,5 +174,5 @@ class TestComponent:
 
 def test_a_file_that_is_no_fmu(tmp_path: Path) -> None:
     (tmp_path / "broken.fmu").write_bytes(b"PK\x03\x04 cut short")
-    with pytest.raises(FmuError, match=r"broken\.fmu: not a readable FMU"):
+    with pytest.raises(FmuError, match=r"broken\.fmu: a damaged FMU"):
         Archive(tmp_path / "broken.fmu")

@@ -1,0 +1,261 @@
+"""An FMU file: unpacked once, checked, and read for what it offers. It makes the instances.
+
+Whatever is wrong with a file is one `FmuError` that names it. Its binary is not loaded before an instance is made,
+since that runs its code.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+import shutil
+import tempfile
+import xml.etree.ElementTree as ET
+import zipfile
+import zlib
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import fmpy
+
+from dcone_cosim.errors import FmuError
+from dcone_cosim.fmi_units import NO_UNIT, Unit, by_name, read_units
+from dcone_cosim.names import did_you_mean
+from dcone_cosim.steppable import VariableInfo
+
+if TYPE_CHECKING:
+    from dcone_cosim.component import Component
+    from dcone_cosim.isolation import IsolatedComponent
+
+EXPECTED = "expected FMI 2.0 co-simulation"
+XML = "modelDescription.xml"
+LOCAL_HEADER = b"PK\x03\x04"
+"""What a zip file begins with."""
+
+
+class Archive:
+    """An FMU file, unpacked to a temporary folder that `close` removes.
+
+    folder    an FMU that is unpacked already, which `close` leaves alone
+    """
+
+    def __init__(self, path: Path, folder: Path | None = None) -> None:
+        self.path = path
+        self._owned = folder is None
+        self.folder: Path | None = folder
+        try:
+            if self.folder is None:
+                self.folder = _unpack(path)
+            self.description: Any = _description(path, self.folder)
+            self.variables = _variables(path, self.description)
+            _check_binary(path, self.folder, self.identifier)
+        except BaseException:
+            self.close()
+            raise
+
+    @cached_property
+    def sha256(self) -> str:
+        return hashlib.sha256(self.path.read_bytes()).hexdigest()
+
+    @property
+    def guid(self) -> str:
+        return str(self.description.guid)
+
+    @property
+    def identifier(self) -> str:
+        return str(self.description.coSimulation.modelIdentifier)
+
+    @property
+    def can_save(self) -> bool:
+        return _flag(self.description.coSimulation.canGetAndSetFMUstate)
+
+    @property
+    def can_interpolate(self) -> bool:
+        return _flag(self.description.coSimulation.canInterpolateInputs)
+
+    def variable(self, name: str, instance: str) -> VariableInfo:
+        """The variable of that name; an unknown one is an error that names the nearest."""
+        try:
+            return self.variables[name]
+        except KeyError:
+            hint = did_you_mean(name, self.variables)
+            raise FmuError(f"{instance}: {self.path.name} has no variable {name!r}{hint}") from None
+
+    def instantiate(self, name: str) -> Component:
+        """An instance in this process."""
+        from dcone_cosim.component import Component
+
+        return Component(self, name)
+
+    def isolate(self, name: str, timeout: float = 60.0) -> IsolatedComponent:
+        """An instance in a process of its own; a call that takes longer than the timeout [s] is an error."""
+        from dcone_cosim.isolation import IsolatedComponent
+
+        return IsolatedComponent(self, name, timeout)
+
+    def close(self) -> None:
+        if self.folder is not None and self._owned:
+            shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder = None
+
+    def __enter__(self) -> Archive:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+
+def _flag(value: Any) -> bool:
+    return value is True or str(value).lower() in ("true", "1")
+
+
+def _unpack(path: Path) -> Path:
+    """Unpack into a new folder, after a look at every name in it."""
+    _check_file(path)
+    folder: Path | None = None
+    try:
+        with zipfile.ZipFile(path) as content:
+            for name in content.namelist():
+                _check_name(path, name)
+            folder = Path(tempfile.mkdtemp(prefix="dcone-"))
+            content.extractall(folder)
+    except BaseException as error:
+        if folder is not None:
+            shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(error, zipfile.BadZipFile | zlib.error | EOFError):
+            raise FmuError(
+                f"{path}: a damaged FMU; the file is cut short or was changed on its way ({error})"
+            ) from None
+        if isinstance(error, RuntimeError | NotImplementedError):
+            raise FmuError(f"{path}: not a readable FMU ({error})") from None
+        raise
+    return folder
+
+
+def _check_file(path: Path) -> None:
+    if not path.exists():
+        try:
+            beside = [p.name for p in path.parent.iterdir() if p.suffix == ".fmu"]
+        except OSError:
+            beside = []
+        raise FmuError(f"{path}: no such file{did_you_mean(path.name, beside)}")
+    if path.is_dir():
+        raise FmuError(f"{path}: a folder; expected an FMU, a file that ends in .fmu")
+    try:
+        with path.open("rb") as file:
+            head = file.read(4)
+    except OSError as error:
+        raise FmuError(f"{path}: cannot be read ({error.strerror})") from None
+    if not head:
+        raise FmuError(f"{path}: empty; expected an FMU")
+    if head[:2] != LOCAL_HEADER[:2]:
+        raise FmuError(f"{path}: not a readable FMU: an FMU is a zip file, and this is none")
+
+
+def _check_name(path: Path, name: str) -> None:
+    parts = re.split(r"[/\\]", name)
+    if ".." in parts or name.startswith("/") or re.match(r"[A-Za-z]:", name):
+        raise FmuError(f"{path}: refused: its entry {name!r} would be written outside its own folder")
+    if "\\" in name:
+        raise FmuError(f"{path}: not a readable FMU: its entry {name!r} has a backslash; FMI 2.0 asks for /")
+
+
+def _description(path: Path, folder: Path) -> Any:
+    """The model description, once it is known to be one of FMI 2.0 co-simulation."""
+    file = folder / XML
+    if not file.is_file():
+        found = sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.name.lower() == XML.lower())
+        if found:
+            raise FmuError(f"{path}: no {XML} at its top; there is {found[0]}")
+        raise FmuError(f"{path}: no FMU: it has no {XML}")
+    try:
+        root = ET.parse(file).getroot()
+    except ET.ParseError as error:
+        raise FmuError(f"{path}: its {XML} is no valid XML ({error})") from None
+    version = root.get("fmiVersion")
+    if root.tag != "fmiModelDescription" or version is None:
+        raise FmuError(f"{path}: its {XML} is of no FMU: it begins with <{root.tag}>, fmiVersion {version}")
+    if version != "2.0":
+        raise FmuError(f"{path}: this is FMI {version}; {EXPECTED}")
+    try:
+        description = fmpy.read_model_description(str(folder), validate=False)
+    except Exception as error:
+        raise FmuError(f"{path}: its {XML} does not follow FMI 2.0 ({type(error).__name__}: {error})") from None
+    about = description.coSimulation
+    if about is None:
+        kind = "for model exchange only" if description.modelExchange is not None else "neither of its kinds"
+        raise FmuError(f"{path}: this is FMI 2.0 {kind}; {EXPECTED}")
+    if not about.modelIdentifier or not description.guid:
+        raise FmuError(f"{path}: its {XML} has no modelIdentifier or no guid")
+    return description
+
+
+def _variables(path: Path, description: Any) -> dict[str, VariableInfo]:
+    """Its variables by name. Several may share a value reference; a name can be there only once."""
+    units = read_units(description.unitDefinitions, str(path))
+    found: dict[str, VariableInfo] = {}
+    for v in description.modelVariables:
+        if v.name in found:
+            raise FmuError(f"{path}: its {XML} has two variables named {v.name!r}")
+        kind = "Integer" if v.type == "Enumeration" else v.type
+        name = (v.unit or (v.declaredType.unit if v.declaredType is not None else "") or "") if kind == "Real" else ""
+        unit = units.get(name) or by_name(name)
+        if v.relativeQuantity:
+            unit = Unit(unit.name, unit.dimension, unit.factor)
+        found[v.name] = VariableInfo(
+            v.name,
+            int(v.valueReference),
+            kind,
+            unit.si_name if unit is not NO_UNIT else "1",
+            v.causality or "local",
+            v.description or "",
+            name,
+            unit.dimension,
+            unit.factor,
+            unit.offset,
+            v.variability or "",
+            v.initial or "",
+            _number(path, v.name, "start", v.start, kind, unit),
+            *_bounds(path, v, kind, unit),
+        )
+    return found
+
+
+def _number(path: Path, name: str, what: str, text: Any, kind: str, unit: Unit) -> float | None:
+    """A number of the model description in SI; None for none, or for a text."""
+    if text is None or kind == "String":
+        return None
+    if kind == "Boolean":
+        return float(_flag(text))
+    try:
+        value = float(text)
+    except ValueError:
+        raise FmuError(f"{path}: {what} of its variable {name!r} is {text!r}, no number") from None
+    return value if unit.is_si else unit.factor * value + unit.offset
+
+
+def _bounds(path: Path, v: Any, kind: str, unit: Unit) -> tuple[float, float]:
+    low = _number(path, v.name, "min", v.min, kind, unit)
+    high = _number(path, v.name, "max", v.max, kind, unit)
+    bounds = (-math.inf if low is None else low, math.inf if high is None else high)
+    return (min(bounds), max(bounds)) if unit.factor < 0.0 else bounds
+
+
+def _check_binary(path: Path, folder: Path, identifier: str) -> None:
+    """There is a binary for this platform, under the name the model description says."""
+    here = folder / "binaries" / fmpy.platform
+    wanted = identifier + fmpy.sharedLibraryExtension
+    if (here / wanted).is_file():
+        return
+    if here.is_dir():
+        there = sorted(p.name for p in here.iterdir())
+        listed = ", ".join(there) or "nothing"
+        raise FmuError(f"{path}: binaries/{fmpy.platform} has no {wanted}, the name its {XML} says; it has {listed}")
+    platforms = sorted({p.parent.name for p in (folder / "binaries").glob("*/*") if p.is_file()})
+    offers = f"it has binaries for {', '.join(platforms)}" if platforms else "it has no binary at all"
+    if any((folder / "sources").glob("*.c")):
+        offers += ", and C sources, which have to be compiled first"
+    raise FmuError(f"{path}: no binary for {fmpy.platform}, this computer; {offers}")

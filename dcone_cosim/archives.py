@@ -1,0 +1,122 @@
+"""The FMUs of a scene while it runs: ours built on demand, others opened, each instantiated where it belongs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from dcone_cosim import build
+from dcone_cosim.archive import Archive
+from dcone_cosim.component import CallError, Steppable
+from dcone_cosim.errors import InputError
+from dcone_cosim.mistakes import places_named
+from dcone_cosim.progress import Progress
+from dcone_cosim.scene import ComponentScene, PhaseScene, Scene
+
+
+class Archives:
+    """The unpacked FMU of every component of a scene; closing removes the temporary folders."""
+
+    def __init__(self, scene: Scene, progress: Progress) -> None:
+        self._scene = scene
+        self._phases = {phase.name: phase for phase in scene.phases}
+        self._of: dict[tuple[str, str], Archive] = {}
+        self._coupled: dict[str, Any] = {}
+        components = [(phase.name, component) for phase in scene.phases for component in phase.components]
+        ours = [(phase, component) for phase, component in components if component.fmu is None]
+        built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
+        paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
+        try:
+            for phase, component in components:
+                path = component.fmu if component.fmu is not None else paths[phase, component.name]
+                self._of[phase, component.name] = Archive(path)
+        except BaseException:
+            self.close()
+            raise
+
+    def instantiate(self, phase: str, name: str) -> Steppable:
+        """A component of that phase: its one FMU under this name, or all of its FMUs coupled.
+
+        The values that the scene gives to further components are set here, since a phase knows its main one alone.
+        """
+        plan = self._phases[phase]
+        made: list[Steppable] = []
+        try:
+            for component in plan.components:
+                is_main = component is plan.main
+                made.append(self._one(plan, component, name if is_main else component.name))
+                if not is_main and component.parameters:
+                    self._set(plan, component, made[-1])
+            if len(made) == 1 and not plan.connections:
+                return made[0]
+            from dcone_cosim.coupled import Coupled
+
+            instances = [component.name for component in plan.components]
+            coupled: Steppable = Coupled(name, made, plan.connections, plan.coupling, instances)
+        except BaseException:
+            for instance in reversed(made):
+                instance.close()
+            raise
+        self._coupled.setdefault(phase, coupled)
+        return coupled
+
+    def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
+        archive = self._of[phase.name, component.name]
+        return archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
+
+    def _set(self, phase: PhaseScene, component: ComponentScene, instance: Steppable) -> None:
+        try:
+            instance.set(component.parameters)
+        except CallError as error:
+            if error.broken:
+                raise
+            where = places_named(error.said, self._scene.places, phase.name)
+            text = f"{self._scene.source}: {component.name} of the {phase.name} cannot begin"
+            raise InputError(f"{text}\n  {where}{error.said}\n  ({error.detail})") from error
+
+    def facts(self) -> dict[str, dict[str, Any]]:
+        """What identifies the FMUs of each phase and how they were coupled, for the provenance."""
+        return {name: self._facts_of(phase) for name, phase in self._phases.items()}
+
+    def _facts_of(self, phase: PhaseScene) -> dict[str, Any]:
+        facts: dict[str, Any] = {"fmu": self._identity(phase, phase.main)}
+        if phase.others:
+            facts["components"] = {
+                component.name: {
+                    "fmu": self._identity(phase, component),
+                    "terms": dict(component.terms),
+                    "parameters": {**component.defaults, **component.parameters},
+                }
+                for component in phase.others
+            }
+        coupled = self._coupled.get(phase.name)
+        if coupled is not None:
+            facts["connections"] = [f"{c.source}.{c.output} -> {c.target}.{c.input}" for c in phase.connections]
+            facts["coupling"] = {
+                **vars(phase.coupling),
+                "step": {"value": phase.coupling.step or phase.macro_step, "unit": "s"},
+                "smallest_step": {"value": phase.coupling.smallest_step, "unit": "s"},
+                "statistics": dict(coupled.statistics),
+            }
+        return facts
+
+    def _identity(self, phase: PhaseScene, component: ComponentScene) -> dict[str, Any]:
+        archive = self._of[phase.name, component.name]
+        return {
+            "file": archive.path.name if component.fmu is None else str(archive.path.absolute()),
+            "sha256": archive.sha256,
+            "guid": archive.guid,
+            "model": archive.description.modelName,
+            "generation_tool": archive.description.generationTool,
+            "ours": component.fmu is None,
+            "isolated": component.isolate,
+        }
+
+    def __enter__(self) -> Archives:
+        return self
+
+    def close(self) -> None:
+        for archive in self._of.values():
+            archive.close()
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

@@ -1,0 +1,117 @@
+"""The child of `isolation`: one FMU, and a loop that does to it what the parent asks.
+
+Its first two streams carry the calls and the answers. They are moved away before the FMU is loaded, so that whatever it
+prints goes to the third. It ends when it is told to, when the stream of calls ends, or when its parent is gone, even if
+the FMU never returns.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import threading
+import time
+import traceback
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from dcone_cosim.component import Archive, Component, Reader, listeners
+from dcone_cosim.errors import FmuError
+from dcone_cosim.isolation import receive, send
+
+CALLS = frozenset(
+    {"set", "set_rates", "get", "enter_initialisation", "exit_initialisation", "save", "restore", "state_size"}
+)
+"""Calls that go straight to the component."""
+LOOK_FOR_PARENT = 0.5
+"""How often to see whether the parent is still there [s]."""
+
+
+class Server:
+    """Answers calls, each as a pair: the error or None, and the result."""
+
+    def __init__(self) -> None:
+        self.component: Component | None = None
+        self.readers: list[Reader] = []
+
+    def answer(self, call: str, *arguments: Any) -> Any:
+        if call == "instantiate":
+            path, folder, name = arguments
+            self.component = Archive(Path(path), Path(folder)).instantiate(name)
+            return None
+        assert self.component is not None
+        if call == "step":
+            begin, size, wanted = arguments
+            self.component.step(begin, size)
+            return {number: data for number in wanted if (data := self._read_ahead(number)) is not None}
+        if call == "read":
+            return self.readers[arguments[0]]().tobytes()
+        if call == "reader":
+            self.readers.append(self.component.reader(arguments[0]))
+            return self.readers[-1].names
+        if call not in CALLS:
+            raise FmuError(f"an isolated FMU has no call {call!r}")
+        return getattr(self.component, call)(*arguments)
+
+    def _read_ahead(self, number: int) -> bytes | None:
+        """What will probably be read next; an error is left to the reading itself."""
+        with suppress(FmuError):
+            return self.readers[number]().tobytes()
+        return None
+
+    def serve(self, calls: BinaryIO, answers: BinaryIO) -> None:
+        while True:
+            try:
+                call = receive(calls)
+            except EOFError:
+                return
+            if call[0] == "close":
+                if self.component is not None:
+                    self.component.close()
+                return
+            try:
+                answer: tuple[FmuError | None, Any] = (None, self.answer(*call))
+            except FmuError as error:
+                answer = (error, None)
+            except Exception:
+                answer = (FmuError(f"{call[0]} failed in the child process:\n{traceback.format_exc()}"), None)
+            send(answers, answer)
+
+
+def _own_streams() -> tuple[BinaryIO, BinaryIO]:
+    """Take the streams of calls and answers out of the FMU's reach; what it prints goes to the third stream."""
+    calls, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.dup2(2, 1)
+    with suppress(Exception):  # by lines, so that the last ones are out before a crash; only where the C library is so
+        library = ctypes.CDLL(None)
+        library.setvbuf(ctypes.c_void_p.in_dll(library, "stdout"), None, 1, ctypes.c_size_t(0))
+    return calls, answers
+
+
+def _end_with(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(LOOK_FOR_PARENT)
+    os._exit(1)
+
+
+def _pass_on(text: str) -> None:
+    with suppress(OSError):
+        os.write(2, (text + "\n").encode())
+
+
+def main() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    calls, answers = _own_streams()
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+    listeners.append(_pass_on)
+    with suppress(BrokenPipeError):
+        Server().serve(calls, answers)
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

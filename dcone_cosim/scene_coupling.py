@@ -1,0 +1,150 @@
+"""What a scene says of several components of a phase: which are connected, and how their steps are taken."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.mistakes import Mistake, unknown
+from dcone_cosim.scene_keys import COUPLING_KEYS, Slot, read_table, table_in
+from dcone_cosim.scene_parts import Part
+from dcone_cosim.toml_lines import Path, dotted
+from dcone_cosim.units import fit, spoken
+
+ARROW = "->"
+FORM = '"INSTANCE.VARIABLE -> INSTANCE.VARIABLE"'
+CARRIED = {
+    ("Real", "Real"),
+    ("Integer", "Integer"),
+    ("Boolean", "Boolean"),
+    ("Integer", "Real"),
+    ("Boolean", "Integer"),
+    ("Integer", "Boolean"),
+}
+"""Kinds of output and input between which a value can go."""
+
+
+def read_connections(
+    given: object, path: Path, parts: Sequence[Part], mistakes: list[Mistake]
+) -> tuple[Connection, ...]:
+    """The connections of a phase; a list on both sides connects element by element."""
+    if not isinstance(given, list):
+        mistakes.append(Mistake(path, given, f"expected a list of {FORM}"))
+        return ()
+    by_name = {part.name: part for part in parts}
+    found: dict[tuple[str, str], Path] = {}
+    connections = []
+    for place, text in enumerate(given):
+        at = (*path, place)
+        for connection in _read_one(text, at, by_name, mistakes):
+            into = (connection.target, connection.input)
+            constant = by_name[connection.target].given.get(connection.input)
+            if into in found:
+                mistakes.append(
+                    Mistake(at, text, f"{'.'.join(into)} is connected twice: also by {dotted(found[into])}")
+                )
+            elif constant is not None:
+                also = f"{'.'.join(into)} is connected here, and is given a value as {dotted(constant)}"
+                mistakes.append(Mistake(at, text, f"{also}: leave one of them out"))
+            else:
+                found[into] = at
+                connections.append(connection)
+    return tuple(connections)
+
+
+def _read_one(text: object, path: Path, parts: Mapping[str, Part], mistakes: list[Mistake]) -> list[Connection]:
+    sides = [side.strip() for side in text.split(ARROW)] if isinstance(text, str) else []
+    if len(sides) != 2 or not all("." in side.strip(".") for side in sides):
+        mistakes.append(Mistake(path, text, f"expected {FORM}"))
+        return []
+    before = len(mistakes)
+    (source, output), (target, into) = (side.split(".", 1) for side in sides)
+    outputs = _end(text, path, source, output, "output", parts, mistakes)
+    inputs = _end(text, path, target, into, "input", parts, mistakes)
+    if len(mistakes) == before and source == target:
+        mistakes.append(Mistake(path, text, f"connects {source} with itself: expected two components"))
+    if len(mistakes) == before and len(outputs) != len(inputs):
+        sizes = f"{source}.{output} has {len(outputs)} elements, {target}.{into} has {len(inputs)}"
+        mistakes.append(Mistake(path, text, f"{sizes}: expected as many"))
+    if len(mistakes) > before:
+        return []
+    wrong = _mismatch(sides, parts[source].slots[outputs[0]], parts[target].slots[inputs[0]])
+    if wrong:
+        mistakes.append(Mistake(path, text, wrong))
+        return []
+    return [Connection(source, o, target, i) for o, i in zip(outputs, inputs, strict=True)]
+
+
+def _end(
+    text: object,
+    path: Path,
+    name: str,
+    variable: str,
+    causality: str,
+    parts: Mapping[str, Part],
+    mistakes: list[Mistake],
+) -> list[str]:
+    """The variables at one end of a connection: one, or the elements of a list."""
+    part = parts.get(name)
+    if part is None:
+        mistakes.append(unknown(path, text, f"there is no component {name!r}", name, parts))
+        return []
+    if not part.slots:
+        return []
+    elements = [variable] if variable in part.slots else []
+    while elements[:1] != [variable] and f"{variable}[{len(elements) + 1}]" in part.slots:
+        elements.append(f"{variable}[{len(elements) + 1}]")
+    fitting = [n for n, slot in part.slots.items() if slot.causality == causality]
+    if not elements:
+        mistakes.append(unknown(path, text, f"{name} has no {causality} {variable!r}", variable, fitting))
+        return []
+    slot = part.slots[elements[0]]
+    if slot.causality != causality:
+        is_a = f"{slot.causality} of {name}, expected an {causality}"
+        article = "an" if slot.causality[0] in "aeiou" else "a"
+        mistakes.append(unknown(path, text, f"{variable!r} is {article} {is_a}", variable, fitting))
+        return []
+    return elements
+
+
+def _mismatch(sides: Sequence[str], output: Slot, into: Slot) -> str:
+    """Why a value cannot go from the one variable to the other, or nothing."""
+    if (output.kind, into.kind) not in CARRIED:
+        kinds = f"{sides[0]} is of kind {output.kind}, {sides[1]} of kind {into.kind}"
+        return f"{kinds}: no value can go from the one to the other"
+    if not fit(output.unit, into.unit):
+        return f"{sides[0]} is in {spoken(output.unit)}, {sides[1]} in {spoken(into.unit)}: different dimensions"
+    return ""
+
+
+def read_coupling(tables: Mapping[str, Any], path: Path, parts: Sequence[Part], mistakes: list[Mistake]) -> Coupling:
+    """How the steps are taken; without further components there is nothing to couple."""
+    path = (*path, "coupling")
+    table = table_in(tables, path, mistakes)
+    found = read_table(table, COUPLING_KEYS, path, mistakes, also=("order",))
+    for key in ("method", "control", "extrapolation"):
+        if key in found:
+            found[key] = COUPLING_KEYS[key].choices[int(found[key])]
+    if "order" in table:
+        found["order"] = _order(table["order"], (*path, "order"), parts, mistakes)
+    smallest = found.get("smallest_step")
+    if smallest is not None and "step" in found and smallest > found["step"]:
+        mistakes.append(Mistake((*path, "smallest_step"), table["smallest_step"], "must be at most coupling.step"))
+    for key in ("tolerance", "smallest_step"):
+        if key in table and found.get("control", "fixed") != "error":
+            mistakes.append(Mistake((*path, key), table[key], 'says nothing to fixed steps; add control = "error"'))
+    return Coupling(**found)
+
+
+def _order(given: object, path: Path, parts: Sequence[Part], mistakes: list[Mistake]) -> tuple[str, ...]:
+    names = [part.name for part in parts]
+    if isinstance(given, list) and sorted(map(str, given)) == sorted(names):
+        return tuple(given)
+    for place, name in enumerate(given if isinstance(given, list) else ()):
+        if name not in names:
+            mistakes.append(unknown((*path, place), name, "no component of this phase", str(name), names))
+            return ()
+    listed = ", ".join(f'"{name}"' for name in names)
+    mistakes.append(Mistake(path, given, f"expected each component once, such as [{listed}]"))
+    return ()

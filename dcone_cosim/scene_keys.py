@@ -1,0 +1,208 @@
+"""What may stand in a scene beside the models' own parameters, and how a table of it is read.
+
+Every key has an `Expected`: it reads the value with its unit, or says what was expected. The keys of a model follow
+from its rows of `Variable`, those of a foreign FMU from its model description: a new parameter is at once a new key.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from dcone_cosim import build
+from dcone_cosim.contract import HAND_OVER
+from dcone_cosim.mistakes import Mistake, unknown
+from dcone_cosim.toml_lines import Path, dotted
+from dcone_cosim.units import Expected, Unexpected, example_of
+
+SHARED = "orbit"
+"""Section that stands at the top of a scene and goes to every component that has it."""
+TOP = ("title", "phases", SHARED, "handoff")
+"""Keys at the top of a scene, beside the phases."""
+MOST_STEPS = 5_000_000
+"""Macro steps of a phase: each leaves a row, and a run keeps all rows in memory."""
+
+
+def _positive(unit: str, example: str) -> Expected:
+    return Expected(unit, example=example, minimum=0.0, open_minimum=True)
+
+
+def _not_negative(unit: str, example: str) -> Expected:
+    return Expected(unit, example=example, minimum=0.0)
+
+
+def _one_of(*names: str) -> Expected:
+    return Expected("1", choices=names)
+
+
+FLAG = Expected("1", kind="Boolean")
+
+PHASE_KEYS: Mapping[str, Mapping[str, Expected]] = {
+    "capture": {
+        "macro_step": _positive("s", "0.02 s"),
+        "duration": _positive("s", "30 s"),
+        "hand_over": _one_of(*HAND_OVER),
+        "after_capture": _not_negative("s", "1 s"),
+    },
+    "removal": {
+        "macro_step": _positive("s", "60 s"),
+        "duration": _positive("s", "1 day"),
+    },
+}
+REQUIRED = ("macro_step", "duration")
+SNAPSHOTS = _not_negative("s", "5.32 s")
+HANDOFF_KEYS: Mapping[str, Expected] = {
+    "spin_tolerance": _not_negative("1", "0.1"),
+    "compare_without_recoil": FLAG,
+}
+COMPONENT_KEYS: Mapping[str, Expected] = {
+    "isolate": FLAG,
+    "timeout": _positive("s", "60 s"),
+}
+"""Keys of every component, main or other; `fmu` and `model` say what it is and are read first."""
+COUPLING_KEYS: Mapping[str, Expected] = {
+    "method": _one_of("gauss_seidel", "jacobi"),
+    "step": _positive("s", "1 s"),
+    "control": _one_of("fixed", "error"),
+    "tolerance": _positive("1", "1e-4"),
+    "smallest_step": _positive("s", "1 ms"),
+    "extrapolation": _one_of("constant", "linear"),
+}
+PHASE_TABLES = ("components", "connections", "coupling", "parameters", "snapshots", "fmu")
+"""What else a phase may hold that is no parameter of its model."""
+
+MEANING: Mapping[str, str] = {
+    "title": "what the scene is about, for tables and figures",
+    "phases": "which phases to run, in order; all that have a table if not given",
+    "macro_step": "the grid of the results: every output is recorded this often",
+    "duration": "the phase ends after this at the latest",
+    "hand_over": "what ends the capture and begins the removal; none: flown to its end",
+    "after_capture": "go on for this long after the capture, when no removal follows",
+    "snapshots": "when to keep the positions of the nodes; evenly spread if not given",
+    "spin_tolerance": "speed of the tether's end by the spin that is dropped, over that of the first tug",
+    "compare_without_recoil": "run the removal once more without the shot's recoil",
+    "fmu": "an FMI 2.0 co-simulation FMU that takes the place of our model; relative to the scene's file",
+    "model": "a model of ours, built on demand",
+    "isolate": "run the FMU in a child process: its crash or hang is then an error, and ends nothing else",
+    "timeout": "the longest that one call to an isolated FMU may take",
+    "parameters": "start values by variable name, for names that are no table.key",
+    "connections": "outputs that set inputs, each as \"INSTANCE.VARIABLE -> INSTANCE.VARIABLE\"",
+    "components": "further FMUs of the phase, a table each",
+    "coupling": "how the steps of several components are taken",
+    "method": "jacobi: all with the values of the step before; gauss_seidel: each with what those before it reached",
+    "step": "of the coupling; the macro step if not given",
+    "control": "error: steps are halved where they are too long, as far as the FMUs can save their states",
+    "tolerance": "of the error control, relative to the size of each connected output",
+    "smallest_step": "below which the error control gives up",
+    "extrapolation": "linear: inputs go on at the rate of the step before",
+    "order": "in which gauss_seidel steps the components; as in the scene if not given",
+}  # fmt: skip
+"""One sentence for every key that no model's table explains."""
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a component: the variables it sets (several for a list), what it takes, and their start values."""
+
+    names: tuple[str, ...]
+    expected: Expected
+    starts: tuple[float, ...]
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Slot:
+    """What a connection has to know of one scalar variable; `unit` is of the SI value."""
+
+    kind: str
+    unit: str
+    causality: str
+
+
+def expected_of(row: build.Variable) -> Expected:
+    """What a scene may write for a row of a model's table."""
+    starts = [float(s) for s in row.starts()]
+    start = next((s for s in starts if s), 0.0)
+    example = f"{start:g}" if row.kind == "Integer" else example_of(start, row.unit, row.display_unit)
+    size = row.size if row.shape else 0
+    return Expected(
+        row.unit,
+        row.kind,
+        size,
+        row.choices,
+        example,
+        row.minimum,
+        row.maximum,
+        row.open_minimum,
+        row.refusal,
+        row.display_unit,
+    )
+
+
+def key_of(row: build.Variable) -> Key:
+    starts = tuple(float(s) for s in row.starts())
+    return Key(tuple(row.element_names()), expected_of(row), starts, row.description)
+
+
+def orbit_keys() -> dict[str, Key]:
+    """Every key the shared orbit may have, whatever phases and terms a scene has."""
+    return {
+        row.key: key_of(row)
+        for model in build.MODELS.values()
+        for row in build.all_rows(model)
+        if row.section == SHARED and row.causality in build.SETTABLE
+    }
+
+
+Reader = Callable[[Any], Any]
+"""Reads a value, or raises `Unexpected`."""
+
+
+def read_value(value: Any, reader: Reader, path: Path, mistakes: list[Mistake]) -> Any:
+    """What the reader makes of a value; None, and one mistake more, when it does not fit."""
+    try:
+        return reader(value)
+    except Unexpected as error:
+        mistakes.append(Mistake(path, value, str(error)))
+        return None
+
+
+def read_table(
+    table: Mapping[str, Any],
+    keys: Mapping[str, Expected],
+    path: Path,
+    mistakes: list[Mistake],
+    also: tuple[str, ...] = (),
+) -> dict[str, Any]:
+    """Values of the known keys of a table; every other key is a mistake, save those that are read elsewhere."""
+    found = {}
+    for key, value in table.items():
+        if key in keys:
+            given = read_value(value, keys[key].read, (*path, key), mistakes)
+            if given is not None:
+                found[key] = given
+        elif key not in also:
+            mistakes.append(unknown((*path, key), value, "unknown key", key, [*keys, *also]))
+    return found
+
+
+def table_in(document: Mapping[str, Any], path: Path, mistakes: list[Mistake]) -> dict[str, Any]:
+    """The table at the end of the path, empty when there is none; something else in its place is a mistake."""
+    value = document.get(str(path[-1]), {})
+    if isinstance(value, dict):
+        return value
+    mistakes.append(Mistake(path, value, f"expected a table [{dotted(path)}]"))
+    return {}
+
+
+def read_snapshots(value: object) -> list[float]:
+    if not isinstance(value, list):
+        raise Unexpected('expected a list of times, such as ["0 s", "5 s"]')
+    return SNAPSHOTS.read_each(value)
+
+
+def read_title(value: object) -> str:
+    if not isinstance(value, str):
+        raise Unexpected('expected a text, such as "A net of 24 m"')
+    return value

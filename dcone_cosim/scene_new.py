@@ -1,0 +1,180 @@
+"""A scene to start from: every key there is, with its unit, bounds and meaning, as the models' own tables tell them.
+
+What the scene it is begun from says stands as it is. What is left at its default is there as a comment with that
+default, and so are the terms that are left out: take the mark away, and it counts.
+"""
+
+from __future__ import annotations
+
+import textwrap
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from dcone_cosim import build
+from dcone_cosim.handoff import REMOVAL_SETS
+from dcone_cosim.scene import PHASES
+from dcone_cosim.scene_keys import HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
+from dcone_cosim.scene_parts import term_named
+from dcone_cosim.units import Expected
+
+WIDTH = 120
+INPUT = "an input, held at this value"
+SCHEMA = "dcone-schema.json"
+"""Name under which a schema beside the scene is found."""
+
+
+def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
+    """Text of a scene begun from another.
+
+    text      of that other, which has passed every check
+    origin    its name
+    name      of the file this will be, for the advice at its top
+    schema    path of a JSON schema for editors, "" for none
+    """
+    document = tomllib.loads(text)
+    lines = [f"#:schema {schema}"] if schema else []
+    lines += [
+        f"# A scene begun from {origin!r}. Check it with `dcone validate {name}`, run it with `dcone run {name}`.",
+        '# A dimensional value is a text with its unit, such as "24 m"; a pure number is bare.',
+        "# Lines that begin with a # and a key show what counts when nothing is said; a table that is marked so is left",
+        "# out of the FMU altogether.",
+        "",
+        _line("title", _toml(document.get("title", "")), MEANING["title"]),
+    ]
+    present = [phase for phase in PHASES if phase in document]
+    lines.append(_line("phases", _toml(document.get("phases", present)), MEANING["phases"]))
+    orbit = {key: known for key, known in orbit_keys().items() if _somewhere(document, f"{SHARED}.{key}")}
+    lines += ["", f"[{SHARED}]", *_table(document.get(SHARED, {}), orbit)]
+    for phase in present:
+        lines += ["", *_phase(phase, document[phase], skip=_owned(present) if phase == "removal" else ())]
+    if len(present) == len(PHASES):
+        given = document.get("handoff", {})
+        lines += ["", "[handoff]"]
+        lines += [_option(key, given.get(key), known) for key, known in HANDOFF_KEYS.items()]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def _owned(present: Sequence[str]) -> tuple[str, ...]:
+    """Beginnings of names that the hand-off sets when both phases run."""
+    return tuple(name.partition("[")[0] for name in REMOVAL_SETS) + ("start.",) if len(present) == len(PHASES) else ()
+
+
+def _somewhere(document: Mapping[str, Any], name: str) -> bool:
+    """Whether a phase of the document has this variable."""
+    return any(
+        f"{row.section}.{row.key}" == name
+        for phase in PHASES
+        if phase in document
+        for row in build.settable(build.MODELS[phase].interface(_terms(phase, document[phase])))
+    )
+
+
+def _terms(phase: str, tables: Mapping[str, Any]) -> dict[str, str]:
+    groups = build.MODELS[phase].groups
+    return {name: term_named(tables[name].get(group.selector)) for name, group in groups.items() if name in tables}
+
+
+def _phase(phase: str, tables: Mapping[str, Any], skip: tuple[str, ...]) -> Iterator[str]:
+    model = build.MODELS[phase]
+    terms = _terms(phase, tables)
+    rows = [row for row in build.settable(model.interface(terms)) if row.section != SHARED]
+    rows = [row for row in rows if not f"{row.section}.{row.key}".startswith(skip or ("\0",))]
+    yield f"[{phase}]"
+    for key, expected in PHASE_KEYS[phase].items():
+        yield _option(key, tables.get(key), expected)
+    if "snapshots" in tables:
+        yield _line("snapshots", _toml(tables["snapshots"]), MEANING["snapshots"])
+    sections = dict.fromkeys((*(name for name in tables if isinstance(tables[name], dict)), *terms))
+    sections |= dict.fromkeys(row.section for row in rows)
+    for section in sections:
+        keys = {row.key: _described(row) for row in rows if row.section == section}
+        given = tables.get(section)
+        yield ""
+        yield f"[{phase}.{section}]" if given is not None else f"# [{phase}.{section}]"
+        if section in terms:
+            yield _selection(model.groups[section], terms[section])
+        yield from _table(given or {}, keys)
+    for name, group in model.groups.items():
+        if name not in terms:
+            yield from ("", *_left_out(phase, name, group))
+
+
+def _selection(group: build.Group, term: str, mark: str = "") -> str:
+    """The key that names a term, with what it adds and what else it could be."""
+    if term not in list(group.terms):
+        return _line(group.selector, term, group.terms[term].summary)
+    others = [f'"{name}"' for name in group.terms if name != term]
+    text = group.terms[term].summary + (f"; or {', '.join(others)}" if others else "")
+    return _line(group.selector, f'"{term}"', text, mark)
+
+
+def _left_out(phase: str, name: str, group: build.Group) -> Iterator[str]:
+    """A group of terms as a comment: its first term with all its keys, and the names of the others."""
+    first = next(iter(group.terms))
+    if first not in group.terms:
+        yield f"# {phase}.{name} is left out; a table [{phase}.{name}] with {group.selector} = {first} brings it in"
+        return
+    yield f"# [{phase}.{name}]"
+    yield _selection(group, first, "# ")
+    for row in build.term_rows(group, first):
+        if row.causality in build.SETTABLE and row.section == name:
+            yield _default(row.key, _described(row))
+
+
+def _described(row: build.Variable) -> Key:
+    key = key_of(row)
+    return Key(
+        key.names, key.expected, key.starts, key.description + (f" ({INPUT})" if row.causality == "input" else "")
+    )
+
+
+def _table(given: Mapping[str, Any], keys: Mapping[str, Key]) -> Iterator[str]:
+    """What is given as it is, the rest as comments."""
+    for name, key in keys.items():
+        if name in given:
+            yield _line(name, _toml(given[name]), _meaning(key.description, key.expected))
+    for name, key in keys.items():
+        if name not in given:
+            yield _default(name, key)
+
+
+def _default(name: str, key: Key) -> str:
+    return _line(name, key.expected.written(key.starts), _meaning(key.description, key.expected), "# ")
+
+
+def _option(name: str, given: Any, expected: Expected) -> str:
+    text = _meaning(MEANING[name], expected)
+    if given is not None:
+        return _line(name, _toml(given), text)
+    example = f'"{expected.choices[0]}"' if expected.choices else _toml(_parsed(expected.example or "true"))
+    return _line(name, example, f"for example; {text}", "# ")
+
+
+def _parsed(text: str) -> Any:
+    """An example as a value: a number, a flag, or a text with a unit."""
+    try:
+        return tomllib.loads(f"x = {text}")["x"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _meaning(description: str, expected: Expected) -> str:
+    others = f"one of {', '.join(expected.choices)}" if expected.choices else ""
+    return "; ".join(part for part in (description, expected.bounds(), others) if part)
+
+
+def _line(key: str, value: str, comment: str, mark: str = "") -> str:
+    """A key with its meaning behind it, or above it when the line would be too long; `mark` makes it a comment."""
+    line = f"{mark}{key} = {value}"
+    whole = f"{line}  # {comment}"
+    if len(whole) <= WIDTH:
+        return whole
+    return "\n".join([*textwrap.wrap(comment, WIDTH, initial_indent="# ", subsequent_indent="#   "), line])
+
+
+def _toml(value: Any) -> str:
+    """A value of a scene as TOML: texts, numbers, flags and lists of them."""
+    import tomlkit
+
+    return tomlkit.item(value).as_string()

@@ -1,0 +1,242 @@
+"""One component of a scene while it is being checked: what it is, which keys it has, and what the scene says of them.
+
+A component is a model of ours, whose terms the scene names and whose keys follow from its rows, or an FMU file, whose
+keys follow from its model description. Both are read alike: `key` in `[capture.table]` is the variable `table.key`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path as File
+from typing import TYPE_CHECKING, Any
+
+from dcone_cosim import build
+from dcone_cosim.mistakes import Mistake, unknown
+from dcone_cosim.scene_fmus import Offer
+from dcone_cosim.scene_keys import PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
+from dcone_cosim.toml_lines import Path, dotted
+from dcone_cosim.units import LARGEST_INTEGER
+
+if TYPE_CHECKING:
+    from dcone_cosim.archive import Archive
+
+
+@dataclass
+class Part:
+    """A component with its keys.
+
+    path         of its table: ("capture",), or ("removal", "components", "controller")
+    model        of ours, which a scene may still describe when an FMU takes its place; None for any other FMU
+    terms        of our model that the scene names
+    fmu          the file, None for a model of ours
+    reserved     keys of its table that are no parameters
+    keys         by the name a scene gives them: "bullets.speed"
+    slots        every scalar variable, for connections
+    archive      of the FMU, closed again: its model description is read
+    given        where the value of each variable was given
+    """
+
+    path: Path
+    name: str
+    model: build.Model | None = None
+    terms: dict[str, str] = field(default_factory=dict)
+    fmu: File | None = None
+    reserved: frozenset[str] = frozenset()
+    keys: dict[str, Key] = field(default_factory=dict)
+    slots: dict[str, Slot] = field(default_factory=dict)
+    archive: Archive | None = None
+    given: dict[str, Path] = field(default_factory=dict)
+
+    @property
+    def groups(self) -> Mapping[str, build.Group]:
+        return self.model.groups if self.model is not None else {}
+
+    def selects(self, names: tuple[str, ...]) -> bool:
+        """Whether a key chooses a term of our model."""
+        return len(names) == 2 and names[0] in self.groups and self.groups[names[0]].selector == names[1]
+
+    def holds(self, table: str) -> bool:
+        """Whether a name is that of a table of keys."""
+        return any(name.startswith(table + ".") for name in self.keys)
+
+    def defaults(self) -> dict[str, float]:
+        return {n: s for key in self.keys.values() for n, s in zip(key.names, key.starts, strict=True)}
+
+    def choices(self) -> dict[str, tuple[str, ...]]:
+        return {key.names[0]: key.expected.choices for key in self.keys.values() if key.expected.choices}
+
+
+def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes: list[Mistake]) -> Part:
+    """The part as this model of ours; a wrong term is noted, and the check goes on with the likeliest."""
+    part.model = model
+    for group_name, group in model.groups.items():
+        path = (*part.path, group_name)
+        table = tables.get(group_name)
+        if table is None:
+            if not group.optional:
+                text = f"expected this table, with {group.selector} = one of {', '.join(group.terms)}"
+                mistakes.append(Mistake(path, None, text))
+                part.terms[group_name] = next(iter(group.terms))
+            continue
+        names = [term for term in group.terms if term in group.terms]
+        if names:
+            part.terms[group_name] = names[0]
+        if not isinstance(table, dict):
+            mistakes.append(Mistake(path, table, f"expected a table [{dotted(path)}]"))
+            continue
+        given = table.get(group.selector)
+        chosen = term_named(given)
+        if chosen in group.terms:
+            part.terms[group_name] = chosen
+            continue
+        expected = f"expected {', '.join(group.terms)}"
+        path = (*path, group.selector)
+        if isinstance(given, str) and names:
+            mistakes.append(unknown(path, given, expected, given, names))
+        else:
+            mistakes.append(Mistake(path, given, expected))
+    interface = model.interface(part.terms)
+    part.keys = {f"{row.section}.{row.key}": key_of(row) for row in build.settable(interface)}
+    part.slots = {
+        name: Slot(row.kind, row.unit, row.causality)
+        for row in interface.variables
+        if row.at_interface
+        for name in row.element_names()
+    }
+    return part
+
+
+def of_fmu(part: Part, offer: Offer) -> Part:
+    """The part as what an FMU file offers."""
+    part.keys, part.slots = dict(offer.keys), dict(offer.slots)
+    return part
+
+
+def term_named(given: object) -> str:
+    """Name of the term that a selector's value means: a text, or a whole number where terms are counted."""
+    if isinstance(given, int) and not isinstance(given, bool) and 0 <= given <= LARGEST_INTEGER:
+        return str(given)
+    return given if isinstance(given, str) and not given.isdecimal() else ""
+
+
+def read_part(
+    part: Part, tables: Mapping[str, Any], orbit: Mapping[str, Any], mistakes: list[Mistake]
+) -> dict[str, float]:
+    """SI values by FMI name of all that the scene says of the part: in its tables, its parameters, and the orbit."""
+    found: dict[str, float] = {}
+    for key, value in orbit.items():
+        if f"{SHARED}.{key}" in part.keys:
+            _take(part, f"{SHARED}.{key}", value, (SHARED, key), found, mistakes)
+    for key, value in tables.items():
+        if key not in part.reserved:
+            _walk(part, (key,), value, found, mistakes)
+    parameters = tables.get("parameters", {})
+    path = (*part.path, "parameters")
+    if not isinstance(parameters, dict):
+        mistakes.append(Mistake(path, parameters, f"expected a table [{dotted(path)}]"))
+        return found
+    for keys, value in _leaves(parameters, part):
+        name, at = ".".join(keys), (*path, *keys)
+        if name in part.keys:
+            _take(part, name, value, at, found, mistakes)
+        else:
+            mistakes.append(_no_variable(part, name, at, value))
+    return found
+
+
+def _leaves(table: Mapping[str, Any], part: Part, above: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Keys and value of everything in a table of names, however it is nested."""
+    for key, value in table.items():
+        keys = (*above, key)
+        if isinstance(value, dict) and value and ".".join(keys) not in part.keys:
+            yield from _leaves(value, part, keys)
+        else:
+            yield keys, value
+
+
+def _walk(part: Part, names: tuple[str, ...], value: Any, found: dict[str, float], mistakes: list[Mistake]) -> None:
+    """Read what stands under a key, as deep as the names of variables go."""
+    joined, path = ".".join(names), (*part.path, *names)
+    ours = part.fmu is None
+    if joined in part.keys and not (ours and names[0] == SHARED):
+        _take(part, joined, value, path, found, mistakes)
+    elif part.selects(names) or (ours and joined in part.groups and not isinstance(value, dict)):
+        return  # looked at by `of_model`; an FMU has its terms built in
+    elif isinstance(value, dict) and (not ours or _is_table(part, names)):
+        for key, inner in value.items():
+            _walk(part, (*names, key), inner, found, mistakes)
+        if not value and not _is_table(part, names):
+            mistakes.append(_no_variable(part, joined, path, value))
+    elif _is_table(part, names):
+        mistakes.append(Mistake(path, value, f"expected a table [{dotted(path)}]"))
+    else:
+        mistakes.append(_unknown(part, names, value) if ours else _no_variable(part, joined, path, value))
+
+
+def _is_table(part: Part, names: tuple[str, ...]) -> bool:
+    joined = ".".join(names)
+    return joined in part.groups or (part.holds(joined) and not (part.fmu is None and joined == SHARED))
+
+
+def _take(part: Part, name: str, value: Any, path: Path, found: dict[str, float], mistakes: list[Mistake]) -> None:
+    """Read the value of one key into the variables it sets."""
+    key = part.keys[name]
+    given = read_value(value, key.expected.read, path, mistakes)
+    if given is None:
+        return
+    numbers = given if isinstance(given, list) else [given]
+    for variable, number in zip(key.names, numbers, strict=True):
+        earlier = part.given.get(variable)
+        if earlier is not None and earlier[0] != SHARED:
+            mistakes.append(Mistake(path, value, f"is given twice: also as {dotted(earlier)}"))
+            return
+        part.given[variable] = path
+        found[variable] = number
+
+
+def _no_variable(part: Part, name: str, path: Path, value: object) -> Mistake:
+    """Why a name is not one that can be set: an output, or no variable at all."""
+    slot = part.slots.get(name) or part.slots.get(f"{name}[1]")
+    what = part.fmu.name if part.fmu is not None else f"this {part.model.name if part.model else 'model'}"
+    if slot is None:
+        return unknown(path, value, f"{what} has no variable {name!r} that can be set", name, part.keys)
+    kind = {"output": "an output", "local": "a local variable"}.get(slot.causality, f"a {slot.causality}")
+    return Mistake(path, value, f"{name!r} of {what} is {kind}: only parameters and inputs can be set")
+
+
+def _unknown(part: Part, names: tuple[str, ...], value: object) -> Mistake:
+    """Why a key or table is not known to a model of ours: misspelt, in the wrong place, or of a term not named."""
+    path, key = (*part.path, *names), names[-1]
+    if names[0] == SHARED:
+        return Mistake(path, value, f"the orbit is shared by the phases: write it as [{SHARED}]")
+    home = _term_that_has(part, names)
+    if home is not None:
+        return Mistake(path, value, f"belongs to the term {home}, which this scene does not name")
+    if len(names) == 1:
+        tables = {name.partition(".")[0] for name in part.keys} | set(part.groups) | set(part.reserved)
+        return unknown(path, value, "unknown key", key, tables - {SHARED})
+    keys = [name.partition(".")[2] for name in part.keys if name.startswith(names[0] + ".")]
+    return unknown(path, value, "unknown key", key, keys)
+
+
+def _term_that_has(part: Part, names: tuple[str, ...]) -> str | None:
+    """The term, as a scene would name it, that brings a table or key which is not there now."""
+    for group_name, group in part.groups.items():
+        for term in group.terms:
+            for row in build.term_rows(group, term):
+                if row.causality in build.SETTABLE and (row.section, row.key)[: len(names)] == names:
+                    return f'[{dotted((*part.path, group_name))}] {group.selector} = "{term}"'
+    return None
+
+
+def reserved_of(phase: str) -> frozenset[str]:
+    """Keys of a phase's table that are no parameters of its component."""
+    own = {"snapshots"} if phase == "capture" else set()
+    return frozenset(
+        {*PHASE_KEYS[phase], *own, "fmu", "isolate", "timeout", "components", "connections", "coupling", "parameters"}
+    )
+
+
+RESERVED = frozenset({"fmu", "model", "isolate", "timeout", "parameters"})
+"""Keys of a further component's table that are no parameters."""
