@@ -143,6 +143,27 @@ def inspect(scene: SceneName) -> None:
         progress.close()
 
 
+@app.command()
+def interface(
+    phase: Annotated[str, typer.Argument(metavar="PHASE", help="capture or removal")],
+    template: Annotated[
+        str | None, typer.Option("--template", metavar="KIND", help="Write an empty FMU too: c or pythonfmu.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="Folder for the template; my_PHASE if not given.")
+    ] = None,
+) -> None:
+    """Show what the master looks for in the FMU of a phase, or write an empty FMU that has it."""
+    from dcone_cosim.interface_kit import show, write_template
+
+    with _reader_may_leave():
+        if template is None:
+            show(phase, _console())
+            return
+        for path in write_template(phase, template, out if out is not None else Path(f"my_{phase}")):
+            typer.echo(path)
+
+
 def _console() -> Console:
     """Where results go: stdout, for whoever reads it."""
     from rich.console import Console

@@ -1,4 +1,7 @@
-"""Several FMUs in one phase: how they are connected, and how their steps are taken."""
+"""Several FMUs in one phase, as a scene declares them: how they are connected, and how their steps are taken.
+
+`wiring` checks the connections against the FMUs, `coupled` runs them.
+"""
 
 from __future__ import annotations
 
@@ -20,19 +23,25 @@ class Connection:
     factor: float = 1.0
     offset: float = 0.0
 
+    def __str__(self) -> str:
+        return f"{self.source}.{self.output} -> {self.target}.{self.input}"
+
 
 @dataclass(frozen=True)
 class Coupling:
     """How the components of a phase are stepped between two communication points of the phase.
 
-    method          jacobi: all with the outputs of the point before; gauss_seidel: one after the other in the order of
-                    the scene, each with what those before it have reached
+    method          jacobi: all with the outputs of the point before; gauss_seidel: one after the other, each with what
+                    those before it have reached
     step            length of a coupling step [s]; 0 for the phase's macro step; the first to try when it is controlled
     control         fixed, or error: two half steps against a whole one, rolled back when they differ too much
-    tolerance       of the error control, relative to the size of each connected output
-    smallest_step   below which the error control gives up [s]
-    extrapolation   constant: inputs are held over a step; linear: they go on at the rate of the step before, where the
-                    FMU takes input derivatives
+    tolerance       of the error control: error that may be added in one macro step, relative to the largest size that
+                    each connected output has had
+    smallest_step   of the error control [s]. At a jump no step meets the tolerance; one of this length is then taken as
+                    it is and counted as forced; many of them running are refused
+    extrapolation   constant: inputs are held over a step; linear: they go on at the rate of the step before (those from
+                    components that have gone ahead are interpolated), where the FMU takes input derivatives
+    order           of gauss_seidel, every instance once; empty: the main component, then the others as in the scene
     """
 
     method: Literal["jacobi", "gauss_seidel"] = "gauss_seidel"
@@ -41,3 +50,9 @@ class Coupling:
     tolerance: float = 1e-4
     smallest_step: float = 1e-6
     extrapolation: Literal["constant", "linear"] = "constant"
+    order: tuple[str, ...] = ()
+
+    @property
+    def convergence_order(self) -> int:
+        """Power of the coupling step with which the error goes down where all is smooth."""
+        return 2 if self.extrapolation == "linear" else 1

@@ -11,7 +11,7 @@ import itertools
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -37,7 +37,9 @@ class Variable:
     nominal      a typical size, 0 when none is told
     rate         variable or state of the same shape that holds the time derivative: of an output, filled by the kernel;
                  of an input, filled by the shim with what the importer says, for the next step only
-    partials     of an output: input and the state that holds the output's derivative by it
+    partials     of an output that depends directly on inputs: input and the state that holds the derivative by it (of
+                 the same shape; zero for what changes by jumps, as a Boolean does). An interface shows only those of
+                 its own inputs
     """
 
     name: str
@@ -116,11 +118,18 @@ class Variable:
 
 @dataclass(frozen=True)
 class Fault:
-    """A reason for which a kernel may stop: its status code, FMI severity and text (what went wrong, what to try)."""
+    """A reason for which a kernel may stop: its status code, FMI severity and text (what went wrong, what to try).
+
+    severity     error; discard (a step may be tried again otherwise); end (the model's own end: nothing is wrong, and
+                 outputs are those of the last communication point)
+    variable     the variable at fault, when it is always the same; then, and wherever the text speaks of a parameter
+                 or input, `fault_index` is its value reference
+    """
 
     code: int
-    severity: Literal["discard", "error"]
+    severity: Literal["discard", "error", "end"]
     text: str
+    variable: str = ""
 
 
 @dataclass(frozen=True)
@@ -146,7 +155,9 @@ class Group:
 HEAD = (
     Variable("work_size", "1", "state", "doubles of work memory this instance needs", kind="Integer"),
     Variable("fault_code", "1", "state", "code of the fault that stopped the kernel, 0 for none", kind="Integer"),
-    Variable("fault_index", "1", "state", "which node, thread or parameter", kind="Integer"),
+    Variable(
+        "fault_index", "1", "state", "value reference of the variable at fault, or which component", kind="Integer"
+    ),
     Variable("fault_time", "s", "state", "when"),
     Variable("fault_value", "1", "state", "offending value, SI"),
     Variable("terms", "1", "state", "unused; its name in the record tells one choice of terms from another"),
@@ -158,9 +169,15 @@ SIZE, INITIALISE, STEP, REFRESH, DIFFERENTIATE = range(5)
 
 SIZE           set `work_size` from the parameters
 INITIALISE     fill state and outputs from parameters; `time` is the start time [s]
-STEP           advance from `time` by `step` [s], with the inputs held, or moving at their rates
-REFRESH        recompute the outputs that depend directly on inputs, at `time`
-DIFFERENTIATE  fill the states that `rate` of outputs and `partials` name, at `time`
+STEP           advance from `time` by `step` [s]. An input whose rate is not zero is value + rate (t - time) on the way;
+               the value it has reached is left in its slot, so that nothing jumps when the importer sets nothing, and
+               the caller clears the rate. A step without rates is the same to the last bit as if there were none
+REFRESH        called when an output is read after an input was set: recompute the outputs that depend directly on
+               inputs, at `time`, as the next step will begin with them; the state stays, and so do the outputs when
+               the inputs are as the last step left them
+DIFFERENTIATE  called when a derivative is asked for: fill the states that `rate` of outputs and `partials` name, at
+               `time`, for the inputs of now. They move at their rates; an input that is as a step with a rate has left
+               it counts as going on at that rate, so that the derivatives at the end of a step are those of its end
 """
 
 
@@ -194,6 +211,8 @@ class Model:
         variables = list(HEAD + self.base)
         for name, term in ordered.items():
             variables += [v for v in self.groups[name].terms[term].variables if v not in variables]
+        inputs = {v.name for v in variables if v.causality == "input"}
+        variables = [replace(v, partials=tuple(p for p in v.partials if p[0] in inputs)) for v in variables]
         return Interface(self, ordered, tuple(variables))
 
 

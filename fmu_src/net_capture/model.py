@@ -16,7 +16,7 @@ import math
 import numpy as np
 from numba import from_dtype, njit, types
 
-from fmu_src.interface import INITIALISE, REFRESH, SIZE, STEP
+from fmu_src.interface import INITIALISE, SIZE, STEP
 from fmu_src.net_capture import (
     closure,
     contact,
@@ -304,8 +304,6 @@ def make_entry(terms):
             fault = initialise(p, work, time)
         elif command == STEP:
             fault = advance(p, work, time + step)
-        elif command == REFRESH:
-            fault = measure(p, work, 0.0)
         if fault != 0:
             p.fault_code = fault
             p.fault_time = time

@@ -13,9 +13,24 @@ MOST_NODES = (LARGEST_MESH + 1) ** 2
 """Nodes of the largest net there is, one of uncut threads: each brings three outputs, so more would be of no use."""
 
 
-def vector(name: str, unit: str, description: str, causality: str = "output", start: object = 0.0) -> Variable:
+def vector(
+    name: str, unit: str, description: str, causality: str = "output", start: object = 0.0, **more: object
+) -> Variable:
     """Three components of one quantity."""
-    return Variable(f"{name}[#]", unit, causality, description, start, shape=(3,))  # type: ignore[arg-type]
+    return Variable(f"{name}[#]", unit, causality, description, start, shape=(3,), **more)  # type: ignore[arg-type]
+
+
+def moving(name: str, description: str, velocity: str, nominal: float = 10.0) -> tuple[Variable, Variable]:
+    """A position and its velocity, three components each."""
+    return (
+        vector(f"{name}.position", "m", description, nominal=nominal, rate=f"{name}.velocity[#]"),
+        vector(f"{name}.velocity", "m/s", velocity, nominal=1.0),
+    )
+
+
+def peak(name: str, unit: str, description: str, **more: object) -> Variable:
+    """A Real output that remembers: it stands still but for jumps."""
+    return output(name, unit, description, discrete=True, **more)
 
 
 def output(name: str, unit: str, description: str, **more: object) -> Variable:
@@ -134,8 +149,7 @@ TARGET = {
                 shape=(3,),
                 display_unit="deg/s",
             ),
-            vector("target.position", "m", "centre of mass, orbital frame"),
-            vector("target.velocity", "m/s", "of the centre of mass, orbital frame"),
+            *moving("target", "centre of mass, orbital frame", "of the centre of mass, orbital frame"),
             Variable(
                 "target.attitude[#]", "1", "output", "quaternion from body to orbital frame, scalar first", shape=(4,)
             ),
@@ -171,13 +185,13 @@ CONTACT = {
                 maximum=1.0,
             ),
             count("contact.nodes", "nodes now on the surface"),
-            output("contact.first_time", "s", "first touch; -1 before"),
-            output("contact.impulse", "N.s", "sum of the sizes of all impulses so far"),
+            peak("contact.first_time", "s", "first touch; -1 before"),
+            peak("contact.impulse", "N.s", "sum of the sizes of all impulses so far"),
             state("half_size[#]", "m", "half the edges of the target", shape=(3,)),
             Variable("target_turn[#][#]", "1", "state", "rotation matrix from body to frame", shape=(3, 3)),
             state("target_omega[#]", "rad/s", "rate of the target relative to the frame, frame axes", shape=(3,)),
             state("envelope_radius", "m", "of the sphere around the target"),
-            output("contact.loss", "J", "kinetic energy lost in contact so far"),
+            peak("contact.loss", "J", "kinetic energy lost in contact so far"),
         ),
     )
 }
@@ -219,10 +233,10 @@ CLOSING = {
             output("mouth.cord_length", "m", "length of cord still out: the perimeter the mouth can not exceed"),
             output("mouth.girth", "m", "smallest girth of the target, which the mouth would have to pass"),
             count("mouth.locked_pairs", "pairs of bullets whose cord is shorter than the lock length"),
-            output("cord.tension_max", "N", "largest tension of the cord since the start"),
-            output("cord.tension_peak", "N", "largest tension of the cord over the last macro step"),
+            peak("cord.tension_max", "N", "largest tension of the cord since the start"),
+            peak("cord.tension_peak", "N", "largest tension of the cord over the last macro step"),
             output("closing.work", "J", "work done by the winches so far"),
-            output("closing.t_start", "s", "when the winches started; -1 before"),
+            peak("closing.t_start", "s", "when the winches started; -1 before"),
             state("cord_length[#]", "m", "cord out between neighbouring bullets", shape=(4,)),
             state("trigger_time", "s", "when the trigger fell; -1 before"),
         ),
@@ -234,7 +248,7 @@ TETHER = {
         "tether that pays out freely; a tension signal may be injected where it is made fast",
         (
             positive("tether.length", "m", "length that can be paid out", 100.0),
-            Variable("tether.vertex_tension", "N", "input", "tension at the vertex, towards the chaser"),
+            Variable("tether.vertex_tension", "N", "input", "tension at the vertex, towards the chaser", nominal=1.0),
             output("tether.paid_out", "m", "distance from the chaser to the vertex"),
         ),
     )

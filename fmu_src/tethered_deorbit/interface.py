@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from fmu_src.interface import Fault, Group, Kind, Model, Term, Variable
 
@@ -25,7 +26,7 @@ FAULTS = (
     Fault(STEP_NOT_MET, "error", "the tolerances cannot be met by any step; loosen solver.tolerance_*"),
     Fault(TOO_MANY_EVENTS, "error", "the line goes slack and taut too often in one macro step; take shorter ones"),
     Fault(TIME_GAP, "error", "the communication point does not follow the one before"),
-    Fault(GROUND, "error", "the pair has come below the equatorial radius: the orbit has ended"),
+    Fault(GROUND, "end", "the pair has come below the equatorial radius: the orbit has ended"),
     Fault(
         BAD_ORBIT, "error", "the perigee lies below the equatorial radius; raise orbit.altitude or lower eccentricity"
     ),
@@ -67,19 +68,36 @@ def _choice(name: str, description: str, choices: tuple[str, ...]) -> Variable:
     )
 
 
-def _out(name: str, unit: str, description: str, kind: Kind = "Real", display_unit: str = "") -> Variable:
-    return Variable(name, unit, "output", description, kind=kind, display_unit=display_unit, discrete=kind != "Real")
+def _out(name: str, unit: str, description: str, nominal: float = 0.0, rate: str = "", **more: Any) -> Variable:
+    return Variable(name, unit, "output", description, nominal=nominal, rate=rate, **more)
 
 
-def _vector(name: str, unit: str, description: str, high: float | None = None) -> Variable:
-    """Output of three components, or parameter when bounded."""
-    if high is None:
-        return Variable(f"{name}[#]", unit, "output", description, shape=(3,))
+def _count(name: str, description: str) -> Variable:
+    return Variable(name, "1", "output", description, kind="Integer", discrete=True)
+
+
+def _vector(name: str, unit: str, description: str, nominal: float, rate: str = "") -> Variable:
+    """Output of three components."""
+    return _out(f"{name}[#]", unit, description, nominal, rate and f"{rate}[#]", shape=(3,))
+
+
+def _start(name: str, unit: str, description: str, high: float) -> Variable:
+    """Parameter of three components."""
     return Variable(f"{name}[#]", unit, "parameter", description, shape=(3,), minimum=-high, maximum=high)
 
 
 def _state(name: str, unit: str, description: str, kind: Kind = "Real") -> Variable:
     return Variable(f"state.{name}", unit, "state", description, kind=kind)
+
+
+def _rate(name: str, unit: str, shape: tuple[int, ...] = ()) -> Variable:
+    """Where the time derivative of an input or output is kept."""
+    return Variable(f"rate.{name}{'[#]' * len(shape)}", unit, "state", "time derivative", shape=shape)
+
+
+def _partial(name: str, unit: str) -> Variable:
+    """Where the derivative of an output by an input is kept."""
+    return Variable(f"partial.{name}", unit, "state", "direct derivative")
 
 
 def _ring(name: str, unit: str, description: str) -> Variable:
@@ -111,10 +129,10 @@ START = (
     ),
     _choice("start.leading", "the body that is ahead on the orbit (not for handed_over)", LEADERS),
     _positive("start.separation", "m", "distance of the two bodies (not for handed_over)", 10.0, 1e5),
-    _vector("start.center_position", "m", "handed over: centre of mass less the orbit's point, its orbital frame", 1e6),
-    _vector("start.center_velocity", "m/s", "handed over: its rate as seen in that turning frame", 1e4),
-    _vector("start.relative_position", "m", "handed over: target minus chaser, the same frame", 1e6),
-    _vector("start.relative_velocity", "m/s", "handed over: its rate as seen in that turning frame", 1e4),
+    _start("start.center_position", "m", "handed over: centre of mass less the orbit's point, its orbital frame", 1e6),
+    _start("start.center_velocity", "m/s", "handed over: its rate as seen in that turning frame", 1e4),
+    _start("start.relative_position", "m", "handed over: target minus chaser, the same frame", 1e6),
+    _start("start.relative_velocity", "m/s", "handed over: its rate as seen in that turning frame", 1e4),
 )
 
 SOLVER = (
@@ -125,35 +143,42 @@ SOLVER = (
 )  # fmt: skip
 
 OUTPUTS = (
-    _out("tether.tension", "N", "in the line, zero when slack"),
-    _out("tether.tension_peak", "N", "largest over the last macro step, also between its ends"),
-    _out("tether.length", "m", "distance of the two ends"),
-    _out("tether.length_rate", "m/s", "its rate of change"),
-    _out("tether.taut", "1", "the line carries tension", "Boolean"),
-    _out("tether.tug_count", "1", "how often the line has gone taut; taut at the start counts", "Integer"),
+    _out("tether.tension", "N", "in the line, zero when slack", 1.0, "rate.tension",
+         partials=(("reel.length_offset", "partial.tension"), ("reel.tension", "partial.tension"))),
+    _out("tether.tension_peak", "N", "largest over the last macro step, also between its ends", 1.0, discrete=True),
+    _out("tether.length", "m", "distance of the two ends", 10.0, "tether.length_rate"),
+    _out("tether.length_rate", "m/s", "its rate of change", 0.01, "rate.length_rate"),
+    _out("tether.taut", "1", "the line carries tension", kind="Boolean", discrete=True,
+         partials=(("reel.length_offset", "partial.jump"), ("reel.tension", "partial.jump"))),
+    _count("tether.tug_count", "how often the line has gone taut; taut at the start counts"),
     _out("tether.angle", "rad", "of the line chaser to target in the orbital plane, from the local vertical towards "
-         "along-track", display_unit="deg"),
+         "along-track", 1.0, "rate.angle", display_unit="deg"),
     _ring("time", "s", "when the tug began, newest first; zero when absent"),
     _ring("peak", "N", "its largest tension; grows until the line is slack again"),
     _ring("speed", "m/s", "rate of lengthening as it began"),
-    _out("separation", "m", "distance of chaser and target"),
-    _vector("chaser.position", "m", "inertial"),
-    _vector("chaser.velocity", "m/s", "inertial"),
-    _vector("target.position", "m", "inertial"),
-    _vector("target.velocity", "m/s", "inertial"),
-    _out("chaser.radius", "m", "distance from the Earth's centre", display_unit="km"),
-    _out("target.radius", "m", "distance from the Earth's centre", display_unit="km"),
-    _vector("relative.position", "m", "target minus chaser, orbital frame of the centre of mass"),
-    _vector("relative.velocity", "m/s", "its rate as seen in that turning frame"),
-    _vector("center.position", "m", "centre of mass of the pair, inertial"),
-    _vector("center.velocity", "m/s", "centre of mass of the pair, inertial"),
-    _out("center.semi_major_axis", "m", "osculating, of the centre of mass", display_unit="km"),
-    _out("altitude", "m", "of the centre of mass over the equatorial radius", display_unit="km"),
-    _out("energy.orbital", "J", "kinetic and potential energy of the pair's mass at its centre"),
+    _out("separation", "m", "distance of chaser and target", 10.0, "tether.length_rate"),
+    _vector("chaser.position", "m", "inertial", 7e6, "chaser.velocity"),
+    _vector("chaser.velocity", "m/s", "inertial", 7e3, "rate.chaser_velocity"),
+    _vector("target.position", "m", "inertial", 7e6, "target.velocity"),
+    _vector("target.velocity", "m/s", "inertial", 7e3, "rate.target_velocity"),
+    _out("chaser.radius", "m", "distance from the Earth's centre", 7e6, "rate.chaser_radius", display_unit="km"),
+    _out("target.radius", "m", "distance from the Earth's centre", 7e6, "rate.target_radius", display_unit="km"),
+    _vector("relative.position", "m", "target minus chaser, orbital frame of the centre of mass", 10.0,
+            "relative.velocity"),
+    _vector("relative.velocity", "m/s", "its rate as seen in that turning frame", 0.01, "rate.relative_velocity"),
+    _vector("center.position", "m", "centre of mass of the pair, inertial", 7e6, "center.velocity"),
+    _vector("center.velocity", "m/s", "centre of mass of the pair, inertial", 7e3, "rate.center_velocity"),
+    _out("center.semi_major_axis", "m", "osculating, of the centre of mass", 7e6, "rate.semi_major_axis",
+         display_unit="km"),
+    _out("altitude", "m", "of the centre of mass over the equatorial radius", 8e5, "rate.altitude",
+         display_unit="km"),
+    _out("energy.orbital", "J", "kinetic and potential energy of the pair's mass at its centre", 1e11,
+         "rate.energy_orbital"),
     _out("energy.relative", "J", "Jacobi integral of the relative motion with the line's elastic energy; constant "
-         "without thrust and damping on a circular orbit, to first order in length over radius"),
-    _out("solver.steps", "1", "steps taken", "Integer"),
-    _out("solver.rejected", "1", "steps rejected by the error control", "Integer"),
+         "without thrust and damping on a circular orbit, to first order in length over radius", 0.01,
+         "rate.energy_relative", partials=(("reel.length_offset", "partial.energy"),)),
+    _count("solver.steps", "steps taken"),
+    _count("solver.rejected", "steps rejected by the error control"),
 )  # fmt: skip
 
 STATE = (
@@ -175,20 +200,47 @@ STATE = (
     _state("mean_motion", "rad/s", "of the reference orbit"),
     _state("thrust", "N", "in force"),
     _state("length_offset", "m", "in force"),
+    _state("since", "s", "from when the inputs in force began to move to the begin of the current step"),
+    _state("command", "1", "the reel's input in force, as the step began [m] or [N]"),
+    _state("command_rate", "1", "its rate in force [m/s] or [N/s]"),
+    _state("thrust_rate", "N/s", "of the thrust in force"),
     _state("length", "m", "at which the line's tension vanishes at rest, or the commanded one"),
     _state("stiffness", "N/m", "of the line, or gain of the reel"),
     _state("damping", "N.s/m", "of the line, or gain of the reel"),
     _state("feed_forward", "N", "of a working reel"),
     _state("frequency", "rad/s", "of the fastest motion while taut"),
     _state("taut_tolerance", "m", "of the stretch while taut"),
+    _rate("tension", "N/s"),
+    _rate("length_rate", "m/s2"),
+    _rate("angle", "rad/s"),
+    _rate("chaser_velocity", "m/s2", (3,)),
+    _rate("target_velocity", "m/s2", (3,)),
+    _rate("chaser_radius", "m/s"),
+    _rate("target_radius", "m/s"),
+    _rate("relative_velocity", "m/s2", (3,)),
+    _rate("center_velocity", "m/s2", (3,)),
+    _rate("semi_major_axis", "m/s"),
+    _rate("altitude", "m/s"),
+    _rate("energy_orbital", "W"),
+    _rate("energy_relative", "W"),
+    _partial("tension", "1"),
+    _partial("energy", "N"),
+    _partial("jump", "1"),
     Variable("state.turning[#]", "rad/s", "state", "rate of the axes of the current step", shape=(3,)),
     Variable("state.basis[#][#]", "1", "state", "room for a rotation", shape=(3, 3)),
     Variable("state.vector[#][#]", "1", "state", "room for vectors", shape=(4, 3)),
 )
 
-LENGTH_OFFSET = Variable(
-    "reel.length_offset", "m", "input", "added to the line's length; zero leaves it as the parameters say",
-    minimum=-1e6, maximum=1e6,
+LENGTH_OFFSET = (
+    Variable("reel.length_offset", "m", "input", "added to the line's length; zero leaves it as the parameters say",
+             minimum=-1e6, maximum=1e6, nominal=1.0, rate="rate.reel_length_offset"),
+    _rate("reel_length_offset", "m/s"),
+)  # fmt: skip
+
+COMMAND = (
+    Variable("reel.tension", "N", "input", "tension the reel is to give; zero or less leaves the line slack",
+             minimum=-1e6, maximum=1e6, nominal=1.0, rate="rate.reel_tension"),
+    _rate("reel_tension", "N/s"),
 )  # fmt: skip
 
 REELS = Group(
@@ -201,7 +253,7 @@ REELS = Group(
                 _positive("tether.youngs_modulus", "Pa", "of the line", 60e9, 1e14, display_unit="GPa"),
                 _parameter("tether.damping_ratio", "1", "c / (2 sqrt(k m_r)), m_r the pair's reduced mass",
                            0.05, 0.0, 10.0),
-                LENGTH_OFFSET,
+                *LENGTH_OFFSET,
             ),
         ),
         "linear": Term(
@@ -210,9 +262,10 @@ REELS = Group(
                 _positive("reel.length", "m", "commanded length l_c", 12.0, 1e6),
                 _parameter("reel.proportional_gain", "N/m", "k_p; default of Table 2's pair", REEL_STIFFNESS, 0.0, 1e6),
                 _parameter("reel.derivative_gain", "N.s/m", "k_d; default of Table 2's pair", REEL_DAMPING, 0.0, 1e5),
-                LENGTH_OFFSET,
+                *LENGTH_OFFSET,
             ),
         ),
+        "commanded": Term("a reel that gives the tension it is told: T = max(0, command)", COMMAND),
     }
 )  # fmt: skip
 
@@ -220,8 +273,10 @@ THRUST = (
     _parameter("thrust.level", "N", "along the named direction; negative against it", -0.01, -1e4, 1e4),
     _positive("thrust.specific_impulse", "s", "for the propellant used", 3000.0, 1e6),
     Variable("thrust.offset", "N", "input", "added to the level; zero leaves it as the parameters say",
-             minimum=-1e4, maximum=1e4),
-    _out("chaser.propellant", "kg", "used since the start; the masses stay constant"),
+             minimum=-1e4, maximum=1e4, nominal=0.01, rate="rate.thrust_offset"),
+    _out("chaser.propellant", "kg", "used since the start; the masses stay constant", 0.1, "rate.propellant"),
+    _rate("thrust_offset", "N/s"),
+    _rate("propellant", "kg/s"),
     _state("propellant", "kg", "used up to the last change of the thrust"),
     _state("propellant_since", "s", "time of that change"),
 )  # fmt: skip

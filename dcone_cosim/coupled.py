@@ -1,0 +1,218 @@
+"""Several connected components as one: the phases step it like a single FMU."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dcone_cosim.component import Readable, Row, Steppable, Terminated, VariableInfo
+from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.exchange import Exchange
+from dcone_cosim.names import did_you_mean
+from dcone_cosim.step_control import ControlledSteps, FixedSteps, Statistics, StepControl
+from dcone_cosim.wiring import order_of, wire
+
+BEGIN = "coupling begin"
+"""Key under which the begin of a macro step is kept, for an FMU that ends itself within it."""
+KEPT = "coupling kept "
+"""Before the keys of those who save and restore the whole."""
+
+
+class Coupled:
+    """Components that step together, exchanging their values on the way; all values SI.
+
+    The first component is the main one: its variables keep their names, those of the others are `instance.variable`.
+    A step of the whole is a macro step, divided into coupling steps as `coupling` says. Call order of a `Component`.
+
+    instances    names by which the connections know the components; their own names when empty
+    statistics   steps, rejected, discarded, forced, smallest [s], largest [s]
+
+    Raises `InputError` on construction for connections and couplings that cannot be, all mistakes at once. When a
+    component ends itself (`Terminated`), all are left at the time of the end if all can save their states.
+
+    Checked  tests/cosim/test_coupling.py, tests/cosim/test_coupling_orders.py, tests/cosim/test_coupling_control.py
+    """
+
+    def __init__(
+        self,
+        name: str,
+        components: Sequence[Steppable],
+        connections: Sequence[Connection],
+        coupling: Coupling,
+        instances: Sequence[str] = (),
+    ) -> None:
+        self.name = name
+        self.components = tuple(components)
+        self.coupling = coupling
+        self.can_save = all(component.can_save for component in components)
+        self.can_interpolate = False
+        names = list(instances) or [component.name for component in components]
+        self._of: dict[str, tuple[int, str]] = {}
+        self.variables: Mapping[str, VariableInfo] = self._gather(names)
+        links = wire(name, names, self.components, connections)
+        order = order_of(name, names, coupling)
+        if coupling.control == "error":
+            self._need_states(names)
+        self._statistics = Statistics()
+        self._exchange = Exchange(
+            self.components, links, order, coupling.method == "gauss_seidel", coupling.extrapolation == "linear"
+        )
+        control = ControlledSteps if coupling.control == "error" else FixedSteps
+        self._steps: StepControl = control(self._exchange, coupling, self._statistics)
+        self._times: dict[str, float] = {}
+        self._time = 0.0
+        self._stale = True
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        return self._statistics.as_dict()
+
+    def _gather(self, instances: Sequence[str]) -> dict[str, VariableInfo]:
+        """The variables of all under the names they have here."""
+        variables: dict[str, VariableInfo] = {}
+        for place, (instance, component) in enumerate(zip(instances, self.components, strict=True)):
+            for own, info in component.variables.items():
+                shown = own if place == 0 else f"{instance}.{own}"
+                if shown in variables:
+                    raise InputError(
+                        f"{self.name}: {instances[0]} has a variable {shown!r}, as has the component {instance!r}; "
+                        "give that component another name"
+                    )
+                variables[shown] = info if place == 0 else replace(info, name=shown)
+                self._of[shown] = (place, own)
+        return variables
+
+    def _need_states(self, instances: Sequence[str]) -> None:
+        lacking = [name for name, c in zip(instances, self.components, strict=True) if not c.can_save]
+        if lacking:
+            those = f"the FMU{'s' if len(lacking) > 1 else ''} of {', '.join(lacking)}"
+            raise InputError(
+                f'{self.name}: coupling.control = "error" rolls steps back, but {those} cannot save '
+                f'{"their states" if len(lacking) > 1 else "its state"}; use control = "fixed"'
+            )
+
+    def _where(self, name: str) -> tuple[int, str]:
+        try:
+            return self._of[name]
+        except KeyError:
+            raise FmuError(f"{self.name}: no variable {name!r}{did_you_mean(name, self._of)}") from None
+
+    def set(self, values: Mapping[str, float]) -> None:
+        """Set variables by name; a connected input is overwritten by the output it is connected to."""
+        shares: dict[int, dict[str, float]] = {}
+        for name, value in values.items():
+            place, own = self._where(name)
+            shares.setdefault(place, {})[own] = value
+        for place, share in shares.items():
+            self.components[place].set(share)
+        self._stale = True
+
+    def set_rates(self, rates: Mapping[str, float]) -> None:
+        """Refused: an input of the whole is held, since its components may take many steps in one of the whole."""
+        raise FmuError(f"{self.name}: coupled components take no input derivatives from outside ({', '.join(rates)})")
+
+    def get(self, names: Sequence[str]) -> dict[str, float]:
+        reader = self.reader(names)
+        found = dict(zip(reader.names, reader().tolist(), strict=True))
+        return {name: found[name] for name in names}
+
+    def reader(self, names: Sequence[str]) -> Readable:
+        shares: dict[int, list[str]] = {}
+        for name in names:
+            place, own = self._where(name)
+            shares.setdefault(place, []).append(own)
+        shown = {where: name for name, where in self._of.items()}
+        readers = [(place, self.components[place].reader(share)) for place, share in sorted(shares.items())]
+        return _Readers([(reader, [shown[place, own] for own in reader.names]) for place, reader in readers])
+
+    def enter_initialisation(self, start: float, stop: float | None = None) -> None:
+        """Prepare all to begin at `start` [s], and exchange outputs and inputs until they agree."""
+        for component in self.components:
+            component.enter_initialisation(start, stop)
+        self._exchange.forget()
+        self._exchange.settle(start)
+        self._time = start
+        self._stale = True
+
+    def exit_initialisation(self) -> None:
+        """Begin, with what was set meanwhile."""
+        if self._stale:
+            self._exchange.settle(self._time)
+        for component in self.components:
+            component.exit_initialisation()
+        self._exchange.settle(self._time)
+        self._stale = False
+
+    def step(self, time: float, size: float) -> None:
+        """Advance all from `time` by `size` [s], in as many coupling steps as it takes."""
+        if size <= 0.0:
+            return
+        if self._stale:
+            self._exchange.settle(time)
+            self._stale = False
+        if self.can_save and self.coupling.control == "fixed":
+            self._steps.keep(BEGIN)
+        try:
+            self._steps.advance(time, time + size, size)
+            self._time = time + size
+        except Terminated as end:
+            self._meet(time, end)
+            raise
+
+    def _meet(self, begin: float, end: Terminated) -> None:
+        """Bring all components to the time at which one of them has ended itself.
+
+        With controlled steps they stand together already, within `smallest_step` before it.
+        """
+        if self.coupling.control == "error" or not self.can_save:
+            return
+        self._steps.go_back(BEGIN, begin)
+        if end.time <= begin:
+            return
+        try:
+            self._steps.advance(begin, end.time, end.time - begin)
+        except Terminated as again:
+            self._steps.go_back(BEGIN, begin)
+            end.reached = again.reached = begin
+
+    def save(self, key: str = "") -> None:
+        """Keep the present state of all and of what is between them under this key."""
+        self._steps.keep(KEPT + key)
+        self._times[key] = self._time
+
+    def restore(self, key: str = "") -> None:
+        """Go back to what was kept last under this key."""
+        self._time = self._times[key]
+        self._steps.go_back(KEPT + key, self._time)
+
+    def close(self) -> None:
+        """Close every component; the first failure is raised once all have been."""
+        failure: Exception | None = None
+        for component in self.components:
+            try:
+                component.close()
+            except Exception as error:
+                failure = failure or error
+        if failure is not None:
+            raise failure
+
+
+class _Readers:
+    """Readers of several components as one row."""
+
+    def __init__(self, parts: Sequence[tuple[Readable, Sequence[str]]]) -> None:
+        self.names: tuple[str, ...] = tuple(name for _, names in parts for name in names)
+        self.values: Row = np.zeros(len(self.names))
+        self._parts: list[tuple[Readable, slice]] = []
+        begin = 0
+        for reader, names in parts:
+            self._parts.append((reader, slice(begin, begin + len(names))))
+            begin += len(names)
+
+    def __call__(self) -> Row:
+        for reader, part in self._parts:
+            self.values[part] = reader()
+        return self.values

@@ -1,0 +1,192 @@
+"""How long the coupling steps are between two communication points of a phase: fixed, or controlled by their error."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Protocol
+
+from dcone_cosim.component import CallError
+from dcone_cosim.coupling import Coupling
+from dcone_cosim.errors import FmuError
+from dcone_cosim.exchange import Exchange
+
+TRIAL = "coupling trial"
+"""Key under which the begin of a controlled step is kept."""
+SAFETY, MOST_SHRINK, LEAST_SHRINK, MOST_GROWTH = 0.9, 0.1, 0.8, 5.0
+SMALLEST_SIZE = 1e-12
+"""Added to the tolerated error of an output, SI, so that one that is zero all the time can be compared."""
+FORCED_RUNNING = 100
+"""So many forced steps one after the other are no jump: the coupling is unstable, or asks for too much."""
+
+
+@dataclass
+class Statistics:
+    """What stepping has cost, and how far it had to go down.
+
+    steps      coupling steps that count
+    rejected   controlled steps that were rolled back, `discarded` of them since an FMU discarded
+    forced     steps of the smallest size that were taken although their error was too large
+    smallest, largest   coupling step that counts [s]
+    """
+
+    steps: int = 0
+    rejected: int = 0
+    discarded: int = 0
+    forced: int = 0
+    smallest: float = math.inf
+    largest: float = 0.0
+
+    def count(self, size: float) -> None:
+        self.steps += 1
+        self.smallest, self.largest = min(self.smallest, size), max(self.largest, size)
+
+    def as_dict(self) -> dict[str, float]:
+        found = asdict(self)
+        return found if self.steps else found | {"smallest": 0.0}
+
+
+class StepControl(Protocol):
+    """Goes from one communication point to another; what it remembers can be kept and gone back to."""
+
+    def advance(self, begin: float, end: float, macro_step: float) -> None: ...
+    def keep(self, key: str) -> None: ...
+    def go_back(self, key: str, time: float) -> None: ...
+
+
+class FixedSteps:
+    """Coupling steps of one length; the last one of a macro step may be shorter. Times come from integers."""
+
+    def __init__(self, exchange: Exchange, coupling: Coupling, statistics: Statistics) -> None:
+        self.exchange, self.size, self.statistics = exchange, coupling.step, statistics
+
+    def advance(self, begin: float, end: float, macro_step: float) -> None:
+        step = self.size or end - begin
+        count = max(1, math.ceil((end - begin) / step - 1e-9))
+        for k in range(count):
+            time = begin + k * step
+            size = (end if k == count - 1 else begin + (k + 1) * step) - time
+            self.exchange.take(time, size)
+            self.statistics.count(size)
+
+    def keep(self, key: str) -> None:
+        self.exchange.keep(key)
+
+    def go_back(self, key: str, time: float) -> None:
+        self.exchange.go_back(key, time)
+
+
+class ControlledSteps:
+    """Coupling steps as long as their error allows, by comparing a whole step with two halves, which then count.
+
+        error = max |y_1 - y_2| / (2^p - 1) / (tolerance |y|max + 1e-12 SI) * macro step / h
+
+    over the connected outputs, p the order of convergence, |y|max the largest size of that output so far. The last
+    factor makes the tolerance that of a macro step, so that the error reached goes with the tolerance, not with a power
+    of it. A step with an error above 1 is rolled back and tried shorter, as is one that an FMU discards.
+
+    A jump in a connected output is met by no step. One of `smallest_step` is then taken as it is, and counted as
+    forced: the error it can leave is the jump over that time.
+
+    Source   step doubling as in Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, section II.4;
+             error per unit step
+    Checked  tests/cosim/test_coupling_orders.py, tests/cosim/test_coupling_control.py
+    """
+
+    def __init__(self, exchange: Exchange, coupling: Coupling, statistics: Statistics) -> None:
+        self.exchange, self.coupling, self.statistics = exchange, coupling, statistics
+        self.power = coupling.convergence_order
+        self._next = coupling.step or math.inf
+        self._largest = [0.0] * len(exchange.links)
+        self._forced = 0
+        self._smallest = coupling.smallest_step
+        self._kept: dict[str, tuple[float, list[float], int]] = {}
+
+    def advance(self, begin: float, end: float, macro_step: float) -> None:
+        time = begin
+        self._next = macro_step if math.isinf(self._next) else self._next
+        # No step is so short that adding it to the time does nothing.
+        self._smallest = max(self.coupling.smallest_step, 16.0 * math.ulp(end))
+        while time < end:
+            left = end - time
+            size = left if self._next >= left * (1.0 - 1e-9) else min(self._next, 0.5 * left)
+            time = self._step(time, size, end, macro_step)
+
+    def _step(self, time: float, size: float, end: float, macro_step: float) -> float:
+        """Take one step of at most this size, and return where it ends."""
+        self.exchange.keep(TRIAL)
+        planned = self._next
+        rejected = False
+        while True:
+            until = end if size >= (end - time) * (1.0 - 1e-9) else time + size
+            smallest = size <= self._smallest
+            try:
+                error, largest = self._try(time, until, macro_step)
+            except CallError as refusal:
+                if refusal.status != "Discard":
+                    raise
+                self.exchange.go_back(TRIAL, time)
+                if smallest:
+                    refusal.reached = time
+                    raise
+                self.statistics.discarded += 1
+                error = math.inf
+            else:
+                if error <= 1.0 or smallest:
+                    break
+                self.exchange.go_back(TRIAL, time)
+            rejected = True
+            self.statistics.rejected += 1
+            size = max(size * self._factor(error, LEAST_SHRINK), self._smallest)
+        self._largest = largest
+        self._count(time, until, error)
+        growth = self._factor(error, 1.0 if rejected else MOST_GROWTH)
+        # A step cut short by the communication point says nothing against the one planned.
+        self._next = size * growth if rejected else max(size * growth, planned if size < planned else 0.0)
+        return until
+
+    def _try(self, time: float, until: float, macro_step: float) -> tuple[float, list[float]]:
+        """A whole step and two halves: the error of the halves in tolerances, and the sizes it was measured by."""
+        exchange = self.exchange
+        exchange.take(time, until - time)
+        whole = list(exchange.out)
+        exchange.go_back(TRIAL, time)
+        middle = time + 0.5 * (until - time)
+        exchange.take(time, middle - time)
+        exchange.take(middle, until - middle)
+        largest = [max(m, abs(y)) for m, y in zip(self._largest, exchange.out, strict=True)]
+        share = (2.0**self.power - 1.0) * (until - time) / macro_step
+        errors = [
+            abs(one - two) / (share * (self.coupling.tolerance * size + SMALLEST_SIZE))
+            for one, two, size in zip(whole, exchange.out, largest, strict=True)
+        ]
+        return max(errors, default=0.0), largest
+
+    def _factor(self, error: float, most: float) -> float:
+        """By how much the next step may differ from the one with this error."""
+        if error == 0.0:
+            return most
+        return min(most, max(MOST_SHRINK, SAFETY * math.pow(error, -1.0 / self.power)))
+
+    def _count(self, time: float, until: float, error: float) -> None:
+        half = 0.5 * (until - time)
+        self.statistics.count(half)
+        self.statistics.count(half)
+        self._forced = self._forced + 1 if error > 1.0 else 0
+        self.statistics.forced += error > 1.0
+        if self._forced >= FORCED_RUNNING:
+            raise FmuError(
+                f"the coupling's error stays above tolerance = {self.coupling.tolerance:g} in {self._forced} steps of "
+                f"smallest_step = {self.coupling.smallest_step:g} s, one after the other, up to t = {until:.9g} s "
+                f"(now {error:.3g} times too large)\n  the coupled FMUs are unstable together, or the tolerance is "
+                "finer than what they reach themselves; loosen it, or take smallest_step smaller"
+            )
+
+    def keep(self, key: str) -> None:
+        self.exchange.keep(key)
+        self._kept[key] = (self._next, list(self._largest), self._forced)
+
+    def go_back(self, key: str, time: float) -> None:
+        self.exchange.go_back(key, time)
+        self._next, largest, self._forced = self._kept[key]
+        self._largest = list(largest)

@@ -1,0 +1,72 @@
+"""The variables of the reel control, and its faults."""
+
+from __future__ import annotations
+
+from fmu_src.interface import Fault, Model, Variable
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+
+STIFFNESS, DAMPING = 4.155e-3, 2.366
+"""Default gains [N/m], [N s/m]: 5.7829 m_r n^2 and 3.4193 m_r n, those on length and rate of the quadratic regulator
+about the equilibrium (unit weights, lengths in l_c, times in 1/n) for Table 2's pair at 800 km."""
+
+FEED_FORWARD = 3.0 * EARTH_MU / (EARTH_EQUATORIAL_RADIUS + 800e3) ** 3 * (2000.0 * 1000.0 / 3000.0) * 12.0
+"""Default tension at rest [N]: 3 n^2 m_r l_c of the same pair on a line of 12 m."""
+
+NO_COMMAND, BAD_PARAMETER, NOT_FINITE = range(1, 4)
+
+FAULTS = (
+    Fault(NO_COMMAND, "error", "there is no such command of the kernel"),
+    Fault(BAD_PARAMETER, "error", "a parameter is out of its bounds or not finite"),
+    Fault(NOT_FINITE, "error", "an input or the tension is not finite"),
+)
+
+
+def _parameter(name: str, unit: str, description: str, start: float, high: float, zero: bool = True) -> Variable:
+    return Variable(name, unit, "parameter", description, start, minimum=0.0, open_minimum=not zero, maximum=high)
+
+
+def _input(
+    name: str, unit: str, description: str, nominal: float, low: float, high: float
+) -> tuple[Variable, Variable]:
+    """An input and where its rate is told."""
+    field = f"rate.{name}"
+    return (
+        Variable(name, unit, "input", description, minimum=low, maximum=high, nominal=nominal, rate=field),
+        Variable(field, f"{unit}/s" if unit == "m" else "m/s2", "state", "time derivative"),
+    )
+
+
+VARIABLES = (
+    *_input("length", "m", "measured length of the line; zero: nothing asked, the tension is zero", 10.0, 0.0, 1e6),
+    *_input("length_rate", "m/s", "measured rate of lengthening", 0.01, -1e6, 1e6),
+    _parameter("reel.length", "m", "commanded length l_c", 12.0, 1e6, zero=False),
+    _parameter("gain.proportional", "N/m", "k_p; default of Table 2's pair", STIFFNESS, 1e6),
+    _parameter("gain.derivative", "N.s/m", "k_d; default of Table 2's pair", DAMPING, 1e5),
+    _parameter("feed_forward", "N", "T_ff, the tension at rest; default of Table 2's pair on 12 m", FEED_FORWARD, 1e6),
+    Variable(
+        "tension",
+        "N",
+        "output",
+        "to be given by the reel, never negative",
+        nominal=1.0,
+        rate="rate.tension",
+        partials=(("length", "partial.length"), ("length_rate", "partial.length_rate")),
+    ),
+    Variable("rate.tension", "N/s", "state", "time derivative"),
+    Variable("partial.length", "N/m", "state", "direct derivative"),
+    Variable("partial.length_rate", "N.s/m", "state", "direct derivative"),
+    Variable("state.length", "m", "state", "input as the last step left it"),
+    Variable("state.length_rate", "m/s", "state", "input as the last step left it"),
+    Variable("state.drift[#]", "1", "state", "rates of the two inputs in that step", shape=(2,)),
+)
+
+MODEL = Model(
+    name="reel_control",
+    summary="A linear law says which tension a reel is to give for a line's length and its rate.",
+    base=VARIABLES,
+    groups={},
+    faults=FAULTS,
+    module="fmu_src.reel_control.model",
+    stop_time=86400.0,
+    macro_step=1.0,
+)

@@ -1,0 +1,121 @@
+/* An FMU from the C template that goes wrong, once its time has reached WHEN, in the one way that a -D switch names.
+
+   It includes the template's model.c, whose functions still do the work. */
+
+#define model_start example_start
+#define model_step example_step
+#define model_outputs example_outputs
+#include "model.c"
+#undef model_start
+#undef model_step
+#undef model_outputs
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#ifdef HANG
+#include <unistd.h>
+#endif
+
+#ifndef WHEN
+#define WHEN 50.0
+#endif
+
+#ifdef LIES
+static double never_restored; /* outside the instance, as when an author forgets one variable */
+#endif
+
+fmi2Status model_start(model *m);
+fmi2Status model_step(model *m, double step);
+fmi2Status model_outputs(model *m);
+
+fmi2Status model_start(model *m) {
+#ifdef CRASH_AT_START
+    raise(SIGSEGV);
+#endif
+#ifdef REFUSES
+    return model_say(m, fmi2Error, "tether.rest_length does not suit me");
+#endif
+#ifdef LIES
+    never_restored = 0.0;
+#endif
+    return example_start(m);
+}
+
+static fmi2Status go_wrong(model *m, double step) {
+    (void)step;
+#ifdef CRASH
+    model_say(m, fmi2OK, "about to follow a bad pointer");
+    {
+        int *volatile nowhere = NULL;
+        *nowhere = 1;
+    }
+#endif
+#ifdef ABORT
+    abort();
+#endif
+#ifdef EXIT
+    exit(EXIT);
+#endif
+#ifdef HANG
+    for (;;) sleep(1);
+#endif
+#ifdef ERROR
+    return model_say(m, fmi2Error, "the winch jammed");
+#endif
+#ifdef SILENT_ERROR
+    return fmi2Error;
+#endif
+#ifdef FATAL
+    return model_say(m, fmi2Fatal, "my memory is in ruins");
+#endif
+#ifdef DISCARD
+    m->time += 0.25 * step;
+    return model_say(m, fmi2Discard, "this step is too long for me");
+#endif
+#ifdef ENDS
+    m->time += 0.5 * step;
+    m->ended = 1;
+    return model_say(m, fmi2Discard, "the pair entered the atmosphere");
+#endif
+#ifdef PENDING
+    return fmi2Pending;
+#endif
+#ifdef LATE
+    m->callbacks->stepFinished(m->callbacks->componentEnvironment, fmi2OK);
+#endif
+#ifdef NULL_LOG
+    m->callbacks->logger(m->callbacks->componentEnvironment, NULL, fmi2Warning, NULL, NULL);
+#endif
+#ifdef BAD_LOG
+    m->callbacks->logger(m->callbacks->componentEnvironment, "\xff", 77, "\xfe", "%s %y \xff\xfe", (char *)NULL);
+#endif
+#ifdef NOISE
+    printf("noise on stdout %g\n", m->time);
+    fprintf(stderr, "noise on stderr %g\n", m->time);
+#endif
+    return fmi2OK;
+}
+
+fmi2Status model_step(model *m, double step) {
+    fmi2Status status = m->time + step > WHEN ? go_wrong(m, step) : fmi2OK;
+    if (status > fmi2Warning) return status;
+#ifdef LIES
+    never_restored += step;
+#endif
+    return example_step(m, step);
+}
+
+fmi2Status model_outputs(model *m) {
+    fmi2Status status = example_outputs(m);
+#ifdef NOT_A_NUMBER
+    if (m->time > WHEN) m->values[NOT_A_NUMBER] = NAN;
+#endif
+#ifdef INFINITE
+    if (m->time > WHEN) m->values[INFINITE] = -INFINITY;
+#endif
+#ifdef LIES
+    m->values[LIES] += never_restored;
+#endif
+    return status;
+}
