@@ -20,14 +20,15 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.archive import Archive
+from dcone_cosim.coupling import Connection
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmi_units import read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene, load
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
-from dcone_cosim.steppable import VariableInfo
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
+from dcone_cosim.steppable import VariableInfo
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The earliest time a zip archive can tell: what is written depends on the content alone."""
@@ -143,12 +144,14 @@ def _package(
     """Files of a package by their path in it."""
     files: dict[str, bytes] = {}
     parts = []
+    variables: dict[str, Mapping[str, VariableInfo]] = {}
     connected = {(c.target, c.input) for c in phase.connections}
     for component in phase.components:
         path = fmus[phase.name, component.name]
         source = f"{RESOURCES}/{component.name}.fmu"
         with Archive(path) as archive:
             part = _part(component, archive, source, None if open_inputs else connected)
+            variables[component.name] = archive.variables
         files[source] = path.read_bytes()
         if part.values:
             values_at = f"{RESOURCES}/{component.name}.ssv"
@@ -159,7 +162,7 @@ def _package(
         identifier(f"{scene.name}_{phase.name}"),
         scene.title or scene.name,
         parts,
-        [Wire((c.source, c.output), (c.target, c.input)) for c in phase.connections],
+        [_wire(c, variables[c.source][c.output], variables[c.target][c.input]) for c in phase.connections],
         phase.start,
         phase.start + phase.duration,
         phase.macro_step,
@@ -174,9 +177,7 @@ def identifier(name: str) -> str:
     return made if made[:1].isalpha() else f"_{made}"
 
 
-def _part(
-    component: ComponentScene, archive: Archive, source: str, connected: set[tuple[str, str]] | None
-) -> Part:
+def _part(component: ComponentScene, archive: Archive, source: str, connected: set[tuple[str, str]] | None) -> Part:
     """connected: inputs to list, by instance and name; None for all"""
     known = read_units(archive.description.unitDefinitions, str(archive.path))
     units = {name: unit for name, unit in known.items() if unit.dimension is not None}
@@ -199,6 +200,15 @@ def _part(
         if name in rows and not math.isnan(value)
     ]
     return Part(component.name, source, ports, values, units)
+
+
+def _wire(connection: Connection, out: VariableInfo, to: VariableInfo) -> Wire:
+    """The connection between the values as the two FMUs count them; it is between SI values inside."""
+    factor, offset = connection.factor, connection.offset
+    if not (out.is_si and to.is_si):
+        offset = (factor * out.offset + offset - to.offset) / to.factor
+        factor = factor * (out.factor / to.factor)
+    return Wire((connection.source, out.name), (connection.target, to.name), factor, offset)
 
 
 def own_value(info: VariableInfo, value: float) -> float:

@@ -133,9 +133,7 @@ def _in_si(given: Given, info: VariableInfo) -> float:
     return value if own.is_si else own.factor * value + own.offset
 
 
-def connections(
-    rows: Iterable[ConnectionRow], parts: Mapping[str, Part], mistakes: Mistakes
-) -> tuple[Connection, ...]:
+def connections(rows: Iterable[ConnectionRow], parts: Mapping[str, Part], mistakes: Mistakes) -> tuple[Connection, ...]:
     """The connections from outputs to inputs, with the factor and offset between SI values."""
     made: list[Connection] = []
     taken: dict[tuple[str, str], int] = {}
@@ -164,9 +162,7 @@ def connections(
     return tuple(made)
 
 
-def _end(
-    end: tuple[str, str], line: int, parts: Mapping[str, Part], mistakes: Mistakes
-) -> tuple[Part, PortRow] | None:
+def _end(end: tuple[str, str], line: int, parts: Mapping[str, Part], mistakes: Mistakes) -> tuple[Part, PortRow] | None:
     element, connector = end
     if element not in parts:
         mistakes.add(STRUCTURE, line, f"connection: no component {element!r}{did_you_mean(element, parts)}")
@@ -185,7 +181,7 @@ def _mismatch(row: ConnectionRow, out: VariableInfo, to: VariableInfo) -> str:
         return f"{out.kind} to {to.kind}"
     if out.kind != "Real" and (row.factor, row.offset) != (1.0, 0.0):
         return f"both are {out.kind}; a linear transformation is for Real"
-    if not row.suppress and not same_dimension(out.dimension, to.dimension):
+    if not same_dimension(out.dimension, to.dimension):
         return f"{out.declared_unit!r} cannot be converted to {to.declared_unit!r}"
     return ""
 

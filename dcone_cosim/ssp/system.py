@@ -49,7 +49,9 @@ def load(path: Path, settings: Sequence[str] = ()) -> Scene:
     if name == PHASES[0] and start != 0.0:
         mistakes.add(STRUCTURE, None, f"startTime = {start!r}: a capture begins at 0")
     components = {
-        part: ComponentScene(part, fmu=row.fmu, parameters=parameters[part] | more.get(part, {}), defaults=row.defaults())
+        part: ComponentScene(
+            part, fmu=row.fmu, parameters=parameters[part] | more.get(part, {}), defaults=row.defaults()
+        )
         for part, row in parts.items()
     }
     options = planning.options(name, content.ours.get("Plan", {}), told, mistakes)

@@ -69,7 +69,10 @@ class Part:
 
 @dataclass(frozen=True)
 class Wire:
-    """A connection: target = factor * source + offset."""
+    """A connection: target = factor * source + offset, each in its own unit.
+
+    The factor has the conversion of units in it where they differ, and tools are told not to convert: some would not.
+    """
 
     source: tuple[str, str]
     target: tuple[str, str]
@@ -182,6 +185,7 @@ def _add_wire(connections: etree._Element, wire: Wire) -> None:
     }
     row = _add(connections, "ssd", "Connection", **ends)
     if wire.factor != 1.0 or wire.offset != 0.0:
+        row.set("suppressUnitConversion", "true")
         _add(row, "ssc", "LinearTransformation", factor=repr(wire.factor), offset=repr(wire.offset))
 
 

@@ -137,7 +137,10 @@ def by_motion(**options: bool) -> tuple[list[LinearComponent], list[Connection]]
     """Both masses have the spring between them and take the other's motion: no output depends directly on an input."""
     made = []
     k, c = BETWEEN, DASHPOT
-    for name, mass, spring, start in (("first", MASS, SPRING, START), ("second", OTHER_MASS, OTHER_SPRING, OTHER_START)):
+    for name, mass, spring, start in (
+        ("first", MASS, SPRING, START),
+        ("second", OTHER_MASS, OTHER_SPRING, OTHER_START),
+    ):
         matrices = (
             [[0, 1], [-(spring + k) / mass, -c / mass]],
             [[0, 0], [k / mass, c / mass]],
