@@ -23,7 +23,8 @@ class Archives:
         self._coupled: dict[str, Any] = {}
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
-        built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
+        with progress.working("building"):
+            built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
         paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
         try:
             for phase, component in components:

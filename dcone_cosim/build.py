@@ -6,10 +6,12 @@ No other module of this package knows `fmu_src`: everything else works on an FMU
 from __future__ import annotations
 
 import os
+import time as clock
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.interface import Group, Interface, Model, Value, Variable
@@ -38,6 +40,11 @@ class Refusal:
 def settable(interface: Interface) -> Iterator[Variable]:
     """The rows a scene may set."""
     return (v for v in interface.variables if v.causality in SETTABLE)
+
+
+def scene_name(row: Variable) -> str:
+    """Name of a row as a scene says it, table and key: `target.size`; without a table for a name of one part."""
+    return f"{row.section}.{row.key}" if row.key else row.section
 
 
 def term_rows(group: Group, term: str) -> tuple[Variable, ...]:
@@ -118,10 +125,21 @@ def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[
     keys = [(model, tuple(terms.items())) for model, terms in wanted]
     unlike = list(dict.fromkeys(keys))
     interfaces = [CATALOGUE[model].interface(dict(terms)) for model, terms in unlike]
+    announced: list[str] = []
+    began, times = clock.perf_counter(), Times(cache_folder())
+
+    def tell(text: str) -> None:
+        if text.startswith("building") and not announced:
+            announced.append(text)
+            text = f"{text}; {times.spoken()}"
+        announce(text)
+
     try:
-        paths = dict(zip(unlike, build_all(interfaces, cache_folder(), announce), strict=True))
+        paths = dict(zip(unlike, build_all(interfaces, cache_folder(), tell), strict=True))
     except BuildError as error:
         raise FmuError(str(error)) from None
+    if announced:
+        times.keep(clock.perf_counter() - began)
     return [paths[key] for key in keys]
 
 

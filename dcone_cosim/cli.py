@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from dcone_cosim import exits
+from dcone_cosim.cli_cache import cache_app
+from dcone_cosim.completion import phases_like, scenes_like
 from dcone_cosim.errors import BAD_INPUT, DconeError
+from dcone_cosim.exits import complain as _complain
+from dcone_cosim.exits import reader_may_leave as _reader_may_leave
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -22,11 +23,44 @@ if TYPE_CHECKING:
 app = typer.Typer(
     help="Net capture and tethered removal of space debris, as a co-simulation of FMI 2.0 units.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.add_typer(cache_app, name="cache")
 
-SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="Name of a scene (see `dcone list`), or a .toml file.")]
+SCENE_HELP = "Name of a scene (see `dcone list`), or a .toml file."
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=SCENE_HELP, autocompletion=scenes_like)]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help='Change a key of the scene, such as capture.bullets.speed="4 m/s"; may be given several times.',
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Answer as JSON.")]
+Offline = Annotated[
+    bool,
+    typer.Option(
+        "--offline", help="Promise that nothing is fetched: every connection is refused. Building needs none."
+    ),
+]
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        typer.echo(f"dcone {version('dcone-cosim')}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and leave.")
+    ] = False,
+) -> None:
+    """Net capture and tethered removal of space debris, as a co-simulation of FMI 2.0 units."""
 
 
 @app.command()
@@ -35,20 +69,25 @@ def run(
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="Folder for the results; runs/SCENE-TIME if not given.")
     ] = None,
+    settings: Settings = None,
     csv: Annotated[bool, typer.Option("--csv", help="Write the columns as CSV too.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
     force: Annotated[bool, typer.Option("--force", help="Replace the results in the folder.")] = False,
+    offline: Offline = False,
 ) -> None:
     """Run a scene and write its results.
 
     Exit code: 0 success, 2 bad input, 3 the capture failed, 4 the hand-off was refused or violated, 5 an FMU failed.
     """
+    _promise(offline)
     from dcone_cosim.commands import run_and_write
 
     progress = _progress()
     try:
-        written = run_and_write(scene, out, progress, with_csv=csv, with_figures=figures, force=force)
+        written = run_and_write(
+            scene, out, progress, with_csv=csv, with_figures=figures, force=force, settings=settings or ()
+        )
     finally:
         progress.close()
     result = written.result
@@ -74,13 +113,16 @@ def run(
 def build(
     scene: SceneName,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .fmu files.")],
+    settings: Settings = None,
+    offline: Offline = False,
 ) -> None:
     """Write the FMUs of a scene, for use in other tools."""
+    _promise(offline)
     from dcone_cosim.commands import write_fmus
 
     progress = _progress()
     try:
-        paths = write_fmus(scene, out, progress)
+        paths = write_fmus(scene, out, progress, settings or ())
     finally:
         progress.close()
     with _reader_may_leave():
@@ -130,22 +172,90 @@ def list_scenes() -> None:
 
 
 @app.command()
-def inspect(scene: SceneName) -> None:
+def inspect(scene: SceneName, settings: Settings = None, offline: Offline = False) -> None:
     """Show what a scene puts into its FMUs, what it leaves out, and how large they are."""
+    _promise(offline)
     from dcone_cosim.commands import named
     from dcone_cosim.reports.inspection import show
 
     progress = _progress()
     try:
         with _reader_may_leave():
-            show(named(scene), _console(), progress)
+            show(named(scene, settings or ()), _console(), progress)
     finally:
         progress.close()
 
 
 @app.command()
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="File to write; .toml is added when it has no suffix.")],
+    origin: Annotated[
+        str, typer.Option("--from", metavar="SCENE", help="Scene to begin from.", autocompletion=scenes_like)
+    ] = "mission",
+) -> None:
+    """Write a scene to start from: every key there is, with its meaning, unit and bounds."""
+    from dcone_cosim.commands import write_scene
+
+    path, next_steps = write_scene(name, origin)
+    with _reader_may_leave():
+        typer.echo(path)
+    for step in next_steps:
+        _complain(step)
+
+
+@app.command()
+def validate(
+    scenes: Annotated[list[str], typer.Argument(metavar="SCENE...", help=SCENE_HELP, autocompletion=scenes_like)],
+    settings: Settings = None,
+    json: Json = False,
+) -> None:
+    """Check scenes and tell all mistakes at once. FMUs that a scene names are opened; none is built or run.
+
+    Exit code: 0 all are good, 2 there is a mistake.
+    """
+    from dcone_cosim.commands import named
+
+    answers = []
+    for name in scenes:
+        answer: dict[str, object] = {"scene": name, "ok": True}
+        try:
+            phases = ", ".join(phase.name for phase in named(name, settings or ()).phases)
+        except DconeError as error:
+            answer |= {"ok": False, "error": str(error), **exits.details(error)}
+            if not json:
+                _complain(str(error))
+        else:
+            if not json:
+                with _reader_may_leave():
+                    typer.echo(f"{name}: ok ({phases})")
+        answers.append(answer)
+    if json:
+        import json as writer
+
+        with _reader_may_leave():
+            typer.echo(writer.dumps(answers, indent=1))
+    raise typer.Exit(0 if all(answer["ok"] for answer in answers) else BAD_INPUT)
+
+
+@app.command()
+def schema(
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if not given.")] = None,
+) -> None:
+    """Give the JSON schema of scenes: with it an editor completes keys, explains them and marks mistakes.
+
+    For editors that use taplo (such as VS Code with Even Better TOML) put `#:schema ./dcone-schema.json` at the top of
+    a scene; `dcone new` does so when there is a file of that name beside it.
+    """
+    from dcone_cosim.commands import write_schema
+
+    text = write_schema(out)
+    with _reader_may_leave():
+        typer.echo(text if out is None else out)
+
+
+@app.command()
 def interface(
-    phase: Annotated[str, typer.Argument(metavar="PHASE", help="capture or removal")],
+    phase: Annotated[str, typer.Argument(metavar="PHASE", help="capture or removal", autocompletion=phases_like)],
     template: Annotated[
         str | None, typer.Option("--template", metavar="KIND", help="Write an empty FMU too: c or pythonfmu.")
     ] = None,
@@ -162,6 +272,13 @@ def interface(
             return
         for path in write_template(phase, template, out if out is not None else Path(f"my_{phase}")):
             typer.echo(path)
+
+
+def _promise(offline: bool) -> None:
+    if offline:
+        from dcone_cosim.offline import go_offline
+
+        go_offline()
 
 
 def _console() -> Console:
@@ -186,98 +303,10 @@ def _progress() -> Progress:
     return Bar(Console(stderr=True))
 
 
-@contextmanager
-def _reader_may_leave() -> Iterator[None]:
-    """Output that nobody reads any more (`dcone run mission | head -1`) is dropped: the work itself is done."""
-    try:
-        yield
-        sys.stdout.flush()
-    except BrokenPipeError:
-        _to_nowhere()
+def main() -> NoReturn:
+    """Entry point."""
+    exits.run(app)
 
 
-def _to_nowhere() -> None:
-    """What is still buffered for stdout goes nowhere, so that closing it at the end does not fail."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _complain(text: str) -> None:
-    with suppress(OSError):
-        typer.echo(text, err=True)
-
-
-def _fail(text: str, exit_code: int) -> NoReturn:
-    """One message on stderr, and with --json the same as an object on stdout."""
-    _complain(f"dcone: {text}")
-    _answer(text, exit_code)
-    sys.exit(exit_code)
-
-
-def _answer(text: str, exit_code: int) -> None:
-    if "--json" in sys.argv[1:]:
-        import json
-
-        with _reader_may_leave():
-            typer.echo(json.dumps({"error": text, "exit_code": exit_code}))
-
-
-INTERRUPTED, TERMINATED = 130, 143
-
-
-def _terminate(*_: object) -> NoReturn:
-    sys.exit(TERMINATED)
-
-
-def main() -> None:
-    """Entry point: expected failures become one message and an exit code, never a traceback."""
-    before = _on_terminate(_terminate)
-    try:
-        code = app(standalone_mode=False)
-    except DconeError as error:
-        _fail(str(error), error.exit_code)
-    except KeyboardInterrupt:
-        code = INTERRUPTED
-    except OSError as error:
-        _fail(_of_system(error), BAD_INPUT)
-    except Exception as error:
-        code = _of_arguments(error)
-    except SystemExit as stop:
-        if stop.code == TERMINATED:
-            _fail("terminated; nothing was written", TERMINATED)
-        if stop.code != 1:
-            raise
-        # typer ends so when the reader of a help text has left
-        _to_nowhere()
-        code = 0
-    finally:
-        _on_terminate(before)
-    if code == INTERRUPTED:
-        _fail("interrupted; nothing was written", INTERRUPTED)
-    sys.exit(code or 0)
-
-
-def _on_terminate(handler: Any) -> Any:
-    """Set what SIGTERM does, so that temporary folders are removed then too; returns what it did before."""
-    try:
-        return signal.signal(signal.SIGTERM, handler)
-    except ValueError:
-        return signal.SIG_DFL
-
-
-def _of_system(error: OSError) -> str:
-    """What the system refused, in one line that names the file."""
-    files = " -> ".join(str(f) for f in (error.filename, error.filename2) if f is not None)
-    reason = error.strerror or str(error) or type(error).__name__
-    return f"{files}: {reason}; nothing was written" if files else f"{reason}; nothing was written"
-
-
-def _of_arguments(error: Exception) -> int:
-    """Exit code of a wrong command line, once it is told; any other exception is a fault of ours and goes on."""
-    show, message = getattr(error, "show", None), getattr(error, "format_message", None)
-    if show is None or message is None:
-        raise error
-    show()
-    code = int(getattr(error, "exit_code", BAD_INPUT))
-    _answer(message(), code)
-    return code
+if __name__ == "__main__":
+    main()

@@ -19,7 +19,7 @@ from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import style, summary
 from dcone_cosim.run import atomic_folder, check_free, default_folder, fill
-from dcone_cosim.scene import Scene, load
+from dcone_cosim.scene import Scene, find, load, parse, read_text
 
 
 @dataclass
@@ -98,7 +98,8 @@ def write_fmus(name: str, out: Path, progress: Progress, settings: Sequence[str]
     try:
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
-            built = build.ensure(ours, progress.say)
+            with progress.working("building"):
+                built = build.ensure(ours, progress.say)
             copies = {out / build.readable_name(*wanted): fmu for wanted, fmu in zip(ours, built, strict=True)}
             for path, fmu in copies.items():
                 os.replace(shutil.copyfile(fmu, Path(draft) / path.name), path)
@@ -108,3 +109,65 @@ def write_fmus(name: str, out: Path, progress: Progress, settings: Sequence[str]
                 folder.rmdir()
         raise
     return list(copies)
+
+
+def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
+    """Write a scene begun from another; returns where, and what to do next. Never replaces a file."""
+    from dcone_cosim.scene_new import SCHEMA, new_scene
+
+    if not name.strip():
+        raise InputError("the name of the new scene is empty; expected a file to write, such as mine.toml")
+    path = Path(name)
+    if not path.suffix:
+        path = path.with_name(f"{path.name}.toml")
+    if path.suffix != ".toml":
+        raise InputError(f"{path} is no name for a scene: expected one that ends in .toml")
+    source = find(origin)
+    scene = load(origin)
+    if any(component.fmu is not None or phase.others for phase in scene.phases for component in phase.components):
+        raise InputError(f"{source} has FMUs of its own: only a scene of our models can be begun from; copy the file")
+    schema = f"./{SCHEMA}" if (path.parent / SCHEMA).is_file() else ""
+    text = new_scene(read_text(source), origin, str(path), schema)
+    parse(text, path.stem, str(path))
+    _write_new(path, text)
+    steps = [f"next: edit {path}, then `dcone validate {path}` and `dcone run {path}`"]
+    if not schema:
+        steps.append(f"for an editor that completes and checks it: `dcone schema -o {path.parent / SCHEMA}`")
+    return path, steps
+
+
+def _write_new(path: Path, text: str) -> None:
+    """Write a file that must not be there yet."""
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise InputError(f"{path} is there already and was not touched; choose another name") from None
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror or error}") from None
+
+
+def write_schema(out: Path | None) -> str:
+    """The JSON schema of scenes as text, written to a file if one is named; only an earlier schema is replaced."""
+    import json
+
+    from dcone_cosim.scene_schema import schema
+
+    content = schema()
+    text = json.dumps(content, indent=1, ensure_ascii=False)
+    if out is None:
+        return text
+    if out.exists():
+        try:
+            replaces = json.loads(out.read_text(encoding="utf-8")).get("title") == content["title"]
+        except (OSError, ValueError, AttributeError):
+            replaces = False
+        if not replaces:
+            raise InputError(f"{out} is there already and is no schema of scenes; choose another name")
+    try:
+        draft = out.with_name(f".{out.name}.{os.getpid()}")
+        draft.write_text(text + "\n", encoding="utf-8")
+        os.replace(draft, out)
+    except OSError as error:
+        raise InputError(f"{out} cannot be written: {error.strerror or error}") from None
+    return text

@@ -40,12 +40,14 @@ def show(phase: str, console: Console) -> None:
     _known("phase", phase, PHASES)
     title = Text(f"What the master looks for in the FMU of the {phase}", style="table.title")
     table = Table(title=title, title_justify="left", box=None, pad_edge=False)
-    for header in ("name", "type", "unit", "causality", "needed", "meaning"):
+    for header in ("name", "type", "unit", "causality"):
+        table.add_column(header, no_wrap=True)
+    for header in ("needed", "meaning"):
         table.add_column(header, overflow="fold")
     for name, row in _by_array(asked(phase)):
         cells = (name, row.kind, row.unit, row.causality, NEEDS[row.need], row.meaning)
         table.add_row(*(Text(cell) for cell in cells))
-    console.print(table)
+    console.print(table, width=None if console.is_terminal else 200)
     console.print(
         "Another unit of the same dimension may be declared: values are converted by the FMU's own definition."
     )

@@ -215,7 +215,7 @@ class CaptureLoop:
                 result.located_by += f" (it reports {reported:.9g} s)"
             return end
         low, high = begin, end
-        self._restore(begin)
+        restoring.replay(component, self.read, self._kept, begin, end)
         if begin < reported < end:
             component.step(begin, reported - begin)
             self.read()

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time as clock
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+REMINDER = 15.0
+"""Wall time between two lines that say that work is still going on [s]."""
 INTERVAL = 0.1
 """Least wall time between two updates of the bar [s]."""
 NARROW = 100
@@ -31,6 +35,11 @@ class Progress:
     def end(self) -> None:
         """The phase is over."""
 
+    @contextmanager
+    def working(self, what: str) -> Iterator[None]:
+        """Around work that may take long and tells nothing of its course, such as building."""
+        yield
+
     def close(self) -> None:
         """Leave the terminal as it was."""
 
@@ -40,11 +49,31 @@ class Lines(Progress):
 
     def __init__(self) -> None:
         self._phase = ""
+        self._said = 0
         self._start = self._reached = self._began = 0.0
 
     def say(self, text: str) -> None:
+        self._said += 1
         with suppress(OSError):
             print(text, file=sys.stderr, flush=True)
+
+    @contextmanager
+    def working(self, what: str) -> Iterator[None]:
+        """A line every quarter of a minute, once the work has said that it begins."""
+        began, before, done = clock.perf_counter(), self._said, threading.Event()
+
+        def remind() -> None:
+            while not done.wait(REMINDER):
+                if self._said > before:
+                    self.say(f"still {what}, {clock.perf_counter() - began:.0f} s so far")
+
+        reminder = threading.Thread(target=remind, daemon=True)
+        reminder.start()
+        try:
+            yield
+        finally:
+            done.set()
+            reminder.join()
 
     def begin(self, phase: str, start: float, stop: float) -> None:
         self._phase, self._start, self._reached = phase, start, start
@@ -57,6 +86,16 @@ class Lines(Progress):
         wall = max(clock.perf_counter() - self._began, 1e-9)
         simulated = self._reached - self._start
         self.say(f"{self._phase}: {simulated:.6g} s simulated in {wall:.2f} s, {simulated / wall:.4g} times real time")
+
+
+class _Elapsed:
+    """Time since it was made, as a text that is formed anew whenever it is shown."""
+
+    def __init__(self) -> None:
+        self._began = clock.perf_counter()
+
+    def __format__(self, _: str) -> str:
+        return f"{clock.perf_counter() - self._began:.0f} s"
 
 
 class Bar(Progress):
@@ -86,7 +125,7 @@ class Bar(Progress):
         """May be called from several threads: FMUs are built side by side."""
         self._bar.console.print(text, markup=False, highlight=False)
         if self._waiting is None:
-            self._waiting = self._bar.add_task("working", total=None, state="")
+            self._waiting = self._bar.add_task("working", total=None, state=_Elapsed())
 
     def _stop_waiting(self) -> None:
         if self._waiting is not None:

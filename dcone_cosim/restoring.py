@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from dcone_cosim.errors import FmuError
 from dcone_cosim.steppable import Readable, Row, Steppable
 
 RESTORED_TO = 1e-9
-"""How closely a restored output has to be the one before, relative to its size. Ours come back to the last bit; a
-solver that works its outputs out anew may differ by its tolerance."""
+"""How closely an output has to come back, relative to its size. Those of ours come back to the last bit; a solver that
+works them out anew may differ by its tolerance."""
 
 
 def save(component: Steppable, read: Readable) -> Row:
@@ -17,23 +19,45 @@ def save(component: Steppable, read: Readable) -> Row:
 
 
 def restore(component: Steppable, read: Readable, kept: Row, time: float) -> None:
-    """Restore the state saved last, and compare its outputs with those kept of it.
-
-    time      to which it goes back [s], for the message
+    """Go back to the state saved last, at `time` [s], and compare its outputs with those kept of it.
 
     Raises `FmuError` that names the first output that differs.
     """
-    ahead = read.values.copy()
     component.restore()
-    now = read()
-    if (now == kept).all():
-        return
-    for name, before, after, was in zip(read.names, kept.tolist(), now.tolist(), ahead.tolist(), strict=True):
-        if not abs(after - before) <= RESTORED_TO * max(abs(before), abs(after)):
-            stays = "; it stays where the step it should forget had left it" if after == was else ""
-            raise FmuError(
-                f"{component.name}: its state does not restore: at t = {time:.9g} s its output {name} was {before!r} "
-                f"when the state was saved, and is {after!r} after it was restored{stays}\n"
-                "  (an FMU that cannot go back must say canGetAndSetFMUstate = false; "
-                "it is then taken at the end of its macro steps)"
-            )
+    found = _differing(read.names, kept, read())
+    if found is not None:
+        name, before, after = found
+        raise _liar(component, f"at t = {time:.9g} s its output {name} was {before:.12g} before, {after:.12g} after")
+
+
+def replay(component: Steppable, read: Readable, kept: Row, begin: float, end: float) -> None:
+    """Go back by the step just taken, from `begin` to `end` [s], take it again, and go back once more.
+
+    A state that is only half restored, its outputs but not what they come from, shows in the second step alone.
+    """
+    first = read.values.copy()
+    restore(component, read, kept, begin)
+    component.step(begin, end - begin)
+    found = _differing(read.names, first, read())
+    if found is not None:
+        name, before, after = found
+        text = f"the step from {begin:.9g} s to {end:.9g} s gave its output {name} as {before:.12g} before, {after:.12g} after"
+        raise _liar(component, text)
+    restore(component, read, kept, begin)
+
+
+def _differing(names: Sequence[str], before: Row, after: Row) -> tuple[str, float, float] | None:
+    """The first output that is not what it was: its name, and its value before and after."""
+    if (before == after).all():
+        return None
+    for name, was, now in zip(names, before.tolist(), after.tolist(), strict=True):
+        if not abs(now - was) <= RESTORED_TO * max(abs(was), abs(now)):
+            return name, was, now
+    return None
+
+
+def _liar(component: Steppable, what: str) -> FmuError:
+    return FmuError(
+        f"{component.name}: its state does not restore: {what}\n"
+        "  (an FMU that cannot go back must say canGetAndSetFMUstate = false; it is then taken as its macro steps fall)"
+    )

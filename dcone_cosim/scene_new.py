@@ -37,8 +37,8 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
     lines += [
         f"# A scene begun from {origin!r}. Check it with `dcone validate {name}`, run it with `dcone run {name}`.",
         '# A dimensional value is a text with its unit, such as "24 m"; a pure number is bare.',
-        "# Lines that begin with a # and a key show what counts when nothing is said; a table that is marked so is left",
-        "# out of the FMU altogether.",
+        "# A line that begins with a # and a key shows what counts when nothing is said; a table that is marked so is",
+        "# left out of the FMU altogether.",
         "",
         _line("title", _toml(document.get("title", "")), MEANING["title"]),
     ]
@@ -57,13 +57,15 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
 
 def _owned(present: Sequence[str]) -> tuple[str, ...]:
     """Beginnings of names that the hand-off sets when both phases run."""
-    return tuple(name.partition("[")[0] for name in REMOVAL_SETS) + ("start.",) if len(present) == len(PHASES) else ()
+    if len(present) < len(PHASES):
+        return ()
+    return ("start.", *(name.partition("[")[0] for name in REMOVAL_SETS))
 
 
 def _somewhere(document: Mapping[str, Any], name: str) -> bool:
     """Whether a phase of the document has this variable."""
     return any(
-        f"{row.section}.{row.key}" == name
+        build.scene_name(row) == name
         for phase in PHASES
         if phase in document
         for row in build.settable(build.MODELS[phase].interface(_terms(phase, document[phase])))
@@ -79,7 +81,7 @@ def _phase(phase: str, tables: Mapping[str, Any], skip: tuple[str, ...]) -> Iter
     model = build.MODELS[phase]
     terms = _terms(phase, tables)
     rows = [row for row in build.settable(model.interface(terms)) if row.section != SHARED]
-    rows = [row for row in rows if not f"{row.section}.{row.key}".startswith(skip or ("\0",))]
+    rows = [row for row in rows if not build.scene_name(row).startswith(skip or ("\0",))]
     yield f"[{phase}]"
     for key, expected in PHASE_KEYS[phase].items():
         yield _option(key, tables.get(key), expected)
@@ -177,4 +179,4 @@ def _toml(value: Any) -> str:
     """A value of a scene as TOML: texts, numbers, flags and lists of them."""
     import tomlkit
 
-    return tomlkit.item(value).as_string()
+    return str(tomlkit.item(value).as_string())

@@ -97,7 +97,7 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
         else:
             mistakes.append(Mistake(path, given, expected))
     interface = model.interface(part.terms)
-    part.keys = {f"{row.section}.{row.key}": key_of(row) for row in build.settable(interface)}
+    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(interface)}
     part.slots = {
         name: Slot(row.kind, row.unit, row.causality)
         for row in interface.variables

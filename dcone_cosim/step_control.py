@@ -81,12 +81,18 @@ class ControlledSteps:
 
         error = max |y_1 - y_2| / (2^p - 1) / (tolerance |y|max + 1e-12 SI) * macro step / h
 
-    over the connected outputs, p the order of convergence, |y|max the largest size of that output so far. The last
-    factor makes the tolerance that of a macro step, so that the error reached goes with the tolerance, not with a power
-    of it. A step with an error above 1 is rolled back and tried shorter, as is one that an FMU discards.
+    over the connected outputs and those of components that only take, p the order of convergence, |y|max the largest
+    size of that output so far, the very first trial included, since an output may begin at zero. The last factor makes
+    the tolerance that of a macro step: the error reached goes with the tolerance, not with a power of it. A step with
+    an error above 1 is rolled back and tried shorter, as is one that an FMU discards.
 
-    A jump in a connected output is met by no step. One of `smallest_step` is then taken as it is, and counted as
-    forced: the error it can leave is the jump over that time.
+    A jump of an output in the second half is seen by neither, for the inputs of both were set before it. So it is asked
+    as well that what comes as a surprise, over the time it was unknown, stays within the tolerance of a macro step:
+
+        sum over the halves |y - y expected| h / 2 <= (tolerance |y|max + 1e-12 SI) * macro step
+
+    Where no step meets the tolerance, as at a jump in the first half, one of `smallest_step` is taken as it is and
+    counted as forced.
 
     Source   step doubling as in Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, section II.4;
              error per unit step
@@ -97,7 +103,7 @@ class ControlledSteps:
         self.exchange, self.coupling, self.statistics = exchange, coupling, statistics
         self.power = coupling.convergence_order
         self._next = coupling.step or math.inf
-        self._largest = [0.0] * len(exchange.links)
+        self._largest: list[float] = []
         self._forced = 0
         self._smallest = coupling.smallest_step
         self._kept: dict[str, tuple[float, list[float], int]] = {}
@@ -118,7 +124,7 @@ class ControlledSteps:
         planned = self._next
         rejected = False
         while True:
-            until = end if size >= (end - time) * (1.0 - 1e-9) else time + size
+            until = end if end - time - size <= self._smallest else time + size
             smallest = size <= self._smallest
             try:
                 error, largest = self._try(time, until, macro_step)
@@ -132,6 +138,7 @@ class ControlledSteps:
                 self.statistics.discarded += 1
                 error = math.inf
             else:
+                self._largest = self._largest or largest
                 if error <= 1.0 or smallest:
                     break
                 self.exchange.go_back(TRIAL, time)
@@ -142,24 +149,28 @@ class ControlledSteps:
         self._count(time, until, error)
         growth = self._factor(error, 1.0 if rejected else MOST_GROWTH)
         # A step cut short by the communication point says nothing against the one planned.
-        self._next = size * growth if rejected else max(size * growth, planned if size < planned else 0.0)
+        following = size * growth if rejected else max(size * growth, planned if size < planned else 0.0)
+        self._next = max(following, self._smallest)
         return until
 
     def _try(self, time: float, until: float, macro_step: float) -> tuple[float, list[float]]:
         """A whole step and two halves: the error of the halves in tolerances, and the sizes it was measured by."""
         exchange = self.exchange
         exchange.take(time, until - time)
-        whole = list(exchange.out)
+        whole = exchange.measured()
         exchange.go_back(TRIAL, time)
         middle = time + 0.5 * (until - time)
         exchange.take(time, middle - time)
+        unknown = [surprise * (middle - time) for surprise in exchange.surprise]
         exchange.take(middle, until - middle)
-        largest = [max(m, abs(y)) for m, y in zip(self._largest, exchange.out, strict=True)]
-        share = (2.0**self.power - 1.0) * (until - time) / macro_step
-        errors = [
-            abs(one - two) / (share * (self.coupling.tolerance * size + SMALLEST_SIZE))
-            for one, two, size in zip(whole, exchange.out, largest, strict=True)
-        ]
+        unknown = [u + surprise * (until - middle) for u, surprise in zip(unknown, exchange.surprise, strict=True)]
+        halves = exchange.measured()
+        known = self._largest or [0.0] * len(halves)
+        largest = [max(m, abs(y)) for m, y in zip(known, halves, strict=True)]
+        allowed = [(self.coupling.tolerance * size + SMALLEST_SIZE) / macro_step for size in largest]
+        share = (2.0**self.power - 1.0) * (until - time)
+        errors = [abs(one - two) / (share * a) for one, two, a in zip(whole, halves, allowed, strict=True)]
+        errors += [u / (macro_step**2 * a) for u, a in zip(unknown, allowed, strict=False)]
         return max(errors, default=0.0), largest
 
     def _factor(self, error: float, most: float) -> float:

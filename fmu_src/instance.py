@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fmu_src.interface import INITIALISE, REFRESH, SIZE, STEP, Interface, Model, Value
+from fmu_src.interface import DIFFERENTIATE, INDEX, INITIALISE, REFRESH, SIZE, STEP, Interface, Model, Value, Variable
 
 
 class ModelFault(RuntimeError):
@@ -34,7 +34,11 @@ class Instance:
         self.work: npt.NDArray[np.float64] = np.zeros(0)
         self.time = 0.0
         self._entry = _entry(model.module, tuple(self.interface.terms.items()))
-        self._slots = {n: (slot, v.kind == "Real") for n, slot, v, _ in self.interface.scalars() if v.at_interface}
+        rows = list(self.interface.scalars())
+        self._slots = {n: (slot, v.kind == "Real") for n, slot, v, _ in rows if v.at_interface}
+        self._by_name = {n.removeprefix("@"): (slot, v) for n, slot, v, _ in rows}
+        self._moving: set[str] = set()
+        self._names = {slot: n for n, slot, _, _ in rows}
         for name, value in (parameters or {}).items():
             self[name] = value
 
@@ -59,9 +63,11 @@ class Instance:
     def _call(self, command: int, time: float, step: float) -> None:
         if self._entry(command, self.record, self.work, time, step):
             code = int(self.record["fault_code"][0])
-            text = next(f.text for f in self.interface.model.faults if f.code == code)
+            fault = next(f for f in self.interface.model.faults if f.code == code)
             where = {k: self.record["fault_" + k][0] for k in ("index", "value", "time")}
-            raise ModelFault(f"{text} (index {where['index']}, value {where['value']:g}, at {where['time']:.9g} s)")
+            index = int(where["index"])
+            at = self._names.get(index) if fault.names_variable and index else f"index {index}"
+            raise ModelFault(f"{fault.text} ({at}, value {where['value']:g}, at {where['time']:.9g} s)")
 
     def initialise(self, start_time: float = 0.0) -> Instance:
         self._call(SIZE, start_time, 0.0)
@@ -71,9 +77,47 @@ class Instance:
         return self
 
     def step(self, size: float) -> None:
-        """Advance by one macro step [s]."""
+        """Advance by one macro step [s]; rates of inputs hold for this step only."""
         self._call(STEP, self.time, size)
         self.time += size
+        for rate in self._moving:
+            self._whole(rate)[...] = 0.0
+        self._moving.clear()
 
     def refresh(self) -> None:
+        """Outputs for the inputs of now."""
         self._call(REFRESH, self.time, 0.0)
+
+    def set_rates(self, rates: Mapping[str, float]) -> None:
+        """Let inputs move at these rates in the next step, by FMI name [unit of the input per s]."""
+        for name, rate in rates.items():
+            slot, v = self._by_name[name]
+            if v.causality != "input" or not v.rate:
+                raise ValueError(f"{name} is no input with a rate")
+            self._whole(v.rate).reshape(-1)[slot - self._first(v)] = rate
+            self._moving.add(v.rate)
+
+    def differentiate(self) -> None:
+        """Work out the derivatives that `rate` and `partial` read."""
+        self._call(DIFFERENTIATE, self.time, 0.0)
+
+    def rate(self, name: str) -> float:
+        """Time derivative of an output, as of the last `differentiate`."""
+        slot, v = self._by_name[name]
+        if not v.rate:
+            raise ValueError(f"{name} has no rate")
+        value: float = self._whole(v.rate).reshape(-1)[slot - self._first(v)].item()
+        return value
+
+    def partial(self, output: str, by: str) -> float:
+        """Derivative of a scalar output by an input, as of the last `differentiate`; zero where nothing is told."""
+        partials = dict(self._by_name[output][1].partials)
+        return float(self._whole(partials[by])[0]) if by in partials else 0.0
+
+    def _first(self, v: Variable) -> int:
+        return self._by_name[v.element_names()[0]][0]
+
+    def _whole(self, name: str) -> npt.NDArray[Any]:
+        """View of the first record's field that a variable or state has."""
+        view: npt.NDArray[Any] = self.record[name.replace(INDEX, "").replace(".", "_")][0:1]
+        return view

@@ -25,6 +25,7 @@ DOP853_DENSE_ROWS = 7
 
 # Frozen into the kernels as constants. A row of A per stage, the weights of the result as row 12 (A[12] is B).
 _A = np.ascontiguousarray(tableau.A).reshape(-1)
+_C = np.ascontiguousarray(tableau.C)
 _E3 = np.ascontiguousarray(tableau.E3)
 _E5 = np.ascontiguousarray(tableau.E5)
 _D = np.ascontiguousarray(tableau.D).reshape(-1)
@@ -95,9 +96,9 @@ def _shorter_step(step: float, error: float) -> float:
 def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], size: int) -> AdaptiveScheme:
     """The explicit Runge-Kutta scheme of Dormand and Prince, order 8(5,3), with its dense output of order 7.
 
-    derivative(context, state, rate)   writes d(state)/dt; autonomous
-    measure(context, state, error)     square of the error's size in units of the tolerance [-]
-    size                               number of components
+    derivative(context, state, rate, elapsed)   writes d(state)/dt, at `elapsed` [s] after the begin of the step
+    measure(context, state, error)              square of the error's size in units of the tolerance [-]
+    size                                        number of components
 
     Order      8; error estimate from embedded orders 5 and 3; dense output 7, continuous to the first derivative
     Stability  h |lambda| up to 6.4 on the negative real axis and 5.97 on the imaginary one; below that an undamped
@@ -120,7 +121,7 @@ def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], siz
                         end[n] += weight * row[n]
             for n in range(size):
                 end[n] = start[n] + step * end[n]
-            derivative(context, end, stages[i * size : (i + 1) * size])
+            derivative(context, end, stages[i * size : (i + 1) * size], _C[i] * step)
 
     @kernel
     def error(context: Any, end: Array, step: float, stages: Array, low: Array, high: Array) -> float:
@@ -151,7 +152,7 @@ def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], siz
                         scratch[n] += weight * stages[j * size + n]
             for n in range(size):
                 scratch[n] = start[n] + step * scratch[n]
-            derivative(context, scratch, stages[i * size : (i + 1) * size])
+            derivative(context, scratch, stages[i * size : (i + 1) * size], _C[i] * step)
         for n in range(size):
             change = end[n] - start[n]
             first = step * stages[n]

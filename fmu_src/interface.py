@@ -120,16 +120,15 @@ class Variable:
 class Fault:
     """A reason for which a kernel may stop: its status code, FMI severity and text (what went wrong, what to try).
 
-    severity     error; discard (a step may be tried again otherwise); end (the model's own end: nothing is wrong, and
-                 outputs are those of the last communication point)
-    variable     the variable at fault, when it is always the same; then, and wherever the text speaks of a parameter
-                 or input, `fault_index` is its value reference
+    severity        error; discard (a step may be tried again otherwise); end (the model's own end: nothing is wrong,
+                    `fault_time` is when, and the outputs are those of the last communication point)
+    names_variable  `fault_index` is the value reference of the variable at fault; else it is zero or what the text says
     """
 
     code: int
     severity: Literal["discard", "error", "end"]
     text: str
-    variable: str = ""
+    names_variable: bool = False
 
 
 @dataclass(frozen=True)
@@ -155,9 +154,7 @@ class Group:
 HEAD = (
     Variable("work_size", "1", "state", "doubles of work memory this instance needs", kind="Integer"),
     Variable("fault_code", "1", "state", "code of the fault that stopped the kernel, 0 for none", kind="Integer"),
-    Variable(
-        "fault_index", "1", "state", "value reference of the variable at fault, or which component", kind="Integer"
-    ),
+    Variable("fault_index", "1", "state", "value reference of the variable at fault", kind="Integer"),
     Variable("fault_time", "s", "state", "when"),
     Variable("fault_value", "1", "state", "offending value, SI"),
     Variable("terms", "1", "state", "unused; its name in the record tells one choice of terms from another"),

@@ -39,7 +39,8 @@ def _show_ours(
     from rich.table import Table
     from rich.text import Text
 
-    (path,) = build.ensure([(component.model, component.terms)], progress.say)
+    with progress.working("building"):
+        (path,) = build.ensure([(component.model, component.terms)], progress.say)
     title = Text(_title(scene, phase, component, component.model), style="table.title")
     table = Table(title=title, title_justify="left", box=None, pad_edge=False)
     for header in ("", "term", "what it adds"):

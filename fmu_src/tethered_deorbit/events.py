@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.integrators import AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
-from fmu_src.tethered_deorbit.reel import Reel
+from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.tether import length_acceleration, length_rate
 from fmu_src.tethered_deorbit.turning import turning_share
 from orbital.kernel import kernel
@@ -27,8 +27,8 @@ CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE = range(4)
 class Events(NamedTuple):
     """Kernels that look into the current step.
 
-    signals(record, state, rate) -> (crossing, its rate, tension, its rate)   of any state of the step, in its axes;
-                                                          the line as it is now
+    signals(record, state, rate, elapsed) -> (crossing, its rate, tension, its rate)   of any state of the step, in its
+                                                          axes, `elapsed` [s] after its begin; the line as it is now
     ensure_dense(record, work)                            compute the dense output of the step unless it is there
     find_change(record, work) -> fraction                 of the step at which slack and taut change, or -1
     largest_tension(record, work, first, last) -> N       between two fractions of the step
@@ -48,18 +48,19 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
     """
 
     @kernel
-    def signals(record: Any, state: Array, rate: Array) -> tuple[float, float, float, float]:
+    def signals(record: Any, state: Array, rate: Array, elapsed: float) -> tuple[float, float, float, float]:
         position, velocity, acceleration = state[6:9], state[9:12], rate[9:12]
         length = norm(position)
         speed = length_rate(position, velocity, length)
         change = length_acceleration(position, velocity, acceleration, length, speed)
         change += turning_share(record, position, velocity, length)
-        tension = reel.tension(record, length, speed)
-        tension_rate = reel.tension_rate(record, speed, change)
+        since = record[0].state_since + elapsed
+        tension = reel.tension(record, length, speed, since)
+        tension_rate = reel.tension_rate(record, length, speed, change, since)
         if record[0].state_taut:
             return -tension, -tension_rate, tension, tension_rate
-        onset = reel.onset(record, length, speed)
-        onset_rate = reel.onset_rate(record, length, speed, change)
+        onset = reel.onset(record, length, speed, since)
+        onset_rate = reel.onset_rate(record, length, speed, change, since)
         return onset, onset_rate, tension, tension_rate
 
     @kernel
@@ -84,8 +85,9 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
         here = work[layout.HERE : layout.SLOPE]
         slope = work[layout.SLOPE : layout.LOW]
         scheme.dense_value(work[layout.BEGIN : layout.END], dense, fraction, 6, 6, here[6:12])
-        scheme.dense_rate(dense, fraction, record[0].state_step, 6, 6, slope[6:12])
-        return signals(record, here, slope)
+        step = record[0].state_step
+        scheme.dense_rate(dense, fraction, step, 6, 6, slope[6:12])
+        return signals(record, here, slope, fraction * step)
 
     @kernel
     def root(record: Any, work: Array, low: float, high: float, which: int) -> float:

@@ -28,13 +28,21 @@ FAULTS = (
     Fault(TIME_GAP, "error", "the communication point does not follow the one before"),
     Fault(GROUND, "end", "the pair has come below the equatorial radius: the orbit has ended"),
     Fault(
-        BAD_ORBIT, "error", "the perigee lies below the equatorial radius; raise orbit.altitude or lower eccentricity"
+        BAD_ORBIT,
+        "error",
+        "the perigee lies below the equatorial radius; raise orbit.altitude or lower eccentricity",
+        True,
     ),
-    Fault(BAD_CHORD, "error", "start.separation cannot be a chord of this orbit"),
-    Fault(START_STRETCHED, "error", "start.separation exceeds the line's length: a locked line would start stretched"),
-    Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive"),
-    Fault(NO_LINE, "error", "start.relative_position is zero: the line has no direction"),
-    Fault(BAD_PARAMETER, "error", "a parameter or input is out of its bounds or not finite"),
+    Fault(BAD_CHORD, "error", "start.separation cannot be a chord of this orbit", True),
+    Fault(
+        START_STRETCHED,
+        "error",
+        "start.separation exceeds the line's length: a locked line would start stretched",
+        True,
+    ),
+    Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),
+    Fault(NO_LINE, "error", "start.relative_position is zero: the line has no direction", True),
+    Fault(BAD_PARAMETER, "error", "a parameter or input is out of its bounds or not finite", True),
 )
 
 
@@ -199,7 +207,6 @@ STATE = (
     _state("target_share", "1", "target's part of the mass"),
     _state("mean_motion", "rad/s", "of the reference orbit"),
     _state("thrust", "N", "in force"),
-    _state("length_offset", "m", "in force"),
     _state("since", "s", "from when the inputs in force began to move to the begin of the current step"),
     _state("command", "1", "the reel's input in force, as the step began [m] or [N]"),
     _state("command_rate", "1", "its rate in force [m/s] or [N/s]"),

@@ -10,10 +10,12 @@ import numba
 from numba import njit
 
 from fmu_src.integrators import make_dop853
-from fmu_src.interface import INITIALISE, REFRESH, SIZE, STEP
+from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP
 from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.environment import add_gravity
 from fmu_src.tethered_deorbit.events import make_events
+from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish
 from fmu_src.tethered_deorbit.reel import make_reel
@@ -40,30 +42,41 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
     reel = make_reel(terms["reel"], elastic_stiffness)
-    thrust = make_thrust(terms["thrust"]) if "thrust" in terms else make_no_thrust()
+    references = MODEL.interface(terms).references
+    command_slot = references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
+    chaser_mass, target_mass = references["chaser.mass"], references["target.mass"]
+    tolerance_orbit, tolerance_separation, tolerance_stretch = (
+        references[f"solver.tolerance_{what}"] for what in ("orbit", "separation", "stretch")
+    )
+    thrust = make_thrust(terms["thrust"], terms["reel"]) if "thrust" in terms else make_no_thrust()
 
     @kernel
-    def derivative(record: Any, state: Array, rate: Array) -> None:
+    def inertial(record: Any, state: Array, rate: Array, since: float) -> None:
+        """Rate of the state along inertial axes, or axes at rest in which it stands just now."""
         add_gravity(record, state, rate)
-        thrust.add(record, state, rate)
+        thrust.add(record, state, rate, since)
         if record[0].state_taut:
             length = norm(state[6:9])
             speed = length_rate(state[6:9], state[9:12], length)
-            add_tension(record, state, rate, reel.tension(record, length, speed), length)
+            add_tension(record, state, rate, reel.tension(record, length, speed, since), length)
+
+    @kernel
+    def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:
+        inertial(record, state, rate, record[0].state_since + elapsed)
+        if record[0].state_taut:
             add_turning(record, state, rate, -1.0)
 
     scheme = make_dop853(derivative, make_measure(), layout.SIZE)
     events = make_events(reel, scheme)
     trajectory = make_trajectory(derivative, scheme, events)
     publish = make_publish(reel)
+    differentiate = make_differentiate(inertial, reel)
 
     @kernel
-    def fail(record: Any, code: int, time: float, value: float) -> int:
+    def fail(record: Any, code: int, time: float) -> int:
         r = record[0]
         r.fault_code = code
-        r.fault_index = 0
         r.fault_time = time
-        r.fault_value = value if math.isfinite(value) else 0.0
         return code
 
     @kernel
@@ -72,8 +85,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r = record[0]
         length = norm(state[6:9])
         speed: float = length_rate(state[6:9], state[9:12], length)
-        taut = reel.onset(record, length, speed) > 0.0 and reel.tension(record, length, speed) > 0.0
-        r.state_taut = 1 if taut else 0
+        r.state_taut = 1 if reel.taut(record, length, speed) else 0
         return speed
 
     @kernel
@@ -84,37 +96,57 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return math.isfinite(total)
 
     @kernel
+    def check(record: Any) -> int:
+        """Fault of the parameters that all laws share, or 0."""
+        r = record[0]
+        if not r.chaser_mass > 0.0:
+            return blame(record, BAD_PARAMETER, chaser_mass, r.chaser_mass)
+        if not r.target_mass > 0.0:
+            return blame(record, BAD_PARAMETER, target_mass, r.target_mass)
+        if not r.solver_tolerance_orbit > 0.0:
+            return blame(record, BAD_PARAMETER, tolerance_orbit, r.solver_tolerance_orbit)
+        if not r.solver_tolerance_separation > 0.0:
+            return blame(record, BAD_PARAMETER, tolerance_separation, r.solver_tolerance_separation)
+        if not r.solver_tolerance_stretch > 0.0:
+            return blame(record, BAD_PARAMETER, tolerance_stretch, r.solver_tolerance_stretch)
+        return 0
+
+    @kernel
     def initialise(record: Any, work: Array, time: float) -> int:
         r = record[0]
-        if not (r.chaser_mass > 0.0 and r.target_mass > 0.0):
-            return fail(record, BAD_PARAMETER, time, min(r.chaser_mass, r.target_mass))
-        if not min(r.solver_tolerance_orbit, r.solver_tolerance_separation, r.solver_tolerance_stretch) > 0.0:
-            return fail(record, BAD_PARAMETER, time, r.solver_tolerance_stretch)
+        code = check(record)
+        if code != 0:
+            return fail(record, code, time)
         r.state_total_mass = r.chaser_mass + r.target_mass
         r.state_chaser_share = r.chaser_mass / r.state_total_mass
         r.state_target_share = r.target_mass / r.state_total_mass
         r.state_reduced_mass = r.chaser_mass * r.state_target_share
         r.state_mean_motion = mean_motion(EARTH_EQUATORIAL_RADIUS + r.orbit_altitude, EARTH_MU)
-        code = reel.prepare(record, r.reel_length_offset)
+        command, _ = reel.asked(record)
+        code = reel.prepare(record, command, 0.0, 0.0)
         if code != 0:
-            return fail(record, code, time, r.reel_length_offset)
+            return fail(record, code, time)
         thrust.reset(record, time)
-        code = thrust.prepare(record, time)
+        code = thrust.check(record)
         if code != 0:
-            return fail(record, code, time, 0.0)
+            return fail(record, code, time)
+        force, _ = thrust.asked(record)
+        thrust.put(record, force, 0.0)
         end = work[layout.END : layout.HERE]
         code = start_state(record, end, reel.start_limit(record))
         if code != 0:
-            return fail(record, code, time, r.start_separation)
+            return fail(record, code, time)
         if not finite(end):
-            return fail(record, NOT_FINITE, time, 0.0)
+            return fail(record, blame(record, NOT_FINITE, 0, 0.0), time)
         r.state_published = time
         r.solver_steps = 0
         r.solver_rejected = 0
         clear_tugs(record)
         speed = judge_line(record, end)
+        r.state_step = 0.0
         trajectory.restart(record, work, time)
-        publish(record, end, norm(end[6:9]), speed)
+        r.state_since = 0.0
+        publish(record, end, norm(end[6:9]), speed, 0.0)
         r.tether_tension_peak = r.tether_tension
         if r.state_taut:
             begin_tug(record, time, speed)
@@ -124,32 +156,66 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return 0
 
     @kernel
-    def take_inputs(record: Any, work: Array, time: float) -> int:
-        """Put changed inputs in force at the last communication point, and begin the trajectory anew there."""
+    def begin_anew(record: Any, work: Array, duration: float) -> int:
+        """Put what the inputs say in force, and begin the trajectory anew, at the last communication point.
+
+        What the tug has reached so far is what was published; the rest of the step did not happen.
+        """
         r = record[0]
-        if not math.isfinite(r.reel_length_offset):
-            return fail(record, BAD_PARAMETER, time, 0.0)
-        if not thrust.changed(record) and r.reel_length_offset == r.state_length_offset:
-            return 0
         here = work[layout.HERE : layout.SLOPE]
         trajectory.state_at(record, work, r.state_published, here)
         for i in range(layout.SIZE):
             work[layout.END + i] = here[i]
-        # What the tug has reached so far is what was published; the rest of the step did not happen.
-        was_taut = r.state_taut
-        if was_taut:
+        if r.state_taut:
             r.state_tug_peak = r.tug_peak[0]
-        code = reel.prepare(record, r.reel_length_offset)
+        command, command_rate = reel.asked(record)
+        code = reel.prepare(record, command, command_rate, duration)
+        if code == 0:
+            code = thrust.check(record)
         if code != 0:
-            return fail(record, code, time, r.reel_length_offset)
-        code = thrust.prepare(record, r.state_published)
+            return fail(record, code, r.state_published)
+        force, force_rate = thrust.asked(record)
+        thrust.account(record, r.state_published)
+        thrust.put(record, force, force_rate)
+        trajectory.restart(record, work, r.state_published)
+        r.state_since = 0.0
+        return 0
+
+    @kernel
+    def take_inputs(record: Any, work: Array, duration: float) -> int:
+        """Begin anew when an input has changed, or moves, or has moved; then decide afresh whether the line is taut."""
+        r = record[0]
+        command, command_rate = reel.asked(record)
+        force, force_rate = thrust.asked(record)
+        changed = not (command == r.state_command and force == r.state_thrust)
+        moving = not (command_rate == 0.0 and force_rate == 0.0)
+        moved = not (r.state_command_rate == 0.0 and r.state_thrust_rate == 0.0)
+        if not (changed or moving or moved):
+            return 0
+        if not math.isfinite(command + command_rate):
+            return fail(record, blame(record, BAD_PARAMETER, command_slot, command), r.state_published)
+        was_taut = r.state_taut
+        code = begin_anew(record, work, duration)
         if code != 0:
-            return fail(record, code, time, 0.0)
-        speed = judge_line(record, here)
+            return code
+        speed = judge_line(record, work[layout.END : layout.HERE])
+        # The first step after a change of the line is a short one.
+        trajectory.restart(record, work, r.state_published)
         if r.state_taut and not was_taut:
             begin_tug(record, r.state_published, speed)
-        trajectory.restart(record, work, r.state_published)
         return 0
+
+    @kernel
+    def leave_inputs(record: Any, work: Array, duration: float) -> int:
+        """After a step in which inputs moved: they stay where they have come to, as if they were to go on moving.
+
+        The line is judged only when it is known how the next step begins.
+        """
+        command, command_rate = reel.asked(record)
+        if command_rate != 0.0:
+            reel.leave(record, command + command_rate * duration)
+        thrust.leave(record, duration)
+        return int(begin_anew(record, work, 0.0))
 
     @kernel
     def note_tension(record: Any, work: Array, until: float) -> None:
@@ -158,9 +224,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if r.state_taut == 0 or r.state_step == 0.0:
             return
         stages = work[layout.STAGES : layout.DENSE]
-        _, _, begin, begin_rate = events.signals(record, work[layout.BEGIN : layout.END], stages[0 : layout.SIZE])
+        _, _, begin, begin_rate = events.signals(record, work[layout.BEGIN : layout.END], stages[0 : layout.SIZE], 0.0)
         _, _, end, end_rate = events.signals(
-            record, work[layout.END : layout.HERE], stages[12 * layout.SIZE : 13 * layout.SIZE]
+            record, work[layout.END : layout.HERE], stages[12 * layout.SIZE : 13 * layout.SIZE], r.state_step
         )
         whole = max(begin, end)
         change, begin_change, end_change = end - begin, r.state_step * begin_rate, r.state_step * end_rate
@@ -199,58 +265,79 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     def step_to(record: Any, work: Array, time: float, step: float) -> int:
         r = record[0]
         if not (math.isfinite(time) and math.isfinite(step) and step >= 0.0):
-            return fail(record, TIME_GAP, r.state_published, step)
+            return fail(record, blame(record, TIME_GAP, 0, step), r.state_published)
         if abs(time - r.state_published) > TIME_DRIFT * max(1.0, abs(time)):
-            return fail(record, TIME_GAP, r.state_published, time)
+            return fail(record, blame(record, TIME_GAP, 0, time), r.state_published)
         target = time + step
         if not target > r.state_published or step == 0.0:
             return 0
-        code = take_inputs(record, work, time)
+        duration = target - r.state_published
+        code = take_inputs(record, work, duration)
         if code != 0:
             return code
+        moving = r.state_command_rate != 0.0 or r.state_thrust_rate != 0.0
         r.tether_tension_peak = 0.0
         changes = 0
         while r.state_end <= target:
-            if norm(work[layout.END : layout.END + 3]) < EARTH_EQUATORIAL_RADIUS:
-                return fail(record, GROUND, r.state_end, norm(work[layout.END : layout.END + 3]))
+            radius = norm(work[layout.END : layout.END + 3])
+            if radius < EARTH_EQUATORIAL_RADIUS:
+                return fail(record, blame(record, GROUND, 0, radius), r.state_end)
             note_tension(record, work, r.state_end)
             if r.state_event:
                 changes += 1
                 if changes > EVENT_LIMIT:
-                    return fail(record, TOO_MANY_EVENTS, r.state_end, float(changes))
+                    return fail(record, blame(record, TOO_MANY_EVENTS, 0, float(changes)), r.state_end)
                 change_line(record, work)
-            code = trajectory.advance(record, work)
+            # A moving input is known up to the communication point only: there the last step ends.
+            if moving and r.state_end == target:
+                break
+            code = trajectory.advance(record, work, target - r.state_end if moving else math.inf)
             if code != 0:
-                return fail(record, code, r.state_begin, r.state_error)
+                return fail(record, code, r.state_begin)
         note_tension(record, work, target)
         here = work[layout.HERE : layout.SLOPE]
         length, speed = trajectory.state_at(record, work, target, here)
         if not finite(here):
-            return fail(record, NOT_FINITE, target, 0.0)
-        if norm(here[0:3]) < EARTH_EQUATORIAL_RADIUS:
-            return fail(record, GROUND, target, norm(here[0:3]))
-        publish(record, here, length, speed)
+            return fail(record, blame(record, NOT_FINITE, 0, 0.0), target)
+        radius = norm(here[0:3])
+        if radius < EARTH_EQUATORIAL_RADIUS:
+            return fail(record, blame(record, GROUND, 0, radius), target)
+        publish(record, here, length, speed, r.state_since + (target - r.state_begin))
         thrust.publish(record, target)
         r.tether_tension_peak = max(r.tether_tension_peak, r.tether_tension)
         r.state_published = target
+        if moving:
+            return int(leave_inputs(record, work, duration))
         return 0
 
     @kernel
-    def refresh(record: Any, work: Array, time: float) -> int:
-        """The outputs that depend directly on inputs, as they would be with the inputs of now; the state stays."""
+    def look(record: Any, work: Array, time: float, differentiating: bool) -> int:
+        """Outputs that depend directly on inputs, or derivatives, for the inputs of now; the state stays."""
         r = record[0]
         here = work[layout.HERE : layout.SLOPE]
         length, speed = trajectory.state_at(record, work, r.state_published, here)
-        in_force, taut = r.state_length_offset, r.state_taut
-        if r.reel_length_offset != in_force:
-            code = reel.prepare(record, r.reel_length_offset)
+        command, command_rate, taut = r.state_command, r.state_command_rate, r.state_taut
+        force, force_rate = r.state_thrust, r.state_thrust_rate
+        asked, asked_rate = reel.asked(record)
+        if asked == command and asked_rate == 0.0:
+            asked_rate = command_rate
+        if not (asked == command and asked_rate == command_rate):
+            if not math.isfinite(asked + asked_rate):
+                return fail(record, blame(record, BAD_PARAMETER, command_slot, asked), time)
+            code = reel.prepare(record, asked, asked_rate, 0.0)
             if code != 0:
-                return fail(record, code, time, r.reel_length_offset)
+                return fail(record, code, time)
             judge_line(record, here)
-        publish(record, here, length, speed)
-        if r.reel_length_offset != in_force:
-            reel.prepare(record, in_force)
-            r.state_taut = taut
+        if differentiating:
+            asked_force, asked_force_rate = thrust.asked(record)
+            thrust.put(record, asked_force, force_rate if asked_force == force else asked_force_rate)
+            differentiate(record, here, work[layout.SLOPE : layout.LOW], length, speed)
+            thrust.publish_rate(record)
+            thrust.put(record, force, force_rate)
+        else:
+            publish(record, here, length, speed, 0.0)
+        reel.prepare(record, command, command_rate, 0.0)
+        r.state_taut = taut
         return 0
 
     record_type = numba.from_dtype(MODEL.interface(terms).dtype)[::1]
@@ -258,16 +345,21 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @njit(signature, **OPTIONS)
     def entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
-        record[0].fault_code = 0
+        r = record[0]
+        r.fault_code = 0
+        r.fault_index = 0
+        r.fault_value = 0.0
         if command == SIZE:
-            record[0].work_size = layout.WORK
+            r.work_size = layout.WORK
             return 0
         if command == INITIALISE:
             return initialise(record, work, time)
         if command == STEP:
             return step_to(record, work, time, step)
         if command == REFRESH:
-            return refresh(record, work, time)
-        return fail(record, BAD_PARAMETER, time, float(command))
+            return look(record, work, time, False)
+        if command == DIFFERENTIATE:
+            return look(record, work, time, True)
+        return fail(record, blame(record, BAD_PARAMETER, 0, float(command)), time)
 
     return entry

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.interface import TUGS
-from fmu_src.tethered_deorbit.reel import Reel
+from fmu_src.tethered_deorbit.law import Reel
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.frames import orbital_basis, relative_to_orbital
 from orbital.hill import hill_jacobi
@@ -57,11 +57,12 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
     """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
 
     @kernel
-    def publish(record: Any, state: Array, length: float, rate: float) -> None:
+    def publish(record: Any, state: Array, length: float, rate: float, since: float) -> None:
         """Outputs at one instant; `state` (12,) as in `layout`, and `state.taut`, the line's condition there.
 
         length        l      of the line                         [m]
         rate          l'     of lengthening                      [m/s]
+        since         time   since the inputs in force began to move  [s]
 
         energy.relative = m_r (hill_jacobi + k s^2/(2 m_r)),   s = l - l0 while taut (a locked reel's elastic energy)
 
@@ -73,7 +74,7 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
         r.tether_length = length
         r.tether_length_rate = rate
         r.tether_taut = r.state_taut
-        r.tether_tension = max(0.0, reel.tension(record, length, rate)) if r.state_taut else 0.0
+        r.tether_tension = max(0.0, reel.tension(record, length, rate, since)) if r.state_taut else 0.0
         for i in range(3):
             r.center_position[i] = state[i]
             r.center_velocity[i] = state[3 + i]
@@ -91,6 +92,6 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
         r.energy_orbital = r.state_total_mass * specific_energy(r.center_position, r.center_velocity, EARTH_MU)
         r.energy_relative = r.state_reduced_mass * hill_jacobi(r.relative_position, r.relative_velocity, turning)
         if r.state_taut:
-            r.energy_relative += 0.5 * r.state_stiffness * (length - r.state_length) * (length - r.state_length)
+            r.energy_relative += reel.energy(record, length, since)
 
     return publish

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.tethered_deorbit.faults import base_slot, blame
 from fmu_src.tethered_deorbit.interface import (
     BAD_CHORD,
     BAD_ORBIT,
@@ -22,6 +23,17 @@ from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
 CHORD_ITERATIONS = 60
+
+ALTITUDE, CONDITION, LEADING, SEPARATION, RELATIVE_POSITION = (
+    base_slot(name)
+    for name in (
+        "orbit.altitude",
+        "start.condition",
+        "start.leading",
+        "start.separation",
+        "start.relative_position[1]",
+    )
+)
 
 
 @kernel
@@ -80,7 +92,7 @@ def _same_orbit(record: Any, state: Array) -> int:
     r = record[0]
     half = _half_angle(record)
     if half < 0.0:
-        return BAD_CHORD
+        return blame(record, BAD_CHORD, SEPARATION, r.start_separation)
     e, nu = r.orbit_eccentricity, r.orbit_true_anomaly
     latus = (EARTH_EQUATORIAL_RADIUS + r.orbit_altitude) * (1.0 - e * e)
     sign = 1.0 if r.start_leading == 0 else -1.0
@@ -121,17 +133,19 @@ def start_state(record: Any, state: Array, longest: float) -> int:
     """
     r = record[0]
     if not (EARTH_EQUATORIAL_RADIUS + r.orbit_altitude) * (1.0 - r.orbit_eccentricity) > EARTH_EQUATORIAL_RADIUS:
-        return BAD_ORBIT
-    if r.start_condition < SAME_ORBIT or r.start_condition > HANDED_OVER or r.start_leading < 0 or r.start_leading > 1:
-        return BAD_PARAMETER
+        return blame(record, BAD_ORBIT, ALTITUDE, r.orbit_altitude)
+    if r.start_condition < SAME_ORBIT or r.start_condition > HANDED_OVER:
+        return blame(record, BAD_PARAMETER, CONDITION, float(r.start_condition))
+    if r.start_leading < 0 or r.start_leading > 1:
+        return blame(record, BAD_PARAMETER, LEADING, float(r.start_leading))
     if r.start_condition == HANDED_OVER:
         if not norm(r.start_relative_position) > 0.0:
-            return NO_LINE
+            return blame(record, NO_LINE, RELATIVE_POSITION, 0.0)
     else:
         if not r.start_separation > 0.0:
-            return BAD_PARAMETER
+            return blame(record, BAD_PARAMETER, SEPARATION, r.start_separation)
         if r.start_separation > longest:
-            return START_STRETCHED
+            return blame(record, START_STRETCHED, SEPARATION, r.start_separation)
     if r.start_condition == SAME_ORBIT:
         return int(_same_orbit(record, state))
     position, velocity = r.state_vector[0], r.state_vector[1]

@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
+from fmu_src.tethered_deorbit.faults import blame, own_slot
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS, THRUST
 from orbital.constants import STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -16,53 +17,66 @@ class Thrust(NamedTuple):
     """Kernels of one direction.
 
     reset(record, time)               nothing used yet
-    add(record, state, rate)          add the thrust to the rate of the state
-    changed(record) -> bool           the input asks for another force than the one in force
-    prepare(record, time) -> fault    put what the input asks for in force, from `time` on
+    add(record, state, rate, since)   add the thrust to the rate of the state, `since` [s] after its force was set
+    asked(record) -> (force, rate)    what level and input say [N], [N/s]
+    leave(record, duration)           write the value the input has reached after a time back to it
+    check(record) -> fault            whether that can be
+    account(record, time)             book the propellant used up to `time`, before the force changes
+    put(record, force, rate)          put a force in force, to move at a rate
     publish(record, time)             propellant used up to `time`
+    publish_rate(record)              and how fast it is used
     """
 
     reset: Callable[..., Any]
     add: Callable[..., Any]
-    changed: Callable[..., Any]
-    prepare: Callable[..., Any]
+    asked: Callable[..., Any]
+    leave: Callable[..., Any]
+    check: Callable[..., Any]
+    account: Callable[..., Any]
+    put: Callable[..., Any]
     publish: Callable[..., Any]
+    publish_rate: Callable[..., Any]
 
 
 def make_no_thrust() -> Thrust:
     """An FMU without a thruster: nothing of it is compiled."""
 
     @kernel
-    def reset(record: Any, time: float) -> None:
+    def nothing(record: Any, time: float) -> None:
         pass
 
     @kernel
-    def add(record: Any, state: Array, rate: Array) -> None:
+    def add(record: Any, state: Array, rate: Array, since: float) -> None:
         pass
 
     @kernel
-    def changed(record: Any) -> bool:
-        return False
+    def asked(record: Any) -> tuple[float, float]:
+        return 0.0, 0.0
 
     @kernel
-    def prepare(record: Any, time: float) -> int:
+    def check(record: Any) -> int:
         return 0
 
     @kernel
-    def publish(record: Any, time: float) -> None:
+    def put(record: Any, force: float, rate: float) -> None:
         pass
 
-    return Thrust(reset, add, changed, prepare, publish)
+    @kernel
+    def publish_rate(record: Any) -> None:
+        pass
+
+    return Thrust(nothing, add, asked, nothing, check, nothing, put, nothing, publish_rate)
 
 
 @kernel
-def _add_along(record: Any, rate: Array, x: float, y: float, z: float) -> None:
+def _add_along(record: Any, rate: Array, since: float, x: float, y: float, z: float) -> None:
     """Add the thrust along a direction of any length to centre of mass and relative vector."""
     r = record[0]
     length = math.sqrt(x * x + y * y + z * z)
     if length > 0.0:
-        on_center = r.state_thrust / (r.state_total_mass * length)
-        on_chaser = r.state_thrust / (r.chaser_mass * length)
+        force = r.state_thrust + r.state_thrust_rate * since
+        on_center = force / (r.state_total_mass * length)
+        on_chaser = force / (r.chaser_mass * length)
         rate[3] += on_center * x
         rate[4] += on_center * y
         rate[5] += on_center * z
@@ -72,7 +86,7 @@ def _add_along(record: Any, rate: Array, x: float, y: float, z: float) -> None:
 
 
 @kernel
-def _add_along_track(record: Any, state: Array, rate: Array) -> None:
+def _add_along_track(record: Any, state: Array, rate: Array, since: float) -> None:
     """Thrust along the chaser's along-track.
 
     u = (h x r)/|h x r| with h = r x v, so h x r = v (r.r) - r (r.v);   R'' += F u/M,   rho'' -= F u/m_c
@@ -81,70 +95,113 @@ def _add_along_track(record: Any, state: Array, rate: Array) -> None:
     x, y, z = state[0] - share * state[6], state[1] - share * state[7], state[2] - share * state[8]
     u, v, w = state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
     radial = (x * u + y * v + z * w) / (x * x + y * y + z * z)
-    _add_along(record, rate, u - radial * x, v - radial * y, w - radial * z)
+    _add_along(record, rate, since, u - radial * x, v - radial * y, w - radial * z)
 
 
 @kernel
-def _add_along_velocity(record: Any, state: Array, rate: Array) -> None:
+def _add_along_velocity(record: Any, state: Array, rate: Array, since: float) -> None:
     """Thrust along the chaser's inertial velocity: u = v/|v|."""
     share = record[0].state_target_share
-    _add_along(record, rate, state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11])
+    _add_along(
+        record, rate, since, state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
+    )
 
 
 @kernel
-def _add_along_tether(record: Any, state: Array, rate: Array) -> None:
+def _add_along_tether(record: Any, state: Array, rate: Array, since: float) -> None:
     """Thrust along the line, positive towards the target: u = rho/|rho|."""
-    _add_along(record, rate, state[6], state[7], state[8])
+    _add_along(record, rate, since, state[6], state[7], state[8])
 
 
-def make_thrust(direction: str) -> Thrust:
+def make_thrust(direction: str, reel: str = "locked") -> Thrust:
     """A thruster on the chaser.
 
         R'' += F u/M,   rho'' -= F u/m_c,   F = level + offset,   propellant = integral of |F|/(Isp g0)
+
+    The force may move at a constant rate; the integral is then exact, also where the force turns round.
 
     Masses stay constant. The propellant of a tow from 800 to 200 km at 3000 s is 1.1 % of the pair's mass; keeping it
     aboard makes the tow 0.6 % longer than `orbital.references.spiral_time` with its exhaust speed says.
 
     direction     along_track, velocity or tether
+    reel          the law of the line, whose variables come before the thruster's
 
     Valid    point masses: no torque, no plume on the target
     Source   physics.md, section 2
-    Checked  tests/tethered_deorbit/test_terms.py
+    Checked  tests/tethered_deorbit/test_terms.py, tests/tethered_deorbit/test_ramps.py
     """
     add = {"along_track": _add_along_track, "velocity": _add_along_velocity, "tether": _add_along_tether}[direction]
+
+    groups = REELS.terms[reel].variables, THRUST
+    level_slot, offset_slot = own_slot("thrust.level", *groups), own_slot("thrust.offset", *groups)
+    impulse_slot = own_slot("thrust.specific_impulse", *groups)
 
     @kernel
     def reset(record: Any, time: float) -> None:
         r = record[0]
         r.state_thrust = 0.0
+        r.state_thrust_rate = 0.0
         r.state_propellant = 0.0
         r.state_propellant_since = time
 
     @kernel
     def used(record: Any, time: float) -> float:
+        """Propellant [kg] up to a time: what was booked, and since then the integral of |F| over a straight line."""
         r = record[0]
-        flow = abs(r.state_thrust) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
-        mass: float = r.state_propellant + flow * (time - r.state_propellant_since)
+        since = time - r.state_propellant_since
+        exhaust = r.thrust_specific_impulse * STANDARD_GRAVITY
+        force, rate = r.state_thrust, r.state_thrust_rate
+        if rate == 0.0:
+            constant: float = r.state_propellant + abs(force) / exhaust * since
+            return constant
+        last = force + rate * since
+        if force * last >= 0.0:
+            impulse = 0.5 * abs(force + last) * since
+        else:
+            impulse = (force * force + last * last) / (2.0 * abs(rate))
+        mass: float = r.state_propellant + impulse / exhaust
         return mass
 
     @kernel
-    def changed(record: Any) -> bool:
+    def asked(record: Any) -> tuple[float, float]:
         r = record[0]
-        return bool(r.thrust_level + r.thrust_offset != r.state_thrust)
+        return r.thrust_level + r.thrust_offset, r.rate_thrust_offset
 
     @kernel
-    def prepare(record: Any, time: float) -> int:
+    def leave(record: Any, duration: float) -> None:
         r = record[0]
-        force = r.thrust_level + r.thrust_offset
-        if not (math.isfinite(force) and r.thrust_specific_impulse > 0.0):
-            return BAD_PARAMETER
+        r.thrust_offset += r.rate_thrust_offset * duration
+
+    @kernel
+    def check(record: Any) -> int:
+        r = record[0]
+        if not math.isfinite(r.thrust_level):
+            return blame(record, BAD_PARAMETER, level_slot, r.thrust_level)
+        if not math.isfinite(r.thrust_offset + r.rate_thrust_offset):
+            return blame(record, BAD_PARAMETER, offset_slot, r.thrust_offset)
+        if not r.thrust_specific_impulse > 0.0:
+            return blame(record, BAD_PARAMETER, impulse_slot, r.thrust_specific_impulse)
+        return 0
+
+    @kernel
+    def account(record: Any, time: float) -> None:
+        r = record[0]
         r.state_propellant = used(record, time)
         r.state_propellant_since = time
+
+    @kernel
+    def put(record: Any, force: float, rate: float) -> None:
+        r = record[0]
         r.state_thrust = force
-        return 0
+        r.state_thrust_rate = rate
 
     @kernel
     def publish(record: Any, time: float) -> None:
         record[0].chaser_propellant = used(record, time)
 
-    return Thrust(reset, add, changed, prepare, publish)
+    @kernel
+    def publish_rate(record: Any) -> None:
+        r = record[0]
+        r.rate_propellant = abs(r.state_thrust) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
+
+    return Thrust(reset, add, asked, leave, check, account, put, publish, publish_rate)

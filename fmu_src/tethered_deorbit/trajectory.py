@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from fmu_src.integrators import DOP853_STAGES, AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.events import Events
+from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
 from fmu_src.tethered_deorbit.tether import length_rate
 from fmu_src.tethered_deorbit.turning import add_turning, set_turning, turn_back
@@ -32,6 +33,8 @@ SHORTEST_CONTACT = 1.0e-6
 """Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
 LANDING_ITERATIONS = 5
 ROUNDING = 4.0 * 2.220446049250313e-16
+SHORTEST = 32.0 * ROUNDING
+"""Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
 
 
 def make_measure() -> Callable[..., Any]:
@@ -99,7 +102,7 @@ class Trajectory(NamedTuple):
     """Kernels that move along the trajectory.
 
     restart(record, work, time)               begin anew at the state stored as END
-    advance(record, work) -> fault            take the next step, up to a change of the line
+    advance(record, work, longest) -> fault   take the next step, up to a change of the line, but no longer [s]
     state_at(record, work, time, out) -> (length [m], its rate [m/s])   state within the current step, inertial axes;
                                               the line's length from before the axes are turned back: the bits of
                                               the tension do not depend on who looks
@@ -128,6 +131,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
             r.state_turning[i] = 0.0
         r.state_begin = time
         r.state_end = time
+        r.state_since += r.state_step
         r.state_step = 0.0
         r.state_event = 0
         r.state_fresh = 1
@@ -153,7 +157,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
     @kernel
     def end_signals(record: Any, work: Array) -> tuple[float, float, float, float]:
         signals: tuple[float, float, float, float] = events.signals(
-            record, work[layout.END : layout.HERE], work[last : last + layout.SIZE]
+            record, work[layout.END : layout.HERE], work[last : last + layout.SIZE], record[0].state_step
         )
         return signals
 
@@ -162,7 +166,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         """A taut line whose tension cannot reach zero within the step, judged by its slope at both ends."""
         r = record[0]
         _, _, begin, begin_rate = events.signals(
-            record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE]
+            record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE], 0.0
         )
         _, _, end, end_rate = end_signals(record, work)
         return bool(2.0 * r.state_step * max(abs(begin_rate), abs(end_rate)) < min(begin, end))
@@ -187,15 +191,16 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r.state_event = 1
 
     @kernel
-    def advance(record: Any, work: Array) -> int:
+    def advance(record: Any, work: Array, longest: float) -> int:
         r = record[0]
+        r.state_since += r.state_step
         begin = work[layout.BEGIN : layout.END]
         rate = work[layout.STAGES : layout.STAGES + layout.SIZE]
         for i in range(layout.SIZE):
             begin[i] = work[layout.END + i]
         if r.state_fresh:
             set_turning(record, begin)
-            derivative(record, begin, rate)
+            derivative(record, begin, rate, 0.0)
             r.state_fresh = 0
         else:
             for i in range(layout.SIZE):
@@ -209,12 +214,13 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r.state_begin = r.state_end
         r.state_event = 0
         r.solver_steps += 1
-        step = r.state_next_step
+        step = min(r.state_next_step, max(longest, SHORTEST * abs(r.state_begin)))
         if r.state_taut:
             step = min(step, longest_taut_step(record))
         while True:
-            if not step > 16.0 * ROUNDING * abs(r.state_begin):
-                return NOT_FINITE if not math.isfinite(r.state_error) else STEP_NOT_MET
+            if not step > 0.5 * SHORTEST * abs(r.state_begin):
+                code = NOT_FINITE if not math.isfinite(r.state_error) else STEP_NOT_MET
+                return blame(record, code, 0, r.state_error)
             attempt(record, work, step)
             error = scheme.error(
                 record,

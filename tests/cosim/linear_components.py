@@ -40,6 +40,10 @@ class LinearComponent(MockComponent):
         self.rates: dict[str, float] = {}
         self.longest, self.ends_at, self.forgets = math.inf, math.inf, False
         self.asked = 0
+        n, m = self.b.shape
+        whole = np.zeros((n + 2 * m, n + 2 * m))
+        whole[:n, :n], whole[:n, n : n + m], whole[n : n + m, n + m :] = self.a, self.b, np.eye(m)
+        self._terms = np.array([np.linalg.matrix_power(whole, k) / math.factorial(k) for k in range(30)])
         self._solution: dict[float, np.ndarray] = {}
         self._states: dict[str, np.ndarray] = {}
         self.declare(inputs, "input")
@@ -68,9 +72,7 @@ class LinearComponent(MockComponent):
             raise Terminated(self.name, f" ended itself at t = {self.ends_at}", "", "mock", "Discard", self.ends_at)
         n, m = self.b.shape
         if size not in self._solution:
-            whole = np.zeros((n + 2 * m, n + 2 * m))
-            whole[:n, :n], whole[:n, n : n + m], whole[n : n + m, n + m :] = self.a, self.b, np.eye(m)
-            self._solution[size] = expm(whole * size)
+            self._solution[size] = np.tensordot(size ** np.arange(len(self._terms)), self._terms, axes=1)
         rates = np.array([self.rates.get(name, 0.0) for name in self.inputs])
         after = self._solution[size] @ np.concatenate([self.state, self._u(), rates])
         self.state = after[:n]

@@ -18,7 +18,7 @@ def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     def never(*_: object) -> None:
         raise AssertionError("bad input got as far as building an FMU")
 
-    monkeypatch.setattr(commands.build, "ensure_fmus", never)
+    monkeypatch.setattr(commands.build, "ensure", never)
 
     def run(*arguments: str) -> tuple[int, str]:
         monkeypatch.setattr("sys.argv", ["dcone", *arguments])

@@ -243,7 +243,9 @@ class TestWhatOnlyAnFmuRefuses:
                 pass
 
             def enter_initialisation(self, start: float, stop: float | None = None) -> None:
-                raise CallError("capture", "", "net.mass is too small", "x.fmu: fmi2ExitInitializationMode gave Error")
+                raise CallError(
+                    "capture", "", "net.mass is too small", "x.fmu: fmi2ExitInitializationMode gave Error", "Error"
+                )
 
         scene = parse(find("table1-capture").read_text(), "mine", "folder/mine.toml")
         line = scene.text.splitlines().index('mass = "0.33 kg"') + 1

@@ -69,7 +69,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, make_scene: Callable[..., Scene]) 
         pass
 
     monkeypatch.setattr(commands, "Archives", Archives)
-    monkeypatch.setattr(commands, "load", lambda _: make_scene("capture", "removal"))
+    monkeypatch.setattr(commands, "load", lambda *_: make_scene("capture", "removal"))
     return Archives
 
 
@@ -195,7 +195,7 @@ PROGRAM = """
     from dcone_cosim import cli, commands
     from tests.cosim.conftest import scene_of
     from tests.cosim.test_command_line import NoArchives
-    commands.Archives, commands.load = NoArchives, lambda _: scene_of("capture", "removal")
+    commands.Archives, commands.load = NoArchives, lambda *_: scene_of("capture", "removal")
     NoArchives.meanwhile = staticmethod(lambda: {act})
     sys.argv = ["dcone", "run", "mock", "-o", "deep/out", "--no-figures"]
     cli.main()

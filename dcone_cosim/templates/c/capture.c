@@ -2,7 +2,7 @@
 
 const size_t model_states = 0;
 
-static const double catch_mass = 6.0, speed = 3.0, distance = 20.0; /* [kg], [m/s], [m] */
+static const double catch_mass = 6.0, speed = 3.0, distance = 16.0; /* [kg], [m/s], [m] */
 
 fmi2Status model_start(model *m) {
     const double *size = &m->values[TARGET_SIZE_1];

@@ -25,12 +25,18 @@ def build(
 ) -> Path:
     """`my_PHASE.fmu` in a new folder.
 
-    switches    how it goes wrong, see misbehaving.c: "CRASH", "EXIT=3"; none: it does not
+    switches    how it goes wrong, see misbehaving.c: "CRASH", "EXIT=3"; "IGNORES_STATE": it restores nothing;
+                none: it works as the template does
     when        from which time on [s]
     change      of the text of its model description
     """
     source = folder / "source"
     write_template(phase, "c", source)
+    if "IGNORES_STATE" in switches:
+        shim = (source / "fmu.c").read_text()
+        restoring = "    memcpy(i->m.values, s + 1, block());\n"
+        assert restoring in shim
+        (source / "fmu.c").write_text(shim.replace(restoring, ""))
     name = f"my_{phase}"
     binary = source / f"{name}.so"
     defines = [f"-D{switch}" for switch in (*switches, *([f"WHEN={when!r}"] if when is not None else []))]

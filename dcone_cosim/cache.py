@@ -1,0 +1,133 @@
+"""The cache of built FMUs: what is in it, how long a build took here, and how it is emptied.
+
+Nothing that another process is building is touched: a build works in a folder of its own, which takes no part in the
+listing, and is cleared away only when it is so old that its process must have died.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import tempfile
+import time as clock
+import zipfile
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from dcone_cosim.errors import InputError
+
+ABANDONED = 86400.0
+"""Age from which the folder of an unfinished build is that of one that was killed [s]."""
+HALF_BUILT = ".*-*"
+DAY = 86400.0
+
+
+@dataclass(frozen=True)
+class Kept:
+    """One FMU of the cache.
+
+    terms     what it was built with, as its model description says
+    size      [bytes]
+    built     when [s since the epoch]
+    """
+
+    path: Path
+    model: str
+    terms: str
+    size: int
+    built: float
+
+
+def listing(folder: Path) -> list[Kept]:
+    """Every FMU of the cache, the latest first."""
+    found = []
+    for path in folder.glob("*.fmu"):
+        with suppress(OSError):
+            about = path.stat()
+            found.append(Kept(path, *_described(path), about.st_size, about.st_mtime))
+    return sorted(found, key=lambda kept: -kept.built)
+
+
+def _described(path: Path) -> tuple[str, str]:
+    """Model and terms of an FMU of ours; a damaged one says so."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            head = archive.read("modelDescription.xml")[:10_000].decode("utf-8", "replace")
+    except (OSError, KeyError, zipfile.BadZipFile):
+        return path.stem.rpartition("-")[0], "damaged; it is built again when it is needed"
+    name = re.search(r'modelName="([^"]*)"', head)
+    terms = re.search(r"Built with: ([^.\"]*)", head)
+    return name[1] if name else path.stem, terms[1] if terms else ""
+
+
+def clear(folder: Path, older_than: float = 0.0) -> tuple[int, int]:
+    """Remove what was built longer ago than this [s]; returns how many FMUs and how many bytes are gone."""
+    now, count, size = clock.time(), 0, 0
+    for kept in listing(folder):
+        if now - kept.built >= older_than:
+            kept.path.unlink(missing_ok=True)
+            count, size = count + 1, size + kept.size
+    for rest in _abandoned(folder, now):
+        shutil.rmtree(rest, ignore_errors=True)
+    return count, size
+
+
+def _abandoned(folder: Path, now: float) -> Iterator[Path]:
+    for path in folder.glob(HALF_BUILT):
+        with suppress(OSError):
+            if path.is_dir() and now - max(p.stat().st_mtime for p in (path, *path.rglob("*"))) > ABANDONED:
+                yield path
+
+
+AGES = {"min": 60.0, "h": 3600.0, "d": DAY, "w": 7.0 * DAY}
+
+
+def age(text: str) -> float:
+    """An age such as 30d or 12h [s]; `InputError` for what is none."""
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([a-z]+)\s*", text)
+    if match is None or match[2] not in AGES:
+        raise InputError(f"--older-than {text}: expected a number with {', '.join(AGES)}, such as 30d")
+    return float(match[1]) * AGES[match[2]]
+
+
+def spoken_age(seconds: float) -> str:
+    for unit in reversed(AGES):
+        if unit != "w" and seconds >= AGES[unit]:
+            return f"{seconds / AGES[unit]:.0f} {unit}"
+    return "just now"
+
+
+def spoken_size(size: int) -> str:
+    return f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{size / 1e3:.0f} kB"
+
+
+class Times:
+    """How long building took on this machine, kept beside the FMUs; a cache that cannot be written keeps none."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / "build-times.json"
+
+    def spoken(self) -> str:
+        """How long to wait, in words."""
+        try:
+            times = [float(t) for t in json.loads(self._path.read_text())["seconds"]]
+        except (OSError, ValueError, KeyError, TypeError):
+            return "this may take a minute or two"
+        return (
+            f"it took {min(times):.0f} to {max(times):.0f} s before"
+            if len(times) > 1
+            else (f"it took {times[0]:.0f} s before" if times else "this may take a minute or two")
+        )
+
+    def keep(self, seconds: float) -> None:
+        """Add how long a build took; the last few count."""
+        with suppress(OSError, ValueError, KeyError, TypeError):
+            before = json.loads(self._path.read_text())["seconds"] if self._path.exists() else []
+            handle, draft = tempfile.mkstemp(prefix=".times-", dir=self._path.parent)
+            with os.fdopen(handle, "w") as file:
+                json.dump({"seconds": [*before, round(seconds, 1)][-5:]}, file)
+            os.replace(draft, self._path)

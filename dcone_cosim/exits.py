@@ -1,0 +1,120 @@
+"""The way out: what an error says, which exit code it has, and that a reader who leaves early disturbs nothing.
+
+Expected failures become one message on stderr, and with `--json` the same as an object on stdout.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, NoReturn
+
+import typer
+
+from dcone_cosim.errors import BAD_INPUT, DconeError
+
+
+@contextmanager
+def reader_may_leave() -> Iterator[None]:
+    """Output that nobody reads any more (`dcone run mission | head -1`) is dropped: the work itself is done."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _to_nowhere()
+
+
+def _to_nowhere() -> None:
+    """What is still buffered for stdout goes nowhere, so that closing it at the end does not fail."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def complain(text: str) -> None:
+    with suppress(OSError):
+        typer.echo(text, err=True)
+
+
+def details(error: DconeError) -> dict[str, Any]:
+    """What a machine may want beside the message: the mistakes of a scene one by one."""
+    rows = getattr(error, "rows", None)
+    return {"mistakes": rows()} if rows is not None else {}
+
+
+def _fail(text: str, exit_code: int, **more: Any) -> NoReturn:
+    """One message on stderr, and with --json the same as an object on stdout."""
+    complain(f"dcone: {text}")
+    _answer(text, exit_code, **more)
+    sys.exit(exit_code)
+
+
+def _answer(text: str, exit_code: int, **more: Any) -> None:
+    if "--json" in sys.argv[1:]:
+        import json
+
+        with reader_may_leave():
+            typer.echo(json.dumps({"error": text, "exit_code": exit_code, **more}))
+
+
+INTERRUPTED, TERMINATED = 130, 143
+
+
+def _terminate(*_: object) -> NoReturn:
+    sys.exit(TERMINATED)
+
+
+def run(app: Callable[..., Any]) -> NoReturn:
+    """Run the command line and leave: an expected failure is one message and an exit code, never a traceback."""
+    before = _on_terminate(_terminate)
+    try:
+        code = app(standalone_mode=False)
+    except DconeError as error:
+        _fail(str(error), error.exit_code, **details(error))
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    except OSError as error:
+        _fail(_of_system(error), BAD_INPUT)
+    except Exception as error:
+        code = _of_arguments(error)
+    except SystemExit as stop:
+        if stop.code == TERMINATED:
+            _fail("terminated; nothing was written", TERMINATED)
+        if stop.code != 1:
+            raise
+        # typer ends so when the reader of a help text has left
+        _to_nowhere()
+        code = 0
+    finally:
+        _on_terminate(before)
+    if code == INTERRUPTED:
+        _fail("interrupted; nothing was written", INTERRUPTED)
+    sys.exit(code or 0)
+
+
+def _on_terminate(handler: Any) -> Any:
+    """Set what SIGTERM does, so that temporary folders are removed then too; returns what it did before."""
+    try:
+        return signal.signal(signal.SIGTERM, handler)
+    except ValueError:
+        return signal.SIG_DFL
+
+
+def _of_system(error: OSError) -> str:
+    """What the system refused, in one line that names the file."""
+    files = " -> ".join(str(f) for f in (error.filename, error.filename2) if f is not None)
+    reason = error.strerror or str(error) or type(error).__name__
+    return f"{files}: {reason}; nothing was written" if files else f"{reason}; nothing was written"
+
+
+def _of_arguments(error: Exception) -> int:
+    """Exit code of a wrong command line, once it is told; any other exception is a fault of ours and goes on."""
+    show, message = getattr(error, "show", None), getattr(error, "format_message", None)
+    if show is None or message is None:
+        raise error
+    show()
+    code = int(getattr(error, "exit_code", BAD_INPUT))
+    _answer(message(), code)
+    return code

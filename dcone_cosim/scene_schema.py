@@ -1,0 +1,187 @@
+"""A JSON schema of scenes, for editors: every key with its meaning, unit, bounds and default, from the models' tables.
+
+An editor that knows it completes keys, shows their meaning and marks what is misspelt while it is typed. It cannot know
+what `dcone validate` does: whether a unit fits, and whether values go together. A phase or component with an `fmu`
+takes any key, since a schema does not look into files.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from dcone_cosim import build
+from dcone_cosim.scene import PHASES
+from dcone_cosim.scene_keys import (
+    COMPONENT_KEYS,
+    COUPLING_KEYS,
+    HANDOFF_KEYS,
+    MEANING,
+    PHASE_KEYS,
+    REQUIRED,
+    SHARED,
+    SNAPSHOTS,
+    key_of,
+    orbit_keys,
+)
+from dcone_cosim.units import Expected
+
+QUANTITY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s].*$"
+"""A number and a unit."""
+CONNECTION = r"^\s*[^.\s]+\..+->\s*[^.\s]+\..+$"
+Schema = dict[str, Any]
+
+
+def schema() -> Schema:
+    """The schema, draft 7."""
+    orbit = {name: _value(key.expected, key.description, key.starts) for name, key in orbit_keys().items()}
+    properties = {
+        "title": {"type": "string", "description": MEANING["title"]},
+        "phases": {
+            "type": "array",
+            "items": {"enum": list(PHASES)},
+            "minItems": 1,
+            "uniqueItems": True,
+            "description": MEANING["phases"],
+        },
+        SHARED: _table(orbit, "the orbit, shared by the phases"),
+        **{phase: _phase(phase) for phase in PHASES},
+        "handoff": _table(_options(HANDOFF_KEYS), "how the capture hands over to the removal"),
+    }
+    return {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "Scene of the D-CoNe co-simulation",
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": False,
+        "anyOf": [{"required": [phase]} for phase in PHASES],
+    }
+
+
+def _table(properties: Mapping[str, Schema], description: str) -> Schema:
+    return {
+        "type": "object",
+        "description": description,
+        "properties": dict(properties),
+        "additionalProperties": False,
+    }
+
+
+def _options(keys: Mapping[str, Expected]) -> dict[str, Schema]:
+    return {key: _value(expected, MEANING[key]) for key, expected in keys.items()}
+
+
+def _value(expected: Expected, description: str, starts: tuple[float, ...] = ()) -> Schema:
+    """What one key takes; without start values there is no default."""
+    single = _scalar(expected)
+    found: Schema = single
+    if expected.size:
+        found = {"type": "array", "items": single, "minItems": expected.size, "maxItems": expected.size}
+    found["description"] = "; ".join(part for part in (description, expected.bounds()) if part)
+    if starts:
+        found["default"] = tomllib.loads(f"x = {expected.written(starts)}")["x"]
+    return found
+
+
+def _scalar(expected: Expected) -> Schema:
+    if expected.choices:
+        return {"enum": list(expected.choices)}
+    if expected.kind == "Boolean":
+        return {"type": "boolean"}
+    if expected.unit != "1":
+        return {"type": "string", "pattern": QUANTITY, "examples": [expected.example]}
+    found: Schema = {"type": "integer" if expected.kind == "Integer" else "number"}
+    if math.isfinite(expected.minimum):
+        found["exclusiveMinimum" if expected.open_minimum else "minimum"] = expected.minimum
+    if math.isfinite(expected.maximum):
+        found["maximum"] = expected.maximum
+    return found
+
+
+def _phase(phase: str) -> Schema:
+    """A phase: with a model of ours only the keys that this has, with an FMU in its place any."""
+    model = build.MODELS[phase]
+    tables, own = _tables(model), _own(phase)
+    needed = [name for name, group in model.groups.items() if not group.optional]
+    strict = {name: {"properties": dict.fromkeys(t["properties"], True), "additionalProperties": False}
+              for name, t in tables.items()}  # fmt: skip
+    return {
+        "type": "object",
+        "description": model.summary,
+        "properties": {**own, **tables},
+        "required": list(REQUIRED),
+        "if": {"required": ["fmu"]},
+        "else": {
+            "properties": {**dict.fromkeys(own, True), **strict},
+            "additionalProperties": False,
+            "required": needed,
+        },
+    }
+
+
+def _tables(model: build.Model) -> dict[str, Schema]:
+    """A table per part of the model, with the keys of every term it can have."""
+    tables: dict[str, dict[str, Schema]] = {}
+    for name, group in model.groups.items():
+        tables.setdefault(name, {})[group.selector] = _selector(group)
+    for row in build.all_rows(model):
+        if row.causality in build.SETTABLE and row.section != SHARED:
+            key = key_of(row)
+            tables.setdefault(row.section, {})[row.key] = _value(key.expected, key.description, key.starts)
+    found = {}
+    for name, properties in tables.items():
+        described: Schema = {"type": "object", "properties": properties}
+        if name in model.groups:
+            described["required"] = [model.groups[name].selector]
+            described["description"] = "; ".join(f"{term}: {text}" for term, text in _terms(model.groups[name]))
+        found[name] = described
+    return found
+
+
+def _terms(group: build.Group) -> list[tuple[str, str]]:
+    return [(term, group.terms[term].summary) for term in group.terms if term in group.terms]
+
+
+def _selector(group: build.Group) -> Schema:
+    terms = _terms(group)
+    if not terms:
+        return {"type": "integer", "minimum": 1, "description": next(iter(group.terms))}
+    return {"enum": [term for term, _ in terms], "description": "; ".join(f"{term}: {text}" for term, text in terms)}
+
+
+def _own(phase: str) -> dict[str, Schema]:
+    """Keys of a phase that are no parameters of its model."""
+    found = _options(PHASE_KEYS[phase])
+    if phase == "capture":
+        found["snapshots"] = {"type": "array", "items": _scalar(SNAPSHOTS), "description": MEANING["snapshots"]}
+    component = _component()
+    found |= {key: value for key, value in component["properties"].items() if key != "model"}
+    found["components"] = {
+        "type": "object",
+        "description": MEANING["components"],
+        "additionalProperties": component,
+    }
+    found["connections"] = {
+        "type": "array",
+        "items": {"type": "string", "pattern": CONNECTION},
+        "description": MEANING["connections"],
+    }
+    names: Schema = {"type": "array", "items": {"type": "string"}, "description": MEANING["order"]}
+    found["coupling"] = _table({**_options(COUPLING_KEYS), "order": names}, MEANING["coupling"])
+    return found
+
+
+def _component() -> Schema:
+    """A further component; its tables are those of its own model or FMU."""
+    return {
+        "type": "object",
+        "properties": {
+            "fmu": {"type": "string", "minLength": 1, "description": MEANING["fmu"]},
+            "model": {"enum": list(build.CATALOGUE), "description": MEANING["model"]},
+            **_options(COMPONENT_KEYS),
+            "parameters": {"type": "object", "description": MEANING["parameters"]},
+        },
+        "oneOf": [{"required": ["fmu"]}, {"required": ["model"]}],
+    }

@@ -1,0 +1,43 @@
+"""What a law of the line's tension is to the rest of the model: a set of kernels.
+
+Each law has one input, its command, that may move at a constant rate. The command in force is kept as the value it had
+at one instant and its rate; `since` is the time since that instant [s]. `tension` is unclamped, so that it runs
+smoothly through zero: the switch between slack and taut is the integrator's business. `onset` is negative while a slack
+line stays slack.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+
+class Reel(NamedTuple):
+    """Kernels of one law; lengths in m, rates in m/s, tension in N.
+
+    asked(record) -> (value, rate)                          what the input says
+    leave(record, value)                                    write the value reached back to the input
+    prepare(record, value, rate, duration) -> fault         put a command in force, to move for a time
+    taut(record, length, rate) -> bool                      whether a line met in this state pulls, at since = 0
+    tension(record, length, rate, since)                    unclamped
+    tension_rate(record, length, rate, acceleration, since) its time derivative
+    onset(record, length, rate, since)                      rises through zero when a slack line goes taut
+    onset_rate(record, length, rate, acceleration, since)   its time derivative
+    energy(record, length, since)                           stored in a taut line [J]
+    energy_rate(record, length, rate, since)                its time derivative [W]
+    partials(record, length, rate) -> (by tension, by energy)   derivatives by the command of a taut line, at since = 0
+    start_limit(record)                                     longest separation with which a pair may start
+    """
+
+    asked: Callable[..., Any]
+    leave: Callable[..., Any]
+    prepare: Callable[..., Any]
+    taut: Callable[..., Any]
+    tension: Callable[..., Any]
+    tension_rate: Callable[..., Any]
+    onset: Callable[..., Any]
+    onset_rate: Callable[..., Any]
+    energy: Callable[..., Any]
+    energy_rate: Callable[..., Any]
+    partials: Callable[..., Any]
+    start_limit: Callable[..., Any]

@@ -1,0 +1,164 @@
+"""The locked reel: an elastic line between two fixed ends, whose rest length an input may move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from fmu_src.tethered_deorbit.faults import blame, own_slot
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, NO_LENGTH, REELS
+from fmu_src.tethered_deorbit.law import Reel
+from orbital.kernel import kernel
+
+
+def make_locked(elastic_stiffness: Callable[..., Any]) -> Reel:
+    """An elastic line with fixed ends.
+
+        T = k (l - l0) + c (dl/dt - dl0/dt)   while l > l0 and T > 0, otherwise 0
+        k = EA/l0,   c = 2 zeta sqrt(k m_r),   l0 = rest length + offset
+
+    The dashpot works on the rate of stretch, so a rest length that moves is felt at once. Stiffness and dashpot follow
+    the rest length on its way: after a ramp the line is the one that the new offset makes.
+
+    Taut begins when min(l - l0, T) rises through zero. While it is stretching that is l - l0; else it is T, here as a
+    length, T/k. Slack begins when T falls through zero, which it does before l - l0.
+
+    Valid    small strains; massless line
+    Source   D-CoNe paper, eq. 1 and 3; the clamp at zero and the moving rest length are ours
+    Checked  tests/tethered_deorbit/test_snap.py, tests/tethered_deorbit/test_ramps.py
+    """
+    own = REELS.terms["locked"].variables
+    modulus_slot, diameter_slot = own_slot("tether.youngs_modulus", own), own_slot("tether.diameter", own)
+    damping_slot, offset_slot = own_slot("tether.damping_ratio", own), own_slot("reel.length_offset", own)
+
+    @kernel
+    def asked(record: Any) -> tuple[float, float]:
+        r = record[0]
+        return r.reel_length_offset, r.rate_reel_length_offset
+
+    @kernel
+    def leave(record: Any, value: float) -> None:
+        record[0].reel_length_offset = value
+
+    @kernel
+    def prepare(record: Any, value: float, rate: float, duration: float) -> int:
+        r = record[0]
+        length = r.tether_rest_length + value
+        shortest = min(length, length + rate * duration)
+        if not 0.0 < shortest < math.inf:
+            return blame(record, NO_LENGTH, offset_slot, shortest)
+        stiffness = elastic_stiffness(r.tether_youngs_modulus, r.tether_diameter, length)
+        if not r.tether_damping_ratio >= 0.0:
+            return blame(record, BAD_PARAMETER, damping_slot, r.tether_damping_ratio)
+        if not r.tether_youngs_modulus > 0.0:
+            return blame(record, BAD_PARAMETER, modulus_slot, r.tether_youngs_modulus)
+        if not stiffness > 0.0:
+            return blame(record, BAD_PARAMETER, diameter_slot, r.tether_diameter)
+        r.state_command = value
+        r.state_command_rate = rate
+        r.state_length = length
+        r.state_stiffness = stiffness
+        r.state_damping = 2.0 * r.tether_damping_ratio * math.sqrt(stiffness * r.state_reduced_mass)
+        if shortest < length:
+            stiffness = elastic_stiffness(r.tether_youngs_modulus, r.tether_diameter, shortest)
+        # Above critical damping the dashpot is the fastest thing there is.
+        r.state_frequency = math.sqrt(stiffness / r.state_reduced_mass) * max(1.0, 2.0 * r.tether_damping_ratio)
+        r.state_taut_tolerance = r.solver_tolerance_stretch
+        return 0
+
+    @kernel
+    def line(record: Any, since: float) -> tuple[float, float, float]:
+        """Rest length [m], stiffness [N/m] and dashpot [N s/m] on the way."""
+        r = record[0]
+        length, stiffness, damping = r.state_length, r.state_stiffness, r.state_damping
+        if r.state_command_rate != 0.0:
+            length = r.state_length + r.state_command_rate * since
+            ratio = r.state_length / length
+            stiffness *= ratio
+            damping *= math.sqrt(ratio)
+        return length, stiffness, damping
+
+    @kernel
+    def tension(record: Any, length: float, rate: float, since: float) -> float:
+        rest, stiffness, damping = line(record, since)
+        force: float = stiffness * (length - rest) + damping * (rate - record[0].state_command_rate)
+        return force
+
+    @kernel
+    def tension_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
+        moving = record[0].state_command_rate
+        rest, stiffness, damping = line(record, since)
+        slope: float = stiffness * (rate - moving) + damping * acceleration
+        if moving != 0.0:
+            # k goes as 1/l0 and c as its root
+            slope -= moving / rest * (stiffness * (length - rest) + 0.5 * damping * (rate - moving))
+        return slope
+
+    @kernel
+    def onset(record: Any, length: float, rate: float, since: float) -> float:
+        rest, stiffness, damping = line(record, since)
+        stretch: float = length - rest
+        stretching = rate - record[0].state_command_rate
+        if stretching < 0.0:
+            stretch += damping * stretching / stiffness
+        return stretch
+
+    @kernel
+    def onset_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
+        moving = record[0].state_command_rate
+        rest, stiffness, damping = line(record, since)
+        stretching: float = rate - moving
+        if stretching < 0.0:
+            slope: float = stretching + damping * acceleration / stiffness
+            if moving != 0.0:
+                slope += 0.5 * moving / rest * damping * stretching / stiffness
+            return slope
+        return stretching
+
+    @kernel
+    def taut(record: Any, length: float, rate: float) -> bool:
+        return bool(onset(record, length, rate, 0.0) > 0.0 and tension(record, length, rate, 0.0) > 0.0)
+
+    @kernel
+    def energy(record: Any, length: float, since: float) -> float:
+        rest, stiffness, _ = line(record, since)
+        stored: float = 0.5 * stiffness * (length - rest) * (length - rest)
+        return stored
+
+    @kernel
+    def energy_rate(record: Any, length: float, rate: float, since: float) -> float:
+        moving = record[0].state_command_rate
+        rest, stiffness, _ = line(record, since)
+        stretch = length - rest
+        power: float = stiffness * stretch * (rate - moving) - 0.5 * stiffness * moving / rest * stretch * stretch
+        return power
+
+    @kernel
+    def partials(record: Any, length: float, rate: float) -> tuple[float, float]:
+        r = record[0]
+        rest, stiffness, damping = line(record, 0.0)
+        stretch = length - rest
+        by_tension = -stiffness - (stiffness * stretch + 0.5 * damping * (rate - r.state_command_rate)) / rest
+        by_energy = -stiffness * stretch - 0.5 * stiffness * stretch * stretch / rest
+        return by_tension, by_energy
+
+    @kernel
+    def start_limit(record: Any) -> float:
+        limit: float = record[0].tether_rest_length
+        return limit
+
+    return Reel(
+        asked,
+        leave,
+        prepare,
+        taut,
+        tension,
+        tension_rate,
+        onset,
+        onset_rate,
+        energy,
+        energy_rate,
+        partials,
+        start_limit,
+    )

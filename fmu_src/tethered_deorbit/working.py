@@ -1,0 +1,217 @@
+"""Reels that work: one follows a linear law of its own, the other gives the tension it is told. Their line is stiff."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from fmu_src.tethered_deorbit.faults import blame, own_slot
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, NO_LENGTH, REELS
+from fmu_src.tethered_deorbit.law import Reel
+from orbital.kernel import kernel
+
+
+@kernel
+def _no_limit(record: Any) -> float:
+    return math.inf
+
+
+def make_linear() -> Reel:
+    """A reel that controls tension, its line stiff against what it does.
+
+        T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt),   T_ff = 3 n^2 m_r l_c,   l_c = commanded length + offset
+
+    The feed-forward is the tension at rest about the local vertical, n the mean motion of the reference orbit. It moves
+    with the commanded length; the damping stays on dl/dt itself.
+
+    Valid    winding speeds and tensions within what the reel can do
+    Source   physics.md, section 2
+    Checked  tests/tethered_deorbit/test_terms.py, tests/tethered_deorbit/test_ramps.py
+    """
+    own = REELS.terms["linear"].variables
+    proportional_slot, derivative_slot = (
+        own_slot("reel.proportional_gain", own),
+        own_slot("reel.derivative_gain", own),
+    )
+    offset_slot = own_slot("reel.length_offset", own)
+
+    @kernel
+    def asked(record: Any) -> tuple[float, float]:
+        r = record[0]
+        return r.reel_length_offset, r.rate_reel_length_offset
+
+    @kernel
+    def leave(record: Any, value: float) -> None:
+        record[0].reel_length_offset = value
+
+    @kernel
+    def prepare(record: Any, value: float, rate: float, duration: float) -> int:
+        r = record[0]
+        length = r.reel_length + value
+        shortest = min(length, length + rate * duration)
+        if not 0.0 < shortest < math.inf:
+            return blame(record, NO_LENGTH, offset_slot, shortest)
+        if not r.reel_proportional_gain >= 0.0:
+            return blame(record, BAD_PARAMETER, proportional_slot, r.reel_proportional_gain)
+        if not r.reel_derivative_gain >= 0.0:
+            return blame(record, BAD_PARAMETER, derivative_slot, r.reel_derivative_gain)
+        r.state_command = value
+        r.state_command_rate = rate
+        r.state_length = length
+        r.state_stiffness = r.reel_proportional_gain
+        r.state_damping = r.reel_derivative_gain
+        r.state_feed_forward = 3.0 * r.state_mean_motion * r.state_mean_motion * r.state_reduced_mass * length
+        r.state_frequency = max(
+            math.sqrt(r.state_stiffness / r.state_reduced_mass), r.state_damping / r.state_reduced_mass
+        )
+        r.state_frequency = max(r.state_frequency, r.state_mean_motion)
+        r.state_taut_tolerance = r.solver_tolerance_separation
+        return 0
+
+    @kernel
+    def tension(record: Any, length: float, rate: float, since: float) -> float:
+        r = record[0]
+        commanded, forward = r.state_length, r.state_feed_forward
+        if r.state_command_rate != 0.0:
+            commanded = r.state_length + r.state_command_rate * since
+            forward *= commanded / r.state_length
+        stretch = length - commanded
+        force: float = forward + r.state_stiffness * stretch + r.state_damping * rate
+        return force
+
+    @kernel
+    def tension_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
+        r = record[0]
+        slope: float = r.state_stiffness * (rate - r.state_command_rate) + r.state_damping * acceleration
+        if r.state_command_rate != 0.0:
+            slope += r.state_feed_forward * r.state_command_rate / r.state_length
+        return slope
+
+    @kernel
+    def onset(record: Any, length: float, rate: float, since: float) -> float:
+        return float(tension(record, length, rate, since))
+
+    @kernel
+    def onset_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
+        return float(tension_rate(record, length, rate, acceleration, since))
+
+    @kernel
+    def taut(record: Any, length: float, rate: float) -> bool:
+        return bool(tension(record, length, rate, 0.0) > 0.0)
+
+    @kernel
+    def energy(record: Any, length: float, since: float) -> float:
+        r = record[0]
+        stretch = length - (r.state_length + r.state_command_rate * since)
+        stored: float = 0.5 * r.state_stiffness * stretch * stretch
+        return stored
+
+    @kernel
+    def energy_rate(record: Any, length: float, rate: float, since: float) -> float:
+        r = record[0]
+        stretch = length - (r.state_length + r.state_command_rate * since)
+        power: float = r.state_stiffness * stretch * (rate - r.state_command_rate)
+        return power
+
+    @kernel
+    def partials(record: Any, length: float, rate: float) -> tuple[float, float]:
+        r = record[0]
+        by_tension = r.state_feed_forward / r.state_length - r.state_stiffness
+        by_energy = -r.state_stiffness * (length - r.state_length)
+        return by_tension, by_energy
+
+    return Reel(
+        asked,
+        leave,
+        prepare,
+        taut,
+        tension,
+        tension_rate,
+        onset,
+        onset_rate,
+        energy,
+        energy_rate,
+        partials,
+        _no_limit,
+    )
+
+
+def make_commanded() -> Reel:
+    """A reel that gives the tension it is told; its line has no length of its own.
+
+        T = max(0, u),   u the command: reel.tension, moving at its rate
+
+    Taut is a command above zero, or one that rises from it. Where a ramp crosses zero the step ends there.
+
+    Valid    bodies that do not meet
+    Source   ours
+    Checked  tests/tethered_deorbit/test_commanded.py
+    """
+    command_slot = own_slot("reel.tension", REELS.terms["commanded"].variables)
+
+    @kernel
+    def asked(record: Any) -> tuple[float, float]:
+        r = record[0]
+        return r.reel_tension, r.rate_reel_tension
+
+    @kernel
+    def leave(record: Any, value: float) -> None:
+        record[0].reel_tension = value
+
+    @kernel
+    def prepare(record: Any, value: float, rate: float, duration: float) -> int:
+        r = record[0]
+        if not math.isfinite(value + rate * duration):
+            return blame(record, BAD_PARAMETER, command_slot, value)
+        r.state_command = value
+        r.state_command_rate = rate
+        r.state_length = 0.0
+        r.state_stiffness = 0.0
+        r.state_damping = 0.0
+        r.state_feed_forward = value
+        r.state_frequency = r.state_mean_motion
+        r.state_taut_tolerance = r.solver_tolerance_separation
+        return 0
+
+    @kernel
+    def tension(record: Any, length: float, rate: float, since: float) -> float:
+        r = record[0]
+        force: float = r.state_command + r.state_command_rate * since
+        return force
+
+    @kernel
+    def tension_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
+        slope: float = record[0].state_command_rate
+        return slope
+
+    @kernel
+    def taut(record: Any, length: float, rate: float) -> bool:
+        r = record[0]
+        return bool(r.state_command > 0.0 or (r.state_command == 0.0 and r.state_command_rate > 0.0))
+
+    @kernel
+    def energy(record: Any, length: float, since: float) -> float:
+        return 0.0
+
+    @kernel
+    def energy_rate(record: Any, length: float, rate: float, since: float) -> float:
+        return 0.0
+
+    @kernel
+    def partials(record: Any, length: float, rate: float) -> tuple[float, float]:
+        return 1.0, 0.0
+
+    return Reel(
+        asked,
+        leave,
+        prepare,
+        taut,
+        tension,
+        tension_rate,
+        tension,
+        tension_rate,
+        energy,
+        energy_rate,
+        partials,
+        _no_limit,
+    )

@@ -1,0 +1,234 @@
+"""An FMU in a process of its own: the same numbers, and nothing of its troubles becomes ours."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dcone_cosim import build as models
+from dcone_cosim.archive import Archive
+from dcone_cosim.component import CallError, Component, output_names
+from dcone_cosim.errors import FmuError
+from dcone_cosim.scene import load
+from tests.cosim.fmus.build import build
+
+Fmu = Callable[..., Archive]
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def fmu(tmp_path: Path) -> Iterator[Fmu]:
+    archives: list[Archive] = []
+
+    def make(*switches: str, **more: object) -> Archive:
+        archives.append(Archive(build(tmp_path / str(len(archives)), "removal", *switches, **more)))  # type: ignore[arg-type]
+        return archives[-1]
+
+    yield make
+    for archive in archives:
+        archive.close()
+
+
+def is_alive(process: int) -> bool:
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def gone_within(process: int, seconds: float) -> bool:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if not is_alive(process):
+            return True
+        time.sleep(0.05)
+    return False
+
+
+@pytest.mark.slow
+def test_our_removal_gives_the_same_bits() -> None:
+    """Outputs of 300 steps, and of a replay from a saved state, in this process and in another."""
+    (phase,) = load("table2-deorbit").phases
+    path = models.ensure_fmus({"removal": phase.main.terms}, lambda _: None)["removal"]
+    rows = []
+    with Archive(path) as archive:
+        for make in (archive.instantiate, archive.isolate):
+            with make("tow") as component:
+                assert component.variables is archive.variables
+                component.set(phase.main.parameters)
+                component.initialise(0.0, 1e5)
+                read = component.reader(output_names(component.variables))
+                found = [read().copy()]
+                for i in range(300):
+                    component.step(i * 10.0, 10.0)
+                    if i == 200:
+                        component.save("then")
+                    found.append(read().copy())
+                component.restore("then")
+                found.append(read().copy())
+                component.step(2010.0, 10.0)
+                found.append(read().copy())
+                rows.append((read.names, np.array(found), component.state_size()))
+    (names, here, size), (names_there, there, size_there) = rows
+    assert names == names_there
+    assert size == size_there
+    np.testing.assert_array_equal(here, there)
+    np.testing.assert_array_equal(here[201], here[301])
+    np.testing.assert_array_equal(here[202], here[302])
+    assert not np.array_equal(here[201], here[202])
+
+
+def test_readers_do_not_keep_what_has_changed(fmu: Fmu) -> None:
+    with fmu().isolate("tow") as component:
+        component.set({"start.relative_velocity[1]": 1.0, "start.relative_position[1]": 5.0})
+        component.initialise(0.0)
+        first, second = component.reader(["separation"]), component.reader(["relative.position[1]"])
+        for i in range(3):
+            assert first()[0] == second()[0] == 5.0 + i
+            component.step(float(i), 1.0)
+        component.save()
+        component.step(3.0, 1.0)
+        assert first()[0] == 9.0
+        component.restore()
+        assert first()[0] == second()[0] == 8.0
+        assert component.get(["separation"]) == {"separation": 8.0}
+
+
+def test_what_it_prints_reaches_no_stream_of_ours(fmu: Fmu, capfd: pytest.CaptureFixture[str]) -> None:
+    with fmu("NOISE", when=-1.0).isolate("tow") as component:
+        component.initialise(0.0)
+        for i in range(2000):
+            component.step(float(i), 1.0)
+        component.get(["separation"])
+    written = capfd.readouterr()
+    assert "noise" not in written.out + written.err
+    with fmu("NOISE", when=-1.0).instantiate("tow") as component:
+        component.initialise(0.0)
+        component.step(0.0, 1.0)
+    assert "noise on stderr" in capfd.readouterr().err
+
+
+def test_an_error_keeps_its_class_and_words(fmu: Fmu) -> None:
+    with fmu("DISCARD").isolate("tow") as component:
+        with pytest.raises(FmuError, match=r"no variable 'seperation'; did you mean 'separation'"):
+            component.get(["seperation"])
+        component.initialise(0.0)
+        component.save()
+        with pytest.raises(CallError, match="too long for me") as caught:
+            component.step(0.0, 80.0)
+        assert (caught.value.status, caught.value.reached, caught.value.name) == ("Discard", 20.0, "tow")
+        component.restore()
+        component.step(0.0, 20.0)
+
+
+def test_after_a_crash_every_call_says_so_and_closing_is_quiet(fmu: Fmu) -> None:
+    component = fmu("CRASH").isolate("tow")
+    component.initialise(0.0)
+    read = component.reader(["separation"])
+    process = component._child.pid
+    with pytest.raises(CallError, match="SIGSEGV") as caught:
+        component.step(45.0, 10.0)
+    assert caught.value.broken
+    for again in (lambda: component.step(45.0, 10.0), read, component.save, lambda: component.get(["separation"])):
+        with pytest.raises(CallError, match=r"tow at t = 45 s in a step of 10 s:\n.*SIGSEGV"):
+            again()
+    component.close()
+    component.close()
+    assert not is_alive(process)
+
+
+def test_a_hang_is_ended_in_time_and_a_slow_one_is_not(fmu: Fmu) -> None:
+    with fmu("HANG").isolate("tow", timeout=2.0) as component:
+        component.initialise(0.0)
+        for i in range(3):  # together longer than the timeout
+            component.step(float(i), 1.0)
+            time.sleep(0.8)
+        begin = time.monotonic()
+        with pytest.raises(CallError, match=r"did not answer within 2 s and was killed"):
+            component.step(45.0, 10.0)
+        assert 2.0 <= time.monotonic() - begin < 4.0
+
+
+def test_a_closed_one_leaves_no_process(fmu: Fmu) -> None:
+    component = fmu().isolate("tow")
+    process = component._child.pid
+    component.initialise(0.0)
+    component.close()
+    assert not is_alive(process)
+    with pytest.raises(FmuError, match="closed"):
+        component.step(0.0, 1.0)
+
+
+def parent(archive: Archive, rest: str) -> subprocess.Popen[str]:
+    """A process that isolates the FMU, prints its child's id, and does the rest."""
+    program = f"""
+        from pathlib import Path
+        from dcone_cosim.archive import Archive
+        component = Archive(Path({str(archive.path)!r})).isolate("tow", 60.0)
+        component.initialise(0.0)
+        print(component._child.pid, flush=True)
+    """
+    return subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(program) + textwrap.dedent(rest)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )
+
+
+@pytest.mark.parametrize("rest", ["import time; time.sleep(60)", "component.step(45.0, 10.0)"], ids=["idle", "hanging"])
+def test_it_dies_with_its_parent(fmu: Fmu, rest: str) -> None:
+    """Also when the parent is killed and the FMU never returns."""
+    with parent(fmu("HANG"), rest) as process:
+        assert process.stdout is not None
+        child = int(process.stdout.readline())
+        time.sleep(0.5)
+        assert is_alive(child)
+        process.kill()
+        process.wait()
+        assert gone_within(child, 5.0)
+
+
+def test_ctrl_c_ends_a_step_that_hangs(fmu: Fmu) -> None:
+    rest = """
+        try:
+            component.step(45.0, 10.0)
+        except KeyboardInterrupt:
+            component.close()
+            print("interrupted", flush=True)
+    """
+    with parent(fmu("HANG"), rest) as process:
+        assert process.stdout is not None
+        child = int(process.stdout.readline())
+        time.sleep(0.5)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "interrupted\n"
+        assert time.monotonic() - begin < 3.0
+        assert gone_within(child, 1.0)
+
+
+def test_one_that_cannot_be_instantiated(fmu: Fmu) -> None:
+    archive = fmu(change=lambda xml: xml.replace('guid="', 'guid="other-'))
+    for make in (archive.instantiate, archive.isolate):
+        with pytest.raises(FmuError, match="tow could not be instantiated"):
+            make("tow")
+
+
+def test_both_offer_the_same(fmu: Fmu) -> None:
+    with fmu().isolate("tow") as component:
+        offered = {name for name in vars(Component) if not name.startswith("_")} - {"reference", "not_finite"}
+        assert offered <= set(dir(component))
+        assert (component.can_save, component.can_interpolate) == (True, False)
