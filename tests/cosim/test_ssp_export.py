@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import fmpy.ssp.ssd
@@ -10,13 +11,16 @@ import numpy as np
 import pytest
 from lxml import etree
 
+from dcone_cosim import build
 from dcone_cosim import scene as scenes
 from dcone_cosim.archives import Archives
+from dcone_cosim.coupling import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
+from dcone_cosim.ssp import system
 from dcone_cosim.ssp.export import export_scene, identifier
-from tests.cosim.ssp_packages import STRUCTURE, contents
+from tests.cosim.ssp_packages import STRUCTURE, changed, contents, packed
 
 SHORT = """
 title = "A tow for ten minutes"
@@ -38,15 +42,14 @@ PAIR = """
 [removal]
 macro_step = "10 s"
 duration = "600 s"
-connections = [
-    "removal.tether.length -> controller.length",
-    "removal.tether.length_rate -> controller.length_rate",
-    "controller.tension -> removal.reel.tension",
-]
+connections = ["removal.tether.tension -> other.thrust.offset"]
 [removal.reel]
-law = "commanded"
-[removal.components.controller]
-model = "reel_control"
+law = "locked"
+[removal.components.other]
+fmu = "other.fmu"
+[removal.components.other.parameters]
+"thrust.level" = "-0.02 N"
+"tether.damping_ratio" = 0.1
 [removal.coupling]
 method = "jacobi"
 step = "5 s"
@@ -75,6 +78,17 @@ def tow(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.fixture
+def pair(tmp_path: Path) -> Path:
+    """A removal whose tension pushes the chaser of another removal: a second FMU, and a connection."""
+    (tmp_path / "tow.toml").write_text(SHORT.format(duration="600 s"))
+    main = scenes.load(str(tmp_path / "tow.toml")).phases[0].main
+    shutil.copy(build.ensure([(main.model, main.terms)], print)[0], tmp_path / "other.fmu")
+    path = tmp_path / "pair.toml"
+    path.write_text(PAIR)
+    return path
+
+
 @pytest.mark.parametrize("form", ["inline", "ssv"])
 def test_a_package_runs_to_the_bits_of_its_scene(tow: Path, tmp_path: Path, form: str) -> None:
     done = export_scene(str(tow), tmp_path / "out", Progress(), form=form)
@@ -92,14 +106,50 @@ def test_another_value_gives_other_bits(tow: Path, tmp_path: Path) -> None:
     assert same(run(tow, "removal.thrust.level=-0.0101 N"), run(package, "removal.thrust.level=-0.0101 N"))
 
 
-def test_several_components_keep_their_connections_and_coupling(tmp_path: Path) -> None:
-    (tmp_path / "pair.toml").write_text(PAIR)
-    (package,) = export_scene(str(tmp_path / "pair.toml"), tmp_path, Progress()).paths
-    by_package = run(package)
-    assert [c.name for c in by_package.scene.phases[0].components] == ["removal", "controller"]
-    assert len(by_package.scene.phases[0].connections) == 3
-    assert by_package.scene.phases[0].coupling.method == "jacobi"
-    assert same(run(tmp_path / "pair.toml"), by_package)
+def test_several_components_keep_their_connections_and_coupling(pair: Path, tmp_path: Path) -> None:
+    (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+    by_scene, by_package = run(pair), run(package)
+    phase = by_package.scene.phases[0]
+    assert [component.name for component in phase.components] == ["removal", "other"]
+    assert phase.connections == by_scene.scene.phases[0].connections
+    assert phase.coupling == by_scene.scene.phases[0].coupling
+    assert "other.tether.tension" in by_package.phases["removal"].recorder
+    assert same(by_scene, by_package)
+
+
+@pytest.fixture
+def linear(pair: Path, tmp_path: Path) -> Callable[[str], RunResult]:
+    """The pair with something else on its connection."""
+
+    def make(attributes: str) -> RunResult:
+        (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+        closing = f"><ssc:LinearTransformation {attributes}/></ssd:Connection>"
+        old = 'endConnector="thrust.offset"'
+        return run(changed(package, tmp_path / "linear.ssp", (f"{old}/>", f"{old}{closing}")))
+
+    return make
+
+
+def test_a_linear_transformation_stands_between_output_and_input(linear: Callable[[str], RunResult]) -> None:
+    """With the factor 0 the offset alone pushes, as much as the same push given from the start; a factor counts."""
+    pushed = linear('factor="0" offset="0.005"')
+    recorder = pushed.phases["removal"].recorder
+    unlike = linear('factor="0" offset="0.006"').phases["removal"].recorder
+    assert not np.array_equal(recorder["other.separation"], unlike["other.separation"])
+    assert np.array_equal(recorder["separation"], unlike["separation"])
+    (connection,) = linear('factor="2" offset="1"').scene.phases[0].connections
+    assert (connection.factor, connection.offset) == (2.0, 1.0)
+
+
+def test_without_our_annotation_the_contract_tells_the_phase(pair: Path, tmp_path: Path) -> None:
+    (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+    files = contents(package)
+    root = etree.fromstring(files[STRUCTURE])
+    root.remove(root.findall("{*}Annotations")[-1])
+    files[STRUCTURE] = etree.tostring(root)
+    phase = system.load(packed(tmp_path / "plain.ssp", files)).phases[0]
+    assert (phase.name, phase.main.name, phase.macro_step, phase.duration) == ("removal", "removal", 10.0, 600.0)
+    assert phase.coupling == Coupling()
 
 
 def test_the_bytes_depend_on_the_scene_alone(tow: Path, tmp_path: Path) -> None:
@@ -117,11 +167,9 @@ def _errors(content: bytes, schema: str) -> list[str]:
     return [entry.message for entry in rules.error_log]
 
 
-@pytest.mark.parametrize("text", [SHORT.format(duration="600 s"), PAIR])
 @pytest.mark.parametrize("form", ["inline", "ssv"])
-def test_what_is_written_is_valid_by_the_schemas_of_ssp(tmp_path: Path, text: str, form: str) -> None:
-    (tmp_path / "mine.toml").write_text(text)
-    (package,) = export_scene(str(tmp_path / "mine.toml"), tmp_path, Progress(), form=form).paths
+def test_what_is_written_is_valid_by_the_schemas_of_ssp(pair: Path, tmp_path: Path, form: str) -> None:
+    (package,) = export_scene(str(pair), tmp_path, Progress(), form=form).paths
     files = contents(package)
     assert _errors(files[STRUCTURE], "SystemStructureDescription.xsd") == []
     sets = [name for name in files if name.endswith(".ssv")]
@@ -145,16 +193,15 @@ def test_lists_carry_no_attributes_and_prefixes_are_those_that_tools_look_for(to
     assert b"ssd:Enumeration" not in text
 
 
-def test_inputs_that_nothing_is_connected_to_can_be_left_out(tmp_path: Path) -> None:
-    (tmp_path / "pair.toml").write_text(PAIR)
-    closed = export_scene(str(tmp_path / "pair.toml"), tmp_path / "closed", Progress(), open_inputs=False).paths[0]
-    opened = export_scene(str(tmp_path / "pair.toml"), tmp_path / "open", Progress()).paths[0]
+def test_inputs_that_nothing_is_connected_to_can_be_left_out(pair: Path, tmp_path: Path) -> None:
+    closed = export_scene(str(pair), tmp_path / "closed", Progress(), open_inputs=False).paths[0]
+    opened = export_scene(str(pair), tmp_path / "open", Progress()).paths[0]
 
     def inputs(package: Path) -> set[str]:
         root = etree.fromstring(contents(package)[STRUCTURE])
         return {row.get("name") for row in root.iter("{*}Connector") if row.get("kind") == "input"}
 
-    assert inputs(closed) == {"reel.tension", "length", "length_rate"}
+    assert inputs(closed) == {"thrust.offset"}
     assert inputs(closed) < inputs(opened)
 
 
