@@ -143,13 +143,14 @@ def export_ssp(
     open_inputs: Annotated[
         bool, typer.Option("--open-inputs/--no-open-inputs", help="List inputs that nothing is connected to.")
     ] = True,
+    settings: Settings = None,
 ) -> None:
     """Write one package in the format SSP 1.0 per phase of a scene, for use in other tools."""
     from dcone_cosim.ssp.export import export_scene
 
     progress = _progress()
     try:
-        done = export_scene(scene, out, progress, from_run, parameters, open_inputs)
+        done = export_scene(scene, out, progress, from_run, parameters, open_inputs, settings or ())
     finally:
         progress.close()
     with _reader_may_leave():

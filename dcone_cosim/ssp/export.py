@@ -59,6 +59,8 @@ def export_scene(
     form           which of `FORMS` the structure binds its values in
     open_inputs    list inputs that nothing is connected to; fmpy's `simulate_ssp` cannot have them
     settings       `KEY.KEY=VALUE`, each in the place of what the scene says
+
+    Checked  tests/cosim/test_ssp_export.py, tests/interop/test_ssp_tools.py
     """
     if form not in FORMS:
         raise InputError(f"--parameters {form}: expected {' or '.join(FORMS)}{did_you_mean(form, FORMS)}")
@@ -115,7 +117,8 @@ def _phases(scene: Scene, from_run: Path | None, notes: list[str]) -> list[Phase
 def _handed_over(scene: Scene, removal: PhaseScene, folder: Path) -> PhaseScene:
     """The removal as a run of the scene began it."""
     told = _json(folder, "provenance.json")
-    if (folder / "scene.toml").read_text(encoding="utf-8") != scene.text:
+    kept = folder / "scene.toml"
+    if not kept.is_file() or kept.read_text(encoding="utf-8") != scene.text:
         raise InputError(
             f"--from-run {folder}: that run was of another scene, {told.get('scene')!r}; "
             f"export its own, {folder / 'scene.toml'}"

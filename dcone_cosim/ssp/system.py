@@ -26,6 +26,8 @@ def load(path: Path, settings: Sequence[str] = ()) -> Scene:
     """The scene that a package holds, checked; an `InputError` lists every mistake found.
 
     settings    `PHASE.macro_step=0.1 s`, `COMPONENT.VARIABLE=VALUE`, each in the place of what the package says
+
+    Checked  tests/cosim/test_ssp_bad.py, tests/cosim/test_ssp_export.py
     """
     mistakes = Mistakes(str(path))
     folder = unpacked_folder()

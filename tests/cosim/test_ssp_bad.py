@@ -165,9 +165,8 @@ def _link(archive: zipfile.ZipFile) -> None:
 def test_an_entry_that_would_leave_the_package_is_refused(
     good: Path, tmp_path: Path, add: Callable[[zipfile.ZipFile], None], said: str
 ) -> None:
-    path = packed(
-        tmp_path / "in" / "bad.ssp" if (tmp_path / "in").mkdir() else tmp_path / "in" / "bad.ssp", contents(good)
-    )
+    (tmp_path / "in").mkdir()
+    path = packed(tmp_path / "in" / "bad.ssp", contents(good))
     with zipfile.ZipFile(path, "a") as archive:
         add(archive)
     assert said in refusal(path)

@@ -173,7 +173,7 @@ def test_what_is_written_is_valid_by_the_schemas_of_ssp(pair: Path, tmp_path: Pa
     files = contents(package)
     assert _errors(files[STRUCTURE], "SystemStructureDescription.xsd") == []
     sets = [name for name in files if name.endswith(".ssv")]
-    assert "resources/removal.ssv" in sets
+    assert sets == ["resources/other.ssv"]
     for name in sets:
         assert _errors(files[name], "SystemStructureParameterValues.xsd") == []
     assert _errors(files[STRUCTURE].replace(b'version="1.0"', b'version="x"', 1), "SystemStructureDescription.xsd")
@@ -181,7 +181,7 @@ def test_what_is_written_is_valid_by_the_schemas_of_ssp(pair: Path, tmp_path: Pa
 
 
 def test_lists_carry_no_attributes_and_prefixes_are_those_that_tools_look_for(tow: Path, tmp_path: Path) -> None:
-    """libcosim takes an attribute of a list, a namespace among them, for an item; ecos and libcosim know prefixes only."""
+    """libcosim takes an attribute of a list, a namespace among them, for an item; ecos too knows prefixes only."""
     (package,) = export_scene(str(tow), tmp_path, Progress()).paths
     text = contents(package)[STRUCTURE]
     root = etree.fromstring(text)

@@ -50,12 +50,19 @@ def in_tool(tool: str, package: Path, component: str, step: float, steps: int, s
 
 
 def spread(found: dict, own: Recorder, rows: int) -> float:
-    """Largest difference of an output in all rows but the first, as a share of its largest size."""
+    """Largest difference of an output in all rows but the first, as a share of its largest size.
+
+    An element of a vector counts by the largest of the vector: across the orbit there is nothing but rounding.
+    """
     worst = 0.0
+    sizes: dict[str, float] = {}
+    for name in own.names[1:]:
+        vector = name.partition("[")[0]
+        sizes[vector] = max(sizes.get(vector, 0.0), float(np.max(np.abs(own[name]))))
     for name in own.names[1:]:
         if name in found:
             ours, theirs = own[name][1:rows], found[name][1:rows]
-            size = float(np.max(np.abs(ours))) or 1.0
+            size = sizes[name.partition("[")[0]] or 1.0
             worst = max(worst, float(np.max(np.abs(ours - theirs))) / size)
     return worst
 
@@ -99,7 +106,7 @@ def test_a_capture_has_our_bits(tool: str, mission: tuple[Path, ...]) -> None:
     assert spread(found, ours, 401) == 0.0
 
 
-SPREADS = {"libcosim": 0.0, "fmpy": 1e-9, "ecos": 1e-9}
+SPREADS = {"libcosim": 0.0, "fmpy": 1e-11, "ecos": 1e-11}
 """Of the mission's removal, which begins at 8.14 s: the time of a tool off by an ulp moves a tug by as much."""
 
 
@@ -109,7 +116,5 @@ def test_a_removal_that_was_handed_over(tool: str, mission: tuple[Path, ...]) ->
     ours = own(mission[1])
     start = float(ours["time"][0])
     found = in_tool(tool, mission[1], "removal", 10.0, 1000, start)
-    for name in [n for n in found if n.startswith("tug[") and n.endswith("time")]:
-        del found[name]
     assert spread(found, ours, 1001) <= SPREADS[tool]
     assert spread(found, own(mission[1], "removal.thrust.level=-0.0101 N"), 1001) > 1e-6
