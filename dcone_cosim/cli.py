@@ -139,6 +139,36 @@ def build(
             typer.echo(path)
 
 
+@app.command(name="export-ssp")
+def export_ssp(
+    scene: SceneName,
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .ssp files.")] = Path(),
+    from_run: Annotated[
+        Path | None, typer.Option("--from-run", help="Results of this scene: begin the removal as handed over there.")
+    ] = None,
+    parameters: Annotated[
+        str, typer.Option("--parameters", help="Where the structure has its values: inline, or in the ssv files.")
+    ] = "inline",
+    open_inputs: Annotated[
+        bool, typer.Option("--open-inputs/--no-open-inputs", help="List inputs that nothing is connected to.")
+    ] = True,
+    settings: Settings = None,
+) -> None:
+    """Write one package in the format SSP 1.0 per phase of a scene, for use in other tools."""
+    from dcone_cosim.ssp.export import export_scene
+
+    progress = _progress()
+    try:
+        done = export_scene(scene, out, progress, from_run, parameters, open_inputs, settings or ())
+    finally:
+        progress.close()
+    with _reader_may_leave():
+        for path in done.paths:
+            typer.echo(path)
+    for note in done.notes:
+        _complain(f"note: {note}")
+
+
 @app.command(name="list")
 def list_scenes() -> None:
     """Name the scenes that come with the program."""

@@ -11,12 +11,17 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class Connection:
-    """An output of one component that sets an input of another, by instance and variable name."""
+    """An output of one component that sets an input of another, by instance and variable name.
+
+    The input becomes factor * output + offset, both in SI.
+    """
 
     source: str
     output: str
     target: str
     input: str
+    factor: float = 1.0
+    offset: float = 0.0
 
     def __str__(self) -> str:
         return f"{self.source}.{self.output} -> {self.target}.{self.input}"

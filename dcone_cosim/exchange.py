@@ -137,7 +137,8 @@ class Exchange:
                 link = self.links[k]
                 ahead = self.gauss_seidel and link.source in reached
                 if self.moving[k]:
-                    rates[link.input] = (self.out[k] - before[k]) / size if ahead else self._rate[k]
+                    rate = (self.out[k] - before[k]) / size if ahead else self._rate[k]
+                    rates[link.input] = link.connection.factor * rate
                     self._held[k] = UNSET  # the FMU may keep the value set or the one reached
                 elif ahead and self._held[k] != link.carried(self.out[k]):
                     fresh[link.input] = self._held[k] = link.carried(self.out[k])

@@ -32,7 +32,7 @@ from dcone_cosim.ledger import LedgerRow, ledger
 from dcone_cosim.mistakes import places_named
 from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import PhaseScene, Scene
+from dcone_cosim.scene import PHASES, PhaseScene, Scene
 
 Instantiate = Callable[[str, str], Steppable]
 """`instantiate(phase, name)` makes a component of that phase's FMU."""
@@ -94,6 +94,8 @@ def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> Run
             return run
     if "removal" in phases:
         _run_removal(run, phases["removal"], instantiate, progress)
+    for name in phases.keys() - PHASES:
+        _run_plain(run, phases[name], instantiate, progress)
     return run
 
 
@@ -184,7 +186,7 @@ def _altitude(run: RunResult, removal: PhaseScene) -> float:
 
 
 def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress) -> None:
-    parameters, start = dict(phase.main.parameters), 0.0
+    parameters, start = dict(phase.main.parameters), phase.start
     record = run.handoff
     if record is not None:
         start = record.time
@@ -238,6 +240,25 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
         run.fail("FMU failed", str(result.error), FMU_FAILED)
     elif record is not None and run.scene.handoff.get("compare_without_recoil", True):
         run.comparison = _compare(run, phase, parameters, instantiate, progress)
+
+
+def _run_plain(run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress) -> None:
+    """A phase that is neither capture nor removal: stepped from its start to its stop, its outputs recorded."""
+    component = instantiate(phase.name, phase.name)
+    try:
+        try:
+            run.parameters[phase.name] = _start(component, phase.main.parameters, phase.start, phase.duration)
+            loop = RemovalLoop(component, phase.macro_step, phase.start, phase.duration, progress)
+        except FmuError as error:
+            raise cannot_begin(run.scene, phase.name, error) from error
+        progress.begin(phase.name, phase.start, phase.start + phase.duration)
+        result = loop.run()
+        progress.end()
+    finally:
+        component.close()
+    run.phases[phase.name] = result
+    if result.error is not None:
+        run.fail("FMU failed", str(result.error), FMU_FAILED)
 
 
 def advanced(anomaly: float, by: float) -> float:

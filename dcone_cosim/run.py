@@ -196,7 +196,8 @@ def fill(
     import pyarrow.csv
     import pyarrow.parquet
 
-    (folder / "scene.toml").write_text(run.scene.text, encoding="utf-8")
+    source = "SystemStructure.ssd" if run.scene.source.lower().endswith(".ssp") else "scene.toml"
+    (folder / source).write_text(run.scene.text, encoding="utf-8")
     for name, table in _tables(run):
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet")
         if with_csv:

@@ -62,6 +62,7 @@ class PhaseScene:
     main         the component that the phase is about: it offers what `contract` asks of the phase
     others       further components, connected to it and to one another
     options      what concerns the master: hand_over, after_capture, snapshots
+    start        when it begins [s], unless another phase hands over to it
     """
 
     name: str
@@ -72,6 +73,7 @@ class PhaseScene:
     others: tuple[ComponentScene, ...] = ()
     connections: tuple[Connection, ...] = ()
     coupling: Coupling = field(default_factory=Coupling)
+    start: float = 0.0
 
     @property
     def components(self) -> tuple[ComponentScene, ...]:
@@ -134,6 +136,10 @@ def load(name: str, settings: Sequence[str] = ()) -> Scene:
     settings     `KEY.KEY=VALUE`, each in the place of what the file says
     """
     path = find(name)
+    if path.suffix.lower() == ".ssp":
+        from dcone_cosim.ssp import system
+
+        return system.load(path, settings)
     return parse(read_text(path), path.stem, str(path), path.parent, settings)
 
 

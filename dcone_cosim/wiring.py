@@ -40,7 +40,10 @@ class Link:
 
     def carried(self, value: float) -> float:
         """What the input gets when the output has this value."""
-        return float(value != 0.0) if self.to_boolean else value
+        if self.to_boolean:
+            return float(value != 0.0)
+        factor, offset = self.connection.factor, self.connection.offset
+        return value if factor == 1.0 and offset == 0.0 else factor * value + offset
 
 
 def wire(

@@ -42,7 +42,8 @@ def findings(run: RunResult) -> list[Finding]:
     for name, result in run.phases.items():
         if name == "removal" and run.handoff is not None:
             rows += _of_handoff(run, run.handoff)
-        rows += _of_capture(run, result) if name == "capture" else _of_removal(run, result)
+        of_phase = {"capture": _of_capture, "removal": _of_removal}.get(name, _of_plain)
+        rows += of_phase(run, result)
         rows += _of_effort(name, result)
     if run.handoff is not None and "removal" not in run.phases:
         rows += _of_handoff(run, run.handoff)
@@ -147,6 +148,23 @@ def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
         energy = next(row for row in record.rows if row.quantity == "kinetic energy")
         lost = energy.accounted - spin_energy(handed.joint)
         yield Finding("hand-off", "energy_lost", "energy lost as the net joins", lost, "J")
+
+
+MOST_OUTPUTS = 12
+"""Outputs of a plain phase that the summary shows; all are in its columns."""
+
+
+def _of_plain(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
+    """A phase that nothing is known of but its outputs."""
+    name = next(name for name, its in run.phases.items() if its is result)
+    yield Finding(name, "simulated", "simulated", result.end - result.start, "s")
+    recorder = result.recorder
+    if not len(recorder):
+        return
+    last = recorder.last()
+    for output in [key for key in last if key != "time"][:MOST_OUTPUTS]:
+        unit = recorder.units[output]
+        yield Finding(name, output, f"{output} at the end", last[output], "" if unit == "1" else unit)
 
 
 def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:

@@ -1,0 +1,246 @@
+"""Packages of a scene: one .ssp per phase, for any tool that reads SSP 1.0.
+
+A phase that follows a hand-off begins with what the one before hands over. The scene alone does not know that; the
+folder of a run does.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import tempfile
+import zipfile
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from dcone_cosim import build
+from dcone_cosim.archive import Archive
+from dcone_cosim.coupling import Connection
+from dcone_cosim.errors import InputError
+from dcone_cosim.fmi_units import read_units
+from dcone_cosim.names import did_you_mean
+from dcone_cosim.progress import Progress
+from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene, load
+from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
+from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
+from dcone_cosim.steppable import VariableInfo
+
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The earliest time a zip archive can tell: what is written depends on the content alone."""
+FORMS = ("inline", "ssv")
+"""Where the structure has its values: in itself, or in the .ssv files, which are there in any case."""
+
+
+@dataclass
+class Exported:
+    """The packages written, and what to tell of them."""
+
+    paths: list[Path] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def export_scene(
+    name: str,
+    out: Path,
+    progress: Progress,
+    from_run: Path | None = None,
+    form: str = "inline",
+    open_inputs: bool = True,
+    settings: Sequence[str] = (),
+) -> Exported:
+    """Write `SCENE-PHASE.ssp` for every phase of a scene.
+
+    from_run       folder of a run of this scene: its removal begins as it was handed over there
+    form           which of `FORMS` the structure binds its values in
+    open_inputs    list inputs that nothing is connected to; fmpy's `simulate_ssp` cannot have them
+    settings       `KEY.KEY=VALUE`, each in the place of what the scene says
+
+    Checked  tests/cosim/test_ssp_export.py, tests/interop/test_ssp_tools.py
+    """
+    if form not in FORMS:
+        raise InputError(f"--parameters {form}: expected {' or '.join(FORMS)}{did_you_mean(form, FORMS)}")
+    scene = load(name, settings)
+    if out.exists() and not out.is_dir():
+        raise InputError(f"{out} is not a folder")
+    done = Exported()
+    phases = _phases(scene, from_run, done.notes)
+    ours = [(p.name, c) for p in phases for c in p.components if c.fmu is None]
+    built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
+    fmus = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
+    fmus |= {(p.name, c.name): c.fmu for p in phases for c in p.components if c.fmu is not None}
+    contents = [(phase.name, _package(scene, phase, fmus, form, open_inputs)) for phase in phases]
+    made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
+            drafts = [_zip(Path(draft) / f"{scene.name}-{phase}.ssp", content) for phase, content in contents]
+            for path in drafts:
+                os.replace(path, out / path.name)
+                done.paths.append(out / path.name)
+    except BaseException:
+        for folder in made:
+            with suppress(OSError):
+                folder.rmdir()
+        raise
+    return done
+
+
+def _phases(scene: Scene, from_run: Path | None, notes: list[str]) -> list[PhaseScene]:
+    """The phases as they are to be written, each to be run by itself."""
+    if len(scene.phases) < len(PHASES):
+        if from_run is not None:
+            raise InputError(f"--from-run {from_run}: {scene.source or scene.name} has no hand-off to take from a run")
+        return list(scene.phases)
+    capture, removal = scene.phases
+    # the mission ends its capture at the hand-over; alone, a capture goes on for `after_capture`
+    capture = replace(capture, options={**capture.options, "after_capture": 0.0})
+    if from_run is not None:
+        return [capture, _handed_over(scene, removal, from_run)]
+    values = {**removal.main.defaults, **removal.main.parameters}
+    begins = "the removal begins with what the capture hands over, which the scene alone does not tell"
+    how = "run the scene, then export it with --from-run FOLDER"
+    refusals = build.cannot_work("removal", values, removal.duration, removal.main.terms, False)
+    if refusals:
+        first = refusals[0]
+        reason = f"by itself it cannot begin: {first.variable} = {first.given} {first.expected}"
+        notes.append(f"{begins}; {reason}. It is left out: {how}")
+        return [capture]
+    notes.append(f"{begins}. It is written with the scene's own start, both at rest on one orbit: {how}")
+    return [capture, removal]
+
+
+def _handed_over(scene: Scene, removal: PhaseScene, folder: Path) -> PhaseScene:
+    """The removal as a run of the scene began it."""
+    told = _json(folder, "provenance.json")
+    kept = folder / "scene.toml"
+    if not kept.is_file() or kept.read_text(encoding="utf-8") != scene.text:
+        raise InputError(
+            f"--from-run {folder}: that run was of another scene, {told.get('scene')!r}; "
+            f"export its own, {folder / 'scene.toml'}"
+        )
+    phase = told.get("phases", {}).get("removal")
+    if phase is None:
+        raise InputError(f"--from-run {folder}: that run has no removal: {told.get('message') or told.get('status')}")
+    start = float(_json(folder, "ledger.json")["time"]["value"])
+    parameters = {name: float(value) for name, value in phase["parameters"].items()}
+    return replace(removal, main=replace(removal.main, parameters=parameters), start=start)
+
+
+def _json(folder: Path, name: str) -> dict[str, Any]:
+    try:
+        content: dict[str, Any] = json.loads((folder / name).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"--from-run {folder}: {name}: {error.strerror}; expected the folder of a run") from error
+    except ValueError as error:
+        raise InputError(f"--from-run {folder}: {name} is not valid JSON ({error})") from error
+    return content
+
+
+def _package(
+    scene: Scene, phase: PhaseScene, fmus: Mapping[tuple[str, str], Path], form: str, open_inputs: bool
+) -> dict[str, bytes]:
+    """Files of a package by their path in it."""
+    files: dict[str, bytes] = {}
+    parts = []
+    variables: dict[str, Mapping[str, VariableInfo]] = {}
+    connected = {(c.target, c.input) for c in phase.connections}
+    for component in phase.components:
+        path = fmus[phase.name, component.name]
+        source = f"{RESOURCES}/{component.name}.fmu"
+        with Archive(path) as archive:
+            part = _part(component, archive, source, None if open_inputs else connected)
+            variables[component.name] = archive.variables
+        files[source] = path.read_bytes()
+        if part.values:
+            values_at = f"{RESOURCES}/{component.name}.ssv"
+            files[values_at] = parameter_set(part.values, part.units)
+            part = replace(part, values_at=values_at if form == "ssv" else "")
+        parts.append(part)
+    content = Structure(
+        identifier(f"{scene.name}_{phase.name}"),
+        scene.title or scene.name,
+        parts,
+        [_wire(c, variables[c.source][c.output], variables[c.target][c.input]) for c in phase.connections],
+        phase.start,
+        phase.start + phase.duration,
+        phase.macro_step,
+        _ours(phase),
+    )
+    return {STRUCTURE: structure(content), **files}
+
+
+def identifier(name: str) -> str:
+    """A name that OMSimulator takes: letters, digits and underscores, no digit in front."""
+    made = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return made if made[:1].isalpha() else f"_{made}"
+
+
+def _part(component: ComponentScene, archive: Archive, source: str, connected: set[tuple[str, str]] | None) -> Part:
+    """connected: inputs to list, by instance and name; None for all"""
+    known = read_units(archive.description.unitDefinitions, str(archive.path))
+    units = {name: unit for name, unit in known.items() if unit.dimension is not None}
+    kinds = {row.name: row.type for row in archive.description.modelVariables if row.type in KINDS}
+    rows = {name: archive.variables[name] for name in kinds}
+
+    def unit(name: str) -> str:
+        declared = rows[name].declared_unit
+        return declared if kinds[name] == "Real" and declared in units else ""
+
+    ports = [
+        Port(row.name, row.causality, row.kind, unit(row.name))
+        for row in rows.values()
+        if row.causality == "output"
+        or (row.causality == "input" and (connected is None or (component.name, row.name) in connected))
+    ]
+    values = [
+        Value(name, rows[name].kind, own_value(rows[name], value), unit(name))
+        for name, value in component.parameters.items()
+        if name in rows and not math.isnan(value)
+    ]
+    return Part(component.name, source, ports, values, units)
+
+
+def _wire(connection: Connection, out: VariableInfo, to: VariableInfo) -> Wire:
+    """The connection between the values as the two FMUs count them; it is between SI values inside."""
+    factor, offset = connection.factor, connection.offset
+    if not (out.is_si and to.is_si):
+        offset = (factor * out.offset + offset - to.offset) / to.factor
+        factor = factor * (out.factor / to.factor)
+    return Wire((connection.source, out.name), (connection.target, to.name), factor, offset)
+
+
+def own_value(info: VariableInfo, value: float) -> float:
+    """A value in SI in the unit that the FMU counts in."""
+    return value if info.is_si else (value - info.offset) / info.factor
+
+
+def _ours(phase: PhaseScene) -> dict[str, dict[str, str]]:
+    """What a phase is beyond SSP, for our own master."""
+    plan = {"name": phase.name, "main": phase.main.name}
+    plan |= {"macro_step": repr(phase.macro_step), "duration": repr(phase.duration)}
+    for key, value in phase.options.items():
+        if isinstance(value, str | float):
+            plan[key] = value if isinstance(value, str) else repr(value)
+        elif isinstance(value, list | tuple) and value:
+            plan[key] = " ".join(map(repr, value))
+    ours = {"Plan": plan}
+    if phase.others:
+        told = {key: value for key, value in vars(phase.coupling).items() if value}
+        ours["Coupling"] = {k: " ".join(v) if isinstance(v, tuple) else str(v) for k, v in told.items()}
+    return ours
+
+
+def _zip(path: Path, content: Mapping[str, bytes]) -> Path:
+    """An archive whose bytes depend on its content alone; stored, since the FMUs in it are compressed already."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
+        for name in (STRUCTURE, *sorted(content.keys() - {STRUCTURE})):
+            info = zipfile.ZipInfo(name, EPOCH)
+            info.create_system = 3
+            info.external_attr = 0o644 << 16
+            archive.writestr(info, content[name])
+    return path

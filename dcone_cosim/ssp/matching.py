@@ -1,0 +1,199 @@
+"""Rows of a structure against the FMUs they are about: connectors, values and connections, everything SI afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dcone_cosim.coupling import Connection
+from dcone_cosim.fmi_units import Unit, same_dimension
+from dcone_cosim.names import did_you_mean
+from dcone_cosim.ssp.markup import KINDS, STRUCTURE
+from dcone_cosim.ssp.package import Mistakes
+from dcone_cosim.ssp.parsing import ComponentRow, ConnectionRow, PortRow
+from dcone_cosim.ssp.values import Given
+from dcone_cosim.steppable import VariableInfo
+
+
+@dataclass(frozen=True)
+class Part:
+    """A component beside its FMU; `experiment` is the FMU's own default, as fmpy reads it."""
+
+    row: ComponentRow
+    fmu: Path
+    variables: Mapping[str, VariableInfo]
+    experiment: Any
+
+    def defaults(self) -> dict[str, float]:
+        """Start value of every numeric parameter and input, SI."""
+        return {
+            info.name: info.start
+            for info in self.variables.values()
+            if info.causality in ("parameter", "input") and info.kind in KINDS and info.start is not None
+        }
+
+
+def own_unit(info: VariableInfo) -> Unit:
+    """The unit that an FMU counts a variable in."""
+    return Unit(info.declared_unit or "1", info.dimension, info.factor, info.offset)
+
+
+def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> None:
+    """Note connectors that the FMU has not, or has otherwise."""
+    for port in part.row.ports.values():
+        what = f"connector {port.name!r} of {part.row.name!r}"
+        info = part.variables.get(port.name)
+        if info is None:
+            hint = did_you_mean(port.name, part.variables)
+            mistakes.add(STRUCTURE, port.line, f"{what}: its FMU has no such variable{hint}")
+            continue
+        if port.type and port.type != info.kind:
+            mistakes.add(STRUCTURE, port.line, f"{what} is {port.type}; the FMU has it as {info.kind}")
+        if port.kind != info.causality:
+            text = f"{what} has kind = {port.kind!r}; in the FMU it is {info.causality!r}"
+            mistakes.add(STRUCTURE, port.line, text)
+        if _other_unit(port, own_unit(info), units):
+            text = f"{what} is in {port.unit!r}; the FMU has it in {info.declared_unit!r}"
+            mistakes.add(STRUCTURE, port.line, text)
+
+
+def _other_unit(port: PortRow, own: Unit, units: Mapping[str, Unit]) -> bool:
+    """Whether a connector tells another unit than the FMU, be it by another name."""
+    if not port.unit or own.dimension is None or port.unit == own.name:
+        return False
+    told = units.get(port.unit)
+    return told is None or (told.dimension, told.factor, told.offset) != (own.dimension, own.factor, own.offset)
+
+
+def parameters(values: Iterable[Given], parts: Mapping[str, Part], mistakes: Mistakes) -> dict[str, dict[str, float]]:
+    """Values by component and variable, SI; a later one replaces an earlier one."""
+    found: dict[str, dict[str, float]] = {name: {} for name in parts}
+    for given in values:
+        owner, name = (given.owner, given.name) if given.owner else owner_of(given.name, parts)
+        if owner not in parts:
+            hint = did_you_mean(given.name.partition(".")[0], parts)
+            text = f"parameter {given.name!r} of the system: expected COMPONENT.NAME{hint}"
+            mistakes.add(given.file, given.line, text)
+            continue
+        info = parts[owner].variables.get(name)
+        if info is None:
+            hint = did_you_mean(name, parts[owner].variables)
+            text = f"parameter {name!r} of {owner!r} is no variable of its FMU{hint}"
+            mistakes.add(given.file, given.line, text)
+            continue
+        problem = _problem(given, info)
+        if problem:
+            mistakes.add(given.file, given.line, f"parameter {name!r} of {owner!r} {problem}")
+        else:
+            found[owner][name] = _in_si(given, info)
+    return found
+
+
+def owner_of(name: str, parts: Mapping[str, Part]) -> tuple[str, str]:
+    """Component and variable of a name such as `reel.gain.proportional`; names of components may have dots."""
+    for part in sorted(parts, key=len, reverse=True):
+        if name.startswith(f"{part}."):
+            return part, name[len(part) + 1 :]
+    return "", name
+
+
+def _problem(given: Given, info: VariableInfo) -> str:
+    """Why a variable cannot take a value, or ""."""
+    if info.kind not in KINDS:
+        return f"is of the type {info.kind} in its FMU; expected {', '.join(KINDS)}"
+    if info.kind != given.type and (info.kind, given.type) != ("Real", "Integer"):
+        return f"is given as {given.type}; the FMU has it as {info.kind}"
+    if info.variability == "constant":
+        return "cannot be set: in the FMU it is a constant"
+    if info.causality not in ("parameter", "input") and info.initial not in ("exact", "approx"):
+        return f"cannot be set: in the FMU its causality is {info.causality!r}, without a start value of its own"
+    if given.unit is None or given.suppress or info.dimension is None or given.unit.name == info.declared_unit:
+        return ""
+    if given.unit.dimension is None:
+        return f"is given in {given.unit.name!r}, which <ssv:Units> does not define"
+    if same_dimension(given.unit.dimension, info.dimension):
+        return ""
+    return f"is given in {given.unit.name!r}; the FMU has it in {info.declared_unit or '1'!r}"
+
+
+def _in_si(given: Given, info: VariableInfo) -> float:
+    """The SI value of a variable: first the unit is converted, then the mapping's transformation applied."""
+    value, unit, own = given.value, given.unit, own_unit(info)
+    linear = (given.factor, given.offset) != (1.0, 0.0)
+    convert = unit is not None and own.dimension is not None and not given.suppress and unit.name != own.name
+    if convert and unit is not None:
+        value = value if unit.is_si else unit.factor * value + unit.offset
+        if not linear:
+            return value
+        value = value if own.is_si else (value - own.offset) / own.factor
+    if linear:
+        value = given.factor * value + given.offset
+    return value if own.is_si else own.factor * value + own.offset
+
+
+def connections(rows: Iterable[ConnectionRow], parts: Mapping[str, Part], mistakes: Mistakes) -> tuple[Connection, ...]:
+    """The connections from outputs to inputs, with the factor and offset between SI values."""
+    made: list[Connection] = []
+    taken: dict[tuple[str, str], int] = {}
+    for row in rows:
+        ends = [_end(end, row.line, parts, mistakes) for end in (row.start, row.end)]
+        if ends[0] is None or ends[1] is None:
+            continue
+        # SSP has no direction in `start` and `end`: it follows from what the connectors are
+        (source, out), (target, to) = (ends[0], ends[1]) if ends[0][1].kind == "output" else (ends[1], ends[0])
+        problem = ""
+        if (out.kind, to.kind) != ("output", "input"):
+            problem = f"{out.kind} to {to.kind}; expected an output and an input"
+        elif out.name not in source.variables or to.name not in target.variables:
+            continue  # told with the connector
+        else:
+            problem = _mismatch(row, source.variables[out.name], target.variables[to.name])
+        line = taken.setdefault((target.row.name, to.name), row.line)
+        if not problem and line != row.line:
+            problem = f"the input is connected in line {line} already"
+        if problem:
+            what = f"connection {source.row.name}.{out.name} -> {target.row.name}.{to.name}"
+            mistakes.add(STRUCTURE, row.line, f"{what}: {problem}")
+            continue
+        factor, offset = _si_transformation(row, source.variables[out.name], target.variables[to.name])
+        made.append(Connection(source.row.name, out.name, target.row.name, to.name, factor, offset))
+    return tuple(made)
+
+
+def _end(end: tuple[str, str], line: int, parts: Mapping[str, Part], mistakes: Mistakes) -> tuple[Part, PortRow] | None:
+    element, connector = end
+    if element not in parts:
+        mistakes.add(STRUCTURE, line, f"connection: no component {element!r}{did_you_mean(element, parts)}")
+        return None
+    part = parts[element]
+    if connector not in part.row.ports:
+        hint = did_you_mean(connector, part.row.ports)
+        mistakes.add(STRUCTURE, line, f"connection: no connector {connector!r} of {element!r}{hint}")
+        return None
+    return part, part.row.ports[connector]
+
+
+def _mismatch(row: ConnectionRow, out: VariableInfo, to: VariableInfo) -> str:
+    """Why a value cannot go from the one to the other, or ""."""
+    if out.kind != to.kind:
+        return f"{out.kind} to {to.kind}"
+    if out.kind != "Real" and (row.factor, row.offset) != (1.0, 0.0):
+        return f"both are {out.kind}; a linear transformation is for Real"
+    if not same_dimension(out.dimension, to.dimension):
+        return f"{out.declared_unit!r} cannot be converted to {to.declared_unit!r}"
+    return ""
+
+
+def _si_transformation(row: ConnectionRow, out: VariableInfo, to: VariableInfo) -> tuple[float, float]:
+    """Factor and offset between the SI values of the ends of a connection.
+
+    In the units of the ends t = factor s + offset, where s is in the target's unit already, or as it is when the
+    conversion is suppressed.
+    """
+    of = out if row.suppress else to
+    factor = row.factor if of is to else row.factor * to.factor / of.factor
+    if to.is_si and of.is_si:
+        return factor, row.offset
+    return factor, to.factor * row.offset + to.offset - factor * of.offset

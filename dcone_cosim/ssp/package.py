@@ -1,0 +1,144 @@
+"""The archive of an .ssp, read without trust: nothing in it is written anywhere but under a name of our own."""
+
+from __future__ import annotations
+
+import stat
+import tempfile
+import zipfile
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from types import TracebackType
+from urllib.parse import unquote, urlsplit
+
+from lxml import etree
+
+from dcone_cosim.errors import InputError
+from dcone_cosim.names import did_you_mean
+from dcone_cosim.ssp.markup import STRUCTURE
+
+LARGEST_XML = 64 * 2**20
+"""Bytes of a structure or a parameter file, unpacked."""
+LARGEST_FMU = 2 * 2**30
+"""Bytes of an FMU, as it lies in the archive."""
+
+
+@dataclass
+class Mistakes:
+    """What is wrong with a package, told all at once."""
+
+    source: str
+    rows: list[tuple[str, int, str]] = field(default_factory=list)
+
+    def add(self, file: str, line: int | None, text: str) -> None:
+        row = (file, line or 0, text)
+        if row not in self.rows:
+            self.rows.append(row)
+
+    def check(self) -> None:
+        """Raise an `InputError` with every mistake found so far."""
+        if not self.rows:
+            return
+        lines = [f"{self.source}: {len(self.rows)} mistake{'s' if len(self.rows) > 1 else ''}"]
+        for file, line, text in sorted(self.rows, key=lambda row: (row[0] != STRUCTURE, row[0], row[1])):
+            lines.append(f"  {file}{f' line {line}' if line else ''}: {text}")
+        raise InputError("\n".join(lines))
+
+
+class Package:
+    """An .ssp, open; its FMUs are unpacked to `folder` on demand, which the caller keeps or removes."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            self._archive = zipfile.ZipFile(path)
+        except zipfile.BadZipFile as error:
+            raise InputError(f"{path} is no SSP package: {error}; the file may be cut short") from error
+        except OSError as error:
+            raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
+        try:
+            self._check_names()
+        except BaseException:
+            self._archive.close()
+            raise
+
+    def _check_names(self) -> None:
+        names = set()
+        for info in self._archive.infolist():
+            name = info.filename
+            if _leaves(name):
+                raise InputError(f"{self.path}: its entry {name!r} would leave the package; it is not read")
+            if stat.S_ISLNK(info.external_attr >> 16):
+                raise InputError(f"{self.path}: its entry {name!r} is a symbolic link; it is not read")
+            if info.flag_bits & 0x1:
+                raise InputError(f"{self.path}: its entry {name!r} is encrypted")
+            if name in names:
+                raise InputError(f"{self.path}: its entry {name!r} is there twice")
+            names.add(name)
+        if STRUCTURE not in names:
+            others = [n for n in names if n.endswith(".ssd")]
+            hint = did_you_mean(STRUCTURE, others) if others else ""
+            raise InputError(f"{self.path} is no SSP package: it holds no {STRUCTURE}{hint}")
+
+    @property
+    def names(self) -> list[str]:
+        return self._archive.namelist()
+
+    def read(self, name: str, largest: int = LARGEST_XML) -> bytes:
+        """Content of an entry; an entry that is damaged or too large is an `InputError`."""
+        size = self._archive.getinfo(name).file_size
+        if size > largest:
+            raise InputError(f"{self.path}: {name} has {size:,} bytes; at most {largest:,} are read")
+        try:
+            return self._archive.read(name)
+        except (zipfile.BadZipFile, OSError, EOFError, NotImplementedError, ValueError) as error:
+            raise InputError(f"{self.path}: {name} is damaged ({error})") from error
+        except Exception as error:  # zlib.error, lzma.LZMAError
+            raise InputError(f"{self.path}: {name} cannot be unpacked ({error})") from error
+
+    def unpack(self, name: str, folder: Path, as_name: str) -> Path:
+        """Write an FMU to the folder under a name of ours."""
+        place = folder / f"{as_name}.fmu"
+        place.write_bytes(self.read(name, LARGEST_FMU))
+        return place
+
+    def __enter__(self) -> Package:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._archive.close()
+
+
+def _leaves(name: str) -> bool:
+    return name.startswith("/") or "\\" in name or "\0" in name or ":" in name or ".." in PurePosixPath(name).parts
+
+
+def entry_of(source: str, names: Iterable[str]) -> tuple[str, str]:
+    """Entry that a relative URI names, and "" or why it names none."""
+    parts = urlsplit(source)
+    path = str(PurePosixPath(unquote(parts.path)))
+    if parts.scheme or parts.netloc or _leaves(path) or parts.query or parts.fragment or not parts.path:
+        return "", f"source {source!r} is not a file in the package; expected a path such as 'resources/x.fmu'"
+    known = list(names)
+    if path not in known:
+        return "", f"source {source!r} is not in the package{did_you_mean(path, known)}"
+    return path, ""
+
+
+def parsed(content: bytes, name: str, mistakes: Mistakes) -> etree._Element | None:
+    """Root of an XML file, without entities, DTDs and network; None when it is not well formed."""
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True)
+    try:
+        root = etree.fromstring(content, parser)
+    except etree.XMLSyntaxError as error:
+        mistakes.add(name, error.lineno, f"not well-formed XML: {error.msg}")
+        return None
+    if root.getroottree().docinfo.doctype:
+        mistakes.add(name, 1, "a document type definition is not read; leave it out")
+        return None
+    return root
+
+
+def unpacked_folder() -> tempfile.TemporaryDirectory[str]:
+    """A folder that is removed with the object that holds it, at the latest when the program ends."""
+    return tempfile.TemporaryDirectory(prefix="dcone-ssp-")

@@ -1,0 +1,187 @@
+"""How a phase is run: its name, times and step, and what our own annotation or the command line says beside them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, cast
+
+from dcone_cosim.contract import HAND_OVER
+from dcone_cosim.coupling import Coupling
+from dcone_cosim.errors import InputError
+from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
+from dcone_cosim.names import did_you_mean
+from dcone_cosim.scene import PHASES
+from dcone_cosim.scene_text import override
+from dcone_cosim.ssp.export import identifier
+from dcone_cosim.ssp.markup import STRUCTURE
+from dcone_cosim.ssp.matching import Part, owner_of
+from dcone_cosim.ssp.package import Mistakes
+from dcone_cosim.ssp.parsing import Document
+from dcone_cosim.units import Expected, Unexpected
+
+RESERVED = (*PHASES, "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
+"""Names of files in a run folder that a system's own name must not take."""
+MOST_STEPS = 5_000_000
+"""Macro steps of a phase: each leaves a row, and a run keeps all rows in memory."""
+
+SETTINGS: Mapping[str, Expected] = {
+    "macro_step": Expected("s", example="0.1 s", minimum=0.0, open_minimum=True),
+    "duration": Expected("s", example="30 s", minimum=0.0, open_minimum=True),
+    "after_capture": Expected("s", example="1 s", minimum=0.0),
+    "hand_over": Expected("1", choices=HAND_OVER),
+}
+"""What the command line may say of the phase, beside the values of its components."""
+CHOICES = {"method": ("gauss_seidel", "jacobi"), "control": ("fixed", "error"), "extrapolation": ("constant", "linear")}
+"""Words of our annotation on the coupling; the first counts when there is none."""
+
+
+def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, str]:
+    """Name of the phase, and the component that it is about: the first when none meets a contract."""
+    plan = content.ours.get("Plan", {})
+    main = plan.get("main", "")
+    if main in parts and plan.get("name") in PHASES:
+        return plan["name"], main
+    for name, needs in ((PHASES[0], ("captured", *CAPTURE_OUTPUTS)), (PHASES[1], ("separation", *REMOVAL_SETS))):
+        for part, row in parts.items():
+            if all(need in row.variables for need in needs):
+                return name, part
+    name = identifier(content.name)
+    return (f"{name}_system" if name in RESERVED else name), main if main in parts else next(iter(parts))
+
+
+def settings_of(
+    arguments: Sequence[str], phase: str, parts: Mapping[str, Part]
+) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    """What `--set` says of the phase, and the values it gives by component, SI.
+
+    arguments    `PHASE.macro_step=0.1 s`, `COMPONENT.VARIABLE=VALUE`
+    """
+    document: dict[str, Any] = {}
+    told: dict[str, float] = {}
+    values: dict[str, dict[str, float]] = {}
+    for argument in override(document, arguments):
+        given: Any = document
+        for key in argument.path:
+            given = given[key]
+        name = ".".join(map(str, argument.path))
+        head, _, key = name.partition(".")
+        try:
+            if head == phase and key in SETTINGS:
+                told[key] = cast(float, SETTINGS[key].read(given))
+                continue
+            owner, variable = owner_of(name, parts)
+            if not owner:
+                raise Unexpected(f"is no variable of a component{did_you_mean(head, [phase, *parts])}")
+            info = parts[owner].variables.get(variable)
+            if info is None or info.causality not in ("parameter", "input"):
+                known = [n for n, v in parts[owner].variables.items() if v.causality in ("parameter", "input")]
+                raise Unexpected(f"is no parameter or input of its FMU{did_you_mean(variable, known)}")
+            expected = Expected(info.unit, info.kind, 0, (), "1", info.minimum, info.maximum)
+            values.setdefault(owner, {})[variable] = cast(float, expected.read(given))
+        except Unexpected as error:
+            raise InputError(f"--set {argument.argument}: {name} {error}") from None
+    return told, values
+
+
+def times(
+    content: Document, parts: Mapping[str, Part], told: Mapping[str, float], mistakes: Mistakes
+) -> tuple[float, float]:
+    """Start and duration [s]: of the system, or of the longest experiment that an FMU of it has by default."""
+    start, stop = content.start or 0.0, content.stop
+    if "duration" in told:
+        return start, told["duration"]
+    if stop is None:
+        stops = [_of_experiment(part.experiment, "stopTime") for part in parts.values()]
+        stop = max((s for s in stops if s is not None), default=None)
+    if stop is None:
+        mistakes.add(STRUCTURE, None, "nothing tells when to stop; expected <ssd:DefaultExperiment stopTime=...>")
+        return start, math.inf
+    ours = decimal(content.ours.get("Plan", {}).get("duration"))
+    # the difference of two times has lost its last bits
+    duration = ours if ours is not None and start + ours == stop else stop - start
+    if not (math.isfinite(duration) and duration > 0.0):
+        mistakes.add(STRUCTURE, None, f"startTime = {start!r}, stopTime = {stop!r}: the stop must come after the start")
+        return start, math.inf
+    return start, duration
+
+
+def macro_step(
+    content: Document, parts: Mapping[str, Part], duration: float, told: Mapping[str, float], mistakes: Mistakes
+) -> float:
+    """Communication step [s]: of an annotation, else the least that a component or its FMU asks for."""
+    asked = [told.get("macro_step", content.step)]
+    if asked == [None]:
+        asked = [part.row.step for part in parts.values()]
+    if asked == [None] * len(asked):
+        asked = [_of_experiment(part.experiment, "stepSize") for part in parts.values()]
+    step = min((s for s in asked if s is not None), default=None)
+    if step is None:
+        text = "nothing tells the step size; expected <osp:FixedStepAlgorithm baseStepSize=...> in an annotation of "
+        mistakes.add(STRUCTURE, None, f"{text}<ssd:DefaultExperiment>, or --set PHASE.macro_step=...")
+        return 1.0
+    if not (math.isfinite(step) and step > 0.0):
+        mistakes.add(STRUCTURE, None, f"the step size {step!r} must be positive")
+    elif step > duration:
+        mistakes.add(STRUCTURE, None, f"the step size {step:g} s is more than the {duration:g} s from start to stop")
+    elif math.isfinite(duration) and duration / step > MOST_STEPS:
+        text = f"{duration:g} s in steps of {step:g} s makes {duration / step:.4g} steps; at most {MOST_STEPS:,}"
+        mistakes.add(STRUCTURE, None, text)
+    return step
+
+
+def _of_experiment(experiment: Any, name: str) -> float | None:
+    return decimal(getattr(experiment, name, None)) if experiment is not None else None
+
+
+def decimal(text: object) -> float | None:
+    """A number of an attribute, None when there is none or it is none."""
+    try:
+        return float(str(text)) if text is not None else None
+    except ValueError:
+        return None
+
+
+def options(name: str, plan: Mapping[str, str], told: Mapping[str, float], mistakes: Mistakes) -> dict[str, Any]:
+    """What concerns the master of a capture; nothing for another phase."""
+    if name != PHASES[0]:
+        return {}
+    hand_over = HAND_OVER[int(told["hand_over"])] if "hand_over" in told else plan.get("hand_over", HAND_OVER[0])
+    if hand_over not in HAND_OVER:
+        text = f"<dcone:Plan> hand_over = {hand_over!r}{did_you_mean(hand_over, HAND_OVER)}"
+        mistakes.add(STRUCTURE, None, text)
+    after = told.get("after_capture", decimal(plan.get("after_capture")))
+    snapshots = [decimal(text) for text in plan.get("snapshots", "").split()]
+    return {
+        "hand_over": hand_over,
+        "after_capture": math.inf if after is None else after,
+        "snapshots": [time for time in snapshots if time is not None],
+    }
+
+
+def coupling(told: Mapping[str, str], parts: Mapping[str, Part], mistakes: Mistakes) -> Coupling:
+    """Coupling that our own annotation tells, otherwise the one there is by default."""
+    plain = Coupling()
+    numbers = {}
+    for key in ("step", "tolerance", "smallest_step"):
+        number = decimal(told.get(key))
+        if key in told and (number is None or not math.isfinite(number) or number < 0.0):
+            mistakes.add(STRUCTURE, None, f"<dcone:Coupling> {key} = {told[key]!r}: expected a number, not negative")
+        numbers[key] = getattr(plain, key) if number is None else number
+    words = {}
+    for key, known in CHOICES.items():
+        words[key] = told.get(key, known[0])
+        if words[key] not in known:
+            mistakes.add(STRUCTURE, None, f"<dcone:Coupling> {key} = {words[key]!r}{did_you_mean(words[key], known)}")
+    order = tuple(told.get("order", "").split())
+    if order and sorted(order) != sorted(parts):
+        mistakes.add(STRUCTURE, None, f"<dcone:Coupling> order = {' '.join(order)!r}: expected every component once")
+    return Coupling(
+        cast(Literal["jacobi", "gauss_seidel"], words["method"]),
+        numbers["step"],
+        cast(Literal["fixed", "error"], words["control"]),
+        numbers["tolerance"],
+        numbers["smallest_step"],
+        cast(Literal["constant", "linear"], words["extrapolation"]),
+        order,
+    )

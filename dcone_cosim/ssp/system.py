@@ -1,0 +1,92 @@
+"""From a package to a scene, which the master runs like any other.
+
+The scene has one phase. It is a capture or a removal when our own annotation says so or its main component offers what
+`contract` asks of one; any other system is a phase by its own name, stepped from its start to its stop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from dcone_cosim.archive import Archive
+from dcone_cosim.errors import FmuError
+from dcone_cosim.mistakes import Places
+from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene
+from dcone_cosim.ssp import matching, planning
+from dcone_cosim.ssp.export import identifier
+from dcone_cosim.ssp.markup import STRUCTURE
+from dcone_cosim.ssp.matching import Part
+from dcone_cosim.ssp.package import Mistakes, Package, entry_of, parsed, unpacked_folder
+from dcone_cosim.ssp.parsing import Document, document
+from dcone_cosim.ssp.values import given_values
+
+
+def load(path: Path, settings: Sequence[str] = ()) -> Scene:
+    """The scene that a package holds, checked; an `InputError` lists every mistake found.
+
+    settings    `PHASE.macro_step=0.1 s`, `COMPONENT.VARIABLE=VALUE`, each in the place of what the package says
+
+    Checked  tests/cosim/test_ssp_bad.py, tests/cosim/test_ssp_export.py
+    """
+    mistakes = Mistakes(str(path))
+    folder = unpacked_folder()
+    with Package(path) as package:
+        text = package.read(STRUCTURE)
+        root = parsed(text, STRUCTURE, mistakes)
+        content = document(root, STRUCTURE, mistakes) if root is not None else None
+        mistakes.check()
+        assert content is not None, "without a mistake there is a structure"
+        parts = _parts(content, package, Path(folder.name), mistakes)
+        mistakes.check()
+        for part in parts.values():
+            matching.check_ports(part, content.units, mistakes)
+        bindings = [*(row for part in parts.values() for row in part.row.bindings), *content.bindings]
+        values = list(given_values(iter(bindings), package, mistakes))
+    parameters = matching.parameters(values, parts, mistakes)
+    connections = matching.connections(content.connections, parts, mistakes)
+    name, main = planning.name_and_main(content, parts)
+    told, more = planning.settings_of(settings, name, parts)
+    start, duration = planning.times(content, parts, told, mistakes)
+    if name == PHASES[0] and start != 0.0:
+        mistakes.add(STRUCTURE, None, f"startTime = {start!r}: a capture begins at 0")
+    components = {
+        part: ComponentScene(
+            part, fmu=row.fmu, parameters=parameters[part] | more.get(part, {}), defaults=row.defaults()
+        )
+        for part, row in parts.items()
+    }
+    options = planning.options(name, content.ours.get("Plan", {}), told, mistakes)
+    phase = PhaseScene(
+        name,
+        components[main],
+        planning.macro_step(content, parts, duration, told, mistakes),
+        duration,
+        # the unpacked FMUs are there for as long as the phase is
+        {**options, "unpacked": folder},
+        tuple(row for part, row in components.items() if part != main),
+        connections,
+        planning.coupling(content.ours.get("Coupling", {}), parts, mistakes),
+        start,
+    )
+    mistakes.check()
+    shown = text.decode("utf-8", "replace")
+    return Scene(path.stem, content.description, shown, (phase,), {}, str(path), Places(str(path), ""))
+
+
+def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, Part]:
+    """Every component with its FMU, unpacked and opened once to see what it offers."""
+    parts = {}
+    for number, row in enumerate(content.components):
+        entry, reason = entry_of(row.source, package.names)
+        if reason:
+            mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {reason}")
+            continue
+        fmu = package.unpack(entry, folder, f"{number}-{identifier(Path(entry).stem)}")
+        try:
+            with Archive(fmu) as archive:
+                parts[row.name] = Part(row, fmu, archive.variables, archive.description.defaultExperiment)
+        except FmuError as error:
+            said = str(error).replace(str(fmu), entry)
+            mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {said}")
+    return parts

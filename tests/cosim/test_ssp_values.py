@@ -1,0 +1,107 @@
+"""Values of a package: where they may stand, which of them counts, and what mappings and units make of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dcone_cosim.errors import InputError
+from dcone_cosim.ssp import system
+from tests.cosim.ssp_packages import STRUCTURE, changed, contents, packed
+from tests.cosim.test_ssp_bad import good
+
+__all__ = ["good"]
+
+VALUE = '<ssv:Parameter name="{name}"><ssv:Real value="{value}"{unit}/></ssv:Parameter>'
+SET = '<ssv:ParameterSet version="1.0" name="more"><ssv:Parameters>{values}</ssv:Parameters>{units}</ssv:ParameterSet>'
+NAMESPACES = (
+    'xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues" '
+    'xmlns:ssc="http://ssp-standard.org/SSP1/SystemStructureCommon" '
+    'xmlns:ssm="http://ssp-standard.org/SSP1/SystemStructureParameterMapping"'
+)
+MILLI = '<ssv:Units><ssc:Unit name="mN"><ssc:BaseUnit kg="1" m="1" s="-2" factor="0.001"/></ssc:Unit></ssv:Units>'
+MAPPING = '<ssm:ParameterMapping version="1.0" {namespaces}>{entries}</ssm:ParameterMapping>'
+ENTRY = '<ssm:MappingEntry source="push" target="thrust.level"><ssc:LinearTransformation {how}/></ssm:MappingEntry>'
+
+
+def one(name: str, value: float, unit: str = "") -> str:
+    return VALUE.format(name=name, value=value, unit=f' unit="{unit}"' if unit else "")
+
+
+def inline(values: str, units: str = "", mapping: str = "", attributes: str = "") -> str:
+    inner = SET.format(values=values, units=units)
+    mapped = f"<ssd:ParameterMapping>{mapping}</ssd:ParameterMapping>" if mapping else ""
+    inside = f"<ssd:ParameterValues>{inner}</ssd:ParameterValues>{mapped}"
+    return f"<ssd:ParameterBinding{attributes}>{inside}</ssd:ParameterBinding>"
+
+
+def level(package: Path) -> float:
+    return system.load(package).phases[0].main.parameters["thrust.level"]
+
+
+def of_component(package: Path, target: Path, binding: str) -> Path:
+    return changed(package, target, ("</ssd:ParameterBindings>", f"{binding}</ssd:ParameterBindings>"))
+
+
+def of_system(package: Path, target: Path, binding: str) -> Path:
+    bindings = f"<ssd:ParameterBindings>{binding}</ssd:ParameterBindings>"
+    return changed(package, target, ("<ssd:Elements>", f"{bindings}<ssd:Elements>"))
+
+
+def test_a_later_binding_counts(good: Path, tmp_path: Path) -> None:
+    assert level(good) == -0.01
+    assert level(of_component(good, tmp_path / "x.ssp", inline(one("thrust.level", -0.02)))) == -0.02
+
+
+def test_a_binding_of_the_system_counts_more_than_one_of_the_component(good: Path, tmp_path: Path) -> None:
+    assert level(of_system(good, tmp_path / "x.ssp", inline(one("removal.thrust.level", -0.03)))) == -0.03
+    prefixed = inline(one("thrust.level", -0.04), attributes=' prefix="removal."')
+    assert level(of_system(good, tmp_path / "y.ssp", prefixed)) == -0.04
+    with pytest.raises(InputError, match=r"expected COMPONENT\.NAME"):
+        system.load(of_system(good, tmp_path / "z.ssp", inline(one("thrust.level", -0.03))))
+
+
+def test_a_value_in_another_unit_is_converted(good: Path, tmp_path: Path) -> None:
+    package = of_component(good, tmp_path / "x.ssp", inline(one("thrust.level", -20.0, "mN"), MILLI))
+    assert level(package) == pytest.approx(-0.02, rel=1e-15)
+
+
+def test_an_ssv_file_is_read(good: Path, tmp_path: Path) -> None:
+    binding = '<ssd:ParameterBinding source="resources/more%20.ssv"/>'
+    files = contents(of_component(good, tmp_path / "x.ssp", binding))
+    content = SET.format(values=one("thrust.level", -0.05), units="")
+    files["resources/more .ssv"] = content.replace("<ssv:ParameterSet ", f"<ssv:ParameterSet {NAMESPACES} ", 1).encode()
+    assert level(packed(tmp_path / "y.ssp", files)) == -0.05
+    files["resources/more .ssv"] = files["resources/more .ssv"].replace(b"thrust.level", b"thrust.levle")
+    with pytest.raises(InputError, match=r"resources/more \.ssv line 1: .*did you mean 'thrust.level'"):
+        system.load(packed(tmp_path / "z.ssp", files))
+
+
+def test_a_mapping_renames_and_transforms_and_drops_the_rest(good: Path, tmp_path: Path) -> None:
+    mapping = MAPPING.format(namespaces=NAMESPACES, entries=ENTRY.format(how='factor="2" offset="0.001"'))
+    values = one("push", -0.01) + one("not.known", 1.0)
+    assert level(of_component(good, tmp_path / "x.ssp", inline(values, mapping=mapping))) == 2 * -0.01 + 0.001
+    twice = MAPPING.format(namespaces=NAMESPACES, entries=2 * ENTRY.format(how='factor="2"'))
+    with pytest.raises(InputError, match="mapped to in line"):
+        system.load(of_component(good, tmp_path / "y.ssp", inline(values, mapping=twice)))
+
+
+def test_a_mapping_takes_values_that_are_in_the_variables_unit_already(good: Path, tmp_path: Path) -> None:
+    """SSP: the unit is converted first, then the transformation applied; or not converted when that is suppressed."""
+    values = one("push", -10.0, "mN")
+    entry = ENTRY.format(how='factor="3"')
+    converted = MAPPING.format(namespaces=NAMESPACES, entries=entry)
+    assert level(of_component(good, tmp_path / "x.ssp", inline(values, MILLI, converted))) == pytest.approx(-0.03)
+    as_it_is = converted.replace("<ssm:MappingEntry ", '<ssm:MappingEntry suppressUnitConversion="true" ')
+    assert level(of_component(good, tmp_path / "y.ssp", inline(values, MILLI, as_it_is))) == -30.0
+
+
+def test_the_step_and_the_stop_come_from_the_structure(good: Path, tmp_path: Path) -> None:
+    steps = changed(good, tmp_path / "x.ssp", ('baseStepSize="10.0"', 'baseStepSize="20.0"'))
+    assert system.load(steps).phases[0].macro_step == 20.0
+    later = changed(good, tmp_path / "y.ssp", ('startTime="0.0" stopTime="600.0"', 'startTime="5.0" stopTime="105.0"'))
+    phase = system.load(later).phases[0]
+    assert (phase.start, phase.duration) == (5.0, 100.0)
+    text = contents(good)[STRUCTURE].decode()
+    assert 'baseStepSize="10.0"' in text

@@ -1,0 +1,120 @@
+"""Packages of ours in other tools: the bits of our own master, or as near as the tool's own clock allows.
+
+fmpy adds up its times, so they are off by some 1e-9 s after an hour; ecos counts from 0, so in a phase that begins
+later the last bits of the times differ; both move the tugs by as much, and with them what the tether's bounces grow.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dcone_cosim import scene as scenes
+from dcone_cosim.archives import Archives
+from dcone_cosim.commands import run_and_write
+from dcone_cosim.master import run_scene
+from dcone_cosim.progress import Progress
+from dcone_cosim.recorder import Recorder
+from dcone_cosim.ssp.export import export_scene
+
+pytestmark = pytest.mark.interop
+
+MODULES = {"ecos": "ecospy", "libcosim": "libcosimpy", "fmpy": "fmpy"}
+TOOLS = list(MODULES)
+ROOT = Path(__file__).parents[2]
+
+
+def in_tool(tool: str, package: Path, component: str, step: float, steps: int, start: float = 0.0) -> dict:
+    """Outputs of a component in the tool, one row per communication point."""
+    if importlib.util.find_spec(MODULES[tool]) is None:
+        pytest.skip(f"{MODULES[tool]} is not installed")
+    result = package.with_suffix(f".{tool}.npz")
+    arguments = [tool, package, component, step, steps, start, result]
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.interop.ssp_drivers", *map(str, arguments)],
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    with np.load(result) as rows:
+        return dict(rows)
+
+
+def spread(found: dict, own: Recorder, rows: int) -> float:
+    """Largest difference of an output in all rows but the first, as a share of its largest size.
+
+    An element of a vector counts by the largest of the vector: across the orbit there is nothing but rounding.
+    """
+    worst = 0.0
+    sizes: dict[str, float] = {}
+    for name in own.names[1:]:
+        vector = name.partition("[")[0]
+        sizes[vector] = max(sizes.get(vector, 0.0), float(np.max(np.abs(own[name]))))
+    for name in own.names[1:]:
+        if name in found:
+            ours, theirs = own[name][1:rows], found[name][1:rows]
+            size = sizes[name.partition("[")[0]] or 1.0
+            worst = max(worst, float(np.max(np.abs(ours - theirs))) / size)
+    return worst
+
+
+def own(package: Path, *settings: str) -> Recorder:
+    scene = scenes.load(str(package), settings)
+    with Archives(scene, Progress()) as archives:
+        return run_scene(scene, archives.instantiate, Progress()).phases[scene.phases[0].name].recorder
+
+
+@pytest.fixture(scope="module")
+def tow(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("tow")
+    (package,) = export_scene("table2-deorbit", folder, Progress(), open_inputs=False).paths
+    return package
+
+
+@pytest.mark.parametrize("tool", TOOLS)
+def test_a_day_of_towing_has_our_bits(tool: str, tow: Path) -> None:
+    """Times are whole minutes, which every tool counts exactly."""
+    found = in_tool(tool, tow, "removal", 60.0, 1440)
+    ours = own(tow)
+    assert len(ours) == 1441
+    assert spread(found, ours, 1441) == 0.0
+    assert spread(found, own(tow, "removal.thrust.level=-0.01000001 N"), 1441) > 0.0
+
+
+@pytest.fixture(scope="module")
+def mission(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
+    folder = tmp_path_factory.mktemp("mission")
+    run_and_write("mission", folder / "run", Progress(), with_figures=False)
+    return tuple(export_scene("mission", folder, Progress(), from_run=folder / "run", open_inputs=False).paths)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tool", TOOLS)
+def test_a_capture_has_our_bits(tool: str, mission: tuple[Path, ...]) -> None:
+    """Up to the last communication point before the capture, where our own master ends."""
+    ours = own(mission[0])
+    found = in_tool(tool, mission[0], "capture", 0.02, 400)
+    assert spread(found, ours, 401) == 0.0
+
+
+SPREADS = {"libcosim": 0.0, "fmpy": 1e-11, "ecos": 1e-11}
+"""Of the mission's removal, which begins at 8.14 s: the time of a tool off by an ulp moves a tug by as much."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tool", TOOLS)
+def test_a_removal_that_was_handed_over(tool: str, mission: tuple[Path, ...]) -> None:
+    ours = own(mission[1])
+    start = float(ours["time"][0])
+    found = in_tool(tool, mission[1], "removal", 10.0, 1000, start)
+    assert spread(found, ours, 1001) <= SPREADS[tool]
+    assert spread(found, own(mission[1], "removal.thrust.level=-0.0101 N"), 1001) > 1e-6
