@@ -101,9 +101,9 @@ def test_outputs_depend_on_no_other_input_directly(begin, name):
     raw, real, _ = running(begin, name)
     inputs = [n for n, _, v, _ in interface.scalars() if v.causality == "input" and v.kind == "Real"]
     for known in inputs:
-        at, before = raw.get(known), raw.get(*real)
+        at, before = raw.get(known), np.atleast_1d(raw.get(*real))
         raw.set({known: at + 0.001})
-        after = raw.get(*real)
+        after = np.atleast_1d(raw.get(*real))
         raw.set({known: at})
         changed = {n for n, a, b in zip(real, before, after, strict=True) if a != b}
         assert changed == {n for n in real if known in depends.get(n, ())}, known
