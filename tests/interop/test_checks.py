@@ -1,0 +1,67 @@
+"""The two checkers that pip offers find nothing in our FMUs, and something in each FMU that was spoilt."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from fmpy.validation import validate_fmu
+
+from tests.interop.cases import CASES
+from tests.interop.measure import TOOLS
+
+pytestmark = [pytest.mark.interop, pytest.mark.slow]
+
+SPOILT = {
+    "two variables of one name": (rb'name="solver\.steps"', b'name="solver.rejected"'),
+    "a start value for an output": (rb'(<ScalarVariable [^>]*name="solver\.steps"[^>]*>\s*<Integer)', rb'\1 start="0"'),
+    "an output that is not listed": (rb'<Outputs>\s*<Unknown index="\d+"[^>]*?/>', b"<Outputs>"),
+}
+"""Twins: what is done to the model description of the removal, by pattern and replacement."""
+
+
+def fmutool(path: Path) -> tuple[int, list[str]]:
+    """Exit code and complaints of `fmutool -check`."""
+    if not TOOLS["container"].version:
+        pytest.skip("fmu-manipulation-toolbox is not installed")
+    program = "from fmu_manipulation_toolbox.cli.fmutool import fmutool; fmutool()"
+    command = [sys.executable, "-c", program, "-input", str(path), "-check"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    complaints = [line for line in done.stdout.splitlines() if re.search(r"WARNING|ERROR|CRITICAL", line)]
+    return done.returncode, complaints + done.stderr.splitlines()
+
+
+def spoil(how: str, folder: Path) -> Path:
+    """The removal's FMU with one mistake."""
+    path = folder / "spoilt.fmu"
+    with zipfile.ZipFile(CASES["removal"].path) as old, zipfile.ZipFile(path, "w") as new:
+        for item in old.infolist():
+            content = old.read(item)
+            if item.filename == "modelDescription.xml":
+                content, count = re.subn(*SPOILT[how], content, count=1)
+                assert count == 1
+            new.writestr(item, content)
+    return path
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_fmpys_validation_finds_nothing(case: str) -> None:
+    assert validate_fmu(str(CASES[case].path)) == []
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_fmutools_check_finds_nothing(case: str) -> None:
+    assert fmutool(CASES[case].path) == (0, [])
+
+
+@pytest.mark.parametrize("how", SPOILT)
+def test_a_spoilt_fmu_is_found_out(how: str, tmp_path: Path) -> None:
+    path = spoil(how, tmp_path)
+    assert validate_fmu(str(path))
+    code, complaints = fmutool(path)
+    assert code
+    assert complaints
