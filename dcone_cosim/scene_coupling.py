@@ -62,6 +62,8 @@ def _read_one(text: object, path: Path, parts: Mapping[str, Part], mistakes: lis
     (source, output), (target, into) = (side.split(".", 1) for side in sides)
     outputs = _end(text, path, source, output, "output", parts, mistakes)
     inputs = _end(text, path, target, into, "input", parts, mistakes)
+    if not outputs or not inputs:
+        return []  # told already, or of an FMU that could not be read
     if len(mistakes) == before and source == target:
         mistakes.append(Mistake(path, text, f"connects {source} with itself: expected two components"))
     if len(mistakes) == before and len(outputs) != len(inputs):

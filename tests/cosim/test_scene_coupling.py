@@ -223,6 +223,14 @@ def test_a_value_and_a_connection_contradict_one_another() -> None:
     assert "removal.reel.tension is connected here, and is given a value as removal.reel.tension" in told
 
 
+def test_what_cannot_be_read_is_told_once() -> None:
+    """Of an FMU that is not there nothing is known: its connections are no mistakes."""
+    told = complaint(('model = "reel_control"', 'fmu = "nowhere.fmu"'))
+    assert told == (
+        f'mine.toml: 1 mistake\n  line {line("model")}: removal.components.controller.fmu = "nowhere.fmu": no such file'
+    )
+
+
 def test_all_mistakes_at_once_each_on_its_line() -> None:
     changed = CONTROLLED.replace("removal.separation ->", "removal.seperation ->").replace('"11 m"', '"11 kg"')
     changed = changed.replace("tolerance = 1e-5", "tolerance = 0")
