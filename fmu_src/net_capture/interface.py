@@ -164,21 +164,40 @@ BASE = (
     state("scratch[#]", "1", "small vectors of the kernels", shape=(28,)),
 )
 
+BLAMED = {
+    NO_WHOLE_MESHES: "net.side",
+    TOO_MANY_NODES: "net.mesh",
+    TOO_FINE: "net.segments",
+    NO_AXIS: "shot.axis[1]",
+    FOLD_TOO_LARGE: "net.fold_side",
+    NO_QUATERNION: "target.start_attitude[1]",
+    NO_INERTIA: "target.principal_inertia[1]",
+    INSIDE_TARGET: "chaser.start_position[1]",
+    STEP_TOO_SMALL: "net.youngs_modulus",
+}
+"""The variable a fault names, or its first component."""
+
 FAULTS = (
     Fault(NOT_FINITE, "error", "the state of the net is no longer finite: lower solver.step_ratio or the stiffness"),
-    Fault(NO_WHOLE_MESHES, "error", "net.side must be a whole number of net.mesh, at least 2"),
+    Fault(NO_WHOLE_MESHES, "error", "net.side must be a whole number of net.mesh, at least 2", True),
     Fault(
         TOO_MANY_NODES,
         "error",
         "the net has more nodes than this FMU has outputs for; raise the capacity of nodes",
+        True,
     ),
-    Fault(TOO_FINE, "error", "the net has too many meshes times segments per side"),
-    Fault(NO_AXIS, "error", "the chaser stands in the target's centre of mass, and shot.axis names no direction"),
-    Fault(FOLD_TOO_LARGE, "error", "net.fold_side must be smaller than net.side"),
-    Fault(NO_QUATERNION, "error", "target.start_attitude is not a quaternion of unit length (nor zero)"),
-    Fault(NO_INERTIA, "error", "the principal inertias of the target break the triangle inequality"),
-    Fault(INSIDE_TARGET, "error", "chaser.start_position: the folded net would begin inside the target"),
-    Fault(STEP_TOO_SMALL, "error", "the net is too stiff for its mass: the substep [s] it needs is below a nanosecond"),
+    Fault(TOO_FINE, "error", "the net has too many meshes times segments per side", True),
+    Fault(NO_AXIS, "error", "the chaser stands in the target's centre of mass, and shot.axis names no direction", True),
+    Fault(FOLD_TOO_LARGE, "error", "net.fold_side must be smaller than net.side", True),
+    Fault(NO_QUATERNION, "error", "target.start_attitude is not a quaternion of unit length (nor zero)", True),
+    Fault(NO_INERTIA, "error", "the principal inertias of the target break the triangle inequality", True),
+    Fault(INSIDE_TARGET, "error", "chaser.start_position: the folded net would begin inside the target", True),
+    Fault(
+        STEP_TOO_SMALL,
+        "error",
+        "the net is too stiff for its mass: the substep [s] it needs is below a nanosecond",
+        True,
+    ),
 )
 
 MODEL = Model(

@@ -45,6 +45,7 @@ times."""
 
 def make_entry(terms):
     """Entry of the model built with these terms, `entry(command, record, work, time, step) -> status`."""
+    model_interface = interface.MODEL.interface(terms)
     has_target = "target" in terms
     has_contact = "contact" in terms
     has_closing = "closing" in terms
@@ -98,8 +99,8 @@ def make_entry(terms):
             dashpot = 2.0 * p.closing_damping_ratio * math.sqrt(0.5 * hardest * p.bullets_mass)
             bound = min(bound, explicit_step_limit(hardest, 2.0 * p.bullets_mass, dashpot))
         p.solver_stability_bound = bound
-        p.fault_value = p.solver_step_ratio * bound
-        if not p.fault_value > SMALLEST_SUBSTEP:
+        if not p.solver_step_ratio * bound > SMALLEST_SUBSTEP:
+            p.fault_value = p.solver_step_ratio * bound
             return interface.STEP_TOO_SMALL
         p.measure_every = math.ceil(MEASURE_INTERVAL / (p.solver_step_ratio * bound) - 1e-9)
         p.solver_substep = MEASURE_INTERVAL / p.measure_every
@@ -291,13 +292,35 @@ def make_entry(terms):
             ahead = 0.0
         return measure(p, work, ahead)
 
-    record = from_dtype(np.dtype(interface.MODEL.interface(terms).dtype))
+    slots = model_interface.references
+    # slot of the variable that each fault names, by its code
+    blamed = tuple(slots.get(interface.BLAMED.get(code, ""), 0) for code in range(interface.STEP_TOO_SMALL + 1))
+
+    @kernel
+    def explain(p, fault, time):
+        """Put the fault in the record, and the value of what it names unless that is there already."""
+        p.fault_code = fault
+        p.fault_time = time
+        p.fault_index = blamed[fault]
+        if fault == interface.NO_AXIS:
+            p.fault_value = p.shot_axis[0]
+        if has_target:
+            if fault == interface.NO_QUATERNION:
+                p.fault_value = p.target_start_attitude[0]
+            if fault == interface.NO_INERTIA:
+                p.fault_value = p.target_principal_inertia[0]
+            if fault == interface.INSIDE_TARGET:
+                p.fault_value = p.chaser_start_position[0]
+
+    record = from_dtype(np.dtype(model_interface.dtype))
     signature = types.int32(types.int64, record[::1], types.float64[::1], types.float64, types.float64)
 
     @njit(signature, **OPTIONS)
     def entry(command, instance, work, time, step):
         p = instance[0]
         fault = 0
+        p.fault_index = 0
+        p.fault_value = 0.0
         if command == SIZE:
             fault = check(p)
         elif command == INITIALISE:
@@ -305,8 +328,7 @@ def make_entry(terms):
         elif command == STEP:
             fault = advance(p, work, time + step)
         if fault != 0:
-            p.fault_code = fault
-            p.fault_time = time
+            explain(p, fault, time)
         return fault
 
     return entry

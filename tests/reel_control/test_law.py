@@ -108,24 +108,36 @@ def test_refusals(code: int, name: str, value: float) -> None:
     assert {NO_COMMAND, BAD_PARAMETER, NOT_FINITE} == {f.code for f in MODEL.faults}
 
 
-def regulator(weight: float = 1.0) -> np.ndarray:
-    """Gains of the quadratic regulator about the equilibrium: state (l, l', phi, phi'), lengths in l0, times in 1/n.
+def regulator(thrust: float = -0.01) -> np.ndarray:
+    """Gains of the quadratic regulator about the tow's equilibrium, state (l, l', phi, phi') in units l0 and 1/n.
 
-    l'' = 3 l + 2 phi' - u,   phi'' = -3 phi - 2 l',   u the tension over m_r n^2 l0, beyond that at rest
+    l''   = l ((1 + phi')^2 - 1 + 3 cos^2 phi) + f sin phi - u,
+    phi'' = -2 (l'/l) (1 + phi') - 3 sin phi cos phi + (f/l) cos phi,   f = -F/(m_c n^2 l0) = 3 sin phi_0
+
+    linear about l = 1, phi = phi_0; u the tension over m_r n^2 l0, beyond that at rest.
     """
-    a = np.array([[0.0, 1.0, 0.0, 0.0], [3.0, 0.0, 0.0, 2.0], [0.0, 0.0, 0.0, 1.0], [0.0, -2.0, -3.0, 0.0]])
+    s = -thrust / (3.0 * 2000.0 * RATE**2 * 12.0)
+    c = math.sqrt(1.0 - s * s)
+    a = np.array(
+        [
+            [0.0, 1.0, 0.0, 0.0],
+            [3.0 * c * c, 0.0, -3.0 * s * c, 2.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [-3.0 * s * c, -2.0, -3.0 * c * c, 0.0],
+        ]
+    )
     b = np.array([[0.0], [-1.0], [0.0], [0.0]])
-    gains, _, _ = control.lqr(a, b, weight * np.eye(4), np.eye(1))
+    gains, _, _ = control.lqr(a, b, np.eye(4), np.eye(1))
     return np.asarray(gains)[0]
 
 
 def test_default_gains_are_the_regulators() -> None:
-    """Those on length and rate; its other two gains a reel can not have. Other weights give other gains."""
+    """Those on length and rate; its other two gains a reel can not have. Without thrust the gains are others."""
     gains = regulator()
     assert gains == pytest.approx([-5.78290, -3.41930, 2.93980, -0.21854], abs=1e-4)  # physics.md, section 2
     scale = REDUCED * RATE
     assert pytest.approx(-gains[0] * scale * RATE, rel=2e-4) == STIFFNESS
     assert pytest.approx(-gains[1] * scale, rel=2e-4) == DAMPING
-    assert pytest.approx(-regulator(1.02)[1] * scale, rel=2e-4) != DAMPING
+    assert pytest.approx(-regulator(0.0)[0] * scale * RATE, rel=2e-4) != STIFFNESS
     assert (STIFFNESS, DAMPING) == (removal.REEL_STIFFNESS, removal.REEL_DAMPING)
     assert pytest.approx(equilibrium_tension(RATE, 12.0, REDUCED), rel=1e-12) == FEED_FORWARD
