@@ -63,7 +63,7 @@ def compile_host(target, folder):
     """The importer for a target of clang."""
     path = Path(folder) / ("host.exe" if "windows" in target else "host")
     system = ["-ldl"] if "linux" in target else []
-    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-O1", "-std=c99", "-Wall"]
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-O3", "-s", "-std=c99", "-Wall"]
     done = subprocess.run(
         [*command, "-I", str(link.HEADERS), str(HOST), "-o", str(path), *system], capture_output=True, text=True
     )

@@ -19,8 +19,8 @@ from tests.packaging.platform_cases import CASES
 pytestmark = [pytest.mark.release, pytest.mark.slow]
 
 SPREAD = 1e-14
-"""Largest difference between platforms, of an output's largest size. The mathematics libraries differ in last bits; what
-was seen is 1.4e-16, in one angle of the removal under wine, and none elsewhere."""
+"""Largest difference between platforms, of an output's largest size. The mathematics libraries differ in last bits:
+1.4e-16 was seen in one angle of the removal under wine, and none elsewhere."""
 ARM_LIBRARIES = Path("/usr/aarch64-linux-gnu")
 
 
