@@ -10,9 +10,11 @@ import time as clock
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from dcone_cosim.cache import Times
-from dcone_cosim.errors import FmuError
+from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.names import did_you_mean
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.interface import Group, Interface, Model, Value, Variable
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
@@ -117,14 +119,15 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
-def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[str], None]) -> list[Path]:
-    """Path of the FMU of each model with its terms; those that the cache has not are built side by side, each once."""
+def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], platforms: Sequence[Any] = ()) -> Any:
+    """Paths of the FMUs of each interface, one per platform, this machine's alone if none is named.
+
+    Before a build begins it is told how long it took before; how long it takes is kept.
+    """
     from fmu_src.packaging.archive import build_all
+    from fmu_src.packaging.platforms import host
     from fmu_src.packaging.tools import BuildError
 
-    keys = [(model, tuple(terms.items())) for model, terms in wanted]
-    unlike = list(dict.fromkeys(keys))
-    interfaces = [CATALOGUE[model].interface(dict(terms)) for model, terms in unlike]
     announced: list[str] = []
     began, times = clock.perf_counter(), Times(cache_folder())
 
@@ -135,11 +138,20 @@ def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[
         announce(text)
 
     try:
-        paths = dict(zip(unlike, build_all(interfaces, cache_folder(), tell), strict=True))
+        built = build_all(interfaces, cache_folder(), tell, list(platforms) or [host()])
     except BuildError as error:
         raise FmuError(str(error)) from None
-    if announced:
+    if announced and not platforms:
         times.keep(clock.perf_counter() - began)
+    return built
+
+
+def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[str], None]) -> list[Path]:
+    """Path of the FMU of each model with its terms; those that the cache has not are built side by side, each once."""
+    keys = [(model, tuple(terms.items())) for model, terms in wanted]
+    unlike = list(dict.fromkeys(keys))
+    built = _built([CATALOGUE[model].interface(dict(terms)) for model, terms in unlike], announce)
+    paths = {key: path for key, (path,) in zip(unlike, built, strict=True)}
     return [paths[key] for key in keys]
 
 
@@ -147,6 +159,46 @@ def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str
     """Path of the FMU of each phase, `{phase: terms}`, with the model of that phase."""
     paths = ensure([(MODELS[phase].name, terms) for phase, terms in phases.items()], announce)
     return dict(zip(phases, paths, strict=True))
+
+
+def platform_names(text: str) -> tuple[str, ...]:
+    """Platforms by the names the command line gives, `all` or a list with commas; InputError if one is unknown."""
+    from fmu_src.packaging.platforms import PLATFORMS
+
+    if text == "all":
+        return tuple(PLATFORMS)
+    names = dict.fromkeys(name.strip() for name in text.split(","))
+    for name in names:
+        if name not in PLATFORMS:
+            expected = f"expected all, or some of {', '.join(PLATFORMS)}"
+            raise InputError(f"--platforms {text}: {name!r} is no platform; {expected}{did_you_mean(name, PLATFORMS)}")
+    return tuple(names)
+
+
+def write_fmus(
+    wanted: Sequence[tuple[str, Mapping[str, str]]],
+    platforms: Sequence[str],
+    folder: Path,
+    announce: Callable[[str], None],
+) -> list[Path]:
+    """Write the FMUs of models with their terms to a folder under readable names, each for all platforms named.
+
+    With no platforms named they are for this machine. Linux on arm64 has archives of its own.
+    """
+    from fmu_src.packaging.archive import unite
+    from fmu_src.packaging.platforms import PLATFORMS, archives, host
+
+    chosen = [PLATFORMS[name] for name in platforms]
+    built = _built([CATALOGUE[model].interface(terms) for model, terms in wanted], announce, chosen)
+    chosen = chosen or [host()]
+    written = []
+    for (model, terms), fmus in zip(wanted, built, strict=True):
+        of = dict(zip(chosen, fmus, strict=True))
+        for ending, together in archives(chosen):
+            name = Path(readable_name(model, terms))
+            written.append(folder / f"{name.stem}{ending}.fmu")
+            unite([of[platform] for platform in together], written[-1])
+    return written
 
 
 def readable_name(model: str, terms: Mapping[str, str]) -> str:

@@ -114,6 +114,14 @@ def run(
 def build(
     scene: SceneName,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .fmu files.")],
+    platforms: Annotated[
+        str,
+        typer.Option(
+            "--platforms",
+            metavar="LIST",
+            help="all, or some of linux64,win64,darwin64,linux-aarch64; this machine's alone.",
+        ),
+    ] = "",
     settings: Settings = None,
     offline: Offline = False,
 ) -> None:
@@ -123,7 +131,7 @@ def build(
 
     progress = _progress()
     try:
-        paths = write_fmus(scene, out, progress, settings or ())
+        paths = write_fmus(scene, out, progress, platforms, settings or ())
     finally:
         progress.close()
     with _reader_may_leave():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import tempfile
 import threading
 from collections.abc import Sequence
@@ -88,27 +87,32 @@ def _draw(result: RunResult, folder: Path) -> list[str]:
         return [f"no figure could be drawn: {type(error).__name__}: {error}"]
 
 
-def write_fmus(name: str, out: Path, progress: Progress, settings: Sequence[str] = ()) -> list[Path]:
-    """Copy the FMUs of a scene to a folder under readable names; files that the scene names are there already."""
+def write_fmus(
+    name: str, out: Path, progress: Progress, platforms: str = "", settings: Sequence[str] = ()
+) -> list[Path]:
+    """Write the FMUs of a scene to a folder under readable names, for the platforms named or for this machine's.
+
+    Files that the scene names itself are there already.
+    """
+    chosen = build.platform_names(platforms) if platforms else ()
     scene = named(name, settings)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
     ours = [(c.model, c.terms) for phase in scene.phases for c in phase.components if c.fmu is None]
+    ours = list({build.readable_name(*wanted): wanted for wanted in ours}.values())
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
             with progress.working("building"):
-                built = build.ensure(ours, progress.say)
-            copies = {out / build.readable_name(*wanted): fmu for wanted, fmu in zip(ours, built, strict=True)}
-            for path, fmu in copies.items():
-                os.replace(shutil.copyfile(fmu, Path(draft) / path.name), path)
+                drafts = build.write_fmus(ours, chosen, Path(draft), progress.say)
+            paths = [path.replace(out / path.name) for path in drafts]
     except BaseException:
         for folder in made:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
-    return list(copies)
+    return paths
 
 
 def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:

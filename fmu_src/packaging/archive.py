@@ -1,4 +1,8 @@
-"""FMUs on demand: built once for what goes into them, kept in a cache, and written byte for byte reproducibly."""
+"""FMUs on demand: built once for what goes into them, kept in a cache, and written byte for byte reproducibly.
+
+The cache holds an FMU for each platform. One for several platforms is put together from those: they differ in their
+libraries alone. The IR is worked out once, since every FMU carries it among its sources.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +18,8 @@ from importlib.metadata import version
 from pathlib import Path
 
 from fmu_src.interface import Interface
-from fmu_src.packaging import compile, description, link, tools
+from fmu_src.packaging import compile, description, link, sources, tools
+from fmu_src.packaging.platforms import WIN64, Platform, host
 
 PACKAGES = ("numba", "llvmlite", "ziglang", "numpy", "fmpy")
 """Tools whose version settles what comes out."""
@@ -23,27 +28,31 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]
 
 
-def fingerprint(interface: Interface, platform: link.Platform) -> str:
-    """Hash of all that goes into an FMU: kernels, shim, table, terms, tools, platform."""
+def fingerprint(interface: Interface) -> str:
+    """Hash of all that goes into an FMU: kernels, shim, table, terms, tools. The same on every platform."""
     digest = hashlib.sha256()
     model = SOURCES / interface.model.name
-    shared = sorted([*SOURCES.glob("*.py"), *(SOURCES / "packaging").glob("*.[pc]*")])
+    packaging = (p for p in (SOURCES / "packaging").rglob("*") if p.suffix in (".py", ".c", ".h", ".txt"))
+    shared = sorted([*SOURCES.glob("*.py"), *packaging])
     formulas = sorted((SOURCES.parent / "orbital").glob("*.py"))
     for path in [*shared, *formulas, *sorted(p for p in model.iterdir() if p.suffix in (".py", ".md"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     tools = {name: version(name) for name in PACKAGES}
-    digest.update(json.dumps([dict(interface.terms), tools, platform.folder, platform.processors]).encode())
+    digest.update(json.dumps([dict(interface.terms), tools]).encode())
     return digest.hexdigest()
 
 
-def build(interface: Interface, cache: Path, announce: Announce = lambda _: None) -> Path:
-    """Path of the FMU in the cache, built first if it is not there.
+def build(
+    interface: Interface, cache: Path, announce: Announce = lambda _: None, platform: Platform | None = None
+) -> Path:
+    """Path of the FMU for one platform, this machine's if none is named, in the cache; built first if it is not there.
 
     A half-built FMU never has its final name, and two processes that build the same one do not disturb each other.
     """
-    platform = link.host()
-    key = fingerprint(interface, platform)
-    path = cache / f"{interface.model.name}-{key[:16]}.fmu"
+    platform = platform or host()
+    key = fingerprint(interface)
+    name = interface.model.name
+    path = cache / f"{name}-{key[:16]}-{platform.name}.fmu"
     if _intact(path):
         return path
     try:
@@ -51,31 +60,45 @@ def build(interface: Interface, cache: Path, announce: Announce = lambda _: None
         folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
     except OSError as error:
         raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
-    name = interface.model.name
     guid = "{" + f"{key[:8]}-{key[8:12]}-{key[12:16]}-{key[16:20]}-{key[20:32]}" + "}"
-    announce(f"building {interface.model.name} with {', '.join(interface.terms)} (once; kept in {cache})")
     try:
         ir = folder / "model.ll"
-        compile.emit(interface.model.name, interface.terms, ir)
+        known = _kernels(cache, f"{name}-{key[:16]}-*.fmu")
+        if known is None:
+            announce(f"building {name} with {', '.join(interface.terms)} (once; kept in {cache})")
+            compile.emit(name, interface.terms, ir)
+        else:
+            ir.write_bytes(known)
         header = folder / "model.h"
         header.write_text(description.header(interface, name, guid))
         library = folder / f"{name}{platform.suffix}"
-        announce(f"linking {interface.model.name} for {platform.folder}")
+        first = "; the first link for Windows on a machine takes minutes" if platform is WIN64 else ""
+        announce(f"linking {name} for {platform.name}{first}")
         link.link(ir, header, library, platform)
         package = version("dcone-cosim")
         files = {
             "modelDescription.xml": description.model_description(interface, name, guid, package),
             f"binaries/{platform.folder}/{library.name}": library.read_bytes(),
             "documentation/index.html": description.documentation(interface, SOURCES / interface.model.name).encode(),
+            **sources.files(name, ir, header),
         }
         finished = folder / path.name
         pack(files, finished)
-        if fingerprint(interface, platform) != key:
-            raise tools.BuildError(f"the sources of {interface.model.name} changed while it was built: build it again")
+        if fingerprint(interface) != key:
+            raise tools.BuildError(f"the sources of {name} changed while it was built: build it again")
         os.replace(finished, path)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return path
+
+
+def _kernels(cache: Path, pattern: str) -> bytes | None:
+    """IR from an FMU of the same origin for another platform, if there is one."""
+    for path in sorted(cache.glob(pattern)):
+        if _intact(path):
+            with zipfile.ZipFile(path) as archive:
+                return archive.read(f"sources/{sources.KERNELS}")
+    return None
 
 
 def _intact(path: Path) -> bool:
@@ -87,14 +110,35 @@ def _intact(path: Path) -> bool:
         return False
 
 
-def build_all(interfaces: Sequence[Interface], cache: Path, announce: Announce = lambda _: None) -> list[Path]:
-    """Paths of several FMUs, those that are missing built side by side."""
+def build_all(
+    interfaces: Sequence[Interface],
+    cache: Path,
+    announce: Announce = lambda _: None,
+    platforms: Sequence[Platform | None] = (None,),
+) -> list[list[Path]]:
+    """Paths of several FMUs, for each of them one per platform, those that are missing built side by side."""
+
+    def build_one(interface: Interface) -> list[Path]:
+        return [build(interface, cache, announce, platform) for platform in platforms]
+
     with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
         try:
-            return list(pool.map(lambda interface: build(interface, cache, announce), interfaces))
+            return list(pool.map(build_one, interfaces))
         except BaseException:
             tools.stop()
             raise
+
+
+def unite(fmus: Sequence[Path], path: Path) -> None:
+    """Write one FMU for all the platforms of several, which must be of the same origin."""
+    files: dict[str, bytes] = {}
+    for fmu in fmus:
+        with zipfile.ZipFile(fmu) as archive:
+            for name in archive.namelist():
+                content = archive.read(name)
+                if files.setdefault(name, content) != content:
+                    raise ValueError(f"{fmu} is not of the same origin: its {name} differs")
+    pack(files, path)
 
 
 def pack(files: dict[str, bytes], path: Path) -> None:
@@ -102,6 +146,7 @@ def pack(files: dict[str, bytes], path: Path) -> None:
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name in sorted(files, key=lambda n: (n != "modelDescription.xml", n)):
             info = zipfile.ZipInfo(name, EPOCH)
+            info.create_system = 3  # the writing system would be told otherwise
             info.external_attr = 0o644 << 16
             info.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(info, files[name])

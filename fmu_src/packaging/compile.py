@@ -26,6 +26,7 @@ ENVIRONMENT = {
     "NUMBA_OPT": "1",
     "NUMBA_DISABLE_JIT": "0",
     "NUMBA_DEBUGINFO": "0",
+    "PYTHONHASHSEED": "0",
 }
 
 
@@ -68,6 +69,7 @@ def _lower(model: str, terms: Mapping[str, str]) -> str:
     for function in module.functions:
         if not function.is_declaration and function.name != name:
             function.linkage = "internal"
+    module.get_function(name).visibility = "hidden"
     machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine()
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
     passes = llvm.create_new_module_pass_manager()

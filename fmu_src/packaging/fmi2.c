@@ -54,29 +54,14 @@ typedef struct {
 #define ARRAY void *, void *, int64_t, int64_t, slot *, int64_t, int64_t
 typedef int32_t entry_function(int32_t *result, void **exception, int64_t command, ARRAY, ARRAY, double time, double step);
 
-#include <cpuid.h>
-entry_function dcone_entry_x86_64, dcone_entry_x86_64_v3;
-
-/* AVX2, FMA, BMI1, BMI2, F16C, LZCNT and MOVBE, and an operating system that saves the wide registers. */
-static int runs_v3(void) {
-    unsigned a, b, c, d, low, high;
-    const unsigned basic = bit_FMA | bit_MOVBE | bit_OSXSAVE | bit_AVX | bit_F16C;
-    const unsigned extended = bit_AVX2 | bit_BMI | bit_BMI2;
-    if (!__get_cpuid(1, &a, &b, &c, &d) || (c & basic) != basic) return 0;
-    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
-    if ((low & 6) != 6) return 0;
-    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || (b & extended) != extended) return 0;
-    return __get_cpuid(0x80000001, &a, &b, &c, &d) && (c & bit_LZCNT);
-}
-
-static entry_function *entry(void) { return runs_v3() ? dcone_entry_x86_64_v3 : dcone_entry_x86_64; }
+#include "processor.h"
 
 static int32_t run(instance *i, int64_t command, double time, double step) {
     int32_t result = 0;
     void *exception = NULL;
-    int32_t status = entry()(&result, &exception, command,
-                             NULL, NULL, 1, DCONE_SLOTS * 8, i->block, 1, DCONE_SLOTS * 8,
-                             NULL, NULL, i->work, 8, i->block + DCONE_SLOTS, i->work, 8, time, step);
+    int32_t status = entry(&result, &exception, command,
+                           NULL, NULL, 1, DCONE_SLOTS * 8, i->block, 1, DCONE_SLOTS * 8,
+                           NULL, NULL, i->work, 8, i->block + DCONE_SLOTS, i->work, 8, time, step);
     return status ? -1 : result;
 }
 

@@ -4,48 +4,22 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import fmpy
 
-from fmu_src.packaging import tools
+from fmu_src.packaging import tools, universal
 from fmu_src.packaging.compile import ENTRY
+from fmu_src.packaging.platforms import Platform, Target
 
 SHIM = Path(__file__).parent / "fmi2.c"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 """The FMI headers as fmpy ships them."""
-
-
-@dataclass(frozen=True)
-class Platform:
-    """One slot of an FMU.
-
-    folder       name under `binaries/`
-    suffix       of the library
-    target       for clang
-    processors   code paths in one library, best last; the shim takes the best the machine runs
-    """
-
-    folder: str
-    suffix: str
-    target: str
-    processors: tuple[str, ...]
-
-
-LINUX64 = Platform("linux64", ".so", "x86_64-linux-gnu.2.17", ("x86_64", "x86_64_v3"))
 FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-g0", "-Wno-override-module")
-
-
-def host() -> Platform:
-    """The platform this process runs on."""
-    import platform
-
-    if sys.platform == "linux" and platform.machine() in ("x86_64", "AMD64"):
-        return LINUX64
-    raise tools.BuildError(
-        f"no FMU can be built for {sys.platform} on {platform.machine()} yet, only for Linux on x86-64"
-    )
+"""For kernels and shim. Products and sums are never fused, so that all processors give the same bits."""
+SHIM_FLAGS = ("-std=c99", "-fvisibility=hidden", "-Wall", "-Wextra", "-shared", "-s")
+SECOND_PATH = {"x86_64_v3": "v3"}
+"""What the entry of a second code path is called, for processor.h."""
 
 
 def _clang(arguments: Sequence[object]) -> None:
@@ -53,24 +27,41 @@ def _clang(arguments: Sequence[object]) -> None:
     tools.run("clang", command)
 
 
-def link(ir: Path, header: Path, library: Path, platform: Platform) -> None:
-    """Make the shared library of one FMU from its IR and its generated header, in the folder of `ir`."""
-    objects: list[Path] = []
-    for processor in platform.processors:
-        source = ir.with_name(f"kernel_{processor}.ll")
-        source.write_text(ir.read_text().replace(f"@{ENTRY}", f"@{ENTRY}_{processor}"))
+def compile_kernels(ir: Path, target: Target, folder: Path) -> list[Path]:
+    """Object files of a model's kernels in `folder`, one for each processor; the first bears the plain entry."""
+    objects = []
+    for processor in target.processors:
+        source = folder / f"kernel_{processor}.ll"
+        plain = processor == target.processors[0]
+        entry = ENTRY if plain else f"{ENTRY}_{SECOND_PATH[processor]}"
+        source.write_text(ir.read_text().replace(f"@{ENTRY}", f"@{entry}"))
         objects.append(source.with_suffix(".o"))
-        _clang(["-target", platform.target, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", objects[-1]])
-    visible = [
-        "-std=c99",
-        "-fvisibility=hidden",
-        "-Wall",
-        "-Wextra",
-        "-shared",
-        "-s",
-        "-I",
-        HEADERS,
-        "-I",
-        header.parent,
-    ]
-    _clang(["-target", platform.target, *FLAGS, *visible, SHIM, *objects, "-o", library, "-lm"])
+        _clang(["-target", target.triple, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", objects[-1]])
+    return objects
+
+
+def link(ir: Path, header: Path, library: Path, platform: Platform) -> None:
+    """Make the shared library of one FMU from its IR and its generated header; BuildError if a tool fails.
+
+    What is made on the way stays in the folder of `library`, in one folder per machine code.
+    """
+    parts = []
+    for target in platform.targets:
+        folder = library.parent / target.triple
+        folder.mkdir()
+        parts.append(folder / library.name)
+        _link_one(ir, header, parts[-1], target)
+    library.write_bytes(parts[0].read_bytes() if len(parts) == 1 else universal.join([p.read_bytes() for p in parts]))
+
+
+def _link_one(ir: Path, header: Path, library: Path, target: Target) -> None:
+    objects = compile_kernels(ir, target, library.parent)
+    paths = [f"-DDCONE_{SECOND_PATH[p].upper()}" for p in target.processors[1:]]
+    system: list[str] = []
+    if "linux" in target.triple:
+        system = ["-lm"]  # the others have their mathematics in the one C library
+    elif "macos" in target.triple:
+        # without these, the folder of this build, and the names of internal functions
+        system = [f"-Wl,-install_name,@rpath/{library.name}", "-Wl,-x"]
+    search = ["-I", HEADERS, "-I", header.parent]
+    _clang(["-target", target.triple, *FLAGS, *SHIM_FLAGS, *search, *paths, SHIM, *objects, "-o", library, *system])

@@ -19,6 +19,7 @@ def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
         raise AssertionError("bad input got as far as building an FMU")
 
     monkeypatch.setattr(commands.build, "ensure", never)
+    monkeypatch.setattr(commands.build, "write_fmus", never)
 
     def run(*arguments: str) -> tuple[int, str]:
         monkeypatch.setattr("sys.argv", ["dcone", *arguments])
