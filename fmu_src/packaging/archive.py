@@ -65,7 +65,8 @@ def build(
         ir = folder / "model.ll"
         known = _kernels(cache, f"{name}-{key[:16]}-*.fmu")
         if known is None:
-            announce(f"building {name} with {', '.join(interface.terms)} (once; kept in {cache})")
+            terms = ", ".join(interface.terms) or "no terms to choose"
+            announce(f"building {name} with {terms} (once; kept in {cache})")
             compile.emit(name, interface.terms, ir)
         else:
             ir.write_bytes(known)

@@ -176,7 +176,7 @@ def test_term_left_out_is_not_in_the_fmu(fmu):
     assert "close.command" in names
     assert not any(n.startswith(("node[", "orbit.")) for n in names)
     with zipfile.ZipFile(path) as content:
-        assert {"modelDescription.xml", "documentation/index.html"} < set(content.namelist())
+        assert {"modelDescription.xml", "documentation/index.html", "model.png"} < set(content.namelist())
         library = content.read("binaries/linux64/net_capture.so")
     assert b"Py_" not in library
     assert b"fmi2SetContinuousStates" in library
