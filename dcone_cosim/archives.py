@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.archive import Archive
-from dcone_cosim.component import CallError, Steppable
 from dcone_cosim.errors import FmuError, InputError
-from dcone_cosim.mistakes import places_named
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import CallError, Steppable
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scenes.mistakes import places_named
+from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
 
 
 class Archives:
@@ -61,7 +61,7 @@ class Archives:
                     self._set(plan, component, made[-1])
             if len(made) == 1 and not plan.connections:
                 return made[0]
-            from dcone_cosim.coupled import Coupled
+            from dcone_cosim.coupling.coupled import Coupled
 
             instances = [component.name for component in plan.components]
             coupled: Steppable = Coupled(name, made, plan.connections, plan.coupling, instances)

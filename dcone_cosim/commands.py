@@ -18,7 +18,7 @@ from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import style, summary
 from dcone_cosim.run import atomic_folder, check_free, default_folder, fill
-from dcone_cosim.scene import Scene, find, load, parse, read_text
+from dcone_cosim.scenes.scene import Scene, find, load, parse, read_text
 
 
 @dataclass
@@ -117,7 +117,7 @@ def write_fmus(
 
 def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
     """Write a scene begun from another; returns where, and what to do next. Never replaces a file."""
-    from dcone_cosim.scene_new import SCHEMA, new_scene
+    from dcone_cosim.scenes.new import SCHEMA, new_scene
 
     if not name.strip():
         raise InputError("the name of the new scene is empty; expected a file to write, such as mine.toml")
@@ -155,7 +155,7 @@ def write_schema(out: Path | None) -> str:
     """The JSON schema of scenes as text, written to a file if one is named; only an earlier schema is replaced."""
     import json
 
-    from dcone_cosim.scene_schema import schema
+    from dcone_cosim.scenes.schema import schema
 
     content = schema()
     text = json.dumps(content, indent=1, ensure_ascii=False)

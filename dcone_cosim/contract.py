@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal
 
-from dcone_cosim.fmi_units import PURE, by_name, same_dimension, spoken_dimension
+from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.fmu.units import PURE, by_name, same_dimension, spoken_dimension
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS
 from dcone_cosim.names import nearest
-from dcone_cosim.steppable import VariableInfo
 
 if TYPE_CHECKING:
-    from dcone_cosim.archive import Archive
+    from dcone_cosim.fmu.archive import Archive
 
 OUTCOMES = ("flying", "captured", "settled", "missed", "slipped_off", "not_closed", "tether_taut")
 """Meaning of the capture's Integer output `outcome`."""

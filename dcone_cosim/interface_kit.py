@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from dcone_cosim.contract import NEEDS, Asked, asked
 from dcone_cosim.errors import InputError
-from dcone_cosim.fmi_units import BASE, by_name
+from dcone_cosim.fmu.units import BASE, by_name
 from dcone_cosim.names import did_you_mean
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim.component import CallError, Steppable
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HANDED_OVER, NEVER, OUTCOMES
 from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
+from dcone_cosim.fmu.component import CallError, Steppable
 from dcone_cosim.handoff import (
     CAPTURE_OUTPUTS,
     CAPTURE_PARAMETERS,
@@ -29,10 +29,10 @@ from dcone_cosim.handoff import (
     without_recoil,
 )
 from dcone_cosim.ledger import LedgerRow, ledger
-from dcone_cosim.mistakes import places_named
 from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import PHASES, PhaseScene, Scene
+from dcone_cosim.scenes.mistakes import places_named
+from dcone_cosim.scenes.scene import PHASES, PhaseScene, Scene
 
 Instantiate = Callable[[str, str], Steppable]
 """`instantiate(phase, name)` makes a component of that phase's FMU."""

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dcone_cosim import restoring
-from dcone_cosim.component import KINDS, Readable, Row, Steppable, Terminated, output_names
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu import restoring
+from dcone_cosim.fmu.component import KINDS, Readable, Row, Steppable, Terminated, output_names
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 

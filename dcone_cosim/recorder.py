@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from dcone_cosim.component import VariableInfo
+from dcone_cosim.fmu.component import VariableInfo
 
 Row = npt.NDArray[np.float64]
 

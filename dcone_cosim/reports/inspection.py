@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from dcone_cosim import build
-from dcone_cosim.archive import Archive
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.master import cannot_begin
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import ComponentScene, PhaseScene, Scene
-from dcone_cosim.units import spoken
+from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scenes.units import spoken
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -19,16 +19,16 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.archive import Archive
-from dcone_cosim.coupling import Connection
+from dcone_cosim.coupling.options import Connection
 from dcone_cosim.errors import InputError
-from dcone_cosim.fmi_units import read_units
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.fmu.units import read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene, load
+from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene, load
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
-from dcone_cosim.steppable import VariableInfo
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The earliest time a zip archive can tell: what is written depends on the content alone."""

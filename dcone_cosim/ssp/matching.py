@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from dcone_cosim.coupling import Connection
-from dcone_cosim.fmi_units import Unit, same_dimension
+from dcone_cosim.coupling.options import Connection
+from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.fmu.units import Unit, same_dimension
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.ssp.markup import KINDS, STRUCTURE
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import ComponentRow, ConnectionRow, PortRow
 from dcone_cosim.ssp.values import Given
-from dcone_cosim.steppable import VariableInfo
 
 
 @dataclass(frozen=True)

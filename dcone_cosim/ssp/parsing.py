@@ -10,7 +10,7 @@ from pathlib import Path
 import fmpy.ssp
 from lxml import etree
 
-from dcone_cosim.fmi_units import BASE, Unit
+from dcone_cosim.fmu.units import BASE, Unit
 from dcone_cosim.ssp.markup import FMU_TYPE, KINDS, OMS_TYPE, OSP_TYPE, OUR_TYPE, READ, VERSION, plain, tag
 from dcone_cosim.ssp.package import Mistakes
 

@@ -7,18 +7,18 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, cast
 
 from dcone_cosim.contract import HAND_OVER
-from dcone_cosim.coupling import Coupling
+from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scene import PHASES
-from dcone_cosim.scene_text import override
+from dcone_cosim.scenes.scene import PHASES
+from dcone_cosim.scenes.text import override
+from dcone_cosim.scenes.units import Expected, Unexpected
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part, owner_of
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import Document
-from dcone_cosim.units import Expected, Unexpected
 
 RESERVED = (*PHASES, "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
 """Names of files in a run folder that a system's own name must not take."""

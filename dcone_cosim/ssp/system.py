@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from dcone_cosim.archive import Archive
 from dcone_cosim.errors import FmuError
-from dcone_cosim.mistakes import Places
-from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.scenes.mistakes import Places
+from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
 from dcone_cosim.ssp import matching, planning
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE

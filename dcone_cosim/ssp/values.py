@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from dcone_cosim.fmi_units import Unit
+from dcone_cosim.fmu.units import Unit
 from dcone_cosim.ssp.markup import KINDS, MAPPING_TYPE, READ, STRUCTURE, VALUES_TYPE, plain
 from dcone_cosim.ssp.package import Mistakes, Package, entry_of, parsed
 from dcone_cosim.ssp.parsing import BindingRow, check_file, units

@@ -8,7 +8,7 @@ from importlib.metadata import version
 
 from lxml import etree
 
-from dcone_cosim.fmi_units import BASE, PURE, Unit
+from dcone_cosim.fmu.units import BASE, PURE, Unit
 from dcone_cosim.ssp.markup import (
     FMU_TYPE,
     NAMESPACES,

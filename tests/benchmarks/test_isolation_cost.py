@@ -9,8 +9,8 @@ import time
 import numpy as np
 import pytest
 
-from dcone_cosim.archive import Archive
-from dcone_cosim.component import output_names
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import output_names
 from tests.cosim.fmus.build import build
 
 pytestmark = pytest.mark.bench

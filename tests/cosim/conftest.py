@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from dcone_cosim.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
 
 
 def scene_of(*phases: str, **handoff: Any) -> Scene:

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from dcone_cosim.build import MODELS
-from dcone_cosim.component import VariableInfo
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu.component import VariableInfo
 from fmu_src.instance import Instance, ModelFault
 
 
 class KernelComponent:
-    """Offers what `dcone_cosim.component.Steppable` asks, over `fmu_src.instance.Instance`."""
+    """Offers what `dcone_cosim.fmu.component.Steppable` asks, over `fmu_src.instance.Instance`."""
 
     def __init__(self, phase: str, name: str, terms: Mapping[str, str]) -> None:
         self.name = name

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.linalg import expm
 
-from dcone_cosim.component import CallError, Terminated
-from dcone_cosim.coupled import Coupled
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.coupled import Coupled
+from dcone_cosim.coupling.options import Connection, Coupling
+from dcone_cosim.fmu.component import CallError, Terminated
 from tests.cosim.mock_components import MockComponent
 
 

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from dcone_cosim.component import VariableInfo
 from dcone_cosim.contract import OUTCOMES
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu.component import VariableInfo
 
 
 class MockComponent:

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dcone_cosim.component import Steppable
-from dcone_cosim.coupled import Coupled
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.coupled import Coupled
+from dcone_cosim.coupling.options import Connection, Coupling
+from dcone_cosim.fmu.component import Steppable
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from tests.cosim.linear_components import LinearComponent
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from dcone_cosim.archives import Archives
-from dcone_cosim.coupled import Coupled
+from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import Scene, load
+from dcone_cosim.scenes.scene import Scene, load
 from tests.cosim.fmus.build import build
 
 ALONE = '[removal]\nfmu = "my_removal.fmu"\nmacro_step = "10 s"\nduration = "100 s"\n'
@@ -89,7 +89,7 @@ class Refusing:
 @pytest.mark.parametrize(("earlier", "kind"), [(False, InputError), (True, FmuError)])
 def test_a_value_refused(folder: Path, monkeypatch: pytest.MonkeyPatch, earlier: bool, kind: type[Exception]) -> None:
     """Bad input at the start of a run; after a phase whose results are worth keeping, a failure of the FMU."""
-    from dcone_cosim.steppable import CallError
+    from dcone_cosim.fmu.steppable import CallError
 
     text = ALONE + OTHER.format("my_capture.fmu")
     if earlier:

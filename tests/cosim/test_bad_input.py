@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dcone_cosim import cli, commands
-from dcone_cosim.scene import find
+from dcone_cosim.scenes.scene import find
 
 
 @pytest.fixture

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim.component import CallError
 from dcone_cosim.errors import CAPTURE_FAILED, SUCCESS, InputError
+from dcone_cosim.fmu.component import CallError
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import Scene, find, load, parse
-from dcone_cosim.units import Expected, Unexpected
+from dcone_cosim.scenes.scene import Scene, find, load, parse
+from dcone_cosim.scenes.units import Expected, Unexpected
 from fmu_src.net_capture.reach import node_count, refusals
 from fmu_src.net_capture.terms import MOST_NODES, NodeTerms
 from tests.cosim.mock_components import MockCapture

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from dcone_cosim.component import output_names
-from dcone_cosim.coupled import Coupled
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.coupled import Coupled
+from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.fmu.component import output_names
 from tests.cosim.linear_components import LinearComponent, by_force, by_motion, coupled, error_at, run
 from tests.cosim.mock_components import MockComponent
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dcone_cosim.component import CallError, Terminated
-from dcone_cosim.coupled import Coupled
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.coupled import Coupled
+from dcone_cosim.coupling.exchange import Exchange
+from dcone_cosim.coupling.options import Connection, Coupling
+from dcone_cosim.coupling.wiring import wire
 from dcone_cosim.errors import FmuError, InputError
-from dcone_cosim.exchange import Exchange
-from dcone_cosim.wiring import wire
+from dcone_cosim.fmu.component import CallError, Terminated
 from tests.cosim.linear_components import LinearComponent, by_force, by_motion, coupled, run
 from tests.cosim.mock_components import MockComponent
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from dcone_cosim.archive import Archive
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.interface_kit import write_template
 
 XML = "modelDescription.xml"

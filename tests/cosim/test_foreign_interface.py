@@ -17,13 +17,13 @@ from rich.console import Console
 
 from dcone_cosim import build as models
 from dcone_cosim import cli
-from dcone_cosim.archive import Archive
 from dcone_cosim.contract import asked, check_contract
 from dcone_cosim.errors import SUCCESS, InputError
+from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.interface_kit import show, write_template
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import Scene, load
+from dcone_cosim.scenes.scene import Scene, load
 from tests.cosim.mock_components import MockCapture
 
 Make = Callable[..., Scene]

@@ -11,16 +11,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dcone_cosim.archive import Archive
-from dcone_cosim.component import CallError, Component, Terminated
 from dcone_cosim.contract import check_contract
 from dcone_cosim.errors import FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, InputError
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import CallError, Component, Terminated
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.phases import CaptureLoop, CapturePlan
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
 from dcone_cosim.run import write
-from dcone_cosim.scene import Scene
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.fmus.build import build
 from tests.cosim.mock_components import MockCapture
 

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build as models
-from dcone_cosim.archive import Archive
-from dcone_cosim.component import CallError, Component, output_names
 from dcone_cosim.errors import FmuError
-from dcone_cosim.scene import load
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import CallError, Component, output_names
+from dcone_cosim.scenes.scene import load
 from tests.cosim.fmus.build import build
 
 Fmu = Callable[..., Archive]
@@ -173,7 +173,7 @@ def parent(archive: Archive, rest: str) -> subprocess.Popen[str]:
     """A process that isolates the FMU, prints its child's id, and does the rest."""
     program = f"""
         from pathlib import Path
-        from dcone_cosim.archive import Archive
+        from dcone_cosim.fmu.archive import Archive
         component = Archive(Path({str(archive.path)!r})).isolate("tow", 60.0)
         component.initialise(0.0)
         print(component._child.pid, flush=True)

@@ -10,11 +10,11 @@ import pytest
 
 from dcone_cosim import build
 from dcone_cosim.commands import Archives
-from dcone_cosim.component import Steppable
+from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.master import run_scene
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import Scene, load
+from dcone_cosim.scenes.scene import Scene, load
 from tests.cosim.in_process import KernelComponent
 
 pytestmark = pytest.mark.slow

@@ -11,7 +11,7 @@ from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCE
 from dcone_cosim.handoff import mean_motion
 from dcone_cosim.master import RunResult, advanced, run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene import Scene
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.mock_components import MockCapture, MockComponent, MockRemoval
 
 Make = Callable[..., Scene]

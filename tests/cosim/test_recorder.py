@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dcone_cosim.component import VariableInfo
+from dcone_cosim.fmu.component import VariableInfo
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 
 VARIABLES = {

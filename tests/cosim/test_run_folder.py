@@ -15,7 +15,7 @@ from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
 from dcone_cosim.run import write
-from dcone_cosim.scene import Scene
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.mock_components import MockCapture, MockRemoval
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.mistakes import SceneError
-from dcone_cosim.scene import PhaseScene, find, parse
+from dcone_cosim.scenes.mistakes import SceneError
+from dcone_cosim.scenes.scene import PhaseScene, find, parse
 
 CONTROLLED = """
 [removal]

@@ -11,7 +11,7 @@ import pytest
 
 from dcone_cosim import cli
 from dcone_cosim.errors import InputError
-from dcone_cosim.scene import Scene, find, load
+from dcone_cosim.scenes.scene import Scene, find, load
 from tests.cosim.fmus.build import build
 
 SCENE = """

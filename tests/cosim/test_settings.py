@@ -7,8 +7,8 @@ import tomllib
 import pytest
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.scene import Scene, find, load, parse
-from dcone_cosim.scene_text import override
+from dcone_cosim.scenes.scene import Scene, find, load, parse
+from dcone_cosim.scenes.text import override
 
 
 def changed(*settings: str, scene: str = "mission") -> Scene:

@@ -12,12 +12,12 @@ import pytest
 from lxml import etree
 
 from dcone_cosim import build
-from dcone_cosim import scene as scenes
 from dcone_cosim.archives import Archives
-from dcone_cosim.coupling import Coupling
+from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
+from dcone_cosim.scenes import scene as scenes
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.export import export_scene, identifier
 from tests.cosim.ssp_packages import STRUCTURE, changed, contents, packed

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from dcone_cosim.component import VariableInfo
+from dcone_cosim.fmu.component import VariableInfo
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.progress import Progress
@@ -22,7 +22,7 @@ from dcone_cosim.recorder import Recorder, TugLog
 from dcone_cosim.reports import net_view, side_by_side, style, summary
 from dcone_cosim.reports.figures import draw_all
 from dcone_cosim.run import as_json
-from dcone_cosim.scene import Scene
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.mock_components import MockCapture, MockRemoval
 
 MakeScene = Callable[..., Scene]

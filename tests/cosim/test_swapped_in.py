@@ -10,7 +10,7 @@ import pyarrow.parquet
 import pytest
 
 from dcone_cosim import cli
-from dcone_cosim.scene import find
+from dcone_cosim.scenes.scene import find
 from tests.cosim.fmus.build import build
 
 pytestmark = pytest.mark.slow

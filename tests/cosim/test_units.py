@@ -7,8 +7,8 @@ import math
 import pytest
 
 from dcone_cosim.build import MODELS, defaults
-from dcone_cosim.scene_keys import expected_of
-from dcone_cosim.units import Expected, Unexpected, example_of, unit_of
+from dcone_cosim.scenes.keys import expected_of
+from dcone_cosim.scenes.units import Expected, Unexpected, example_of, unit_of
 
 LENGTH = Expected("m", example="24 m", refusal=lambda v: None if v > 0 else "must be greater than 0 m")
 

@@ -10,9 +10,9 @@ import pyarrow.parquet
 import pytest
 
 from dcone_cosim import build, cli
-from dcone_cosim.component import Archive
 from dcone_cosim.errors import FmuError
-from dcone_cosim.scene import find, load
+from dcone_cosim.fmu.component import Archive
+from dcone_cosim.scenes.scene import find, load
 
 pytestmark = pytest.mark.slow
 

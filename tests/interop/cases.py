@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from dcone_cosim import build
-from dcone_cosim.component import Archive
-from dcone_cosim.scene import load
+from dcone_cosim.fmu.component import Archive
+from dcone_cosim.scenes.scene import load
 from tests.interop.job import Job, Row, Value
 
 Points = Callable[[float, int], Iterator[tuple[float, float]]]

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dcone_cosim.component import Archive
+from dcone_cosim.fmu.component import Archive
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
-from dcone_cosim.scene import Scene, load
+from dcone_cosim.scenes.scene import Scene, load
 from tests.interop.cases import CAPTURE, CASES, Case
 from tests.interop.children import run_tool
 from tests.interop.job import Job, Value

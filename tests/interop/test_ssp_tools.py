@@ -15,12 +15,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dcone_cosim import scene as scenes
 from dcone_cosim.archives import Archives
 from dcone_cosim.commands import run_and_write
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
+from dcone_cosim.scenes import scene as scenes
 from dcone_cosim.ssp.export import export_scene
 
 pytestmark = pytest.mark.interop

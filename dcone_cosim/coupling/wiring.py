@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from dcone_cosim.component import Steppable, VariableInfo
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.fmi_units import same_dimension
+from dcone_cosim.fmu.component import Steppable, VariableInfo
+from dcone_cosim.fmu.units import same_dimension
 from dcone_cosim.names import did_you_mean, nearest
 
 CARRIED = {

@@ -6,10 +6,10 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Protocol
 
-from dcone_cosim.component import CallError
-from dcone_cosim.coupling import Coupling
+from dcone_cosim.coupling.exchange import Exchange
+from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import FmuError
-from dcone_cosim.exchange import Exchange
+from dcone_cosim.fmu.component import CallError
 
 TRIAL = "coupling trial"
 """Key under which the begin of a controlled step is kept."""

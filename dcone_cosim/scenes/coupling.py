@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from dcone_cosim.coupling import Connection, Coupling
-from dcone_cosim.mistakes import Mistake, unknown
-from dcone_cosim.scene_keys import COUPLING_KEYS, Slot, read_table, table_in
-from dcone_cosim.scene_parts import Part
-from dcone_cosim.toml_lines import Path, dotted
-from dcone_cosim.units import fit, spoken
+from dcone_cosim.coupling.options import Connection, Coupling
+from dcone_cosim.scenes.keys import COUPLING_KEYS, Slot, read_table, table_in
+from dcone_cosim.scenes.mistakes import Mistake, unknown
+from dcone_cosim.scenes.parts import Part
+from dcone_cosim.scenes.toml_lines import Path, dotted
+from dcone_cosim.scenes.units import fit, spoken
 
 ARROW = "->"
 FORM = '"INSTANCE.VARIABLE -> INSTANCE.VARIABLE"'

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmi_units import Dimension
+from dcone_cosim.fmu.units import Dimension
 
 Row = npt.NDArray[np.float64]
 KINDS = ("Real", "Integer", "Boolean")

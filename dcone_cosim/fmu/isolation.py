@@ -27,9 +27,9 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from dcone_cosim.archive import Archive
 from dcone_cosim.errors import FmuError
-from dcone_cosim.steppable import CallError, Row, Terminated, VariableInfo
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.steppable import CallError, Row, Terminated, VariableInfo
 
 LAST_WORDS = 600
 """Characters that an error quotes at most of the last three lines an FMU wrote."""
@@ -267,11 +267,11 @@ class IsolatedReader:
 
 def _start_child() -> subprocess.Popen[bytes]:
     """A fresh interpreter with `isolated_child`, in a session of its own: Ctrl-C is ours to handle."""
-    place = str(Path(__file__).parent.parent)
+    place = str(Path(__file__).parents[2])
     path = os.pathsep.join([place, *filter(None, [os.environ.get("PYTHONPATH")])])
     pipe = subprocess.PIPE
     return subprocess.Popen(
-        [sys.executable, "-m", "dcone_cosim.isolated_child"],
+        [sys.executable, "-m", "dcone_cosim.fmu.isolated_child"],
         stdin=pipe,
         stdout=pipe,
         stderr=pipe,

@@ -15,13 +15,11 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER, check_contract
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.mistakes import Mistake, Places, SceneError, unknown
-from dcone_cosim.scene import PHASES, ComponentScene, PhaseScene, Scene
-from dcone_cosim.scene_coupling import about_components, read_connections, read_coupling
-from dcone_cosim.scene_fmus import file_of, offer, opened
-from dcone_cosim.scene_keys import (
+from dcone_cosim.scenes.coupling import about_components, read_connections, read_coupling
+from dcone_cosim.scenes.fmus import file_of, offer, opened
+from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     FLAG,
     HANDOFF_KEYS,
@@ -36,8 +34,9 @@ from dcone_cosim.scene_keys import (
     read_value,
     table_in,
 )
-from dcone_cosim.scene_parts import RESERVED, Part, of_fmu, of_model, read_part, reserved_of
-from dcone_cosim.scene_relations import (
+from dcone_cosim.scenes.mistakes import Mistake, Places, SceneError, unknown
+from dcone_cosim.scenes.parts import RESERVED, Part, of_fmu, of_model, read_part, reserved_of
+from dcone_cosim.scenes.relations import (
     about_hand_over,
     about_line,
     about_steps,
@@ -45,7 +44,8 @@ from dcone_cosim.scene_relations import (
     phases_to_run,
     set_by_handoff,
 )
-from dcone_cosim.toml_lines import Path
+from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
+from dcone_cosim.scenes.toml_lines import Path
 
 
 @dataclass

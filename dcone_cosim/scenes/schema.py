@@ -13,8 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.scene import PHASES
-from dcone_cosim.scene_keys import (
+from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,
     HANDOFF_KEYS,
@@ -26,7 +25,8 @@ from dcone_cosim.scene_keys import (
     key_of,
     orbit_keys,
 )
-from dcone_cosim.units import Expected
+from dcone_cosim.scenes.scene import PHASES
+from dcone_cosim.scenes.units import Expected
 
 QUANTITY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s].*$"
 """A number and a unit."""

@@ -17,10 +17,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from dcone_cosim.component import Archive, Component, Reader
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu_messages import listeners
-from dcone_cosim.isolation import receive, send
+from dcone_cosim.fmu.component import Archive, Component, Reader
+from dcone_cosim.fmu.isolation import receive, send
+from dcone_cosim.fmu.messages import listeners
 
 CALLS = frozenset(
     {"set", "set_rates", "get", "enter_initialisation", "exit_initialisation", "save", "restore", "state_size"}

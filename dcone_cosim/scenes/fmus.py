@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
-from dcone_cosim.scene_keys import Key, Slot
-from dcone_cosim.units import Expected, Unexpected, example_of, is_unit
+from dcone_cosim.scenes.keys import Key, Slot
+from dcone_cosim.scenes.units import Expected, Unexpected, example_of, is_unit
 
 if TYPE_CHECKING:
-    from dcone_cosim.archive import Archive
-    from dcone_cosim.steppable import VariableInfo
+    from dcone_cosim.fmu.archive import Archive
+    from dcone_cosim.fmu.steppable import VariableInfo
 
 KINDS = ("Real", "Integer", "Boolean")
 ADDRESS = re.compile(r"[a-zA-Z][a-zA-Z0-9+.-]+://")
@@ -43,7 +43,7 @@ def file_of(given: object, folder: Path) -> Path:
 
 def opened(path: Path) -> Archive:
     """The FMU unpacked and checked, or `Unexpected` with what is wrong with it."""
-    from dcone_cosim.archive import Archive
+    from dcone_cosim.fmu.archive import Archive
 
     try:
         return Archive(path)
@@ -73,7 +73,7 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
 
 def _unit(info: VariableInfo) -> str:
     """SI unit in which a value is read and compared; "1" for a pure number, and when nothing is known of the unit."""
-    from dcone_cosim.fmi_units import si_name
+    from dcone_cosim.fmu.units import si_name
 
     if info.dimension is None:
         return "1"

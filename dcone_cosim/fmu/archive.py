@@ -22,13 +22,13 @@ from typing import TYPE_CHECKING, Any
 import fmpy
 
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmi_units import NO_UNIT, Unit, by_name, read_units
+from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.fmu.units import NO_UNIT, Unit, by_name, read_units
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.steppable import VariableInfo
 
 if TYPE_CHECKING:
-    from dcone_cosim.component import Component
-    from dcone_cosim.isolation import IsolatedComponent
+    from dcone_cosim.fmu.component import Component
+    from dcone_cosim.fmu.isolation import IsolatedComponent
 
 EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
@@ -91,13 +91,13 @@ class Archive:
 
     def instantiate(self, name: str) -> Component:
         """An instance in this process."""
-        from dcone_cosim.component import Component
+        from dcone_cosim.fmu.component import Component
 
         return Component(self, name)
 
     def isolate(self, name: str, timeout: float = 60.0) -> IsolatedComponent:
         """An instance in a process of its own; a call that takes longer than the timeout [s] is an error."""
-        from dcone_cosim.isolation import IsolatedComponent
+        from dcone_cosim.fmu.isolation import IsolatedComponent
 
         return IsolatedComponent(self, name, timeout)
 

@@ -12,8 +12,8 @@ from pathlib import Path as File
 from typing import Any
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.mistakes import Override
-from dcone_cosim.toml_lines import Path, dotted
+from dcone_cosim.scenes.mistakes import Override
+from dcone_cosim.scenes.toml_lines import Path, dotted
 
 FORM = 'expected KEY.KEY=VALUE, such as capture.bullets.speed="4 m/s"'
 

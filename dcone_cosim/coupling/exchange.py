@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from dcone_cosim.component import Steppable
+from dcone_cosim.coupling.wiring import Link
 from dcone_cosim.errors import FmuError
-from dcone_cosim.restoring import RESTORED_TO
-from dcone_cosim.wiring import Link
+from dcone_cosim.fmu.component import Steppable
+from dcone_cosim.fmu.restoring import RESTORED_TO
 
 SWEEPS = 200
 """Most rounds over all components in which outputs and inputs have to agree."""

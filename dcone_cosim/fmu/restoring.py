@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dcone_cosim.errors import FmuError
-from dcone_cosim.steppable import Readable, Row, Steppable
+from dcone_cosim.fmu.steppable import Readable, Row, Steppable
 
 RESTORED_TO = 1e-9
 """How closely an output has to come back, relative to its size. Those of ours come back to the last bit; a solver that

@@ -9,11 +9,11 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER
 from dcone_cosim.handoff import REMOVAL_SETS
-from dcone_cosim.mistakes import Mistake, shown, unknown
-from dcone_cosim.scene import PHASES, Scene
-from dcone_cosim.scene_keys import MOST_STEPS, SHARED
-from dcone_cosim.scene_parts import Part
-from dcone_cosim.toml_lines import Path
+from dcone_cosim.scenes.keys import MOST_STEPS, SHARED
+from dcone_cosim.scenes.mistakes import Mistake, shown, unknown
+from dcone_cosim.scenes.parts import Part
+from dcone_cosim.scenes.scene import PHASES, Scene
+from dcone_cosim.scenes.toml_lines import Path
 
 NEEDED_TERM = {"settled": "settling", "tether_taut": "tether"}
 

@@ -25,10 +25,10 @@ import fmpy.fmi2 as fmi2
 import numpy as np
 import numpy.typing as npt
 
-from dcone_cosim.archive import Archive
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu_messages import STATUS, Messages
-from dcone_cosim.steppable import (
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.messages import STATUS, Messages
+from dcone_cosim.fmu.steppable import (
     KINDS,
     CallError,
     Readable,

@@ -18,12 +18,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.mistakes import Places
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scenes.mistakes import Places
 
-SHIPPED = Path(__file__).parent / "scenes"
+SHIPPED = Path(__file__).parent
 PHASES = ("capture", "removal")
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """Byte order marks of UTF-16."""
@@ -175,8 +175,8 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
         raise InputError(f"{source} is no scene: its lists or tables are nested too deeply") from error
     except ValueError as error:
         raise InputError(f"{source} is no scene: a number in it has thousands of digits") from error
-    from dcone_cosim.scene_check import check  # astropy is loaded only for a text that parses
-    from dcone_cosim.scene_text import as_run, override
+    from dcone_cosim.scenes.check import check  # astropy is loaded only for a text that parses
+    from dcone_cosim.scenes.text import as_run, override
 
     overrides = override(document, settings)
     places = Places(source, text, tuple(overrides))

@@ -13,10 +13,10 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.handoff import REMOVAL_SETS
-from dcone_cosim.scene import PHASES
-from dcone_cosim.scene_keys import HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
-from dcone_cosim.scene_parts import term_named
-from dcone_cosim.units import Expected
+from dcone_cosim.scenes.keys import HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
+from dcone_cosim.scenes.parts import term_named
+from dcone_cosim.scenes.scene import PHASES
+from dcone_cosim.scenes.units import Expected
 
 WIDTH = 120
 INPUT = "an input, held at this value"

@@ -12,14 +12,14 @@ from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
-from dcone_cosim.mistakes import Mistake, unknown
-from dcone_cosim.scene_fmus import Offer
-from dcone_cosim.scene_keys import PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
-from dcone_cosim.toml_lines import Path, dotted
-from dcone_cosim.units import LARGEST_INTEGER
+from dcone_cosim.scenes.fmus import Offer
+from dcone_cosim.scenes.keys import PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
+from dcone_cosim.scenes.mistakes import Mistake, unknown
+from dcone_cosim.scenes.toml_lines import Path, dotted
+from dcone_cosim.scenes.units import LARGEST_INTEGER
 
 if TYPE_CHECKING:
-    from dcone_cosim.archive import Archive
+    from dcone_cosim.fmu.archive import Archive
 
 
 @dataclass

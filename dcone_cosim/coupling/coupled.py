@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from dcone_cosim.component import Readable, Row, Steppable, Terminated, VariableInfo
-from dcone_cosim.coupling import Connection, Coupling
+from dcone_cosim.coupling.exchange import Exchange
+from dcone_cosim.coupling.options import Connection, Coupling
+from dcone_cosim.coupling.step_control import ControlledSteps, FixedSteps, Statistics, StepControl
+from dcone_cosim.coupling.wiring import order_of, wire
 from dcone_cosim.errors import FmuError, InputError
-from dcone_cosim.exchange import Exchange
+from dcone_cosim.fmu.component import Readable, Row, Steppable, Terminated, VariableInfo
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.step_control import ControlledSteps, FixedSteps, Statistics, StepControl
-from dcone_cosim.wiring import order_of, wire
 
 BEGIN = "coupling begin"
 """Key under which the begin of a macro step is kept, for an FMU that ends itself within it."""

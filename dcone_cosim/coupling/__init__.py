@@ -1,0 +1,1 @@
+"""Several FMUs stepped together: how they are wired, how values pass between them, how long their steps are."""
