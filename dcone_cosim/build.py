@@ -10,6 +10,7 @@ import time as clock
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
@@ -118,14 +119,15 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
-def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[str], None]) -> list[Path]:
-    """Path of the FMU of each model with its terms; those that the cache has not are built side by side, each once."""
+def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], platforms: Sequence[Any] = ()) -> Any:
+    """Paths of the FMUs of each interface, one per platform, this machine's alone if none is named.
+
+    Before a build begins it is told how long it took before; how long it takes is kept.
+    """
     from fmu_src.packaging.archive import build_all
+    from fmu_src.packaging.platforms import host
     from fmu_src.packaging.tools import BuildError
 
-    keys = [(model, tuple(terms.items())) for model, terms in wanted]
-    unlike = list(dict.fromkeys(keys))
-    interfaces = [CATALOGUE[model].interface(dict(terms)) for model, terms in unlike]
     announced: list[str] = []
     began, times = clock.perf_counter(), Times(cache_folder())
 
@@ -136,12 +138,27 @@ def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[
         announce(text)
 
     try:
-        paths = dict(zip(unlike, (fmu for (fmu,) in build_all(interfaces, cache_folder(), tell)), strict=True))
+        built = build_all(interfaces, cache_folder(), tell, list(platforms) or [host()])
     except BuildError as error:
         raise FmuError(str(error)) from None
-    if announced:
+    if announced and not platforms:
         times.keep(clock.perf_counter() - began)
+    return built
+
+
+def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[str], None]) -> list[Path]:
+    """Path of the FMU of each model with its terms; those that the cache has not are built side by side, each once."""
+    keys = [(model, tuple(terms.items())) for model, terms in wanted]
+    unlike = list(dict.fromkeys(keys))
+    built = _built([CATALOGUE[model].interface(dict(terms)) for model, terms in unlike], announce)
+    paths = {key: path for key, (path,) in zip(unlike, built, strict=True)}
     return [paths[key] for key in keys]
+
+
+def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
+    """Path of the FMU of each phase, `{phase: terms}`, with the model of that phase."""
+    paths = ensure([(MODELS[phase].name, terms) for phase, terms in phases.items()], announce)
+    return dict(zip(phases, paths, strict=True))
 
 
 def platform_names(text: str) -> tuple[str, ...]:
@@ -164,35 +181,25 @@ def write_fmus(
     folder: Path,
     announce: Callable[[str], None],
 ) -> list[Path]:
-    """Write FMUs, `(model, terms)`, to a folder under readable names, each for all platforms named.
+    """Write the FMUs of models with their terms to a folder under readable names, each for all platforms named.
 
     With no platforms named they are for this machine. Linux on arm64 has archives of its own.
     """
-    from fmu_src.packaging.archive import build_all, unite
+    from fmu_src.packaging.archive import unite
     from fmu_src.packaging.platforms import PLATFORMS, archives, host
-    from fmu_src.packaging.tools import BuildError
 
-    unlike = [w for i, w in enumerate(wanted) if w not in wanted[:i]]
-    interfaces = [CATALOGUE[model].interface(terms) for model, terms in unlike]
+    chosen = [PLATFORMS[name] for name in platforms]
+    wanted = [w for i, w in enumerate(wanted) if w not in wanted[:i]]
+    built = _built([CATALOGUE[model].interface(terms) for model, terms in wanted], announce, chosen)
+    chosen = chosen or [host()]
     written = []
-    try:
-        chosen = [PLATFORMS[name] for name in platforms] or [host()]
-        built = build_all(interfaces, cache_folder(), announce, chosen)
-    except BuildError as error:
-        raise FmuError(str(error)) from None
-    for (model, terms), fmus in zip(unlike, built, strict=True):
+    for (model, terms), fmus in zip(wanted, built, strict=True):
         of = dict(zip(chosen, fmus, strict=True))
         for ending, together in archives(chosen):
             name = Path(readable_name(model, terms))
             written.append(folder / f"{name.stem}{ending}.fmu")
             unite([of[platform] for platform in together], written[-1])
     return written
-
-
-def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
-    """Path of the FMU of each phase, `{phase: terms}`, with the model of that phase."""
-    paths = ensure([(MODELS[phase].name, terms) for phase, terms in phases.items()], announce)
-    return dict(zip(phases, paths, strict=True))
 
 
 def readable_name(model: str, terms: Mapping[str, str]) -> str:

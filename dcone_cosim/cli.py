@@ -131,7 +131,7 @@ def build(
 
     progress = _progress()
     try:
-        paths = write_fmus(scene, out, progress, settings or (), platforms)
+        paths = write_fmus(scene, out, progress, platforms, settings or ())
     finally:
         progress.close()
     with _reader_may_leave():

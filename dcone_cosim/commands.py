@@ -88,17 +88,18 @@ def _draw(result: RunResult, folder: Path) -> list[str]:
 
 
 def write_fmus(
-    name: str, out: Path, progress: Progress, settings: Sequence[str] = (), platforms: str = ""
+    name: str, out: Path, progress: Progress, platforms: str = "", settings: Sequence[str] = ()
 ) -> list[Path]:
     """Write the FMUs of a scene to a folder under readable names, for the platforms named or for this machine's.
 
-    Files that the scene names are there already.
+    Files that the scene names itself are there already.
     """
     chosen = build.platform_names(platforms) if platforms else ()
     scene = named(name, settings)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is not a folder")
     ours = [(c.model, c.terms) for phase in scene.phases for c in phase.components if c.fmu is None]
+    ours = list({build.readable_name(*wanted): wanted for wanted in ours}.values())
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)

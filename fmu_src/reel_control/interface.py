@@ -1,8 +1,8 @@
-"""The variables of the reel control, and its faults."""
+"""The variables of the reel control, what a scene may choose, and its faults."""
 
 from __future__ import annotations
 
-from fmu_src.interface import Fault, Model, Variable
+from fmu_src.interface import Fault, Group, Model, Term, Variable
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
 STIFFNESS, DAMPING = 4.155e-3, 2.366
@@ -60,11 +60,21 @@ VARIABLES = (
     Variable("state.drift[#]", "1", "state", "rates of the two inputs in that step", shape=(2,)),
 )
 
+MOTORS = Group(
+    {
+        "lag": Term(
+            "a motor behind the law: dT/dt = (asked - T) / time_constant",
+            (_parameter("motor.time_constant", "s", "of the motor", 5.0, 1e6, zero=False),),
+        ),
+    },
+    optional=True,
+)
+
 MODEL = Model(
     name="reel_control",
     summary="A linear law says which tension a reel is to give for a line's length and its rate.",
     base=VARIABLES,
-    groups={},
+    groups={"motor": MOTORS},
     faults=FAULTS,
     module="fmu_src.reel_control.model",
     stop_time=86400.0,

@@ -1,4 +1,4 @@
-"""The reel control: one law, its rate and its derivatives; the one entry that an FMU calls."""
+"""The reel control: one law, a motor behind it or none, rates and derivatives; the one entry that an FMU calls."""
 
 from __future__ import annotations
 
@@ -16,17 +16,21 @@ from orbital.vectors import Array
 
 
 def make_entry(terms: Mapping[str, str]) -> Any:
-    """The compiled entry `(command, record, work, time, step) -> status`; there are no terms to choose.
+    """The compiled entry `(command, record, work, time, step) -> status` of the law with the given terms.
 
-        T = max(0, T_ff + k_p (l - l_c) + k_d l'),   0 while l = 0
+        asked = max(0, T_ff + k_p (l - l_c) + k_d l'),   0 while l = 0
+        T = asked, or with a motor's lag  dT/dt = (asked - T) / tau
+
+    terms         {} or {"motor": "lag"}
 
     Valid    any
     Source   physics.md, section 2
     Checked  tests/reel_control/test_law.py
     """
     interface = MODEL.interface(terms)
-    names = ("reel.length", "gain.proportional", "gain.derivative", "feed_forward")
-    slots = tuple(interface.references[name] for name in names)
+    has_lag = "motor" in terms
+    names = ("reel.length", "gain.proportional", "gain.derivative", "feed_forward", "motor.time_constant")
+    slots = tuple(interface.references[name] for name in names if name in interface.references)
     length_slot = interface.references["length"]
 
     @kernel
@@ -49,6 +53,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return fail(record, BAD_PARAMETER, slots[2], r.gain_derivative, time)
         if not 0.0 <= r.feed_forward < math.inf:
             return fail(record, BAD_PARAMETER, slots[3], r.feed_forward, time)
+        if has_lag:  # settled when compiled: without the term there is no such field
+            if not 0.0 < r.motor_time_constant < math.inf:
+                return fail(record, BAD_PARAMETER, slots[4], r.motor_time_constant, time)
         return 0
 
     @kernel
@@ -60,13 +67,34 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return force
 
     @kernel
-    def publish(record: Any, time: float) -> int:
+    def asked(record: Any) -> float:
+        """What the law asks for [N] with the inputs of now."""
         r = record[0]
-        force = wanted(record)
-        if not math.isfinite(force):
+        return max(0.0, wanted(record)) if r.length != 0.0 else 0.0
+
+    @kernel
+    def publish(record: Any, time: float) -> int:
+        """The tension of a motor that gives what is asked at once; one with a lag has its tension already."""
+        r = record[0]
+        if not math.isfinite(wanted(record)):
             return fail(record, NOT_FINITE, length_slot, r.length, time)
-        r.tension = max(0.0, force) if r.length != 0.0 else 0.0
+        if not has_lag:
+            r.tension = asked(record)
         return 0
+
+    @kernel
+    def follow(record: Any, begin: float, slope: float, step: float) -> None:
+        """Let a lagging motor follow what is asked while that moves at a constant rate, exactly.
+
+            T(t) = a + b (t - tau) + (T_0 - a + b tau) exp(-t / tau)
+
+        begin         a, asked at the begin                      [N]
+        slope         b, its rate                                [N/s]
+        step          t                                          [s]
+        """
+        r = record[0]
+        lag = r.motor_time_constant
+        r.tension = begin + slope * (step - lag) + (r.tension - begin + slope * lag) * math.exp(-step / lag)
 
     @kernel
     def remember(record: Any, drift: float, rate_drift: float) -> None:
@@ -77,14 +105,38 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_drift[1] = rate_drift
 
     @kernel
+    def follow_asked(record: Any, begin: float, slope: float, step: float, measured: bool) -> None:
+        """Follow what the law asks for over a step, cut where it crosses zero."""
+        if not measured:
+            follow(record, 0.0, 0.0, step)
+            return
+        end = begin + slope * step
+        if begin >= 0.0 and end >= 0.0:
+            follow(record, begin, slope, step)
+        elif begin <= 0.0 and end <= 0.0:
+            follow(record, 0.0, 0.0, step)
+        else:
+            crossing = -begin / slope
+            if begin > 0.0:
+                follow(record, begin, slope, crossing)
+                follow(record, 0.0, 0.0, step - crossing)
+            else:
+                follow(record, 0.0, 0.0, crossing)
+                follow(record, 0.0, slope, step - crossing)
+
+    @kernel
     def step_by(record: Any, time: float, step: float) -> int:
         r = record[0]
         drift, rate_drift = r.rate_length, r.rate_length_rate
+        begin, measured = wanted(record), r.length != 0.0
         if drift != 0.0:
             r.length += drift * step
         if rate_drift != 0.0:
             r.length_rate += rate_drift * step
         remember(record, drift, rate_drift)
+        if has_lag:
+            slope = r.gain_proportional * drift + r.gain_derivative * rate_drift
+            follow_asked(record, begin, slope, step, measured or r.length != 0.0)
         return int(publish(record, time + step))
 
     @kernel
@@ -98,6 +150,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         force = wanted(record)
         slope = r.gain_proportional * drift + r.gain_derivative * rate_drift
         pulls = r.length != 0.0 and (force > 0.0 or (force == 0.0 and slope > 0.0))
+        if has_lag:
+            r.rate_tension = (asked(record) - r.tension) / r.motor_time_constant
+            r.partial_length = 0.0
+            r.partial_length_rate = 0.0
+            return
         r.rate_tension = slope if pulls else 0.0
         r.partial_length = r.gain_proportional if pulls else 0.0
         r.partial_length_rate = r.gain_derivative if pulls else 0.0
@@ -115,7 +172,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if command == INITIALISE:
             remember(record, 0.0, 0.0)
             code = check(record, time)
-            return code if code != 0 else publish(record, time)
+            if code != 0:
+                return code
+            r.tension = asked(record)
+            return publish(record, time)
         if command == STEP:
             return step_by(record, time, step)
         if command == REFRESH:

@@ -130,10 +130,10 @@ class TestWaiting:
         monkeypatch.setenv("DCONE_CACHE", str(tmp_path))
         Times(tmp_path).keep(48.0)
 
-        def build_all(interfaces, cache, announce):
+        def build_all(interfaces, cache, announce, platforms):
             announce("building reel_control with  (once; kept in there)")
             announce("linking reel_control for linux64")
-            return [tmp_path / "x.fmu" for _ in interfaces]
+            return [[tmp_path / "x.fmu"] for _ in interfaces]
 
         monkeypatch.setattr("fmu_src.packaging.archive.build_all", build_all)
         said: list[str] = []

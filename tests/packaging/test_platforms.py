@@ -18,7 +18,6 @@ from dcone_cosim import build as door
 from dcone_cosim import cli
 from dcone_cosim.errors import InputError
 from fmu_src.catalogue import MODELS
-from fmu_src.instance import Instance
 from fmu_src.interface import INITIALISE, SIZE, STEP
 from fmu_src.packaging import archive, compile, link, platforms, tools, universal
 from tests.packaging import platform_cases
@@ -170,8 +169,11 @@ def test_both_code_paths_give_the_same_bits(cache, tmp_path):
 
 def run_entry(entry, model, case):
     """Record and work memory after every step of a case, from a bare entry, as one array of 8-byte slots."""
-    record = Instance(MODELS[model], case.terms, case.parameters).record
+    interface = MODELS[model].interface(case.terms)
+    record = interface.make_record()
     slots = record.view(np.uint64)
+    for name, value in case.parameters.items():
+        record.view(np.float64)[interface.references[name]] = value
     whole, real = ctypes.c_int64, ctypes.c_double
     work = np.zeros(1, np.uint64)
 

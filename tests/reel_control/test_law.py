@@ -141,3 +141,49 @@ def test_default_gains_are_the_regulators() -> None:
     assert pytest.approx(-regulator(0.0)[0] * scale * RATE, rel=2e-4) != STIFFNESS
     assert (STIFFNESS, DAMPING) == (removal.REEL_STIFFNESS, removal.REEL_DAMPING)
     assert pytest.approx(equilibrium_tension(RATE, 12.0, REDUCED), rel=1e-12) == FEED_FORWARD
+
+
+def lagging(length: float, length_rate: float, time_constant: float) -> Instance:
+    i = Instance(MODEL, {"motor": "lag"}, {"motor.time_constant": time_constant})
+    i["length"], i["length_rate"] = length, length_rate
+    return i.initialise()
+
+
+def asked(length: float, length_rate: float) -> float:
+    return max(0.0, FEED_FORWARD + STIFFNESS * (length - 12.0) + DAMPING * length_rate)
+
+
+def test_a_motor_follows_held_inputs() -> None:
+    """A step response: what is left of the jump decays as exp(-t / tau), whatever the steps."""
+    i = lagging(12.0, 0.0, 5.0)
+    assert i["tension"] == pytest.approx(asked(12.0, 0.0), rel=1e-14)
+    i["length_rate"] = 0.01
+    i.refresh()
+    assert i["tension"] == pytest.approx(asked(12.0, 0.0), rel=1e-14), "a motor does not jump"
+    i.differentiate()
+    assert i.rate("tension") == pytest.approx(DAMPING * 0.01 / 5.0, rel=1e-12)
+    assert i.partial("tension", "length_rate") == 0.0
+    for size in (1.0, 2.0, 4.0):
+        i.step(size)
+    expected = asked(12.0, 0.01) - DAMPING * 0.01 * math.exp(-7.0 / 5.0)
+    assert i["tension"] == pytest.approx(expected, rel=1e-13)
+    assert i["tension"] != pytest.approx(asked(12.0, 0.01) - DAMPING * 0.01 * math.exp(-7.0 / 5.05), rel=1e-4)
+
+
+@pytest.mark.parametrize(("begin", "drift"), [(0.01, -0.004), (-0.03, 0.008), (0.0, 0.002), (-0.02, -0.001)])
+def test_a_motor_follows_moving_inputs(begin: float, drift: float) -> None:
+    """Against many held steps, also where what is asked comes to zero or leaves it within the step."""
+    ramp = lagging(12.0, begin, 3.0)
+    ramp.set_rates({"length_rate": drift})
+    ramp.step(8.0)
+    count = 4000
+    held = lagging(12.0, begin, 3.0)
+    for k in range(count):
+        held["length_rate"] = begin + drift * (k + 0.5) * 8.0 / count
+        held.step(8.0 / count)
+    assert ramp["tension"] == pytest.approx(held["tension"], abs=1e-7)
+    twin = lagging(12.0, begin, 3.0)
+    twin.set_rates({"length_rate": 1.01 * drift})
+    twin.step(8.0)
+    both_slack = asked(12.0, begin) == asked(12.0, begin + drift * 8.0) == 0.0
+    assert both_slack or twin["tension"] != pytest.approx(held["tension"], abs=1e-6)
