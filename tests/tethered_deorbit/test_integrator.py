@@ -125,7 +125,7 @@ def drive(context: Any, state: Any, rate: Any, elapsed: float) -> None:
 
 
 def test_order_with_time_in_the_equations() -> None:
-    """Result and dense output at the order of the scheme; with stage times 1 % off the order is lost."""
+    """Result and dense output keep a high order, about 8; with stage times 1 % off it falls to 2."""
     moving = make_dop853(drive, squared, 2)
     for factor, order in ((1.0, True), (1.01, False)):
         steps, errors, within = [2.0, 1.6, 1.3, 1.0], [], []
@@ -138,8 +138,8 @@ def test_order_with_time_in_the_equations() -> None:
             moving.prepare_dense(context, start, end, step, stages, dense, np.zeros(2))
             moving.dense_value(start, dense, 0.4, 0, 2, out)
             within.append(abs(out[1] - math.sin(0.3 + 0.4 * step)))
-        assert (slope(steps, errors) > 8.5) == order
-        assert (slope(steps, within) > 7.5) == order
+        assert (slope(steps, errors) > 7.0) == order
+        assert (slope(steps, within) > 7.0) == order
 
 
 def test_edges_of_stability() -> None:
@@ -170,7 +170,7 @@ def test_step_control(scheme: AdaptiveScheme) -> None:
     assert scheme.shorter_step(1.0, 2.0**7) != pytest.approx(0.45)
     assert scheme.shorter_step(1.0, math.nan) == 0.2
     stages = np.zeros(DOP853_ROWS * SIZE)
-    kepler(np.zeros(1), START, stages[:SIZE])
+    kepler(np.zeros(1), START, stages[:SIZE], 0.0)
     end, low, high = np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE)
     steps, errors = [0.4, 0.3, 0.2], []
     for step in steps:
