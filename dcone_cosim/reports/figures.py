@@ -145,7 +145,7 @@ def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> Non
     above.plot(time, visible, color=style.CHASER, linewidth=0.9, label="tension at the macro steps")
     shown = [tension[tension > LEAST]]
     sets = _tug_sets(run, result)
-    last = max((float(rows[:, 0].max()) for _, rows, _, _ in sets), default=result.end - result.start)
+    last = max((float(rows[:, 0].max()) for _, rows, _, _ in sets), default=0.0) or result.end - result.start
     zoom, zoom_unit = style.time_axis(1.05 * last)
     for label, rows, colour, strong in sets:
         peak = rows[:, 1]
