@@ -237,7 +237,9 @@ def validate(
     for name in scenes:
         answer: dict[str, object] = {"scene": name, "ok": True}
         try:
-            phases = ", ".join(phase.name for phase in named(name, settings or ()).phases)
+            scene = named(name, settings or ())
+            phases = ", ".join(phase.name for phase in scene.phases)
+            answer["notes"] = list(scene.notes)
         except DconeError as error:
             answer |= {"ok": False, "error": str(error), **exits.details(error)}
             if not json:
@@ -246,6 +248,8 @@ def validate(
             if not json:
                 with _reader_may_leave():
                     typer.echo(f"{name}: ok ({phases})")
+                for note in scene.notes:
+                    _complain(f"note: {note}")
         answers.append(answer)
     if json:
         import json as writer

@@ -52,7 +52,7 @@ def run_and_write(
     folder = out if out is not None else default_folder(scene.name)
     check_free(folder, force and out is not None)
     threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
-    notes: list[str] = []
+    notes = list(scene.notes)
     with atomic_folder(folder, force and out is not None) as draft:
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -47,8 +48,9 @@ TUG_PREFIX = "tug["
 TUG_FIELDS = ("time", "peak", "speed")
 
 
-Need = Literal["hand-over", "captured", "settled", "tether_taut", "optional"]
+Need = Literal["always", "hand-over", "captured", "settled", "tether_taut", "optional"]
 NEEDS: Mapping[str, str] = {
+    "always": "always",
     "hand-over": "for a hand-over to the removal",
     "captured": "to hand over, unless hand_over says otherwise",
     "settled": 'for hand_over = "settled"',
@@ -70,9 +72,10 @@ _WANTED: Mapping[str, Sequence[tuple[Need, Sequence[str]]]] = {
     ),
     "removal": (
         ("hand-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
-        ("optional", ("tether.rest_length", "thrust.level", "separation")),
+        ("always", ("separation", "tether.tension")),
+        ("optional", ("tether.rest_length", "thrust.level")),
         ("optional", tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in _EACH)),
-        ("optional", ("tether.tension", "tether.tension_peak", "tether.taut", "tether.tug_count")),
+        ("optional", ("tether.tension_peak", "tether.taut", "tether.tug_count")),
         ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
         ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
     ),
@@ -97,6 +100,8 @@ class Asked:
     start: float
 
     def needed(self, then_removal: bool, hand_over: str) -> bool:
+        if self.need == "always":
+            return True
         if self.need == "hand-over":
             return then_removal
         if self.need == "captured":
@@ -142,6 +147,24 @@ def check_contract(archive: Archive, phase: str, then_removal: bool = False, han
         like = nearest(row.name, spare)
         hint = f"; did you mean its {like!r}?" if like is not None else ""
         found.append(f"{row.name}: missing; expected {_words(row)}, {NEEDS[row.need]}{hint}")
+    return found
+
+
+ALIKE = 0.9
+"""Likeness of two names, as difflib measures it, from which on one is taken for a slip in the other."""
+
+
+def near_misses(archive: Archive, phase: str) -> list[str]:
+    """Variables that nobody looks for, whose names are nearly those of something the phase would report."""
+    rows = asked(phase)
+    names = {row.name for row in rows}
+    spare = [name for name in archive.variables if name not in names]
+    found = []
+    for row in rows:
+        if row.name not in archive.variables and row.need == "optional":
+            for name in difflib.get_close_matches(row.name, spare, n=1, cutoff=ALIKE):
+                if archive.variables[name].causality == row.causality:
+                    found.append(f"{archive.path.name}: nobody looks for its {name!r}; did you mean {row.name!r}?")
     return found
 
 

@@ -182,7 +182,8 @@ def _description(path: Path, folder: Path) -> Any:
         raise FmuError(f"{path}: its {XML} is no valid XML ({error})") from None
     version = root.get("fmiVersion")
     if root.tag != "fmiModelDescription" or version is None:
-        raise FmuError(f"{path}: its {XML} is of no FMU: it begins with <{root.tag}>, fmiVersion {version}")
+        told = ", without an fmiVersion" if version is None else f", fmiVersion {version}"
+        raise FmuError(f"{path}: its {XML} is of no FMU: it begins with <{root.tag}>{told}")
     if version != "2.0":
         raise FmuError(f"{path}: this is FMI {version}; {EXPECTED}")
     try:

@@ -14,7 +14,7 @@ from pathlib import Path as File
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER, check_contract
+from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER, check_contract, near_misses
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.scenes.coupling import about_components, read_connections, read_coupling
@@ -112,7 +112,8 @@ def check(document: dict[str, Any], text: str, name: str, places: Places, folder
         if len(made) == len(PHASES):
             _share_line(made)
         handoff = {key: bool(value) if HANDOFF_KEYS[key] is FLAG else value for key, value in handoff.items()}
-        scene = Scene(name, title, text, tuple(made), handoff, places.source, places)
+        notes = tuple(_close_calls(phases, chosen))
+        scene = Scene(name, title, text, tuple(made), handoff, places.source, places, notes)
         mistakes = [*about_steps(scene, document), *about_values(scene, document), *about_line(scene, document)]
         if not mistakes:
             return scene
@@ -209,6 +210,13 @@ def _about_contract(document: dict[str, Any], phases: Mapping[str, _Phase], chos
             hand_over = _hand_over(phases[name]) if name == "capture" else NEVER
             for text in check_contract(part.archive, name, len(chosen) == len(PHASES), hand_over):
                 yield Mistake((name, "fmu"), document[name]["fmu"], text)
+
+
+def _close_calls(phases: Mapping[str, _Phase], chosen: list[str]) -> Iterator[str]:
+    for name in chosen:
+        archive = phases[name].main.part.archive
+        if archive is not None:
+            yield from near_misses(archive, name)
 
 
 def _named_model(part: Part, tables: dict[str, Any], mistakes: list[Mistake]) -> bool:

@@ -200,7 +200,8 @@ def _no_variable(part: Part, name: str, path: Path, value: object) -> Mistake:
     slot = part.slots.get(name) or part.slots.get(f"{name}[1]")
     what = part.fmu.name if part.fmu is not None else f"this {part.model.name if part.model else 'model'}"
     if slot is None:
-        return unknown(path, value, f"{what} has no variable {name!r} that can be set", name, part.keys)
+        known = [*part.keys, *part.reserved] if path == (*part.path, name) else part.keys
+        return unknown(path, value, f"{what} has no variable {name!r} that can be set", name, known)
     kind = {"output": "an output", "local": "a local variable"}.get(slot.causality, f"a {slot.causality}")
     return Mistake(path, value, f"{name!r} of {what} is {kind}: only parameters and inputs can be set")
 

@@ -93,6 +93,7 @@ class Scene:
     handoff    options of the hand-off: spin_tolerance, compare_without_recoil
     source     where it was read from, for messages
     places     where each key was written
+    notes      what is no mistake, and may be one all the same
     """
 
     name: str
@@ -102,6 +103,7 @@ class Scene:
     handoff: Mapping[str, Any] = field(default_factory=dict)
     source: str = ""
     places: Places = field(default_factory=lambda: Places("", ""))
+    notes: tuple[str, ...] = ()
 
 
 def shipped() -> dict[str, Path]:
