@@ -13,12 +13,18 @@ from pathlib import Path
 
 from dcone_cosim import build
 from dcone_cosim.archives import Archives
+from dcone_cosim.drafts import atomic_folder, check_free
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import style, summary
-from dcone_cosim.run import atomic_folder, check_free, default_folder, fill
+from dcone_cosim.run import default_folder, fill
 from dcone_cosim.scenes.scene import Scene, find, load, parse, read_text
+
+LEFT_BEHIND = (
+    "an earlier run in this place ended without a word, and what it had left was removed; "
+    "if an FMU crashed it, `isolate = true` makes the crash an error that keeps the results"
+)
 
 
 @dataclass
@@ -54,6 +60,8 @@ def run_and_write(
     threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
     notes = list(scene.notes)
     with atomic_folder(folder, force and out is not None) as draft:
+        if draft.removed:
+            notes.append(LEFT_BEHIND)
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()

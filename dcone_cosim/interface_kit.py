@@ -30,6 +30,14 @@ _TEMPLATE_HAS = (
     *("tether.rest_length", "thrust.level"),
 )
 """Optional variables that the templates have, beside all that is needed for something."""
+LOG_CATEGORIES = (
+    ("logStatusError", "why a call was refused, or the model failed"),
+    ("logStatusDiscard", "why a step was discarded, or that the model came to its end"),
+    ("logStatusWarning", "what is to be taken with care"),
+    ("logEvents", "what the model says with status fmi2OK"),
+    ("logAll", "all of these"),
+)
+"""What fmu.c of the C template sorts its messages into."""
 
 
 def show(phase: str, console: Console) -> None:
@@ -167,7 +175,9 @@ def _model_description(phase: str, model: str, guid: str, rows: Sequence[Asked])
         dimension = by_name(name).dimension or ()
         powers = {base: str(power) for base, power in zip(BASE, dimension, strict=True) if power}
         ET.SubElement(ET.SubElement(units, "Unit", name=name), "BaseUnit", powers)
-    ET.SubElement(ET.SubElement(root, "LogCategories"), "Category", name="logAll")
+    categories = ET.SubElement(root, "LogCategories")
+    for category, sorted_in in LOG_CATEGORIES:
+        ET.SubElement(categories, "Category", name=category, description=sorted_in)
     variables = ET.SubElement(root, "ModelVariables")
     for place, row in enumerate(rows):
         about = {"name": row.name, "valueReference": str(place), "description": row.meaning, "causality": row.causality}

@@ -353,16 +353,18 @@ def _compare(
     velocity = np.array([capture[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
     try:
         component = instantiate("removal", "removal without recoil")
-    except FmuError:
-        return None
-    try:
-        _start(component, parameters | without_recoil(record.handed, velocity), record.time, phase.duration)
-        loop = RemovalLoop(component, phase.macro_step, record.time, phase.duration, progress)
-        progress.begin("removal without recoil", record.time, record.time + phase.duration)
-        result = loop.run()
-        progress.end()
-    except FmuError:
-        return None
-    finally:
-        component.close()
-    return result if result.error is None else None
+        try:
+            _start(component, parameters | without_recoil(record.handed, velocity), record.time, phase.duration)
+            loop = RemovalLoop(component, phase.macro_step, record.time, phase.duration, progress)
+            progress.begin("removal without recoil", record.time, record.time + phase.duration)
+            result = loop.run()
+            progress.end()
+        finally:
+            component.close()
+        reason = result.error
+    except FmuError as error:
+        reason = error
+    if reason is None:
+        return result
+    progress.say(f"the removal without recoil is left out: {reason}")
+    return None

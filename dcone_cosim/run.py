@@ -4,25 +4,19 @@
     capture.parquet  nodes.parquet  removal.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
     *.png
 
-Columns carry their unit in the field metadata of the Parquet file; in a CSV the unit stands in the header. The folder
-is filled under another name beside its place, forced to disk and renamed. A folder that came to be in its place
-meanwhile is never touched: the results then go beside it under the next free name.
+Columns carry their unit in the field metadata of the Parquet file; in a CSV the unit stands in the header.
 """
 
 from __future__ import annotations
 
 import csv
 import importlib.metadata
-import itertools
 import json
 import math
 import os
 import platform
-import shutil
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from dcone_cosim.errors import InputError
+from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.recorder import Snapshots, TugLog
@@ -46,125 +40,6 @@ PACKAGES = (
 
 def default_folder(scene: str) -> Path:
     return Path("runs") / f"{scene}-{datetime.now().strftime('%Y%m%dT%H%M%S')}"
-
-
-def check_free(folder: Path, force: bool) -> None:
-    """Refuse a place that is taken, before any work is done; an empty folder is free."""
-    if not _is_free(folder):
-        if not force:
-            raise InputError(f"{folder} already exists; choose another place with -o, or replace it with --force")
-        if not _is_run(folder):
-            raise InputError(f"{folder} is not the folder of a run: --force will not replace it")
-    above = next(p for p in folder.absolute().parents if p.exists())
-    if not above.is_dir() or not os.access(above, os.W_OK):
-        raise InputError(f"{folder} cannot be written: {above} is not a folder that may be written to")
-
-
-def _is_free(folder: Path) -> bool:
-    if not os.path.lexists(folder):
-        return True
-    return folder.is_dir() and not folder.is_symlink() and not any(folder.iterdir())
-
-
-def _is_run(folder: Path) -> bool:
-    return folder.is_dir() and (folder / "provenance.json").exists()
-
-
-class Draft:
-    """The folder to fill, `path`, and, once it has taken its name, where that is: `folder`."""
-
-    def __init__(self, path: Path, folder: Path) -> None:
-        self.path, self.folder = path, folder
-
-
-@contextmanager
-def atomic_folder(folder: Path, force: bool = False) -> Iterator[Draft]:
-    """A folder to fill, which takes its name only when the block ends well; otherwise nothing is left.
-
-    force        replace a run of that name; otherwise what has the name by then keeps it, and the draft gets `name-2`
-    """
-    place = folder.absolute()
-    made = [p for p in place.parents if not p.exists()]
-    empty = place.is_dir() and _is_free(place)
-    path = None
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        path = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.", dir=place.parent))
-        path.chmod(0o755)
-        draft = Draft(path, folder)
-        yield draft
-        for file in [*path.rglob("*"), path]:
-            _to_disk(file)
-        if not (force and _replace(path, place)):
-            draft.folder = folder.with_name(_take_name(path, place, empty).name)
-        _to_disk(place.parent)
-    except BaseException:
-        if path is not None:
-            shutil.rmtree(path, ignore_errors=True)
-        for parent in made:
-            with suppress(OSError):
-                parent.rmdir()
-        raise
-
-
-def _replace(draft: Path, place: Path) -> bool:
-    """Put the draft in the place of an earlier run, which stays if that fails; False when there is none."""
-    if not _is_run(place):
-        return False
-    aside = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.old.", dir=place.parent))
-    old = aside / "old"
-    try:
-        place.rename(old)
-        draft.rename(place)
-    except BaseException:
-        if old.exists() and not os.path.lexists(place):
-            old.rename(place)
-        raise
-    finally:
-        shutil.rmtree(aside, ignore_errors=True)
-    return True
-
-
-def _take_name(draft: Path, place: Path, empty: bool) -> Path:
-    """Give the draft its name, or the first free one of `name-2`, `name-3`, ...: never one that something else has.
-
-    Making an empty folder claims a name: it fails when there is anything, and a rename replaces nothing but an empty
-    folder. `empty`: the place was an empty folder from the beginning, which need not be claimed.
-    """
-    for number in itertools.count(1):
-        name = place if number == 1 else place.with_name(f"{place.name}-{number}")
-        claimed = False
-        try:
-            if not (empty and number == 1 and name.is_dir()):
-                name.mkdir()
-                claimed = True
-            if os.name == "nt":
-                name.rmdir()
-            draft.rename(name)
-        except OSError:
-            if claimed:
-                with suppress(OSError):
-                    name.rmdir()
-            if not os.path.lexists(name):
-                raise
-        except BaseException:
-            if claimed and draft.exists():
-                with suppress(OSError):
-                    name.rmdir()
-            raise
-        else:
-            return name
-    raise AssertionError("there is always a next number")
-
-
-def _to_disk(path: Path) -> None:
-    if os.name == "nt" and path.is_dir():
-        return
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def write(

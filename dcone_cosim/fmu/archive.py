@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
+LARGEST = 2 * 2**30
+"""Bytes of an FMU, unpacked; also as it lies in an SSP package."""
 LOCAL_HEADER = b"PK\x03\x04"
 """What a zip file begins with."""
 
@@ -125,6 +127,9 @@ def _unpack(path: Path) -> Path:
         with zipfile.ZipFile(path) as content:
             for name in content.namelist():
                 _check_name(path, name)
+            size = sum(entry.file_size for entry in content.infolist())  # unpacking stops at what is declared here
+            if size > LARGEST:
+                raise FmuError(f"{path}: unpacked it has {size:,} bytes; at most {LARGEST:,} are unpacked")
             folder = Path(tempfile.mkdtemp(prefix="dcone-"))
             content.extractall(folder)
     except BaseException as error:

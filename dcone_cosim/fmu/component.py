@@ -26,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.archive import XML, Archive
 from dcone_cosim.fmu.messages import STATUS, Messages
 from dcone_cosim.fmu.steppable import (
     KINDS,
@@ -52,6 +52,9 @@ __all__ = [
     "VariableInfo",
     "output_names",
 ]
+
+WHOLE = 2.0**31
+"""An Integer of FMI 2.0 stays below it."""
 
 
 class Component:
@@ -92,21 +95,45 @@ class Component:
         if not loaded:
             reason = str(error).replace(f"{self.archive.folder}{os.sep}", "")
             return FmuError(f"{self.name}: the binary of {file} cannot be used\n  {reason}")
-        said = self._messages.words()
+        said = self._messages.words() + self._strange_guid()
         return CallError(self.name, " could not be instantiated", said, f"{file}: {error}", "Error")
+
+    def _strange_guid(self) -> str:
+        """A word on the commonest reason for no instance: description and binary are of two builds."""
+        folder, guid = self.archive.folder, self.archive.guid
+        assert folder is not None
+        binary = folder / "binaries" / fmpy.platform / (self.archive.identifier + fmpy.sharedLibraryExtension)
+        if guid.encode() in binary.read_bytes():
+            return ""
+        return f"; the guid {guid!r} of its {XML} is not in its binary, which may be of another build"
 
     def reference(self, name: str) -> VariableInfo:
         """The variable of that name; an unknown one is an error that names the nearest."""
         return self.archive.variable(name, self.name)
 
     def set(self, values: Mapping[str, float]) -> None:
-        """Set variables by name, all Reals in one call, then Integers, then Booleans."""
+        """Set variables by name, all Reals in one call, then Integers, then Booleans.
+
+        Raises `FmuError` before any of them is set when a value does not fit the kind of its variable.
+        """
+        numbers = [(info, self._fitting(info, v)) for info, v in ((self.reference(n), v) for n, v in values.items())]
         for kind in KINDS:
-            chosen = [(info, v) for n, v in values.items() if (info := self.reference(n)).kind == kind]
+            chosen = [(info.reference, number) for info, number in numbers if info.kind == kind]
             if chosen:
-                references = [info.reference for info, _ in chosen]
-                numbers = [_own(info, v) if kind == "Real" else int(v) for info, v in chosen]
-                self._call(f"set{kind}", references, numbers)
+                self._call(f"set{kind}", [r for r, _ in chosen], [number for _, number in chosen])
+
+    def _fitting(self, info: VariableInfo, value: float) -> float | int:
+        """An SI value as the FMU counts it; one that its kind cannot hold is an error."""
+        if info.kind == "Real":
+            return _own(info, value)
+        if info.kind not in KINDS:
+            raise FmuError(
+                f"{self.name}: {info.name} is a {info.kind}; only numbers can be set, and {value!r} was given"
+            )
+        if not (math.isfinite(value) and value == int(value) and -WHOLE <= value < WHOLE):
+            expected = "true or false" if info.kind == "Boolean" else "a whole number of 32 bits"
+            raise FmuError(f"{self.name}: {info.name} is of kind {info.kind}; expected {expected}, got {value!r}")
+        return int(value) if info.kind == "Integer" else int(value != 0)
 
     def set_rates(self, rates: Mapping[str, float]) -> None:
         """Let inputs move at these rates [SI/s] over the next step."""
@@ -143,7 +170,6 @@ class Component:
         Raises `Terminated` when the FMU says that this is its end.
         """
         self._alive()
-        self._messages.forget()
         try:
             self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2False)
         except fmpy.fmi1.FMICallException as error:
@@ -195,7 +221,8 @@ class Component:
         self.close()
 
     def _alive(self) -> None:
-        """Refuse any call after a fatal error."""
+        """Before a call: forget what was said during others, and refuse any after a fatal error."""
+        self._messages.forget()
         if self._dead:
             raise CallError(self.name, " takes no further call", self._dead, self.archive.path.name, "Fatal")
         if self._fmu is None:

@@ -19,7 +19,7 @@ from typing import Any, BinaryIO
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import Archive, Component, Reader
-from dcone_cosim.fmu.isolation import receive, send
+from dcone_cosim.fmu.frames import as_fields, receive, send
 from dcone_cosim.fmu.messages import listeners
 
 CALLS = frozenset(
@@ -31,7 +31,7 @@ LOOK_FOR_PARENT = 0.5
 
 
 class Server:
-    """Answers calls, each as a pair: the error or None, and the result."""
+    """Answers calls, each with a pair: the fields of an error or None, and the result."""
 
     def __init__(self) -> None:
         self.component: Component | None = None
@@ -48,7 +48,7 @@ class Server:
         if call == "step":
             begin, size, wanted = arguments
             self.component.step(begin, size)
-            return {number: data for number in wanted if (data := self._read_ahead(number)) is not None}
+            return [(number, data) for number in wanted if (data := self._read_ahead(number)) is not None]
         if call == "read":
             return self.readers[arguments[0]]().tobytes()
         if call == "reader":
@@ -75,11 +75,12 @@ class Server:
                     self.component.close()
                 return
             try:
-                answer: tuple[FmuError | None, Any] = (None, self.answer(*call))
+                answer: tuple[Any, Any] = (None, self.answer(*call))
             except FmuError as error:
-                answer = (error, None)
+                answer = (as_fields(error), None)
             except Exception:
-                answer = (FmuError(f"{call[0]} failed in the child process:\n{traceback.format_exc()}"), None)
+                text = f"{call[0]} failed in the child process:\n{traceback.format_exc()}"
+                answer = (as_fields(FmuError(text)), None)
             send(answers, answer)
 
 

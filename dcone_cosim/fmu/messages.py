@@ -23,6 +23,8 @@ import fmpy.logging
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 KEPT = 20
 """How many of an instance's latest messages are kept."""
+TOLD = 3
+"""How many of them an error quotes."""
 
 listeners: list[Callable[[str], None]] = []
 """Called with every message as it comes; a child process passes them on before it may die."""
@@ -32,7 +34,7 @@ _keys = itertools.count(1)
 
 
 class Messages:
-    """The messages of one instance since it was last asked to do something, and the callbacks that gather them.
+    """The messages of one instance during the call that was made to it last, and the callbacks that gather them.
 
     late      it called stepFinished, which is for steps that go on after they have returned
     """
@@ -55,13 +57,20 @@ class Messages:
         self._said.clear()
 
     def words(self) -> str:
-        """Its latest complaints, or its latest words when none is a complaint."""
-        told = [text for status, text in self._said if status >= fmi2.fmi2Warning and text]
-        told = told or [text for _, text in self._said if text]
-        return "; ".join(dict.fromkeys(told[-3:])) if told else "the FMU gave no message"
+        """Its latest complaints, the gravest first, or its latest words when none is a complaint."""
+        told = [(_gravity(status), place, text) for place, (status, text) in enumerate(self._said) if text]
+        complaints = [row for row in told if row[0] > fmi2.fmi2OK]
+        chosen = sorted(complaints or told)[-TOLD:]
+        chosen.sort(key=lambda row: (-row[0], row[1]))
+        return "; ".join(dict.fromkeys(text for _, _, text in chosen)) or "the FMU gave no message"
 
     def close(self) -> None:
         _open.pop(self._key, None)
+
+
+def _gravity(status: int) -> int:
+    """Rank of a message: 0 for no complaint. A status that FMI does not know counts as a warning."""
+    return status if fmi2.fmi2OK <= status <= fmi2.fmi2Fatal else fmi2.fmi2Warning
 
 
 def _log(key: int | None, instance: bytes | None, status: int, category: bytes | None, message: bytes | None) -> None:

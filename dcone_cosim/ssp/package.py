@@ -14,13 +14,12 @@ from urllib.parse import unquote, urlsplit
 from lxml import etree
 
 from dcone_cosim.errors import InputError
+from dcone_cosim.fmu.archive import LARGEST
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.ssp.markup import STRUCTURE
 
 LARGEST_XML = 64 * 2**20
 """Bytes of a structure or a parameter file, unpacked."""
-LARGEST_FMU = 2 * 2**30
-"""Bytes of an FMU, as it lies in the archive."""
 
 
 @dataclass
@@ -99,7 +98,7 @@ class Package:
     def unpack(self, name: str, folder: Path, as_name: str) -> Path:
         """Write an FMU to the folder under a name of ours."""
         place = folder / f"{as_name}.fmu"
-        place.write_bytes(self.read(name, LARGEST_FMU))
+        place.write_bytes(self.read(name, LARGEST))
         return place
 
     def __enter__(self) -> Package:

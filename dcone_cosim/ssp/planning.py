@@ -11,6 +11,7 @@ from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scenes.keys import MOST_STEPS
 from dcone_cosim.scenes.scene import PHASES
 from dcone_cosim.scenes.text import override
 from dcone_cosim.scenes.units import Expected, Unexpected
@@ -22,8 +23,6 @@ from dcone_cosim.ssp.parsing import Document
 
 RESERVED = (*PHASES, "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
 """Names of files in a run folder that a system's own name must not take."""
-MOST_STEPS = 5_000_000
-"""Macro steps of a phase: each leaves a row, and a run keeps all rows in memory."""
 
 SETTINGS: Mapping[str, Expected] = {
     "macro_step": Expected("s", example="0.1 s", minimum=0.0, open_minimum=True),

@@ -37,9 +37,7 @@ def changed(scene: str, *changes: tuple[str, str]) -> str:
 def complaint(text: str) -> str:
     with pytest.raises(InputError) as error:
         parse(text, "mine", "mine.toml")
-    message = str(error.value)
-    assert "Input should" not in message, "pydantic's words"
-    return message
+    return str(error.value)
 
 
 @pytest.mark.parametrize(

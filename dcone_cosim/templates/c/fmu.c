@@ -16,17 +16,42 @@ typedef struct {
     fmi2CallbackFunctions callbacks;
 } instance;
 
-/* What a saved state begins with; the block follows. */
+/* What a saved state begins with; the block follows. Count STATE_VERSION up when you change what a state means. */
+#define STATE_VERSION 1
+
 typedef struct {
-    double time, size;
+    double version, time, size;
     int phase, ended;
+    char guid[64]; /* of the model; of a longer one its beginning */
 } saved;
 
 static size_t block(void) { return (model_variables + model_states) * sizeof(double); }
 
+/* Whether a state is of this model and of this version of it. */
+static int is_ours(const saved *s) {
+    return s->version == STATE_VERSION && s->size == (double)block() &&
+           !strncmp(s->guid, model_guid, sizeof s->guid - 1) && s->phase >= INSTANTIATED && s->phase <= BROKEN;
+}
+
+/* The categories of messages, as modelDescription.xml lists them; "logAll" is all of them. */
+enum { ERRORS, DISCARDS, WARNINGS, EVENTS, CATEGORIES };
+static const char *const category_name[CATEGORIES] = {"logStatusError", "logStatusDiscard", "logStatusWarning",
+                                                      "logEvents"};
+#define ALL ((1u << CATEGORIES) - 1)
+
+static int category_of(fmi2Status status) {
+    switch (status) {
+        case fmi2OK: return EVENTS;
+        case fmi2Warning: return WARNINGS;
+        case fmi2Discard: return DISCARDS;
+        default: return ERRORS;
+    }
+}
+
 fmi2Status model_say(model *m, fmi2Status status, const char *text) {
-    if (m->callbacks->logger)
-        m->callbacks->logger(m->callbacks->componentEnvironment, m->name, status, "logAll", "%s", text);
+    int category = category_of(status);
+    if (m->callbacks->logger && m->logged & 1u << category)
+        m->callbacks->logger(m->callbacks->componentEnvironment, m->name, status, category_name[category], "%s", text);
     return status;
 }
 
@@ -57,8 +82,16 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                               const fmi2CallbackFunctions *callbacks, fmi2Boolean visible, fmi2Boolean logging) {
     instance *i;
     char *copy;
-    (void)resources, (void)visible, (void)logging;
-    if (!callbacks || !name || type != fmi2CoSimulation || !guid || strcmp(guid, model_guid)) return NULL;
+    (void)resources, (void)visible;
+    if (!callbacks || !name) return NULL;
+    if (type != fmi2CoSimulation || !guid || strcmp(guid, model_guid)) {
+        if (callbacks->logger)
+            callbacks->logger(callbacks->componentEnvironment, name, fmi2Error, category_name[ERRORS],
+                              type != fmi2CoSimulation ? "this FMU is for co-simulation only"
+                                                       : "the guid given is %s, that of this binary is %s",
+                              guid ? guid : "(NULL)", model_guid);
+        return NULL;
+    }
     i = calloc(1, sizeof *i);
     copy = malloc(strlen(name) + 1);
     if (i) i->m.values = malloc(block() + sizeof(double));
@@ -73,6 +106,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     i->m.states = i->m.values + model_variables;
     i->callbacks = *callbacks;
     i->m.callbacks = &i->callbacks;
+    i->m.logged = logging ? ALL : 1u << ERRORS | 1u << DISCARDS;
     take_start_values(i);
     return i;
 }
@@ -86,7 +120,20 @@ void fmi2FreeInstance(fmi2Component c) {
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
-    (void)c, (void)on, (void)n, (void)categories;
+    instance *i = c;
+    unsigned named = 0;
+    size_t k;
+    for (k = 0; k < n; k++) {
+        int category = 0;
+        const char *name = categories[k] ? categories[k] : "";
+        while (category < CATEGORIES && strcmp(name, category_name[category])) category++;
+        if (category == CATEGORIES && strcmp(name, "logAll")) {
+            model_say(&i->m, fmi2Error, "fmi2SetDebugLogging: there is no such log category");
+            return fmi2Error;
+        }
+        named |= category == CATEGORIES ? ALL : 1u << category;
+    }
+    i->m.logged = !on ? 0 : n ? named : ALL;
     return fmi2OK;
 }
 
@@ -246,6 +293,9 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     instance *i = c;
     saved *s = *state ? *state : malloc(sizeof *s + block());
     if (!s) return refuse(i, "no memory for a state");
+    memset(s, 0, sizeof *s);
+    s->version = STATE_VERSION;
+    strncpy(s->guid, model_guid, sizeof s->guid - 1);
     s->time = i->m.time;
     s->size = (double)block();
     s->phase = (int)i->phase;
@@ -259,6 +309,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
     instance *i = c;
     const saved *s = state;
     if (!s) return refuse(i, "there is no state to restore");
+    if (!is_ours(s)) return refuse(i, "that state is of another FMU, or of another version of this one");
     i->m.time = s->time;
     i->m.ended = s->ended;
     i->phase = (enum phase)s->phase;
@@ -290,7 +341,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     void *s;
     if (size != sizeof(saved) + block()) return refuse(c, "these bytes are no state of this FMU");
     memcpy(&head, bytes, sizeof head);
-    if (head.size != (double)block()) return refuse(c, "these bytes are no state of this FMU");
+    if (!is_ours(&head)) return refuse(c, "these bytes are a state of another FMU, or of another version of this one");
     s = *state ? *state : malloc(size);
     if (!s) return refuse(c, "no memory for a state");
     memcpy(s, bytes, size);

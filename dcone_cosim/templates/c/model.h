@@ -26,6 +26,7 @@ typedef struct model {
     int ended;      /* the model is over for good: set it, set time to when, and return fmi2Discard */
     const fmi2CallbackFunctions *callbacks;
     const char *name;
+    unsigned logged; /* categories of messages that the importer wants */
 } model;
 
 extern const struct variable model_table[];

@@ -13,7 +13,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#ifdef HANG
+#if defined(HANG) || defined(GARBLE) || defined(CLOSES)
 #include <unistd.h>
 #endif
 
@@ -52,6 +52,24 @@ static fmi2Status go_wrong(model *m, double step) {
         int *volatile nowhere = NULL;
         *nowhere = 1;
     }
+#endif
+#ifdef GARBLE
+    {
+        int stream;
+        for (stream = 3; stream < 32; stream++)
+            if (write(stream, GARBLE, sizeof GARBLE - 1) < 0) continue;
+        sleep(1);
+    }
+#endif
+#ifdef CLOSES
+    {
+        int stream;
+        for (stream = 3; stream < 32; stream++) close(stream);
+        for (;;) sleep(1);
+    }
+#endif
+#ifdef SIGNAL
+    raise(SIGNAL);
 #endif
 #ifdef ABORT
     abort();

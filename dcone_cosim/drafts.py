@@ -1,0 +1,216 @@
+"""How a folder comes to be whole or not at all.
+
+It is filled under another name beside its place, forced to disk and renamed. A folder that came to be in its place
+meanwhile is never touched: the results then go beside it under the next free name. What fails removes its draft; what
+dies cannot, and the next one here removes the draft for it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from dcone_cosim.errors import InputError
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+UNFINISHED = ".dcone-unfinished"
+"""File in a draft that the process filling it holds locked."""
+
+
+def check_free(folder: Path, force: bool) -> None:
+    """Refuse a place that is taken, before any work is done; an empty folder is free."""
+    if not _is_free(folder):
+        if not force:
+            raise InputError(f"{folder} already exists; choose another place with -o, or replace it with --force")
+        if not _is_run(folder):
+            raise InputError(f"{folder} is not the folder of a run: --force will not replace it")
+    above = next(p for p in folder.absolute().parents if p.exists())
+    if not above.is_dir() or not os.access(above, os.W_OK):
+        raise InputError(f"{folder} cannot be written: {above} is not a folder that may be written to")
+
+
+def _is_free(folder: Path) -> bool:
+    if not os.path.lexists(folder):
+        return True
+    return folder.is_dir() and not folder.is_symlink() and not any(folder.iterdir())
+
+
+def _is_run(folder: Path) -> bool:
+    return folder.is_dir() and (folder / "provenance.json").exists()
+
+
+class Draft:
+    """The folder to fill, `path`, and, once it has taken its name, where that is: `folder`.
+
+    removed      drafts that runs left here which are no more
+    """
+
+    def __init__(self, path: Path, folder: Path, removed: int) -> None:
+        self.path, self.folder, self.removed = path, folder, removed
+
+
+@contextmanager
+def atomic_folder(folder: Path, force: bool = False) -> Iterator[Draft]:
+    """A folder to fill, which takes its name only when the block ends well; otherwise nothing is left.
+
+    force        replace a run of that name; otherwise what has the name by then keeps it, and the draft gets `name-2`
+    """
+    place = folder.absolute()
+    made = [p for p in place.parents if not p.exists()]
+    empty = place.is_dir() and _is_free(place)
+    path, lock = None, None
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        path = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.", dir=place.parent))
+        path.chmod(0o755)
+        lock = _Lock.of_new(path / UNFINISHED)
+        draft = Draft(path, folder, _remove_left_behind(place.parent))
+        yield draft
+        if lock is not None:
+            lock.remove()
+        for file in [*path.rglob("*"), path]:
+            _to_disk(file)
+        if not (force and _replace(path, place)):
+            draft.folder = folder.with_name(_take_name(path, place, empty).name)
+        _to_disk(place.parent)
+    except BaseException:
+        if path is not None:
+            shutil.rmtree(path, ignore_errors=True)
+        for parent in made:
+            with suppress(OSError):
+                parent.rmdir()
+        raise
+    finally:
+        if lock is not None:
+            lock.release()
+
+
+def _remove_left_behind(place: Path) -> int:
+    """Remove the drafts of processes that ended without a word, as at a crash of an FMU; returns how many."""
+    removed = 0
+    for mark in place.glob(f".*/{UNFINISHED}"):
+        lock = None if mark.is_symlink() or mark.parent.is_symlink() else _Lock.of_left(mark)
+        if lock is None:
+            continue
+        if mark.exists():  # otherwise it has just been finished
+            shutil.rmtree(mark.parent, ignore_errors=True)
+            removed += not mark.parent.exists()
+        lock.release()
+    return removed
+
+
+class _Lock:
+    """A file that this process has locked. The system unlocks it when the process ends, however that happens."""
+
+    def __init__(self, path: Path, handle: int) -> None:
+        self._path, self._handle = path, handle
+
+    @classmethod
+    def of_new(cls, path: Path) -> _Lock | None:
+        """None, and no file, where the file system has no locks."""
+        lock = cls._taken(path, os.O_RDWR | os.O_CREAT | os.O_EXCL)
+        if lock is None:
+            path.unlink(missing_ok=True)
+        return lock
+
+    @classmethod
+    def of_left(cls, path: Path) -> _Lock | None:
+        """None when a living process has it."""
+        return cls._taken(path, os.O_RDWR)
+
+    @classmethod
+    def _taken(cls, path: Path, flags: int) -> _Lock | None:
+        try:
+            handle = os.open(path, flags, 0o644)
+        except OSError:
+            return None
+        try:
+            if sys.platform == "win32":
+                msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+            else:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(handle)
+            return None
+        return cls(path, handle)
+
+    def remove(self) -> None:
+        """Remove the file; where open files can be removed it stays locked for those who have just opened it."""
+        if sys.platform == "win32":
+            self.release()
+        self._path.unlink()
+
+    def release(self) -> None:
+        handle, self._handle = self._handle, -1
+        if handle >= 0:
+            os.close(handle)
+
+
+def _replace(draft: Path, place: Path) -> bool:
+    """Put the draft in the place of an earlier run, which stays if that fails; False when there is none."""
+    if not _is_run(place):
+        return False
+    aside = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.old.", dir=place.parent))
+    old = aside / "old"
+    try:
+        place.rename(old)
+        draft.rename(place)
+    except BaseException:
+        if old.exists() and not os.path.lexists(place):
+            old.rename(place)
+        raise
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+    return True
+
+
+def _take_name(draft: Path, place: Path, empty: bool) -> Path:
+    """Give the draft its name, or the first free one of `name-2`, `name-3`, ...: never one that something else has.
+
+    Making an empty folder claims a name: it fails when there is anything, and a rename replaces nothing but an empty
+    folder. `empty`: the place was an empty folder from the beginning, which need not be claimed.
+    """
+    for number in itertools.count(1):
+        name = place if number == 1 else place.with_name(f"{place.name}-{number}")
+        claimed = False
+        try:
+            if not (empty and number == 1 and name.is_dir()):
+                name.mkdir()
+                claimed = True
+            if os.name == "nt":
+                name.rmdir()
+            draft.rename(name)
+        except OSError:
+            if claimed:
+                with suppress(OSError):
+                    name.rmdir()
+            if not os.path.lexists(name):
+                raise
+        except BaseException:
+            if claimed and draft.exists():
+                with suppress(OSError):
+                    name.rmdir()
+            raise
+        else:
+            return name
+    raise AssertionError("there is always a next number")
+
+
+def _to_disk(path: Path) -> None:
+    if os.name == "nt" and path.is_dir():
+        return
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

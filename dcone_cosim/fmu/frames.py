@@ -1,0 +1,83 @@
+"""What goes between us and the child of `isolation`: frames of JSON, since foreign code may write into the stream.
+
+A frame is a mark, a length and a text. It holds names, numbers, lists and tables of them, and rows of doubles as bytes;
+reading one runs nothing and makes nothing else. Numbers keep every bit: JSON has them as the shortest text that reads
+back as the same double, with NaN and Infinity as words.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import struct
+from typing import Any, BinaryIO
+
+from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu.steppable import CallError, Terminated
+
+MARK = b"dcF1"
+LARGEST = 64 * 2**20
+"""Bytes of a frame: the parameters of millions of nodes."""
+_HEAD = struct.Struct("<4sI")
+_BYTES = "base64"
+
+
+class Garbled(Exception):
+    """What came is no frame, or no answer to what was asked."""
+
+
+def send(stream: BinaryIO, content: object) -> None:
+    data = json.dumps(content, default=_as_table).encode()
+    stream.write(_HEAD.pack(MARK, len(data)) + data)
+    stream.flush()
+
+
+def receive(stream: BinaryIO) -> Any:
+    """Content of the next frame; tuples come as lists. EOFError when the other side is gone, else `Garbled`."""
+    mark, size = _HEAD.unpack(_exactly(stream, _HEAD.size))
+    if mark != MARK or size > LARGEST:
+        raise Garbled
+    try:
+        return json.loads(_exactly(stream, size), object_hook=_from_table)
+    except (ValueError, TypeError, RecursionError):
+        raise Garbled from None
+
+
+def as_fields(error: FmuError) -> list[object]:
+    """An error as plain values."""
+    if not isinstance(error, CallError):
+        return ["FmuError", str(error)]
+    kind = "Terminated" if isinstance(error, Terminated) else "CallError"
+    return [kind, error.name, error.where, error.said, error.detail, error.status, error.reached]
+
+
+def from_fields(fields: Any) -> FmuError:
+    """The error again, of its own class; `Garbled` when these are not the fields of one."""
+    match fields:
+        case ["FmuError", str(text)]:
+            return FmuError(text)
+        case ["Terminated", str(name), str(where), str(said), str(detail), str(status), float(reached)]:
+            return Terminated(name, where, said, detail, status, reached)
+        case ["CallError", str(name), str(where), str(said), str(detail), str(status), float() | None as reached]:
+            return CallError(name, where, said, detail, status, reached)
+    raise Garbled
+
+
+def _as_table(value: object) -> dict[str, str]:
+    if not isinstance(value, bytes):
+        raise TypeError(f"{type(value).__name__} has no place in a frame")
+    return {_BYTES: base64.b64encode(value).decode()}
+
+
+def _from_table(table: dict[str, Any]) -> Any:
+    return base64.b64decode(table[_BYTES], validate=True) if table.keys() == {_BYTES} else table
+
+
+def _exactly(stream: BinaryIO, size: int) -> bytes:
+    data = stream.read(size)
+    while len(data) < size:
+        more = stream.read(size - len(data))
+        if not more:
+            raise EOFError
+        data += more
+    return data
