@@ -19,7 +19,7 @@ def nearest(given: str, known: Iterable[str]) -> str | None:
 
 def did_you_mean(given: str, known: Iterable[str]) -> str:
     """`; did you mean 'x'?`, or what is known when nothing resembles it and the list is short, or nothing."""
-    names = list(known)
+    names = list(dict.fromkeys(known))
     match = nearest(given, names)
     if match is not None:
         return f"; did you mean {match!r}?"

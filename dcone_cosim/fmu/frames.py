@@ -18,6 +18,8 @@ from dcone_cosim.fmu.steppable import CallError, Terminated
 MARK = b"dcF1"
 LARGEST = 64 * 2**20
 """Bytes of a frame: the parameters of millions of nodes."""
+NEXT_CALL = b"\x1e\n"
+"""Between an FMU's messages during one call and those during the next, on the stream of what it writes."""
 _HEAD = struct.Struct("<4sI")
 _BYTES = "base64"
 

@@ -19,7 +19,7 @@ from typing import Any, BinaryIO
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import Archive, Component, Reader
-from dcone_cosim.fmu.frames import as_fields, receive, send
+from dcone_cosim.fmu.frames import NEXT_CALL, as_fields, receive, send
 from dcone_cosim.fmu.messages import listeners
 
 CALLS = frozenset(
@@ -36,6 +36,7 @@ class Server:
     def __init__(self) -> None:
         self.component: Component | None = None
         self.readers: list[Reader] = []
+        self._said = False
 
     def answer(self, call: str, *arguments: Any) -> Any:
         if call == "hello":
@@ -64,12 +65,26 @@ class Server:
             return self.readers[number]().tobytes()
         return None
 
+    def pass_on(self, text: str) -> None:
+        """Write a message where the parent finds it, should this process die."""
+        self._said = True
+        with suppress(OSError):
+            os.write(2, (text + "\n").encode())
+
+    def separate(self) -> None:
+        """Before a call: what was said during others is no news any more."""
+        if self._said:
+            self._said = False
+            with suppress(OSError):
+                os.write(2, NEXT_CALL)
+
     def serve(self, calls: BinaryIO, answers: BinaryIO) -> None:
         while True:
             try:
                 call = receive(calls)
             except EOFError:
                 return
+            self.separate()
             if call[0] == "close":
                 if self.component is not None:
                     self.component.close()
@@ -102,18 +117,14 @@ def _end_with(parent: int) -> None:
     os._exit(1)
 
 
-def _pass_on(text: str) -> None:
-    with suppress(OSError):
-        os.write(2, (text + "\n").encode())
-
-
 def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     calls, answers = _own_streams()
     threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
-    listeners.append(_pass_on)
+    server = Server()
+    listeners.append(server.pass_on)
     with suppress(BrokenPipeError):
-        Server().serve(calls, answers)
+        server.serve(calls, answers)
     os._exit(0)
 
 

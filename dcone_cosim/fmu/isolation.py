@@ -27,7 +27,7 @@ import numpy as np
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.frames import Garbled, from_fields, receive, send
+from dcone_cosim.fmu.frames import NEXT_CALL, Garbled, from_fields, receive, send
 from dcone_cosim.fmu.steppable import CallError, Row, Terminated, VariableInfo
 
 LAST_WORDS = 600
@@ -193,7 +193,8 @@ class IsolatedComponent:
             said = f"its process was ended by {_signal_name(-code)}"
         else:
             said = f"its process ended itself with exit code {code}"
-        lines = [line.strip() for line in self._noise.decode("utf-8", "replace").splitlines() if line.strip()]
+        noise = self._noise.rpartition(NEXT_CALL)[2].decode("utf-8", "replace")
+        lines = [line.strip() for line in noise.splitlines() if line.strip()]
         if lines:
             said += f"; its last words: {'; '.join(lines[-3:])[-LAST_WORDS:]}"
         detail = f"{self.archive.path.name}, run in a process of its own"

@@ -114,15 +114,22 @@ def _phases(scene: Scene, from_run: Path | None, notes: list[str]) -> list[Phase
     return [capture, removal]
 
 
+def _unlike(scene: Scene, told: Mapping[str, Any]) -> str:
+    """How the scene of a run differs from this one, and what to do about it."""
+    if told.get("scene") != scene.name:
+        return f"that run was of another scene, {told.get('scene')!r}; expected one of {scene.name!r}"
+    settings = " ".join(f"--set {setting!r}" for setting in told.get("settings", []))
+    if settings:
+        return f"that run of {scene.name!r} had other values than asked for here; its own are {settings}"
+    return f"that run of {scene.name!r} had other values than the scene has here; run it again"
+
+
 def _handed_over(scene: Scene, removal: PhaseScene, folder: Path) -> PhaseScene:
     """The removal as a run of the scene began it."""
     told = _json(folder, "provenance.json")
     kept = folder / "scene.toml"
     if not kept.is_file() or kept.read_text(encoding="utf-8") != scene.text:
-        raise InputError(
-            f"--from-run {folder}: that run was of another scene, {told.get('scene')!r}; "
-            f"export its own, {folder / 'scene.toml'}"
-        )
+        raise InputError(f"--from-run {folder}: {_unlike(scene, told)}; or export its own, {kept}")
     phase = told.get("phases", {}).get("removal")
     if phase is None:
         raise InputError(f"--from-run {folder}: that run has no removal: {told.get('message') or told.get('status')}")

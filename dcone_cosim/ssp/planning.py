@@ -14,7 +14,7 @@ from dcone_cosim.names import did_you_mean
 from dcone_cosim.scenes.keys import MOST_STEPS
 from dcone_cosim.scenes.scene import PHASES
 from dcone_cosim.scenes.text import override
-from dcone_cosim.scenes.units import Expected, Unexpected
+from dcone_cosim.scenes.units import Expected, Unexpected, example_of
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part, owner_of
@@ -76,10 +76,12 @@ def settings_of(
             if info is None or info.causality not in ("parameter", "input"):
                 known = [n for n, v in parts[owner].variables.items() if v.causality in ("parameter", "input")]
                 raise Unexpected(f"is no parameter or input of its FMU{did_you_mean(variable, known)}")
-            expected = Expected(info.unit, info.kind, 0, (), "1", info.minimum, info.maximum)
+            example = example_of(info.start or 0.0, info.unit)
+            expected = Expected(info.unit, info.kind, 0, (), example, info.minimum, info.maximum)
             values.setdefault(owner, {})[variable] = cast(float, expected.read(given))
         except Unexpected as error:
-            raise InputError(f"--set {argument.argument}: {name} {error}") from None
+            link = " " if str(error).startswith(("is ", "must ")) else ": "
+            raise InputError(f"--set {argument.argument}: {name}{link}{error}") from None
     return told, values
 
 

@@ -1,14 +1,18 @@
-"""What the tests of the master share: a scene made by hand for the stand-ins."""
+"""What the tests of the master share: a scene made by hand for the stand-ins, and the command line."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from dcone_cosim import cli
 from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+
+Dcone = Callable[..., tuple[int, str, str]]
 
 
 def scene_of(*phases: str, **handoff: Any) -> Scene:
@@ -35,3 +39,18 @@ def scene_of(*phases: str, **handoff: Any) -> Scene:
 @pytest.fixture
 def make_scene() -> Callable[..., Scene]:
     return scene_of
+
+
+@pytest.fixture
+def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Dcone:
+    """Run the command line in an empty folder; returns exit code, stdout and stderr."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
+        with pytest.raises(SystemExit) as stop:
+            cli.main()
+        written = capfd.readouterr()
+        return int(stop.value.code or 0), written.out, written.err
+
+    return run

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim import cli, commands
+from dcone_cosim import commands
 from dcone_cosim.scenes.scene import find
+from tests.cosim.conftest import Dcone
 
 
 @pytest.fixture
-def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+def dcone(dcone: Dcone, monkeypatch: pytest.MonkeyPatch):
     """Run the command line in an empty folder; returns exit code and what it wrote to stderr. No FMU may be built."""
-    monkeypatch.chdir(tmp_path)
 
     def never(*_: object) -> None:
         raise AssertionError("bad input got as far as building an FMU")
@@ -22,10 +22,8 @@ def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     monkeypatch.setattr(commands.build, "write_fmus", never)
 
     def run(*arguments: str) -> tuple[int, str]:
-        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        return int(stop.value.code or 0), capsys.readouterr().err
+        code, _, err = dcone(*arguments)
+        return code, err
 
     return run
 

@@ -11,14 +11,15 @@ import sys
 import threading
 import time
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from dcone_cosim import build, cli, offline, progress
+from dcone_cosim import build, offline, progress
 from dcone_cosim.cache import Times, age, clear, listing, spoken_age
 from dcone_cosim.errors import InputError
+from tests.cosim.conftest import Dcone
 
 XML = '<fmiModelDescription modelName="{}" description="A net. Built with: {}. Left out: nodes."/>'
 DAY = 86400.0
@@ -45,21 +46,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         for path in (tmp_path / name / "model.ll", tmp_path / name):
             os.utime(path, (time.time() - days * DAY,) * 2)
     return tmp_path
-
-
-Dcone = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def dcone(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Dcone:
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        written = capsys.readouterr()
-        return int(stop.value.code or 0), written.out, written.err
-
-    return run
 
 
 class TestCache:

@@ -19,24 +19,8 @@ import pytest
 from dcone_cosim import cli, commands
 from dcone_cosim.progress import Bar, Lines, Progress
 from dcone_cosim.scenes.scene import Scene
+from tests.cosim.conftest import Dcone
 from tests.cosim.mock_components import MockCapture, MockRemoval
-
-Dcone = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Dcone:
-    """Run the command line in an empty folder; returns exit code, stdout and stderr."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        written = capsys.readouterr()
-        return int(stop.value.code or 0), written.out, written.err
-
-    return run
 
 
 class NoArchives:

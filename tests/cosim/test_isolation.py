@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -16,6 +18,7 @@ import pytest
 
 from dcone_cosim import build as models
 from dcone_cosim.errors import FmuError
+from dcone_cosim.fmu import frames, isolation
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, output_names
 from dcone_cosim.scenes.scene import load
@@ -145,6 +148,53 @@ def test_after_a_crash_every_call_says_so_and_closing_is_quiet(fmu: Fmu) -> None
     component.close()
     component.close()
     assert not is_alive(process)
+
+
+@pytest.mark.parametrize(
+    ("switch", "said"),
+    [
+        ('GARBLE="nonsense that is no frame"', "its process wrote into the stream of our answers"),
+        ('GARBLE="dcF1\\5\\0\\0\\0[1,2]"', "its process wrote into the stream of our answers"),
+        ('GARBLE="dcF1\\15\\0\\0\\0[null,[[0,1]]"', "its process wrote into the stream of our answers"),
+        ('GARBLE="dcF1\\377\\377\\377\\377"', "its process wrote into the stream of our answers"),
+        ("CLOSES", "its process closed the stream of our answers"),
+        ("SIGNAL=40", "its process was ended by signal 40"),
+    ],
+)
+def test_what_broke_is_told_truthfully(fmu: Fmu, switch: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Foreign code may write anything anywhere; it never was ended by a signal that we sent."""
+    monkeypatch.setattr(isolation, "FAREWELL", 1.0)
+    with fmu(switch).isolate("tow") as component:
+        component.initialise(0.0)
+        process = component._child.pid
+        begin = time.monotonic()
+        with pytest.raises(CallError, match=said) as caught:
+            component.step(45.0, 10.0)
+        assert "SIGKILL" not in str(caught.value)
+        assert caught.value.broken
+        assert time.monotonic() - begin < 5.0
+        assert not is_alive(process)
+
+
+def test_frames_carry_every_bit_and_run_nothing() -> None:
+    class Touch:
+        def __reduce__(self) -> tuple[object, ...]:
+            return os.system, ("true",)
+
+    values = [0.1, -0.0, 5e-324, 1.7976931348623157e308, float("inf"), float("-inf"), 2**53 + 1, None, "\u00e9\n", True]
+    row = np.array([0.1, np.nan, -0.0]).tobytes()
+    stream = io.BytesIO()
+    frames.send(stream, (values, {"a": {"b": row}}))
+    stream.seek(0)
+    found, table = frames.receive(stream)
+    assert list(map(repr, found)) == list(map(repr, values))
+    assert table == {"a": {"b": row}}
+    with pytest.raises(EOFError):
+        frames.receive(stream)
+    with pytest.raises(frames.Garbled):
+        frames.receive(io.BytesIO(pickle.dumps(Touch())))
+    with pytest.raises(frames.Garbled):
+        frames.receive(io.BytesIO(frames.MARK + b"\3\0\0\0[1}"))
 
 
 def test_a_hang_is_ended_in_time_and_a_slow_one_is_not(fmu: Fmu) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ import pytest
 from dcone_cosim import cli
 from dcone_cosim.errors import InputError
 from dcone_cosim.scenes.scene import Scene, find, load
+from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 
 SCENE = """
@@ -183,23 +183,6 @@ def test_validate_opens_it_and_builds_nothing(
         cli.main()
     assert stop.value.code == 0
     assert [row["ok"] for row in json.loads(capsys.readouterr().out)] == [True, True]
-
-
-Dcone = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Dcone:
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        written = capfd.readouterr()
-        return int(stop.value.code or 0), written.out, written.err
-
-    return run
 
 
 def test_it_runs_alone_here_and_isolated_with_the_same_bits(dcone: Dcone, folder: Path, tmp_path: Path) -> None:

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pyarrow.parquet
 import pytest
 
-from dcone_cosim import cli
 from dcone_cosim.scenes.scene import find
+from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 
 pytestmark = pytest.mark.slow
 
-Dcone = Callable[..., tuple[int, str, str]]
 MISSION = find("mission").read_text()
 FOREIGN = """[removal]
 fmu = "{fmu}"
@@ -28,21 +26,6 @@ duration = "100 s"
 rest_length = "14 m"
 
 """
-
-
-@pytest.fixture
-def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Dcone:
-    """Run the command line in an empty folder; returns exit code, stdout and stderr."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        written = capfd.readouterr()
-        return int(stop.value.code or 0), written.out, written.err
-
-    return run
 
 
 def towed_by(fmu: Path, isolate: bool, timeout: str = "") -> str:

@@ -9,27 +9,24 @@ from pathlib import Path
 import pyarrow.parquet
 import pytest
 
-from dcone_cosim import build, cli
+from dcone_cosim import build
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import Archive
 from dcone_cosim.scenes.scene import find, load
+from tests.cosim.conftest import Dcone
 
 pytestmark = pytest.mark.slow
 
-Dcone = Callable[..., tuple[int, str]]
+Both = Callable[..., tuple[int, str]]
 
 
 @pytest.fixture
-def dcone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Dcone:
+def dcone(dcone: Dcone) -> Both:
     """Run the command line in an empty folder; returns exit code and all it wrote."""
-    monkeypatch.chdir(tmp_path)
 
     def run(*arguments: str) -> tuple[int, str]:
-        monkeypatch.setattr("sys.argv", ["dcone", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            cli.main()
-        written = capfd.readouterr()
-        return int(stop.value.code or 0), written.out + written.err
+        code, out, err = dcone(*arguments)
+        return code, out + err
 
     return run
 
@@ -48,7 +45,7 @@ def summary_of(folder: Path) -> dict[str, dict[str, dict[str, float]]]:
     return content
 
 
-def test_the_mission(dcone: Dcone, tmp_path: Path) -> None:
+def test_the_mission(dcone: Both, tmp_path: Path) -> None:
     """Captured, handed over with a closed ledger, towed; the recoil makes the first tug earlier and harder."""
     code, written = dcone("run", "mission", "-o", "out", "--csv")
     assert code == 0, written
@@ -66,7 +63,7 @@ def test_the_mission(dcone: Dcone, tmp_path: Path) -> None:
     assert len(tugs) == removal["tugs"]["value"]
 
 
-def test_table_2_has_its_first_tug_where_it_belongs(dcone: Dcone, tmp_path: Path) -> None:
+def test_table_2_has_its_first_tug_where_it_belongs(dcone: Both, tmp_path: Path) -> None:
     code, _ = dcone("run", "table2-deorbit", "-o", "out", "--no-figures", "--json")
     assert code == 0
     removal = summary_of(tmp_path / "out")["removal"]
@@ -75,7 +72,7 @@ def test_table_2_has_its_first_tug_where_it_belongs(dcone: Dcone, tmp_path: Path
     assert "tugs_missed" not in removal
 
 
-def test_the_macro_step_does_not_change_the_tugs(dcone: Dcone, tmp_path: Path) -> None:
+def test_the_macro_step_does_not_change_the_tugs(dcone: Both, tmp_path: Path) -> None:
     first = []
     for step in ("7 s", "60 s"):
         scene = variant(tmp_path, "table2-deorbit", ('"60 s"', f'"{step}"'), ('"1 day"', '"1 h"'))
@@ -85,7 +82,7 @@ def test_the_macro_step_does_not_change_the_tugs(dcone: Dcone, tmp_path: Path) -
     assert first[0] == pytest.approx(first[1], abs=1e-6)
 
 
-def test_a_capture_that_fails(dcone: Dcone, tmp_path: Path) -> None:
+def test_a_capture_that_fails(dcone: Both, tmp_path: Path) -> None:
     late = variant(tmp_path, "mission", ('time = "6.4 s"', 'time = "29 s"'), ('"30 s"', '"9 s"'))
     code, written = dcone("run", late, "-o", "out", "--no-figures")
     assert code == 3
@@ -95,7 +92,7 @@ def test_a_capture_that_fails(dcone: Dcone, tmp_path: Path) -> None:
     assert not (tmp_path / "out" / "removal.parquet").exists()
 
 
-def test_a_tumbling_target_is_not_handed_to_a_point(dcone: Dcone, tmp_path: Path) -> None:
+def test_a_tumbling_target_is_not_handed_to_a_point(dcone: Both, tmp_path: Path) -> None:
     turning = (
         'mass = "1000 kg"\n\n[capture.contact]',
         'mass = "1000 kg"\nstart_rate = ["0 deg/s", "0 deg/s", "5 deg/s"]\n\n[capture.contact]',
@@ -107,7 +104,7 @@ def test_a_tumbling_target_is_not_handed_to_a_point(dcone: Dcone, tmp_path: Path
     assert (tmp_path / "out" / "capture.parquet").exists()
 
 
-def test_what_only_the_fmu_can_refuse_is_bad_input_too(dcone: Dcone, tmp_path: Path) -> None:
+def test_what_only_the_fmu_can_refuse_is_bad_input_too(dcone: Both, tmp_path: Path) -> None:
     odd = variant(tmp_path, "mission", ('mesh = "0.5 m"', 'mesh = "0.7 m"'))
     code, written = dcone("run", odd, "-o", "out")
     assert code == 2
@@ -115,7 +112,7 @@ def test_what_only_the_fmu_can_refuse_is_bad_input_too(dcone: Dcone, tmp_path: P
     assert [p.name for p in tmp_path.iterdir()] == ["mine.toml"]
 
 
-def test_inspect_and_build(dcone: Dcone, tmp_path: Path) -> None:
+def test_inspect_and_build(dcone: Both, tmp_path: Path) -> None:
     code, written = dcone("inspect", "mission")
     assert code == 0
     for part in ("gravity: hill", "left out", "nodes: 625", "threads: 1200", "bytes"):

@@ -16,6 +16,11 @@ from dcone_cosim.interface_kit import write_template
 
 SOURCE = Path(__file__).with_name("misbehaving.c")
 HEADERS = Path(fmpy.__file__).parent / "c-code"
+SHIM = {
+    "IGNORES_STATE": ("    memcpy(i->m.values, s + 1, block());\n", ""),  # it restores nothing
+    "REFUSES_WITHOUT_A_WORD": ("if (!callbacks || !name) return", "if (callbacks) return"),  # it cannot be instantiated
+}
+"""What some switches change in the template's fmu.c."""
 
 
 def build(
@@ -27,8 +32,7 @@ def build(
 ) -> Path:
     """`my_PHASE.fmu` in a folder.
 
-    switches    how it goes wrong, see misbehaving.c: "CRASH", "EXIT=3"; "IGNORES_STATE": it restores nothing;
-                none: it works as the template does
+    switches    how it goes wrong, see misbehaving.c and SHIM: "CRASH", "EXIT=3"; none: it works as the template does
     when        from which time on [s]
     change      of the text of its model description
     """
@@ -48,11 +52,11 @@ def _compiled(phase: str, switches: tuple[str, ...]) -> tuple[str, bytes]:
     with tempfile.TemporaryDirectory() as place:
         source = Path(place) / "source"
         write_template(phase, "c", source)
-        if "IGNORES_STATE" in switches:
-            shim = (source / "fmu.c").read_text()
-            restoring = "    memcpy(i->m.values, s + 1, block());\n"
-            assert restoring in shim
-            (source / "fmu.c").write_text(shim.replace(restoring, ""))
+        for switch, (old, new) in SHIM.items():
+            if switch in switches:
+                shim = (source / "fmu.c").read_text()
+                assert old in shim
+                (source / "fmu.c").write_text(shim.replace(old, new))
         binary = source / "it.so"
         subprocess.run(
             [

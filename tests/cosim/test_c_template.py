@@ -1,0 +1,124 @@
+"""The C template's own promises: whose states it takes, and which messages it sends."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import fmpy.fmi2 as fmi2
+import pytest
+
+from dcone_cosim.fmu.archive import XML, Archive
+from dcone_cosim.fmu.component import CallError, Component
+from tests.cosim.fmus.build import build
+
+VERSION = 0
+"""Where a serialised state has its version, a double."""
+
+
+@pytest.fixture
+def tow(tmp_path: Path) -> Iterator[Component]:
+    with Archive(build(tmp_path)) as archive, archive.instantiate("tow") as component:
+        yield component
+
+
+def serialised(component: Component) -> bytes:
+    component.save()
+    return bytes(component._fmu.serializeFMUstate(component._states[""]))
+
+
+def take(component: Component, state: bytes) -> None:
+    found = fmi2.fmi2FMUstate()
+    data = (ctypes.c_char * len(state)).from_buffer_copy(state)
+    component._call("fmi2DeSerializeFMUstate", component._fmu.component, data, len(state), ctypes.byref(found))
+    component._states["taken"] = found
+    component._times["taken"] = 0.0
+    component.restore("taken")
+
+
+def test_its_own_state_comes_back(tow: Component) -> None:
+    """The twin of those below."""
+    tow.initialise(0.0)
+    tow.step(0.0, 10.0)
+    state, before = serialised(tow), tow.get(["separation", "relative.position[1]"])
+    tow.step(10.0, 10.0)
+    assert tow.get(["separation", "relative.position[1]"]) != before
+    take(tow, state)
+    assert tow.get(["separation", "relative.position[1]"]) == before
+
+
+@pytest.mark.parametrize("what", ["guid", "version", "phase", "length"])
+def test_a_state_of_another_is_refused(tow: Component, what: str) -> None:
+    tow.initialise(0.0)
+    state = bytearray(serialised(tow))
+    guid = state.index(tow.archive.guid.encode())
+    if what == "guid":
+        state[guid] ^= 1
+    elif what == "version":
+        state[VERSION : VERSION + 8] = bytes(ctypes.c_double(2.0))
+    elif what == "phase":
+        state[guid - 8 : guid - 4] = bytes(ctypes.c_int(17))
+    else:
+        del state[-8:]
+    with pytest.raises(CallError, match="these bytes are"):
+        take(tow, bytes(state))
+
+
+def heard(component: Component, on: bool, *categories: str) -> list[str]:
+    """What it says at a step that is not allowed, and at its beginning: an error, and a warning."""
+    names = (ctypes.c_char_p * len(categories))(*(name.encode() for name in categories))
+    component._call("fmi2SetDebugLogging", component._fmu.component, int(on), len(categories), names)
+    said: list[str] = []
+    component._messages.add = lambda status, text: said.append(text)  # type: ignore[method-assign]
+    component.initialise(0.0)
+    with pytest.raises(CallError):
+        component.enter_initialisation(0.0)
+    return said
+
+
+@pytest.mark.parametrize(
+    ("on", "categories", "words"),
+    [
+        (True, (), ["old news", "fmi2SetupExperiment is not allowed now"]),
+        (True, ("logAll",), ["old news", "fmi2SetupExperiment is not allowed now"]),
+        (True, ("logStatusWarning",), ["old news"]),
+        (True, ("logStatusError", "logEvents"), ["fmi2SetupExperiment is not allowed now"]),
+        (False, (), []),
+    ],
+)
+def test_it_says_what_was_asked_for(tow: Component, on: bool, categories: tuple[str, ...], words: list[str]) -> None:
+    assert heard(tow, on, *categories) == words
+
+
+def test_an_unknown_category_is_refused(tow: Component) -> None:
+    with pytest.raises(CallError, match="there is no such log category"):
+        heard(tow, True, "logEverything")
+
+
+def test_without_logging_errors_are_still_told(tmp_path: Path) -> None:
+    said: list[tuple[str, str]] = []
+
+    def log(_: Any, instance: bytes, status: int, category: bytes, message: bytes) -> None:
+        said.append((category.decode(), message.decode()))
+
+    with Archive(build(tmp_path)) as archive:
+        listed = ElementTree.parse(archive.folder / XML).iterfind("LogCategories/Category")  # type: ignore[operator]
+        slave = fmi2.FMU2Slave(
+            guid=archive.guid, unzipDirectory=str(archive.folder), modelIdentifier=archive.identifier, instanceName="a"
+        )
+        callbacks = fmi2.fmi2CallbackFunctions()
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
+        slave.instantiate(callbacks=callbacks, loggingOn=False)
+        slave.setupExperiment(startTime=0.0)
+        slave.enterInitializationMode()
+        slave.exitInitializationMode()
+        with pytest.raises(Exception, match="fmi2SetupExperiment"):
+            slave.setupExperiment(startTime=0.0)
+        slave.freeInstance()
+        assert [category for category, _ in said] == ["logStatusError"]
+        assert {"logStatusError", "logStatusDiscard", "logStatusWarning", "logEvents", "logAll"} == {
+            category.get("name") for category in listed
+        }
