@@ -41,6 +41,7 @@ def take(component: Component, state: bytes) -> None:
 
 def test_its_own_state_comes_back(tow: Component) -> None:
     """The twin of those below."""
+    tow.set({"start.relative_velocity[1]": 1.0})
     tow.initialise(0.0)
     tow.step(0.0, 10.0)
     state, before = serialised(tow), tow.get(["separation", "relative.position[1]"])

@@ -161,3 +161,18 @@ def test_nothing_stays_unpacked_after_a_refusal(
     refused(tmp_path, {XML: description})
     refused(tmp_path, {XML: "<broken", BINARY: ""})
     assert not list(places.iterdir())
+
+
+def test_one_that_unpacks_to_too_much(tmp_path: Path, description: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A small file may hold terabytes of zeros; the limit is the one for an FMU in an SSP package."""
+    zeros = "0" * 1_000_000
+    fmu = tmp_path / "bomb.fmu"
+    fmu.write_bytes(zipped({XML: description, BINARY: "", "resources/zeros": zeros}))
+    size = len(description.encode()) + len(zeros)
+    assert fmu.stat().st_size < size / 20
+    monkeypatch.setattr("dcone_cosim.fmu.archive.LARGEST", size - 1)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "nowhere"))
+    assert refusal(fmu) == f"{fmu}: unpacked it has {size:,} bytes; at most {size - 1:,} are unpacked"
+    monkeypatch.undo()
+    with Archive(fmu) as archive:
+        assert archive.folder is not None

@@ -37,12 +37,14 @@ def test_the_gravest_come_first(said: list[tuple[int, str]], words: str) -> None
 @pytest.mark.parametrize("isolate", [False, True])
 def test_a_refusal_is_not_blamed_on_an_earlier_call(tmp_path: Path, isolate: bool) -> None:
     """The FMU says "old news" while it is initialised."""
-    with Archive(build(tmp_path)) as archive:
-        with archive.isolate("tow") if isolate else archive.instantiate("tow") as component:
-            component.initialise(0.0)
-            with pytest.raises(CallError) as caught:
-                component.set({"tether.rest_length": 3.0})
-            assert caught.value.said == "fmi2SetReal: no such Real can be set now"
+    with (
+        Archive(build(tmp_path)) as archive,
+        archive.isolate("tow") if isolate else archive.instantiate("tow") as component,
+    ):
+        component.initialise(0.0)
+        with pytest.raises(CallError) as caught:
+            component.set({"tether.rest_length": 3.0})
+        assert caught.value.said == "fmi2SetReal: no such Real can be set now"
 
 
 def test_a_crash_is_not_blamed_on_an_earlier_call(tmp_path: Path) -> None:

@@ -193,10 +193,14 @@ def test_the_command_line_says_what_it_cannot_set(good: Path) -> None:
     for setting, said in (
         ("removal.thrust.levle=1 N", "did you mean 'thrust.level'"),
         ("removal.thrust.level=1 m", "expected a force"),
+        ("removal.thrust.level=1", "removal.thrust.level: a bare number has no unit; expected a force"),
+        ("removal.thrust.level=1", 'such as "-0.01 N"'),
         ("removl.thrust.level=1 N", "did you mean 'removal'"),
+        ("zzz.thrust.level=1 N", "is no variable of a component; known: removal"),
         ("removal.macro_step=0 s", "greater than 0"),
     ):
         with pytest.raises(InputError, match=r"^--set ") as caught:
             system.load(good, [setting])
         assert said in str(caught.value)
+        assert "removal, removal" not in str(caught.value)
     assert system.load(good, ["removal.macro_step=20 s"]).phases[0].macro_step == 20.0

@@ -222,7 +222,21 @@ def test_a_removal_without_its_run_is_noted(tmp_path: Path) -> None:
                 (folder / "provenance.json").write_text('{"scene": "other"}'),
                 (folder / "scene.toml").write_text("title = 'other'"),
             ),
-            "another scene",
+            "that run was of another scene, 'other'; expected one of 'mission'; or export its own, .*scene.toml",
+        ),
+        (
+            lambda folder: (
+                (folder / "provenance.json").write_text('{"scene": "mission", "settings": ["removal.duration=1 h"]}'),
+                (folder / "scene.toml").write_text("title = 'mission'"),
+            ),
+            "that run of 'mission' had other values than asked for here; its own are --set 'removal.duration=1 h'; or",
+        ),
+        (
+            lambda folder: (
+                (folder / "provenance.json").write_text('{"scene": "mission", "settings": []}'),
+                (folder / "scene.toml").write_text("title = 'mission'"),
+            ),
+            "that run of 'mission' had other values than the scene has here; run it again; or",
         ),
     ],
 )
