@@ -65,6 +65,31 @@ def test_the_comparison_can_be_left_out(make_scene: Make) -> None:
     assert result.comparison is None
 
 
+@pytest.mark.parametrize("when", ["made", "stepped", "never"])
+def test_a_comparison_that_fails_says_why_and_fails_nothing(make_scene: Make, when: str) -> None:
+    class Listening(Progress):
+        def say(self, text: str) -> None:
+            said.append(text)
+
+    class Jammed(MockRemoval):
+        def step(self, time: float, size: float) -> None:
+            raise FmuError("the winch jammed")
+
+    def instantiate(phase: str, name: str) -> MockComponent:
+        if name == "removal without recoil" and when == "made":
+            raise FmuError("the winch jammed")
+        if name == "removal without recoil" and when == "stepped":
+            return Jammed()
+        return MockCapture(reports=True) if phase == "capture" else MockRemoval()
+
+    said: list[str] = []
+    result = run_scene(make_scene("capture", "removal"), instantiate, Listening())
+    assert result.exit_code == SUCCESS
+    assert (result.comparison is None) == (when != "never")
+    told = ["the removal without recoil is left out: the winch jammed"] if when != "never" else []
+    assert [text for text in said if "left out" in text] == told
+
+
 @pytest.mark.parametrize("tampered", [{"target.mass": 1.01}, {"start.relative_velocity[2]": -1.0}])
 def test_a_removal_that_changes_what_it_is_given_is_caught(make_scene: Make, tampered: dict[str, float]) -> None:
     result, _ = run(make_scene("capture", "removal"), MockCapture(), lambda: MockRemoval(tampered))
