@@ -8,7 +8,9 @@ One process per tool and package: some keep their library loaded, write to stdou
 from __future__ import annotations
 
 import ctypes
+import subprocess
 import sys
+import tempfile
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -87,7 +89,51 @@ def fmpy(package: str, component: str, step: float, steps: int, start: float) ->
     return {n: np.append(np.nan, rows[f"{component}.{n}"].astype(float)) for n in outputs(package, component)}
 
 
-TOOLS: dict[str, Callable[..., dict[str, np.ndarray]]] = {"ecos": ecos, "libcosim": libcosim, "fmpy": fmpy}
+def container(package: str, component: str, step: float, steps: int, start: float) -> dict[str, np.ndarray]:
+    """fmu-manipulation-toolbox: the FMUs and connections of the package in an FMU container, which fmpy runs.
+
+    The container begins before the connections have carried anything, so its first row is not told.
+    """
+    from fmpy import simulate_fmu
+
+    with zipfile.ZipFile(package) as archive, tempfile.TemporaryDirectory() as name:
+        root = etree.fromstring(archive.read("SystemStructure.ssd"))
+        names = [row.get("name") for row in root.iter("{*}Component")]
+        for row in names:
+            Path(name, f"{row}.fmu").write_bytes(archive.read(f"resources/{row}.fmu"))
+        links = [
+            f"LINK;{c.get('startElement')}.fmu;{c.get('startConnector')};{c.get('endElement')}.fmu;{c.get('endConnector')}"
+            for c in root.iter("{*}Connection")
+        ]
+        shown = [f"OUTPUT;{component}.fmu;{port};;{port}" for port in outputs(package, component)]
+        rules = ["rule;from_fmu;from_port;to_fmu;to_port", *(f"FMU;{row}.fmu;;;" for row in names), *links, *shown]
+        Path(name, "pair.csv").write_text("\n".join(rules) + "\n")
+        program = "from fmu_manipulation_toolbox.cli.fmucontainer import fmucontainer as f; f()"
+        options = ["-container", f"pair.csv:{step!r}", "-fmu-directory", name, "-auto-parameter"]
+        subprocess.run([sys.executable, "-c", program, *options], check=True, stdout=subprocess.DEVNULL)
+        values = {
+            f"{part.get('name')}.{value.get('name')}": float(value[0].get("value"))
+            for part in root.iter("{*}Component")
+            for value in part.iter("{*}Parameter")
+        }
+        found = simulate_fmu(
+            str(Path(name, "pair.fmu")),
+            stop_time=steps * step,
+            output_interval=step,
+            start_values=values,
+            output=list(outputs(package, component)),
+        )
+    assert len(found) == steps + 1
+    columns = {port: found[port].astype(float) for port in outputs(package, component)}
+    return {port: np.append(np.nan, column[1:]) for port, column in columns.items()}
+
+
+TOOLS: dict[str, Callable[..., dict[str, np.ndarray]]] = {
+    "ecos": ecos,
+    "libcosim": libcosim,
+    "fmpy": fmpy,
+    "container": container,
+}
 
 
 if __name__ == "__main__":
