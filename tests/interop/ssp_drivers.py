@@ -68,10 +68,14 @@ def libcosim(package: str, component: str, step: float, steps: int, start: float
         CosimVariableType.BOOLEAN.value: observer.last_boolean_values,
     }
     names = list(outputs(package, component))
+    kinds = {kind: [name for name in names if int(variables[name].type) == kind] for kind in get}
     rows = [[np.nan] * len(names)]
     for _ in range(steps):
         assert execution.step(1)
-        rows.append([get[int(variables[n].type)](index, [variables[n].reference])[0] for n in names])
+        row = {}
+        for kind, own in kinds.items():
+            row |= zip(own, get[kind](index, [variables[name].reference for name in own]), strict=True)
+        rows.append([row[name] for name in names])
     return dict(zip(names, np.array(rows, dtype=float).T, strict=True))
 
 
