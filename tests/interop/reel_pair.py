@@ -35,13 +35,13 @@ SPREAD = 1e-12
 """Share of an output's largest size, allowed when a tool's times drift from the master's by rounding."""
 
 
-def package(folder: Path, grid: str) -> Path:
+def package(folder: Path, grid: str, scene: str = SCENE) -> Path:
     """The scene as a package, coupled as the tools do it: held inputs, all at once, one row per coupling step."""
     step = f"{GRIDS[grid]!r} s"
     told = {"coupling.method": "jacobi", "coupling.extrapolation": "constant", "coupling.step": step}
     told |= {"macro_step": step, "duration": f"{STEPS * GRIDS[grid]!r} s"}
     settings = [f"{MAIN}.{key}={value}" for key, value in told.items()]
-    (path,) = export_scene(SCENE, folder, Progress(), open_inputs=False, settings=settings).paths
+    (path,) = export_scene(scene, folder, Progress(), open_inputs=False, settings=settings).paths
     return path
 
 

@@ -81,6 +81,18 @@ def test_another_control_is_seen(setting: str, tmp_path: Path) -> None:
     assert farthest(found, own(path, setting)) > SPREAD
 
 
+@pytest.mark.parametrize("tool", LATE)
+def test_a_control_without_a_motor_acts_a_step_late(tool: str, tmp_path: Path) -> None:
+    """Its output depends on its inputs directly; the tools read it before they set them, our master after."""
+    text, motor, _ = scenes.shipped()[SCENE].read_text().partition("[removal.components.controller.motor]")
+    assert motor
+    (tmp_path / "direct.toml").write_text(text)
+    path = package(tmp_path, "binary", str(tmp_path / "direct.toml"))
+    found, ours = in_tool(tool, path, MAIN, GRIDS["binary"], STEPS), own(path)
+    assert differing(found, ours, LATE[tool])
+    assert 1e-3 < farthest(found, ours, LATE[tool]) < 1e-2
+
+
 def test_the_scenes_package_has_the_scenes_bits_and_its_coupling_step(tmp_path: Path) -> None:
     """As shipped, in macro steps of a minute: tools are told to exchange at the coupling step, we know both."""
     (path,) = export_scene(SCENE, tmp_path, Progress()).paths
