@@ -43,9 +43,10 @@ def list_kept(json: Annotated[bool, typer.Option("--json", help="Answer as JSON.
             rows = [{**vars(kept), "path": str(kept.path), "age": now - kept.built} for kept in found]
             typer.echo(writer.dumps(rows, indent=1))
             return
+        width = max((len(kept.path.name) for kept in found), default=0)
         for kept in found:
             about = f"{spoken_size(kept.size):>8}  {spoken_age(now - kept.built):>8}"
-            typer.echo(f"{kept.path.name}  {about}  {kept.terms}")
+            typer.echo(f"{kept.path.name:{width}}  {about}  {kept.terms}")
         total = spoken_size(sum(kept.size for kept in found))
         typer.echo(f"{len(found)} FMUs, {total}, in {folder}")
 

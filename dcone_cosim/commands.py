@@ -128,8 +128,8 @@ def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
         raise InputError(f"{path} is no name for a scene: expected one that ends in .toml")
     source = find(origin)
     scene = load(origin)
-    if any(component.fmu is not None or phase.others for phase in scene.phases for component in phase.components):
-        raise InputError(f"{source} has FMUs of its own: only a scene of our models can be begun from; copy the file")
+    if any(component.fmu is not None for phase in scene.phases for component in phase.components):
+        raise InputError(f"{source} names FMU files: only a scene of our models can be begun from; copy the file")
     schema = f"./{SCHEMA}" if (path.parent / SCHEMA).is_file() else ""
     text = new_scene(read_text(source), origin, str(path), schema)
     parse(text, path.stem, str(path))

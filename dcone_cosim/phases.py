@@ -49,6 +49,7 @@ class PhaseResult:
     located      instant of the hand-over [s] and how it was found, None when there was none
     error        the failure that ended the phase early
     ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
+    coupling     steps of several coupled FMUs: how many, rejected, forced, smallest and largest [s]
     """
 
     name: str
@@ -63,6 +64,7 @@ class PhaseResult:
     cpu: float = 0.0
     wall: float = 0.0
     error: FmuError | None = None
+    coupling: Mapping[str, float] = field(default_factory=dict)
     ended_by: str = ""
     ended_at: float = math.nan
 
@@ -74,6 +76,11 @@ class PhaseResult:
     @property
     def end(self) -> float:
         return float(self.recorder["time"][-1]) if len(self.recorder) else self.start
+
+
+def coupling_of(component: Steppable) -> dict[str, float]:
+    """What the coupling of several FMUs has cost; empty for one."""
+    return dict(getattr(component, "statistics", {}))
 
 
 class _Stopwatch:
@@ -153,6 +160,7 @@ class CaptureLoop:
                 result.ended(end)
             except FmuError as error:
                 result.error = error
+        result.coupling = coupling_of(self.component)
         return result
 
     def _save(self) -> None:
@@ -281,6 +289,7 @@ class RemovalLoop:
             except FmuError as error:
                 result.error = error
                 result.outcome = "stopped"
+        result.coupling = coupling_of(self.component)
         return result
 
     def _record(self, time: float, was_taut: bool) -> bool:

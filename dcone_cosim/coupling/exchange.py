@@ -14,10 +14,10 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.fmu.restoring import RESTORED_TO
 
-SWEEPS = 200
+SWEEPS = 1000
 """Most rounds over all components in which outputs and inputs have to agree."""
 AGREED = 1e-12
-"""Relative change of an input below which an algebraic loop has settled."""
+"""Change of an input, relative to the largest value it took on the way, below which an algebraic loop has settled."""
 UNSET = math.nan
 
 Values = tuple[list[float], list[float], list[float]]
@@ -94,6 +94,7 @@ class Exchange:
         for place in self.order:
             self.read(place, time)
         moved: dict[int, tuple[float, float]] = {}
+        largest = [0.0] * len(self.links)
         for _ in range(SWEEPS):
             moved = {}
             for place in self.order:
@@ -101,7 +102,8 @@ class Exchange:
                 for k in self._into[place]:
                     value, held = self.links[k].carried(self.out[k]), self._held[k]
                     if value != held:
-                        if not abs(value - held) <= AGREED * max(abs(value), abs(held)):
+                        largest[k] = max(largest[k], abs(value))
+                        if not abs(value - held) <= AGREED * largest[k]:
                             moved[k] = (held, value)
                         fresh[self.links[k].input] = self._held[k] = value
                 if fresh:

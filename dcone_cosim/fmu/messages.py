@@ -1,13 +1,16 @@
 """What an FMU says while it works: its messages, and whether it promises an answer for later.
 
-fmpy formats the variadic message in C and hands it to one Python function per process; the environment pointer that
-every instance is given tells them apart.
+A library of fmpy's formats the variadic message in C and hands it to one Python function, which it keeps in a global.
+So we load a copy of it for ourselves: anybody else who uses fmpy in this process puts a function of theirs there, and
+takes it away again. The environment pointer that every instance is given tells the instances apart.
 """
 
 from __future__ import annotations
 
 import ctypes
 import itertools
+import shutil
+import tempfile
 from collections import deque
 from collections.abc import Callable
 from typing import Any
@@ -15,7 +18,7 @@ from typing import Any
 import fmpy
 import fmpy.fmi1
 import fmpy.fmi2 as fmi2
-from fmpy.logging import addLoggerProxy
+import fmpy.logging
 
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 KEPT = 20
@@ -84,4 +87,13 @@ _callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(_log)
 _callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
 _callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
 _callbacks.stepFinished = fmi2.fmi2StepFinishedTYPE(_finished)
-addLoggerProxy(ctypes.byref(_callbacks))
+
+
+def _own_library() -> ctypes.CDLL:
+    """A copy of fmpy's library, with a global of its own. Where a loaded file cannot be removed it is left behind."""
+    with tempfile.TemporaryDirectory(prefix="dcone-", ignore_cleanup_errors=True) as folder:
+        return ctypes.CDLL(shutil.copy(fmpy.logging.logging._name, folder))
+
+
+_formatting = _own_library()
+_formatting.addLoggerProxy(ctypes.byref(_callbacks))

@@ -133,47 +133,57 @@ LEAST = 1e-6
 
 
 def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> None:
-    """Tension over the whole phase, logarithmic, and the time of the tugs apart, linear; tugs as stems."""
+    """Tension over the whole phase, logarithmic, with its tugs as stems; below, linear, the time of the tugs apart."""
     recorder = result.recorder
     divisor, unit = style.time_axis(result.end - result.start)
-    time = (recorder["time"] - result.start) / divisor
+    since = recorder["time"] - result.start
+    sets = _tug_sets(run, result)
     figure = style.new_figure(8.5, 6.4)
-    above, below = figure.subplots(2, 1, height_ratios=(3, 2))
+    if sets:
+        above, below = figure.subplots(2, 1, height_ratios=(3, 2))
+    else:
+        above, below = figure.subplots(), None
     style.margins(figure, 0.6)
     tension = recorder["tether.tension"]
     visible = np.where(tension > LEAST, tension, np.nan)
-    above.plot(time, visible, color=style.CHASER, linewidth=0.9, label="tension at the macro steps")
-    shown = [tension[tension > LEAST]]
-    sets = _tug_sets(run, result)
-    last = max((float(rows[:, 0].max()) for _, rows, _, _ in sets), default=result.end - result.start)
-    zoom, zoom_unit = style.time_axis(1.05 * last)
-    for label, rows, colour, strong in sets:
-        peak = rows[:, 1]
-        for axes, at in ((above, rows[:, 0] / divisor), (below, rows[:, 0] / zoom)):
-            axes.vlines(at, LEAST, peak, color=colour, linewidth=0.7, alpha=0.7)
-            axes.plot(at, peak, "o", color=colour, markersize=3.5 if strong else 2.5, label=label)
-        shown.append(peak[peak > LEAST])
-    values = np.concatenate(shown)
+    above.plot(since / divisor, visible, color=style.CHASER, linewidth=0.9, label="tension at the macro steps")
+    _stems(above, sets, divisor)
+    values = np.concatenate([tension, *(rows[:, 1] for _, rows, _, _ in sets)])
+    values = values[values > LEAST]
     above.set_yscale("log")
     if len(values):
         above.set_ylim(max(LEAST, 0.3 * values.min()), 3.0 * values.max())
-    above.set_xlim(0.0, time[-1])
+    above.set_xlim(0.0, since[-1] / divisor)
     above.set_ylabel("tether tension [N]")
     above.set_xlabel(f"time since the removal began [{unit}]")
     if above.get_legend_handles_labels()[1]:
         above.legend(loc="upper right")
-    within = (recorder["time"] - result.start) / zoom
-    below.plot(within, tension, color=style.CHASER, linewidth=0.9)
-    below.set_xlim(0.0, 1.05 * last / zoom)
-    below.set_ylim(bottom=0)
-    below.set_ylabel("tether tension [N]")
-    below.set_xlabel(f"the tugs apart: time since the removal began [{zoom_unit}]")
+    if below is not None:
+        last = max(float(rows[:, 0].max()) for _, rows, _, _ in sets)
+        zoom, zoom_unit = style.time_axis(1.05 * last)
+        below.plot(since / zoom, tension, color=style.CHASER, linewidth=0.9)
+        _stems(below, sets, zoom)
+        below.set_xlim(0.0, 1.05 * last / zoom)
+        below.set_ylim(bottom=0)
+        below.set_ylabel("tether tension [N]")
+        below.set_xlabel(f"the tugs apart: time since the removal began [{zoom_unit}]")
     style.head(figure, title)
     style.save(figure, path)
 
 
+def _stems(axes: Any, sets: list[tuple[str, style.Array, str, bool]], divisor: float) -> None:
+    """Tugs as stems from the least tension to their peak."""
+    for label, rows, colour, strong in sets:
+        at, peak = rows[:, 0] / divisor, rows[:, 1]
+        axes.vlines(at, LEAST, peak, color=colour, linewidth=0.7, alpha=0.7)
+        axes.plot(at, peak, "o", color=colour, markersize=3.5 if strong else 2.5, label=label)
+
+
 def _tug_sets(run: RunResult, result: PhaseResult) -> list[tuple[str, style.Array, str, bool]]:
-    """Label, rows of time since the phase began [s] and peak [N], colour, and whether they are the run's own."""
+    """Label, rows of time since the phase began [s] and peak [N], colour, and whether they are the run's own.
+
+    A line taut from the start has not been tugged by that.
+    """
     sets = []
     for phase, label, colour, strong in (
         (run.comparison, "tugs, had there been no recoil", style.MUTED, False),
@@ -181,5 +191,7 @@ def _tug_sets(run: RunResult, result: PhaseResult) -> list[tuple[str, style.Arra
     ):
         if phase is not None and phase.tugs is not None and phase.tugs.rows:
             rows = np.array(list(phase.tugs.rows.values()))[:, :2] - np.array([phase.start, 0.0])
-            sets.append((label, rows, colour, strong))
+            rows = rows[rows[:, 0] > 0.0]
+            if len(rows):
+                sets.append((label, rows, colour, strong))
     return sets

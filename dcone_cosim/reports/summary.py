@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -255,6 +255,18 @@ def _is_taut_from_start(result: PhaseResult) -> bool:
     return "tether.taut" in recorder and len(recorder) > 0 and bool(recorder["tether.taut"][0])
 
 
+def _of_coupling(name: str, counts: Mapping[str, float]) -> Iterator[Finding]:
+    if not counts:
+        return
+    yield Finding(name, "coupling_steps", "coupling steps", int(counts["steps"]))
+    yield Finding(name, "coupling_step_smallest", "shortest coupling step", counts["smallest"], "s")
+    yield Finding(name, "coupling_step_largest", "longest coupling step", counts["largest"], "s")
+    yield Finding(name, "coupling_rejected", "coupling steps rolled back", int(counts["rejected"]))
+    if counts["forced"]:
+        yield Finding(name, "coupling_forced", "coupling steps taken beyond the tolerance", int(counts["forced"]))
+
+
 def _of_effort(name: str, result: PhaseResult) -> Iterator[Finding]:
     yield Finding(name, "steps", "macro steps", result.steps)
+    yield from _of_coupling(name, result.coupling)
     yield Finding(name, "wall", "time taken", result.wall, "s")

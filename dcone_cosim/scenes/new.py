@@ -13,12 +13,15 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.handoff import REMOVAL_SETS
-from dcone_cosim.scenes.keys import HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
+from dcone_cosim.scenes.keys import COUPLING_KEYS, HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
 from dcone_cosim.scenes.parts import term_named
 from dcone_cosim.scenes.scene import PHASES
+from dcone_cosim.scenes.toml_lines import dotted
 from dcone_cosim.scenes.units import Expected
 
 WIDTH = 120
+RESERVED = ("components", "coupling", "parameters")
+"""Tables of a phase that are none of its model's."""
 INPUT = "an input, held at this value"
 SCHEMA = "dcone-schema.json"
 """Name under which a schema beside the scene is found."""
@@ -68,38 +71,66 @@ def _somewhere(document: Mapping[str, Any], name: str) -> bool:
         build.scene_name(row) == name
         for phase in PHASES
         if phase in document
-        for row in build.settable(build.MODELS[phase].interface(_terms(phase, document[phase])))
+        for row in build.settable(build.MODELS[phase].interface(_terms(build.MODELS[phase], document[phase])))
     )
 
 
-def _terms(phase: str, tables: Mapping[str, Any]) -> dict[str, str]:
-    groups = build.MODELS[phase].groups
-    return {name: term_named(tables[name].get(group.selector)) for name, group in groups.items() if name in tables}
+def _terms(model: build.Model, tables: Mapping[str, Any]) -> dict[str, str]:
+    return {
+        name: term_named(tables[name].get(group.selector)) for name, group in model.groups.items() if name in tables
+    }
 
 
-def _phase(phase: str, tables: Mapping[str, Any], skip: tuple[str, ...]) -> Iterator[str]:
-    model = build.MODELS[phase]
-    terms = _terms(phase, tables)
-    rows = [row for row in build.settable(model.interface(terms)) if row.section != SHARED]
-    rows = [row for row in rows if not build.scene_name(row).startswith(skip or ("\0",))]
+def _phase(phase: str, tables: Mapping[str, Any], skip: Sequence[str]) -> Iterator[str]:
+    connections = tables.get("connections", [])
     yield f"[{phase}]"
     for key, expected in PHASE_KEYS[phase].items():
         yield _option(key, tables.get(key), expected)
     if "snapshots" in tables:
         yield _line("snapshots", _toml(tables["snapshots"]), MEANING["snapshots"])
-    sections = dict.fromkeys((*(name for name in tables if isinstance(tables[name], dict)), *terms))
-    sections |= dict.fromkeys(row.section for row in rows)
-    for section in sections:
+    if connections:
+        yield "connections = ["
+        yield from (f"    {_toml(connection)}," for connection in connections)
+        yield "]"
+    yield from _component((phase,), build.MODELS[phase], tables, (*skip, *_set_by(connections, phase)))
+    if "coupling" in tables:
+        yield from ("", f"[{phase}.coupling]")
+        coupling = tables["coupling"]
+        of_control = () if coupling.get("control") == "error" else ("tolerance", "smallest_step")
+        yield from (_option(k, coupling.get(k), known) for k, known in COUPLING_KEYS.items() if k not in of_control)
+    for name, inner in tables.get("components", {}).items():
+        yield from ("", f"[{phase}.components.{name}]", _line("model", _toml(inner["model"]), MEANING["model"]))
+        model = build.CATALOGUE[inner["model"]]
+        yield from _component((phase, "components", name), model, inner, _set_by(connections, name))
+
+
+def _set_by(connections: Sequence[str], component: str) -> tuple[str, ...]:
+    """Inputs of a component that connections set."""
+    targets = (connection.partition("->")[2].strip() for connection in connections)
+    return tuple(target.removeprefix(f"{component}.") for target in targets if target.startswith(f"{component}."))
+
+
+def _component(
+    path: tuple[str, ...], model: build.Model, tables: Mapping[str, Any], skip: Sequence[str]
+) -> Iterator[str]:
+    """What a component of our models can be told, under the header of its table."""
+    above, terms = dotted(path), _terms(model, tables)
+    rows = [row for row in build.settable(model.interface(terms)) if row.section != SHARED]
+    rows = [row for row in rows if not build.scene_name(row).startswith(tuple(skip) or ("\0",))]
+    own = {build.scene_name(row): _described(row) for row in rows if not row.key}
+    yield from _table(tables, own)
+    tables = {name: table for name, table in tables.items() if isinstance(table, dict) and name not in RESERVED}
+    for section in dict.fromkeys((*tables, *terms, *(row.section for row in rows if row.key))):
         keys = {row.key: _described(row) for row in rows if row.section == section}
         given = tables.get(section)
         yield ""
-        yield f"[{phase}.{section}]" if given is not None else f"# [{phase}.{section}]"
+        yield f"[{above}.{section}]" if given is not None else f"# [{above}.{section}]"
         if section in terms:
             yield _selection(model.groups[section], terms[section])
         yield from _table(given or {}, keys)
     for name, group in model.groups.items():
         if name not in terms:
-            yield from ("", *_left_out(phase, name, group))
+            yield from ("", *_left_out(above, name, group))
 
 
 def _selection(group: build.Group, term: str, mark: str = "") -> str:
@@ -111,13 +142,13 @@ def _selection(group: build.Group, term: str, mark: str = "") -> str:
     return _line(group.selector, f'"{term}"', text, mark)
 
 
-def _left_out(phase: str, name: str, group: build.Group) -> Iterator[str]:
+def _left_out(above: str, name: str, group: build.Group) -> Iterator[str]:
     """A group of terms as a comment: its first term with all its keys, and the names of the others."""
     first = next(iter(group.terms))
     if first not in group.terms:
-        yield f"# {phase}.{name} is left out; a table [{phase}.{name}] with {group.selector} = {first} brings it in"
+        yield f"# {above}.{name} is left out; a table [{above}.{name}] with {group.selector} = {first} brings it in"
         return
-    yield f"# [{phase}.{name}]"
+    yield f"# [{above}.{name}]"
     yield _selection(group, first, "# ")
     for row in build.term_rows(group, first):
         if row.causality in build.SETTABLE and row.section == name:

@@ -120,16 +120,22 @@ def test_outputs_and_inputs_agree_from_the_beginning() -> None:
     assert whole.get(["out", "n1.out", "n4.out"]) == {"out": 32.0, "n1.out": 16.0, "n4.out": 2.0}
 
 
-def loop(gain: float) -> tuple[list[LinearComponent], list[Connection]]:
-    """u = 1 + gain * y, y = u: y = 1 / (1 - gain)."""
-    one = LinearComponent("one", ([[0]], [[0]], [[1]], [[gain]]), ["in"], ["out"], [1.0])
+def loop(gain: float, offset: float = 1.0) -> tuple[list[LinearComponent], list[Connection]]:
+    """u = offset + gain * y, y = u: y = offset / (1 - gain)."""
+    one = LinearComponent("one", ([[0]], [[0]], [[1]], [[gain]]), ["in"], ["out"], [offset])
     two = LinearComponent("two", ([[0]], [[0]], [[0]], [[1]]), ["in"], ["out"], [0.0])
     return [one, two], [Connection("one", "out", "two", "in"), Connection("two", "out", "one", "in")]
 
 
-@pytest.mark.parametrize("gain", [0.5, -0.8])
+@pytest.mark.parametrize("gain", [0.5, -0.8, 0.95])
 def test_an_algebraic_loop_that_settles(gain: float) -> None:
     assert coupled(*loop(gain)).get(["out"])["out"] == pytest.approx(1.0 / (1.0 - gain), rel=1e-10)
+
+
+def test_an_algebraic_loop_that_settles_at_zero() -> None:
+    components, connections = loop(0.5, 0.0)
+    components[0].set({"in": 1.0})
+    assert coupled(components, connections).get(["out"])["out"] == pytest.approx(0.0, abs=1e-11)
 
 
 @pytest.mark.parametrize("gain", [1.01, -1.5])
