@@ -5,6 +5,7 @@ Expected failures become one message on stderr, and with `--json` the same as an
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import sys
@@ -25,6 +26,29 @@ def reader_may_leave() -> Iterator[None]:
         sys.stdout.flush()
     except BrokenPipeError:
         _to_nowhere()
+
+
+STDOUT, STDERR = 1, 2
+"""File descriptors: binaries know no others."""
+
+
+@contextmanager
+def noise_apart() -> Iterator[None]:
+    """What the binary of an FMU prints goes to stderr: stdout is for results alone."""
+    sys.stdout.flush()
+    try:
+        kept = os.dup(STDOUT)
+    except OSError:
+        yield  # closed from the start
+        return
+    try:
+        os.dup2(STDERR, STDOUT)
+        yield
+    finally:
+        with suppress(OSError, AttributeError, TypeError):
+            ctypes.CDLL(None).fflush(None)  # what C still holds back belongs to the noise
+        os.dup2(kept, STDOUT)
+        os.close(kept)
 
 
 def _to_nowhere() -> None:
