@@ -35,12 +35,12 @@ STDOUT, STDERR = 1, 2
 @contextmanager
 def noise_apart() -> Iterator[None]:
     """What the binary of an FMU prints goes to stderr: stdout is for results alone."""
-    sys.stdout.flush()
     try:
         kept = os.dup(STDOUT)
     except OSError:
         yield  # closed from the start
         return
+    sys.stdout.flush()
     try:
         os.dup2(STDERR, STDOUT)
         yield
@@ -49,6 +49,13 @@ def noise_apart() -> Iterator[None]:
             ctypes.CDLL(None).fflush(None)  # what C still holds back belongs to the noise
         os.dup2(kept, STDOUT)
         os.close(kept)
+
+
+def _open_streams() -> None:
+    """Streams that are closed as we start (`>&-`) lead nowhere, before another file is given their number."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
 
 
 def _to_nowhere() -> None:
@@ -92,6 +99,7 @@ def _terminate(*_: object) -> NoReturn:
 
 def run(app: Callable[..., Any]) -> NoReturn:
     """Run the command line and leave: an expected failure is one message and an exit code, never a traceback."""
+    _open_streams()
     before = _on_terminate(_terminate)
     try:
         code = app(standalone_mode=False)
