@@ -170,7 +170,9 @@ def _of_plain(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
 def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     recorder = result.recorder
     elapsed = result.end - result.start
-    yield Finding("removal", "simulated", "simulated", elapsed, "s")
+    # what an FMU went on beyond its last whole step is not recorded
+    told = "recorded, in whole steps" if result.ended_by else "simulated"
+    yield Finding("removal", "simulated", told, elapsed, "s")
     yield from _of_end("removal", result)
     yield from _of_tugs(result, "")
     if run.comparison is not None:

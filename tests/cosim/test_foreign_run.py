@@ -164,6 +164,8 @@ def test_its_own_end_is_no_failure(make_scene: Make, tmp_path: Path, isolate: bo
     found = summary.as_dict(result)["removal"]
     assert found["ended_by"]["value"] == "the pair entered the atmosphere"
     assert found["ended_at"]["unit"] == "s"
+    labels = [row.label for row in summary.findings(result) if row.key == "simulated"]
+    assert labels[-1] == "recorded, in whole steps", "it went on beyond them, as ended_at says"
     from dcone_cosim.reports.figures import draw_all
 
     write(result, tmp_path / "run", {}, summary.as_dict(result), datetime.now(UTC), draw=lambda p: draw_all(result, p))
