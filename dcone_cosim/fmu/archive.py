@@ -34,6 +34,8 @@ EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
 LOCAL_HEADER = b"PK\x03\x04"
 """What a zip file begins with."""
+LARGEST = 2 * 2**30
+"""Bytes of an FMU, unpacked. What a zip file says of an entry's size is the most that is read of it."""
 
 
 class Archive:
@@ -125,6 +127,9 @@ def _unpack(path: Path) -> Path:
         with zipfile.ZipFile(path) as content:
             for name in content.namelist():
                 _check_name(path, name)
+            size = sum(entry.file_size for entry in content.infolist())
+            if size > LARGEST:
+                raise FmuError(f"{path}: refused: unpacked it has {size:,} bytes; at most {LARGEST:,} are taken")
             folder = Path(tempfile.mkdtemp(prefix="dcone-"))
             content.extractall(folder)
     except BaseException as error:
