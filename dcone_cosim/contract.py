@@ -9,7 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Literal
 
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import PURE, by_name, same_dimension, spoken_dimension
+from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, spoken_dimension
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS
 from dcone_cosim.names import nearest
 
@@ -176,7 +176,7 @@ def _faults(row: Asked, info: VariableInfo) -> list[str]:
         faults.append(f"its causality is {info.causality}; expected {row.causality}")
     wanted = by_name(row.unit)
     dimension = PURE if wanted.dimension is None else wanted.dimension
-    if info.kind == row.kind == "Real" and not same_dimension(info.dimension, dimension):
+    if info.kind == row.kind == "Real" and misfit(info.own, Unit(row.unit, dimension)):
         theirs = spoken_dimension(info.dimension)
         counted = f" ({theirs})" if theirs != info.declared_unit else ""
         faults.append(f"its unit is {info.declared_unit}{counted}; expected {spoken_dimension(dimension)}")

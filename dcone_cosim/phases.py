@@ -112,8 +112,7 @@ class CaptureLoop:
         self.place = {name: i for i, name in enumerate(self.read.names)}
         nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
         self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
-        # only a component that is a single FMU can say that it takes steps of one length
-        self.can_locate = component.can_save and getattr(component, "can_vary_step", True)
+        self.can_locate = component.can_save and component.can_vary_step
         self._kept: Row = self.read.values
         self.tether_length = math.inf
         if plan.hand_over == "tether_taut":

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from dcone_cosim.coupling.exchange import Exchange
+from dcone_cosim.coupling.one_length import divides, one_length, uncontrolled
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.coupling.step_control import ControlledSteps, FixedSteps, Statistics, StepControl
 from dcone_cosim.coupling.wiring import order_of, wire
@@ -31,7 +32,8 @@ class Coupled:
     statistics   steps, rejected, discarded, forced, smallest [s], largest [s]
 
     Raises `InputError` on construction for connections and couplings that cannot be, all mistakes at once. When a
-    component ends itself (`Terminated`), all are left at the time of the end if all can save their states.
+    component ends itself (`Terminated`), all are left at the time of the end if all can save their states and
+    vary their steps. Where one takes steps of one length, coupling steps that do not fill a macro step are refused.
 
     Checked  tests/cosim/test_coupling.py, tests/cosim/test_coupling_orders.py, tests/cosim/test_coupling_control.py
     """
@@ -48,6 +50,7 @@ class Coupled:
         self.components = tuple(components)
         self.coupling = coupling
         self.can_save = all(component.can_save for component in components)
+        self.can_vary_step = all(component.can_vary_step for component in components)
         self.can_interpolate = False
         names = list(instances) or [component.name for component in components]
         self._of: dict[str, tuple[int, str]] = {}
@@ -55,13 +58,15 @@ class Coupled:
         links = wire(name, names, self.components, connections)
         order = order_of(name, names, coupling)
         if coupling.control == "error":
-            self._need_states(names)
+            self._need_control(names)
         self._statistics = Statistics()
         self._exchange = Exchange(
             self.components, links, order, coupling.method == "gauss_seidel", coupling.extrapolation == "linear"
         )
         control = ControlledSteps if coupling.control == "error" else FixedSteps
         self._steps: StepControl = control(self._exchange, coupling, self._statistics)
+        self._one_length = [n for n, c in zip(names, self.components, strict=True) if not c.can_vary_step]
+        self._length = coupling.step
         self._times: dict[str, float] = {}
         self._time = 0.0
         self._stale = True
@@ -85,13 +90,20 @@ class Coupled:
                 self._of[shown] = (place, own)
         return variables
 
-    def _need_states(self, instances: Sequence[str]) -> None:
-        lacking = [name for name, c in zip(instances, self.components, strict=True) if not c.can_save]
-        if lacking:
-            those = f"the FMU{'s' if len(lacking) > 1 else ''} of {', '.join(lacking)}"
-            raise InputError(
-                f'{self.name}: coupling.control = "error" rolls steps back, but {those} cannot save '
-                f'{"their states" if len(lacking) > 1 else "its state"}; use control = "fixed"'
+    def _need_control(self, instances: Sequence[str]) -> None:
+        """Refuse to control the steps of FMUs that cannot go back, or that take steps of one length."""
+        of = list(zip(instances, self.components, strict=True))
+        why = uncontrolled((n, c.can_save, c.can_vary_step) for n, c in of)
+        if why:
+            raise InputError(f'{self.name}: coupling.control = "error" {"; it ".join(why)}')
+
+    def _need_whole_steps(self, time: float, size: float) -> None:
+        """Refuse a macro step that steps of one length do not fill; without a coupling step the first tells it."""
+        self._length = self._length or size
+        if not divides(self._length, size):
+            raise FmuError(
+                f"{self.name}: the step of {size:.9g} s at t = {time:.9g} s is no whole number of steps of "
+                f"{self._length:.9g} s, and {one_length(self._one_length)}"
             )
 
     def _where(self, name: str) -> tuple[int, str]:
@@ -153,6 +165,8 @@ class Coupled:
         if self._stale:
             self._exchange.settle(time)
             self._stale = False
+        if self._one_length:
+            self._need_whole_steps(time, size)
         if self.can_save and self.coupling.control == "fixed":
             self._steps.keep(BEGIN)
         try:
@@ -167,7 +181,7 @@ class Coupled:
 
         With controlled steps they stand together already, within `smallest_step` before it.
         """
-        if self.coupling.control == "error" or not self.can_save:
+        if self.coupling.control == "error" or not self.can_save or not self.can_vary_step:
             return
         self._steps.go_back(BEGIN, begin)
         if end.time <= begin:

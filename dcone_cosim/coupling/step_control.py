@@ -85,7 +85,8 @@ class ControlledSteps:
     over the connected outputs and those of components that only take, p the order of convergence, |y|max the largest
     size of that output so far, the very first trial included, since an output may begin at zero. The last factor makes
     the tolerance that of a macro step: the error reached goes with the tolerance, not with a power of it. A step with
-    an error above 1 is rolled back and tried shorter, as is one that an FMU discards.
+    an error above 1 is rolled back and tried shorter, as is one that an FMU discards. Before the first, every FMU
+    has to show that it goes back to where it was.
 
     A jump of an output in the second half is seen by neither, for the inputs of both were set before it. So it is asked
     as well that what comes as a surprise, over the time it was unknown, stays within the tolerance of a macro step:
@@ -106,6 +107,7 @@ class ControlledSteps:
         self._next = coupling.step or math.inf
         self._largest: list[float] = []
         self._forced = 0
+        self._restores = False
         self._smallest = coupling.smallest_step
         self._kept: dict[str, tuple[float, list[float], int]] = {}
 
@@ -128,6 +130,9 @@ class ControlledSteps:
             until = end if end - time - size <= self._smallest else time + size
             smallest = size <= self._smallest
             try:
+                if not self._restores:
+                    self.exchange.check_restoring(time, until - time)
+                    self._restores = True
                 error, largest = self._try(time, until, macro_step)
             except CallError as refusal:
                 if refusal.status != "Discard":

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.fmu.component import Steppable, VariableInfo
-from dcone_cosim.fmu.units import same_dimension
+from dcone_cosim.fmu.steppable import Steppable, VariableInfo
+from dcone_cosim.fmu.units import Unit, misfit
 from dcone_cosim.names import did_you_mean, nearest
 
 CARRIED = {
@@ -20,6 +21,15 @@ CARRIED = {
     ("Integer", "Boolean"),
 }
 """Kinds of output and input between which a value can go."""
+
+
+class End(Protocol):
+    """What is asked of a variable at an end of a connection: its kind, and the unit its FMU counts it in."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def own(self) -> Unit: ...
 
 
 @dataclass(frozen=True)
@@ -65,7 +75,7 @@ def wire(
         wrong = [text for _, text in found if text]
         output, into = (info for info, _ in found)
         if output is not None and into is not None and not wrong:
-            wrong += _mismatch(output, into)
+            wrong += filter(None, [mismatch(output.name, output, into.name, into)])
         before = taken.setdefault((connection.target, connection.input), connection)
         if before is not connection:
             wrong.append(f"{connection.target}.{connection.input} is set by {before.source}.{before.output} already")
@@ -125,20 +135,14 @@ def _end(
     return info, ""
 
 
-def _mismatch(output: VariableInfo, into: VariableInfo) -> list[str]:
-    """Why a value cannot go from the one variable to the other."""
-    wrong = []
+def mismatch(output_name: str, output: End, input_name: str, into: End) -> str:
+    """Why a value cannot go from the one variable to the other, or ""; the one rule of scenes and runs."""
     if (output.kind, into.kind) not in CARRIED:
-        wrong.append(f"{output.name} is {_kind(output)}, {into.name} is {_kind(into)}")
-    elif not same_dimension(output.dimension, into.dimension):
-        wrong.append(f"{output.name} is in {_unit(output)}, {into.name} in {_unit(into)}: different dimensions")
-    return wrong
+        kinds = f"{output_name} is {_kind(output)}, {input_name} is {_kind(into)}"
+        return f"{kinds}: no value can go from the one to the other"
+    why = misfit(output.own, into.own)
+    return f"{output_name} is in {output.own.name}, {input_name} in {into.own.name}: {why}" if why else ""
 
 
-def _unit(info: VariableInfo) -> str:
-    """The unit as the FMU has it."""
-    return info.declared_unit or info.unit
-
-
-def _kind(info: VariableInfo) -> str:
-    return f"an {info.kind}" if info.kind == "Integer" else f"a {info.kind}"
+def _kind(end: End) -> str:
+    return f"an {end.kind}" if end.kind == "Integer" else f"a {end.kind}"

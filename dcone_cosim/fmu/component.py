@@ -181,6 +181,7 @@ class Component:
     def save(self, key: str = "") -> None:
         """Keep the present state, replacing the one kept before under this key."""
         self._alive()
+        self._messages.forget()
         state = self._states.setdefault(key, fmi2.fmi2FMUstate())
         try:
             self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(state))
@@ -230,6 +231,7 @@ class Component:
 
     def _call(self, function: str, *arguments: Any, **named: Any) -> Any:
         self._alive()
+        self._messages.forget()
         try:
             return getattr(self._fmu, function)(*arguments, **named)
         except fmpy.fmi1.FMICallException as error:
@@ -326,6 +328,7 @@ class Reader:
     def __call__(self) -> Row:
         component = self._component
         component._alive()
+        component._messages.forget()
         instance = component._fmu.component
         try:
             for getter, references, count, buffer, view, part in self._blocks:

@@ -18,7 +18,11 @@ def save(component: Steppable, read: Readable) -> Row:
     return read.values.copy()
 
 
-def restore(component: Steppable, read: Readable, kept: Row, time: float) -> None:
+UNLESS = "it is then taken as its macro steps fall"
+"""What becomes of an FMU that says that it cannot go back."""
+
+
+def restore(component: Steppable, read: Readable, kept: Row, time: float, unless: str = UNLESS) -> None:
     """Go back to the state saved last, at `time` [s], and compare its outputs with those kept of it.
 
     Raises `FmuError` that names the first output that differs.
@@ -27,23 +31,24 @@ def restore(component: Steppable, read: Readable, kept: Row, time: float) -> Non
     found = _differing(read.names, kept, read())
     if found is not None:
         name, before, after = found
-        raise _liar(component, f"at t = {time:.9g} s its output {name} was {before:.12g} before, {after:.12g} after")
+        told = f"at t = {time:.9g} s its output {name} was {before:.12g} before, {after:.12g} after"
+        raise _liar(component, told, unless)
 
 
-def replay(component: Steppable, read: Readable, kept: Row, begin: float, end: float) -> None:
+def replay(component: Steppable, read: Readable, kept: Row, begin: float, end: float, unless: str = UNLESS) -> None:
     """Go back by the step just taken, from `begin` to `end` [s], take it again, and go back once more.
 
     A state that is only half restored, its outputs but not what they come from, shows in the second step alone.
     """
     first = read.values.copy()
-    restore(component, read, kept, begin)
+    restore(component, read, kept, begin, unless)
     component.step(begin, end - begin)
     found = _differing(read.names, first, read())
     if found is not None:
         name, before, after = found
         step = f"the step from {begin:.9g} s to {end:.9g} s"
-        raise _liar(component, f"{step} gave its output {name} as {before:.12g} before, {after:.12g} after")
-    restore(component, read, kept, begin)
+        raise _liar(component, f"{step} gave its output {name} as {before:.12g} before, {after:.12g} after", unless)
+    restore(component, read, kept, begin, unless)
 
 
 def _differing(names: Sequence[str], before: Row, after: Row) -> tuple[str, float, float] | None:
@@ -56,8 +61,9 @@ def _differing(names: Sequence[str], before: Row, after: Row) -> tuple[str, floa
     return None
 
 
-def _liar(component: Steppable, what: str) -> FmuError:
+def _liar(component: Steppable, what: str, unless: str) -> FmuError:
     return FmuError(
         f"{component.name}: its state does not restore: {what}\n"
-        "  (an FMU that cannot go back must say canGetAndSetFMUstate = false; it is then taken as its macro steps fall)"
+        "  (an FMU that cannot go back must say canGetAndSetFMUstate = false; "
+        f"{unless})"
     )

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu.units import Dimension
+from dcone_cosim.fmu.units import Dimension, Unit
 
 Row = npt.NDArray[np.float64]
 KINDS = ("Real", "Integer", "Boolean")
@@ -51,6 +51,11 @@ class VariableInfo:
         """Whether the FMU counts in SI itself."""
         return self.factor == 1.0 and self.offset == 0.0
 
+    @property
+    def own(self) -> Unit:
+        """The unit the FMU itself counts in."""
+        return Unit(self.declared_unit or self.unit, self.dimension, self.factor, self.offset)
+
 
 class Readable(Protocol):
     """Fetches the same variables again and again; `values` is overwritten by each call."""
@@ -65,12 +70,14 @@ class Steppable(Protocol):
     """What the master asks of a component. All values are SI.
 
     can_save          its state can be kept and restored, under several keys at a time
+    can_vary_step     its steps may differ in length
     can_interpolate   it takes input derivatives
     """
 
     name: str
     variables: Mapping[str, VariableInfo]
     can_save: bool
+    can_vary_step: bool
     can_interpolate: bool
 
     def set(self, values: Mapping[str, float]) -> None: ...

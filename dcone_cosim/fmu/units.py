@@ -41,6 +41,9 @@ _SYMBOLS: Mapping[str, Dimension] = {
 }
 """Unit symbols that need no factor."""
 
+_TURNS = re.compile(r"([a-zA-Z]?Hz|rp[ms]|(rev|revs|revolutions?|turns?|cycles?)\b)", re.ASCII)
+"""Names of units that count turns."""
+
 
 @dataclass(frozen=True)
 class Unit:
@@ -59,6 +62,11 @@ class Unit:
     def is_si(self) -> bool:
         """Whether its values are SI values already."""
         return self.factor == 1.0 and self.offset == 0.0
+
+    @property
+    def counts_turns(self) -> bool:
+        """Whether it is a frequency by its name, with no angle in its dimension."""
+        return self.dimension is not None and self.dimension[-1] == 0 and _TURNS.match(self.name) is not None
 
     @property
     def si_name(self) -> str:
@@ -87,6 +95,23 @@ def _power(base: str, power: int) -> str:
 def same_dimension(one: Dimension | None, other: Dimension | None) -> bool:
     """Whether values of the two can be one another's; a dimension that is not known fits all. An angle is a number."""
     return one is None or other is None or one[:-1] == other[:-1]
+
+
+def misfit(one: Unit, other: Unit) -> str:
+    """Why values of the one unit cannot be those of the other, or "".
+
+    A unit that counts turns, such as Hz, fits no angular speed unless it is defined with its radians: a turn taken for
+    a radian is off by 2 pi, and by the dimension alone the two are the same.
+    """
+    if not same_dimension(one.dimension, other.dimension):
+        return "different dimensions"
+    for turns, angle in ((one, other), (other, one)):
+        if turns.counts_turns and angle.dimension is not None and angle.dimension[-1] != 0:
+            return (
+                f"{turns.name} counts turns, {angle.name} an angle, 2 pi for each turn; "
+                f"expected a unit {turns.name} that its FMU defines with rad and with a factor, or a gain between them"
+            )
+    return ""
 
 
 def spoken_dimension(dimension: Dimension | None) -> str:
@@ -126,7 +151,7 @@ def _of_symbols(name: str) -> Dimension | None:
         return None
     for sign, part in ((1, over), *((-1, part) for part in under)):
         for piece in part.strip("()").split("."):
-            match = re.fullmatch(r"([A-Za-z]+|1)(-?\d*)", piece)
+            match = re.fullmatch(r"([A-Za-z]+|1)(-?\d+)?", piece)
             if match is None or match[1] not in _SYMBOLS:
                 return None
             power = sign * int(match[2] or 1)

@@ -17,7 +17,7 @@ from dcone_cosim import build
 from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER, check_contract, near_misses
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.scenes.coupling import about_components, read_connections, read_coupling
+from dcone_cosim.scenes.coupling import about_components, about_one_length, read_connections, read_coupling
 from dcone_cosim.scenes.fmus import file_of, offer, opened
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
@@ -147,6 +147,7 @@ def _read_phase(
     parts = [main.part, *(component.part for component in read.others)]
     read.coupling = read_coupling(tables, path, parts, mistakes)
     mistakes += about_components(read.coupling, parts, tables)
+    mistakes += about_one_length(read.options, read.coupling, parts, tables)
     if "connections" in tables:
         read.connections = read_connections(tables["connections"], (*path, "connections"), parts, mistakes)
     return read

@@ -5,24 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from dcone_cosim.coupling.one_length import divides, one_length, uncontrolled
 from dcone_cosim.coupling.options import Connection, Coupling
-from dcone_cosim.scenes.keys import COUPLING_KEYS, Slot, read_table, table_in
+from dcone_cosim.coupling.wiring import mismatch
+from dcone_cosim.scenes.keys import COUPLING_KEYS, read_table, table_in
 from dcone_cosim.scenes.mistakes import Mistake, unknown
 from dcone_cosim.scenes.parts import Part
 from dcone_cosim.scenes.toml_lines import Path, dotted
-from dcone_cosim.scenes.units import fit, spoken
 
 ARROW = "->"
 FORM = '"INSTANCE.VARIABLE -> INSTANCE.VARIABLE"'
-CARRIED = {
-    ("Real", "Real"),
-    ("Integer", "Integer"),
-    ("Boolean", "Boolean"),
-    ("Integer", "Real"),
-    ("Boolean", "Integer"),
-    ("Integer", "Boolean"),
-}
-"""Kinds of output and input between which a value can go."""
 
 
 def read_connections(
@@ -71,7 +63,7 @@ def _read_one(text: object, path: Path, parts: Mapping[str, Part], mistakes: lis
         mistakes.append(Mistake(path, text, f"{sizes}: expected as many"))
     if len(mistakes) > before:
         return []
-    wrong = _mismatch(sides, parts[source].slots[outputs[0]], parts[target].slots[inputs[0]])
+    wrong = mismatch(sides[0], parts[source].slots[outputs[0]], sides[1], parts[target].slots[inputs[0]])
     if wrong:
         mistakes.append(Mistake(path, text, wrong))
         return []
@@ -110,16 +102,6 @@ def _end(
     return elements
 
 
-def _mismatch(sides: Sequence[str], output: Slot, into: Slot) -> str:
-    """Why a value cannot go from the one variable to the other, or nothing."""
-    if (output.kind, into.kind) not in CARRIED:
-        kinds = f"{sides[0]} is of kind {output.kind}, {sides[1]} of kind {into.kind}"
-        return f"{kinds}: no value can go from the one to the other"
-    if not fit(output.unit, into.unit):
-        return f"{sides[0]} is in {spoken(output.unit)}, {sides[1]} in {spoken(into.unit)}: different dimensions"
-    return ""
-
-
 def read_coupling(tables: Mapping[str, Any], path: Path, parts: Sequence[Part], mistakes: list[Mistake]) -> Coupling:
     """How the steps are taken; without further components there is nothing to couple."""
     path = (*path, "coupling")
@@ -143,15 +125,35 @@ def about_components(coupling: Coupling, parts: Sequence[Part], tables: Mapping[
     """Components that cannot be stepped as asked, or whose variables could not be told from those of the main one."""
     main, *others = parts
     if coupling.control == "error":
-        for part in parts:
-            if part.archive is not None and not part.archive.can_save:
-                text = f'rolls steps back, but the FMU of {part.name} cannot save its state; use control = "fixed"'
-                yield Mistake((*main.path, "coupling", "control"), "error", text)
+        told = [(p.name, p.archive.can_save, p.archive.can_vary_step) for p in parts if p.archive is not None]
+        for text in uncontrolled(told):
+            yield Mistake((*main.path, "coupling", "control"), "error", text)
     for part in others:
         alike = next((name for name in part.slots if f"{part.name}.{name}" in main.slots), None)
         if alike is not None:
             text = f"{main.name} has a variable {part.name}.{alike} too: expected another name for this component"
             yield Mistake(part.path, tables["components"][part.name], text)
+
+
+def about_one_length(
+    options: Mapping[str, Any], coupling: Coupling, parts: Sequence[Part], tables: Mapping[str, Any]
+) -> Iterator[Mistake]:
+    """Steps that would have to be cut short for an FMU that takes steps of one length.
+
+    options    of the phase, read; those that could not be read are told already
+    """
+    even = [part.name for part in parts if part.archive is not None and not part.archive.can_vary_step]
+    macro_step, path = options.get("macro_step"), parts[0].path
+    if not even or macro_step is None:
+        return
+    for key in ("duration", "after_capture"):
+        length = options.get(key)
+        if length is not None and length > 0.0 and not divides(macro_step, length):
+            text = f"must be a whole number of macro steps of {macro_step:g} s: {one_length(even)}"
+            yield Mistake((*path, key), tables[key], text)
+    if coupling.control == "fixed" and coupling.step and not divides(coupling.step, macro_step):
+        text = f"must divide the macro step of {macro_step:g} s: {one_length(even)}"
+        yield Mistake((*path, "coupling", "step"), tables["coupling"]["step"], text)
 
 
 def _order(given: object, path: Path, parts: Sequence[Part], mistakes: list[Mistake]) -> tuple[str, ...]:

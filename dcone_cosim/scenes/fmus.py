@@ -56,7 +56,7 @@ def opened(path: Path) -> Archive:
 def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = None) -> Offer:
     """What the variables of an FMU offer; of a model in whose place it stands it takes the names of choices."""
     choices = {row.name: row.choices for row in build.all_rows(model) if row.choices} if model is not None else {}
-    slots = {info.name: Slot(info.kind, _unit(info), info.causality) for info in variables.values()}
+    slots = {info.name: Slot(info.kind, info.own, info.causality) for info in variables.values()}
     names: dict[str, list[str]] = {}
     for info in variables.values():
         if info.causality in build.SETTABLE and info.kind in KINDS:

@@ -12,6 +12,7 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.contract import HAND_OVER
+from dcone_cosim.fmu.units import Unit
 from dcone_cosim.scenes.mistakes import Mistake, unknown
 from dcone_cosim.scenes.toml_lines import Path, dotted
 from dcone_cosim.scenes.units import Expected, Unexpected, example_of
@@ -111,10 +112,10 @@ class Key:
 
 @dataclass(frozen=True)
 class Slot:
-    """What a connection has to know of one scalar variable; `unit` is of the SI value."""
+    """What a connection has to know of one scalar variable; `own` is the unit its FMU counts it in."""
 
     kind: str
-    unit: str
+    own: Unit
     causality: str
 
 

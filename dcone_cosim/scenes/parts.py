@@ -12,6 +12,7 @@ from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
+from dcone_cosim.fmu.units import by_name
 from dcone_cosim.scenes.fmus import Offer
 from dcone_cosim.scenes.keys import PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
 from dcone_cosim.scenes.mistakes import Mistake, unknown
@@ -99,7 +100,7 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
     interface = model.interface(part.terms)
     part.keys = {build.scene_name(row): key_of(row) for row in build.settable(interface)}
     part.slots = {
-        name: Slot(row.kind, row.unit, row.causality)
+        name: Slot(row.kind, by_name(row.unit), row.causality)
         for row in interface.variables
         if row.at_interface
         for name in row.element_names()

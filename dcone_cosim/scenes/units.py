@@ -39,13 +39,6 @@ def is_unit(name: str, like: str) -> bool:
         return False
 
 
-def fit(one: str, other: str) -> bool:
-    """Whether a value in the one SI unit can be a value in the other; an angle is a number, and a number fits all."""
-    if one == other or "1" in (one, other):
-        return True
-    return bool(unit_of(one).is_equivalent(unit_of(other), equivalencies=u.dimensionless_angles()))
-
-
 def spoken(fmi_unit: str) -> str:
     """An FMI unit as a person writes it: "N.m.s" is "N m s"."""
     return fmi_unit.replace(".", " ").replace("1/s", "/s") if fmi_unit != "1" else ""

@@ -9,7 +9,7 @@ from typing import Any
 
 from dcone_cosim.coupling.options import Connection
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import Unit, same_dimension
+from dcone_cosim.fmu.units import Unit, misfit, same_dimension
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.ssp.markup import KINDS, STRUCTURE
 from dcone_cosim.ssp.package import Mistakes
@@ -181,8 +181,9 @@ def _mismatch(row: ConnectionRow, out: VariableInfo, to: VariableInfo) -> str:
         return f"{out.kind} to {to.kind}"
     if out.kind != "Real" and (row.factor, row.offset) != (1.0, 0.0):
         return f"both are {out.kind}; a linear transformation is for Real"
-    if not same_dimension(out.dimension, to.dimension):
-        return f"{out.declared_unit!r} cannot be converted to {to.declared_unit!r}"
+    why = misfit(out.own, to.own)
+    if why:
+        return f"{out.declared_unit!r} cannot be converted to {to.declared_unit!r}: {why}"
     return ""
 
 

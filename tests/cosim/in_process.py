@@ -23,7 +23,7 @@ class KernelComponent:
             for n, slot, v, _ in self.instance.interface.scalars()
             if not n.startswith("@")
         }
-        self.can_save = self.can_interpolate = True
+        self.can_save = self.can_vary_step = self.can_interpolate = True
         self._begun = self._stale = False
         self._kept = {}
 

@@ -81,7 +81,8 @@ class LinearComponent(MockComponent):
         super().step(time, size)
 
     def refresh(self) -> None:
-        found = self.c @ self.state + self.d @ self._u()
+        with np.errstate(over="ignore"):
+            found = self.c @ self.state + self.d @ self._u()
         self.values |= dict(zip(self.outputs, found.tolist(), strict=True))
 
     def save(self, key: str = "") -> None:

@@ -22,6 +22,7 @@ class MockComponent:
     def __init__(self, name: str, can_save: bool = True) -> None:
         self.name = name
         self.can_save = can_save
+        self.can_vary_step = True
         self.can_interpolate = False
         self.values: dict[str, float] = {}
         self.variables: dict[str, VariableInfo] = {}

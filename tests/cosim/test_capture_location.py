@@ -40,6 +40,15 @@ def test_takes_the_end_of_the_step_when_the_state_cannot_be_saved() -> None:
     assert "cannot save" in result.located_by
 
 
+def test_takes_the_end_of_the_step_when_steps_have_one_length() -> None:
+    component = MockCapture(INSTANT)
+    component.can_vary_step = False
+    result = run(component, stop_there=True)
+    assert result.located == 7.5
+    assert "takes only steps of one length" in result.located_by
+    assert {size for _, size in component.calls} == {0.5}
+
+
 @pytest.mark.parametrize("instant", [7.0, 7.5])
 def test_an_instant_on_a_communication_point(instant: float) -> None:
     result = run(MockCapture(instant, reports=True), stop_there=True)

@@ -9,7 +9,7 @@ import pytest
 from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import FmuError, InputError
-from dcone_cosim.fmu.component import output_names
+from dcone_cosim.fmu.component import Terminated, output_names
 from tests.cosim.linear_components import LinearComponent, by_force, by_motion, coupled, error_at, run
 from tests.cosim.mock_components import MockComponent
 
@@ -82,6 +82,24 @@ def test_dimensions_must_be_the_same() -> None:
     Coupled("tow", components, connections, Coupling())
 
 
+def test_turns_are_no_angle() -> None:
+    """A speed counted in Hz is not taken for one in rad/s; where its unit is defined with the radians, it is."""
+    components, connections = by_force()
+    first, second = components
+    frequency, angular = (0, 0, -1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 0, 0, 0, 1)
+    info = replace(first.variables["position"], unit="Hz", declared_unit="Hz", dimension=frequency)
+    second.variables["position"] = replace(second.variables["position"], unit="rad/s", dimension=angular)
+    first.variables["position"] = info
+    with pytest.raises(InputError, match=r"position is in Hz, position in rad/s: Hz counts turns, rad/s an angle"):
+        Coupled("tow", components, connections, Coupling())
+    for other in (
+        replace(info, unit="1/s", declared_unit="1/s"),
+        replace(info, dimension=angular, factor=6.283185307179586),
+    ):
+        first.variables["position"] = other
+        Coupled("tow", components, connections, Coupling())
+
+
 def test_an_order_names_every_component_once() -> None:
     components, connections = by_force()
     for order in (("second",), ("second", "first", "first"), ("second", "frist")):
@@ -138,12 +156,22 @@ def test_an_algebraic_loop_that_settles_at_zero() -> None:
     assert coupled(components, connections).get(["out"])["out"] == pytest.approx(0.0, abs=1e-11)
 
 
-@pytest.mark.parametrize("gain", [1.01, -1.5])
+@pytest.mark.parametrize("gain", [1.01, -1.5, 3.0, -5.0, 1e30])
 def test_an_algebraic_loop_that_does_not_is_named(gain: float) -> None:
     with pytest.raises(FmuError, match="algebraic loop") as caught:
         coupled(*loop(gain))
     assert "one.out -> two.in: from" in str(caught.value)
     assert "at t = 0 s" in str(caught.value)
+
+
+def test_a_chain_that_ends_in_no_number_is_no_loop() -> None:
+    """However long: what is not finite is told where it stands."""
+    gains = [1.0, 1e200, 1e200, 1.0]
+    made = [LinearComponent(f"n{i}", ([[0]], [[0]], [[0]], [[d]]), ["in"], ["out"], [0.0]) for i, d in enumerate(gains)]
+    made[3].values["in"] = 1.0
+    ends = [Connection(f"n{i}", "out", f"n{i - 1}", "in") for i in range(3, 0, -1)]
+    with pytest.raises(FmuError, match=r"n1: out is inf at t = 0 s"):
+        coupled(made, ends)
 
 
 def test_an_output_that_is_no_number_is_named() -> None:
@@ -279,3 +307,32 @@ def test_a_wrong_connection_gives_a_wrong_answer() -> None:
     crossed = [Connection("first", a, "second", b) for a, b in ends] + [Connection("second", "force", "first", "force")]
     assert error_at(run(coupled(components, crossed, step=0.0125), 8.0, 1.0), 8.0) > 0.1
     assert error_at(run(coupled(*by_force(), step=0.0125), 8.0, 1.0), 8.0) < 0.03
+
+
+def test_steps_of_one_length() -> None:
+    """One such component makes the whole one; a step that its steps do not fill is refused before any is taken."""
+    components, connections = by_motion()
+    assert coupled(components, connections).can_vary_step
+    components[1].can_vary_step = False
+    whole = coupled(components, connections, step=0.3)
+    assert not whole.can_vary_step
+    with pytest.raises(
+        FmuError, match=r"step of 1 s at t = 0 s is no whole number of steps of 0\.3 s.* of second takes"
+    ):
+        whole.step(0.0, 1.0)
+    assert components[0].calls == []
+    run(coupled(components, connections, step=0.1), 3.0, 0.3)
+    assert {round(size, 12) for _, size in components[1].calls} == {0.1}
+    whole = coupled(components, connections)
+    whole.step(0.0, 0.3)
+    with pytest.raises(FmuError, match=r"step of 0\.2 s at t = 0\.3 s is no whole number of steps of 0\.3 s"):
+        whole.step(0.3, 0.2)
+
+
+def test_of_steps_of_one_length_none_is_cut_to_meet_an_end() -> None:
+    components, connections = by_motion()
+    components[0].can_vary_step = False
+    components[1].ends_at = 0.25
+    with pytest.raises(Terminated):
+        coupled(components, connections, step=0.1).step(0.0, 1.0)
+    assert {round(size, 12) for _, size in components[0].calls} == {0.1}

@@ -129,8 +129,63 @@ def test_a_state_that_does_not_restore_is_told() -> None:
     components, connections = by_motion()
     components[1].forgets = True
     whole = coupled(components, connections, **CONTROLLED)
-    with pytest.raises(FmuError, match=r"second does not restore its state: position was .* at t = 0 s"):
+    with pytest.raises(FmuError, match=r"second: its state does not restore: at t = 0 s its output position was "):
         whole.step(0.0, 1.0)
+
+
+def test_one_that_forgets_later_is_told_too() -> None:
+    components, connections = by_motion()
+    whole = coupled(components, connections, **CONTROLLED)
+    whole.step(0.0, 1.0)
+    components[1].forgets = True
+    with pytest.raises(FmuError, match=r"second does not restore its state: position was .* at t = 1 s"):
+        whole.step(1.0, 1.0)
+
+
+class Half(LinearComponent):
+    """Its output comes back, and what its next step goes by does not: each step taken leaves it a little lower."""
+
+    lost = 0.0
+
+    def step(self, time: float, size: float) -> None:
+        super().step(time, size)
+        self.lost += 1e-3 * size
+        self.state = self.state - self.lost
+        self.refresh()
+
+
+@pytest.mark.parametrize("shown", [True, False])
+@pytest.mark.parametrize("tolerance", [1e-6, 10.0])
+def test_a_state_that_is_half_restored_is_told(tolerance: float, shown: bool) -> None:
+    """Whether another takes its output or not, and however loosely is asked; the FMU is named, not the coupling."""
+    sound = LinearComponent("drive", ([[0]], [[1]], [[1]], [[0]]), ["in"], ["rate"], [1.0])
+    ends = [Connection("drive", "rate", "sum", "rate")] + [Connection("sum", "total", "drive", "in")] * shown
+    matrices = ([[0]], [[1]], [[1]], [[0]])
+    liar = Half("sum", matrices, ["rate"], ["total"], [0.0])
+    whole = coupled([sound, liar], ends, control="error", tolerance=tolerance)
+    with pytest.raises(FmuError, match=r"sum: its state does not restore: the step .* gave its output total") as told:
+        whole.step(0.0, 1.0)
+    assert 'control = "fixed"' in str(told.value)
+    run(coupled([sound, LinearComponent("sum", matrices, ["rate"], ["total"], [0.0])], ends, control="error"), 1.0, 1.0)
+
+
+def test_the_first_steps_are_tried_to_no_effect() -> None:
+    """What is tried to see whether states restore leaves the run as it would be without."""
+    ends = []
+    for tried in (True, False):
+        whole = coupled(*by_motion(), **CONTROLLED)
+        whole._steps._restores = not tried  # type: ignore[attr-defined]
+        run(whole, 3.0, 1.0)
+        ends.append((states(whole), whole.statistics))
+    assert ends[0] == ends[1]
+
+
+def test_steps_of_one_length_are_not_controlled() -> None:
+    components, connections = by_force()
+    components[1].can_vary_step = False
+    told = r'makes steps of different lengths, but the FMU of second takes steps of one length; use control = "fixed"'
+    with pytest.raises(InputError, match=told):
+        Coupled("pair", components, connections, Coupling(**CONTROLLED))
 
 
 @pytest.mark.parametrize(("control", "within"), [("fixed", 1e-12), ("error", 1e-6)])
@@ -167,16 +222,14 @@ class Switch(MockComponent):
 
 
 class Noise(MockComponent):
-    """Its output changes with every step taken, however short."""
+    """Its output is another one at every time, however near."""
 
     def __init__(self) -> None:
         super().__init__("noise")
         self.declare(["level"], "output", 1.0)
-        self.count = 0
 
     def refresh(self) -> None:
-        self.count += 1
-        self.values["level"] = 1.0 + (self.count % 3)
+        self.values["level"] = 2.0 + math.sin(1e9 * self.time)
 
 
 def integrator() -> LinearComponent:

@@ -24,6 +24,7 @@ from dcone_cosim.interface_kit import show, write_template
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.scene import Scene, load
+from tests.cosim.fmus.build import build as build_fmu
 from tests.cosim.mock_components import MockCapture
 
 Make = Callable[..., Scene]
@@ -107,6 +108,22 @@ def test_both_c_templates_fly_a_mission(kits: dict[str, Path], make_scene: Make)
                 "size of relative.velocity",
             ]
             assert result.phases["removal"].outcome == "towed"
+
+
+def test_a_rate_counted_in_turns_is_not_taken_for_one_in_radians(tmp_path: Path) -> None:
+    """`rad/s` under the name Hz, once without its radians and once with them and the factor."""
+    for base, fits in (('s="-1"', False), ('s="-1" rad="1" factor="6.283185307179586"', True)):
+
+        def in_turns(xml: str, base: str = base) -> str:
+            changed = xml.replace('unit="rad/s"', 'unit="Hz"').replace('<Unit name="rad/s">', '<Unit name="Hz">')
+            changed = changed.replace('<BaseUnit s="-1" rad="1" />', f"<BaseUnit {base} />")
+            assert base in changed
+            return changed
+
+        with Archive(build_fmu(tmp_path, "capture", change=in_turns)) as archive:
+            faults = check_contract(archive, "capture", then_removal=True)
+        told = [fault for fault in faults if "its unit is Hz (1/s); expected rad/s" in fault]
+        assert len(told) == (0 if fits else 3), faults
 
 
 @pytest.mark.parametrize("isolate", [False, True])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -50,6 +51,26 @@ def test_a_sound_one_tows(make_scene: Make, tmp_path: Path) -> None:
     assert next(check.quantity for check in here.handoff.checks) == "separation"
     for name in here.phases["removal"].recorder.names:
         np.testing.assert_array_equal(here.phases["removal"].recorder[name], isolated.phases["removal"].recorder[name])
+
+
+@pytest.mark.parametrize("isolate", [HERE, ISOLATED])
+def test_a_call_refused_later_quotes_no_old_words(tmp_path: Path, isolate: bool) -> None:
+    """It warned as it began; what it says of a variable it does not know is all that is told of that call."""
+
+    def elsewhere(xml: str) -> str:
+        for name in ("separation", "target.mass"):
+            xml = re.sub(rf'name="{name}" valueReference="\d+"', f'name="{name}" valueReference="900"', xml)
+        return xml
+
+    for call in (lambda it: it.get(["separation"]), lambda it: it.set({"target.mass": 1.0})):
+        with Archive(build(tmp_path, change=elsewhere)) as archive:
+            component = archive.isolate("towing") if isolate else archive.instantiate("towing")
+            with component:
+                component.initialise(0.0)
+                with pytest.raises(CallError) as caught:
+                    call(component)
+        assert "old news" not in str(caught.value)
+        assert "gave no message" not in str(caught.value)
 
 
 def test_what_is_no_number_is_left_alone(make_scene: Make, tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
-from dcone_cosim.fmu.units import PURE, Unit, by_name, read_units, same_dimension, si_name
+from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, read_units, same_dimension, si_name
 from tests.cosim.fmus.build import build
 
 LENGTH = (0, 1, 0, 0, 0, 0, 0, 0)
@@ -84,9 +84,25 @@ def test_dimensions() -> None:
     assert not same_dimension(metre, second)
     assert same_dimension(metre, None)
     assert same_dimension(by_name("rad/s").dimension, by_name("1/s").dimension)
+    assert by_name("s-").dimension is None
     assert si_name((1, -1, -3, 0, 0, 0, 0, 0)) == "kg/(m.s3)"
     assert si_name((0, 0, -1, 0, 0, 0, 0, 0)) == "1/s"
     assert si_name(PURE) == "1"
+
+
+@pytest.mark.parametrize("turns", ["Hz", "kHz", "rpm", "rev/min"])
+def test_turns_and_angles(turns: str) -> None:
+    """The dimension alone would let a turn pass for a radian; a definition with rad, or 1/s, says what is meant."""
+    per_second = (0, 0, -1, 0, 0, 0, 0, 0)
+    counted = Unit(turns, per_second, 1 / 60)
+    angles = by_name("rad/s"), by_name("deg/s")
+    for angle in angles:
+        assert f"{turns} counts turns, {angle.name} an angle" in misfit(counted, angle)
+        assert misfit(angle, counted)
+        assert misfit(by_name("1/s"), angle) == ""
+        assert misfit(Unit(turns, angle.dimension, 2 * math.pi / 60), angle) == ""
+    assert misfit(counted, by_name("1/s")) == misfit(counted, by_name("Hz")) == misfit(counted, by_name("odd")) == ""
+    assert misfit(counted, by_name("m")) == "different dimensions"
 
 
 def in_millimetres(xml: str) -> str:

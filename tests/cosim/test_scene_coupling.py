@@ -122,7 +122,12 @@ def test_an_input_may_be_given_a_value() -> None:
             '"removal.separation ->',
             "removal.tether.tension is in N, controller.length in m: different dimensions",
         ),
-        ("removal.separation ->", "removal.tether.taut ->", '"removal.separation ->', "is of kind Boolean"),
+        (
+            "removal.separation ->",
+            "removal.tether.taut ->",
+            '"removal.separation ->',
+            "removal.tether.taut is a Boolean, controller.length is a Real",
+        ),
         (
             "removal.separation ->",
             "removal.relative.position ->",

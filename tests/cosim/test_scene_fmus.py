@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 
 from dcone_cosim import cli
+from dcone_cosim.coupling.wiring import mismatch
 from dcone_cosim.errors import InputError
+from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.fmu.units import by_name
 from dcone_cosim.scenes.scene import Scene, find, load
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
@@ -222,6 +226,62 @@ def test_error_control_needs_states_of_all(folder: Path, tmp_path: Path) -> None
     )
     with pytest.raises(InputError, match=r'control = "error": rolls steps back, but the FMU of other cannot save'):
         read(folder, SCENE + coupled.format(cannot))
+
+
+def test_units_are_judged_as_in_a_run(tmp_path: Path) -> None:
+    """A declared pure number is no force: told with the scene, in the words of the run; the twin in kN is one."""
+    scene = """
+[removal]
+macro_step = "60 s"
+duration = "1 h"
+connections = ["other.catch.mass -> removal.reel.tension"]
+[removal.reel]
+law = "commanded"
+[removal.components.other]
+fmu = "{}"
+"""
+    fmus = {}
+    for name, base in (("%", 'factor="0.01"'), ("kN", 'kg="1" m="1" s="-2" factor="1000"')):
+
+        def in_it(xml: str, name: str = name, base: str = base) -> str:
+            changed = xml.replace('<Unit name="kg">', f'<Unit name="{name}">').replace('unit="kg"', f'unit="{name}"')
+            return changed.replace('<BaseUnit kg="1" />', f"<BaseUnit {base} />")
+
+        fmus[name] = build(tmp_path / name.strip("%"), "capture", change=in_it)
+    assert read(tmp_path, scene.format(fmus["kN"])).phases
+    told = r"other\.catch\.mass is in %, removal\.reel\.tension in N: different dimensions"
+    with pytest.raises(InputError, match=told):
+        read(tmp_path, scene.format(fmus["%"]))
+    reel = VariableInfo("reel.tension", 0, "Real", "N", "input", "", "N", by_name("N").dimension)
+    for name, fits in (("kN", True), ("%", False)):
+        with Archive(fmus[name]) as archive:
+            why = mismatch("out", archive.variables["catch.mass"], "in", reel)
+        assert why == ("" if fits else "out is in %, in in N: different dimensions")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("", '[removal.coupling]\ncontrol = "error"\n', 'control = "error": makes steps of different lengths'),
+        ("", '[removal.coupling]\nstep = "3 s"\n', 'step = "3 s": must divide the macro step of 10 s'),
+        ('"100 s"', '"95 s"', 'duration = "95 s": must be a whole number of macro steps of 10 s'),
+    ],
+)
+def test_steps_of_one_length(folder: Path, tmp_path: Path, old: str, new: str, told: str) -> None:
+    """Told before anything runs; the twin, an FMU that takes any step, passes."""
+    other = '[removal.components.other]\nfmu = "{}"\n'
+    text = SCENE.replace(old, new) + other if old else SCENE + other + new
+    even = build(
+        tmp_path,
+        "capture",
+        change=lambda xml: xml.replace('VariableCommunicationStepSize="true"', 'VariableCommunicationStepSize="false"'),
+    )
+    assert read(folder, text.format("my_capture.fmu")).phases
+    with pytest.raises(InputError, match="the FMU of other takes steps of one length") as error:
+        read(folder, text.format(even))
+    assert f"removal.{'' if old else 'coupling.'}{told}" in str(error.value)
+    assert ": 1 mistake\n  line " in str(error.value)
+    assert read(folder, (SCENE + other + '[removal.coupling]\nstep = "2.5 s"\n').format(even)).phases
 
 
 def test_a_component_must_not_be_named_like_a_table_of_the_main_one(folder: Path) -> None:
