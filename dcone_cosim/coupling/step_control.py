@@ -65,7 +65,8 @@ class FixedSteps:
         count = max(1, math.ceil((end - begin) / step - 1e-9))
         for k in range(count):
             time = begin + k * step
-            size = (end if k == count - 1 else begin + (k + 1) * step) - time
+            # one step is the caller's own: the difference of two times may have lost its last bit
+            size = macro_step if count == 1 else (end if k == count - 1 else begin + (k + 1) * step) - time
             self.exchange.take(time, size)
             self.statistics.count(size)
 

@@ -168,7 +168,8 @@ def _package(
         [_wire(c, variables[c.source][c.output], variables[c.target][c.input]) for c in phase.connections],
         phase.start,
         phase.start + phase.duration,
-        phase.macro_step,
+        # other tools have one step: at it they exchange values
+        (phase.others and phase.coupling.step) or phase.macro_step,
         _ours(phase),
     )
     return {STRUCTURE: structure(content), **files}

@@ -110,7 +110,7 @@ def macro_step(
     content: Document, parts: Mapping[str, Part], duration: float, told: Mapping[str, float], mistakes: Mistakes
 ) -> float:
     """Communication step [s]: of an annotation, else the least that a component or its FMU asks for."""
-    asked = [told.get("macro_step", content.step)]
+    asked = [told.get("macro_step", _own_macro_step(content))]
     if asked == [None]:
         asked = [part.row.step for part in parts.values()]
     if asked == [None] * len(asked):
@@ -128,6 +128,15 @@ def macro_step(
         text = f"{duration:g} s in steps of {step:g} s makes {duration / step:.4g} steps; at most {MOST_STEPS:,}"
         mistakes.add(STRUCTURE, None, text)
     return step
+
+
+def _own_macro_step(content: Document) -> float | None:
+    """The step of the annotations; where that is still our coupling step, the macro step it divides."""
+    coupled = decimal(content.ours.get("Coupling", {}).get("step"))
+    if content.step is None or content.step != coupled:
+        return content.step
+    own = decimal(content.ours.get("Plan", {}).get("macro_step"))
+    return content.step if own is None else own
 
 
 def _of_experiment(experiment: Any, name: str) -> float | None:

@@ -111,6 +111,7 @@ def test_several_components_keep_their_connections_and_coupling(pair: Path, tmp_
     by_scene, by_package = run(pair), run(package)
     phase = by_package.scene.phases[0]
     assert [component.name for component in phase.components] == ["removal", "other"]
+    assert phase.macro_step == by_scene.scene.phases[0].macro_step == 10.0
     assert phase.connections == by_scene.scene.phases[0].connections
     assert phase.coupling == by_scene.scene.phases[0].coupling
     assert "other.tether.tension" in by_package.phases["removal"].recorder
@@ -141,14 +142,23 @@ def test_a_linear_transformation_stands_between_output_and_input(linear: Callabl
     assert (connection.factor, connection.offset) == (2.0, 1.0)
 
 
+def test_other_tools_are_told_the_coupling_step(pair: Path, tmp_path: Path) -> None:
+    """It is the only step they have; changed by hand, it is our macro step too."""
+    (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+    told = ('baseStepSize="5.0"', 'baseStepSize="20.0"')
+    phase = system.load(changed(package, tmp_path / "longer.ssp", told)).phases[0]
+    assert (phase.macro_step, phase.coupling.step) == (20.0, 5.0)
+
+
 def test_without_our_annotation_the_contract_tells_the_phase(pair: Path, tmp_path: Path) -> None:
+    """Its step is then the one that is written for all tools."""
     (package,) = export_scene(str(pair), tmp_path, Progress()).paths
     files = contents(package)
     root = etree.fromstring(files[STRUCTURE])
     root.remove(root.findall("{*}Annotations")[-1])
     files[STRUCTURE] = etree.tostring(root)
     phase = system.load(packed(tmp_path / "plain.ssp", files)).phases[0]
-    assert (phase.name, phase.main.name, phase.macro_step, phase.duration) == ("removal", "removal", 10.0, 600.0)
+    assert (phase.name, phase.main.name, phase.macro_step, phase.duration) == ("removal", "removal", 5.0, 600.0)
     assert phase.coupling == Coupling()
 
 

@@ -69,6 +69,7 @@ JOBS = ("binary", "decimal", "moved")
 """What each tool is asked for: both grids, and the binary one with a parameter moved."""
 
 
+@functools.cache
 def job(tool: str, case: str, which: str) -> Job:
     given = CASES[case]
     if which == "moved":

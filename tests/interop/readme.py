@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+from tests.interop import reel_pair
 from tests.interop.cases import CASES
 from tests.interop.measure import TOOLS, rows
 
@@ -13,6 +14,8 @@ PAGE = Path(__file__).parents[2] / "README.md"
 HEAD = (
     "| tool | version | FMU | steps that a double holds | steps that it does not |\n| --- | --- | --- | --- | --- |\n"
 )
+PAIR = ("container", "pair")
+"""Key of the line on two FMUs coupled by a tool."""
 TABLE = re.compile(re.escape(HEAD) + r"((?:\|.*\n)*)")
 
 
@@ -20,7 +23,7 @@ def written(text: str) -> dict[tuple[str, str], list[str]]:
     """Cells of the table's lines, by tool and run."""
     (body,) = TABLE.findall(text)
     titles = {about.title: name for name, about in TOOLS.items()}
-    runs = {about.title: name for name, about in CASES.items()}
+    runs = {about.title: name for name, about in CASES.items()} | {reel_pair.TITLE: PAIR[1]}
     lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in body.splitlines()]
     return {(titles[cells[0]], runs[cells[2]]): cells for cells in lines}
 
@@ -37,12 +40,15 @@ def page(text: str, tools: Iterable[str], keep_versions: bool = False) -> str:
     """
     before = written(text)
     lines = dict(before)
-    for key, line in rows(tools).items():
-        cells = [cell.strip() for cell in line.strip("|").split("|")]
+    tools = list(tools)
+    measured = {key: [cell.strip() for cell in line.strip("|").split("|")] for key, line in rows(tools).items()}
+    if PAIR[0] in tools:
+        measured[PAIR] = reel_pair.row()
+    for key, cells in measured.items():
         if keep_versions and key in before:
             cells[1] = before[key][1]
         lines[key] = cells
-    ordered = [lines[tool, case] for tool in TOOLS for case in CASES if (tool, case) in lines]
+    ordered = [lines[tool, case] for tool in TOOLS for case in (*CASES, PAIR[1]) if (tool, case) in lines]
     body = "".join("| " + " | ".join(cells) + " |\n" for cells in ordered)
     return TABLE.sub(lambda _: HEAD + body, text)
 

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from fmpy.validation import validate_fmu
 
+from dcone_cosim import build
+from dcone_cosim.scenes.scene import load, shipped
 from tests.interop.cases import CASES
 from tests.interop.measure import TOOLS
 
@@ -48,14 +50,34 @@ def spoil(how: str, folder: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_fmpys_validation_finds_nothing(case: str) -> None:
-    assert validate_fmu(str(CASES[case].path)) == []
+def every_fmu() -> dict[str, tuple[str, dict[str, str]]]:
+    """Model and terms of every FMU of every shipped scene, each once, and of a reel control without a motor."""
+    found: dict[str, tuple[str, dict[str, str]]] = {}
+    for name in shipped():
+        for phase in load(name).phases:
+            for c in phase.components:
+                if (c.model, c.terms) not in found.values():
+                    found[f"{name} {c.name}"] = (c.model, dict(c.terms))
+    return found | {"reel control without motor": ("reel_control", {})}
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_fmutools_check_finds_nothing(case: str) -> None:
-    assert fmutool(CASES[case].path) == (0, [])
+@pytest.fixture(scope="module", params=every_fmu().items(), ids=list(every_fmu()))
+def fmu(request: pytest.FixtureRequest) -> Path:
+    return build.ensure([request.param[1]], lambda _: None)[0]
+
+
+def test_the_fmus_are_those_of_all_models() -> None:
+    kinds = [(model, "motor" in terms) for model, terms in every_fmu().values()]
+    assert {model for model, _ in kinds} == {"net_capture", "tethered_deorbit", "reel_control"}
+    assert kinds.count(("reel_control", True)) == kinds.count(("reel_control", False)) == 1
+
+
+def test_fmpys_validation_finds_nothing(fmu: Path) -> None:
+    assert validate_fmu(str(fmu)) == []
+
+
+def test_fmutools_check_finds_nothing(fmu: Path) -> None:
+    assert fmutool(fmu) == (0, [])
 
 
 @pytest.mark.parametrize("how", SPOILT)

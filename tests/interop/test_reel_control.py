@@ -1,0 +1,113 @@
+"""Two FMUs of ours, connected, in other tools: libcosim and ecos from the package, and in an FMU container.
+
+All three hold the inputs over a step and step both FMUs from the same outputs, as our master does with Jacobi.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lxml import etree
+
+from dcone_cosim.archives import Archives
+from dcone_cosim.master import run_scene
+from dcone_cosim.progress import Progress
+from dcone_cosim.recorder import Recorder
+from dcone_cosim.scenes import scene as scenes
+from dcone_cosim.ssp.export import export_scene
+from tests.cosim.ssp_packages import STRUCTURE, contents
+from tests.interop.packages import Rows, in_tool, own
+from tests.interop.reel_pair import (
+    DIRECT,
+    GRIDS,
+    MAIN,
+    POINTS,
+    SCENE,
+    SPREAD,
+    STEPS,
+    at_points,
+    differing,
+    farthest,
+    package,
+)
+
+pytestmark = pytest.mark.interop
+
+LATE = {"ecos": (), "libcosim": DIRECT, "container": DIRECT}
+"""What a tool tells a step late: it reads the outputs of a step before it sets the inputs of the next."""
+
+Run = tuple[str, str, Rows, Recorder, Rows]
+
+
+@pytest.fixture(scope="module", params=[(tool, grid) for tool in LATE for grid in GRIDS], ids="-".join)
+def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Tool, grid, what tool and master made of it, and what our coupling makes of it at the tool's times."""
+    tool, grid = request.param
+    path = package(tmp_path_factory.mktemp("pair"), grid)
+    found = in_tool(tool, path, MAIN, GRIDS[grid], STEPS)
+    return tool, grid, found, own(path), at_points(path, POINTS[tool], GRIDS[grid])
+
+
+def test_a_removal_and_its_control_have_the_bits_of_our_jacobi(run: Run) -> None:
+    tool, grid, found, ours, at_its_times = run
+    assert len(found) > 50
+    assert differing(found, at_its_times, LATE[tool]) == []
+    assert farthest(found, ours, LATE[tool]) <= SPREAD
+    assert bool(differing(found, ours, LATE[tool])) == (grid == "decimal")
+
+
+def test_what_depends_directly_on_an_input_is_late_where_it_is_read_first(run: Run) -> None:
+    """Twin: a shift by one step is seen, so the outputs that are not shifted are told at the right time."""
+    tool, _, found, ours, _ = run
+    wrong = () if LATE[tool] else DIRECT
+    assert farthest(found, ours, wrong) > 1e-6
+    assert set(DIRECT) <= set(differing(found, ours, wrong))
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        "controller.gain.derivative=2.36601 N.s/m",
+        "controller.motor.time_constant=5.0001 s",
+    ],
+)
+def test_another_control_is_seen(setting: str, tmp_path: Path) -> None:
+    """Twin: the tool's numbers come from both FMUs, with the package's values."""
+    path = package(tmp_path, "binary")
+    found = in_tool("ecos", path, MAIN, GRIDS["binary"], STEPS)
+    assert farthest(found, own(path)) == 0.0
+    assert farthest(found, own(path, setting)) > SPREAD
+
+
+@pytest.mark.parametrize("tool", LATE)
+def test_a_control_without_a_motor_acts_a_step_late(tool: str, tmp_path: Path) -> None:
+    """Its output depends on its inputs directly; the tools read it before they set them, our master after."""
+    text, motor, _ = scenes.shipped()[SCENE].read_text().partition("[removal.components.controller.motor]")
+    assert motor
+    (tmp_path / "direct.toml").write_text(text)
+    path = package(tmp_path, "binary", str(tmp_path / "direct.toml"))
+    found, ours = in_tool(tool, path, MAIN, GRIDS["binary"], STEPS), own(path)
+    assert differing(found, ours, LATE[tool])
+    assert 1e-3 < farthest(found, ours, LATE[tool]) < 1e-2
+
+
+def test_the_scenes_package_has_the_scenes_bits_and_its_coupling_step(tmp_path: Path) -> None:
+    """As shipped, in macro steps of a minute: tools are told to exchange at the coupling step, we know both."""
+    (path,) = export_scene(SCENE, tmp_path, Progress()).paths
+    root = etree.fromstring(contents(path)[STRUCTURE])
+    (algorithm,) = root.iter("{*}FixedStepAlgorithm")
+    scene = scenes.load(SCENE)
+    (phase,) = scene.phases
+    assert (algorithm.get("baseStepSize"), phase.coupling.step, phase.macro_step) == ("2.0", 2.0, 60.0)
+    with Archives(scene, Progress()) as archives:
+        by_scene = run_scene(scene, archives.instantiate, Progress()).phases[MAIN].recorder
+    by_package = own(path)
+    assert by_scene.names == by_package.names
+    assert "controller.tension" in by_scene.names
+    other = own(path, "controller.reel.length=12.001 m")
+    same = [np.array_equal(by_scene[n], by_package[n], equal_nan=True) for n in by_scene.names]
+    assert all(same)
+    assert len(by_scene) == len(other) == 121
+    assert not np.array_equal(by_scene["tether.length"], other["tether.length"])
