@@ -86,9 +86,10 @@ def run(
 
     progress = _progress()
     try:
-        written = run_and_write(
-            scene, out, progress, with_csv=csv, with_figures=figures, force=force, settings=settings or ()
-        )
+        with exits.noise_apart():
+            written = run_and_write(
+                scene, out, progress, with_csv=csv, with_figures=figures, force=force, settings=settings or ()
+            )
     finally:
         progress.close()
     result = written.result

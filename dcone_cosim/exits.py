@@ -5,6 +5,7 @@ Expected failures become one message on stderr, and with `--json` the same as an
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import sys
@@ -25,6 +26,36 @@ def reader_may_leave() -> Iterator[None]:
         sys.stdout.flush()
     except BrokenPipeError:
         _to_nowhere()
+
+
+STDOUT, STDERR = 1, 2
+"""File descriptors: binaries know no others."""
+
+
+@contextmanager
+def noise_apart() -> Iterator[None]:
+    """What the binary of an FMU prints goes to stderr: stdout is for results alone."""
+    try:
+        kept = os.dup(STDOUT)
+    except OSError:
+        yield  # closed from the start
+        return
+    sys.stdout.flush()
+    try:
+        os.dup2(STDERR, STDOUT)
+        yield
+    finally:
+        with suppress(OSError, AttributeError, TypeError):
+            ctypes.CDLL(None).fflush(None)  # what C still holds back belongs to the noise
+        os.dup2(kept, STDOUT)
+        os.close(kept)
+
+
+def _open_streams() -> None:
+    """Streams that are closed as we start (`>&-`) lead nowhere, before another file is given their number."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
 
 
 def _to_nowhere() -> None:
@@ -68,6 +99,7 @@ def _terminate(*_: object) -> NoReturn:
 
 def run(app: Callable[..., Any]) -> NoReturn:
     """Run the command line and leave: an expected failure is one message and an exit code, never a traceback."""
+    _open_streams()
     before = _on_terminate(_terminate)
     try:
         code = app(standalone_mode=False)

@@ -161,8 +161,10 @@ def _walk(part: Part, names: tuple[str, ...], value: Any, found: dict[str, float
     ours = part.fmu is None
     if joined in part.keys and not (ours and names[0] == SHARED):
         _take(part, joined, value, path, found, mistakes)
-    elif part.selects(names) or (ours and joined in part.groups and not isinstance(value, dict)):
-        return  # looked at by `of_model`; an FMU has its terms built in
+    elif part.selects(names):
+        _look_at_choice(part, names, value, mistakes)
+    elif ours and joined in part.groups and not isinstance(value, dict):
+        return  # looked at by `of_model`
     elif isinstance(value, dict) and (not ours or _is_table(part, names)):
         for key, inner in value.items():
             _walk(part, (*names, key), inner, found, mistakes)
@@ -172,6 +174,17 @@ def _walk(part: Part, names: tuple[str, ...], value: Any, found: dict[str, float
         mistakes.append(Mistake(path, value, f"expected a table [{dotted(path)}]"))
     else:
         mistakes.append(_unknown(part, names, value) if ours else _no_variable(part, joined, path, value))
+
+
+def _look_at_choice(part: Part, names: tuple[str, ...], value: Any, mistakes: list[Mistake]) -> None:
+    """A term that is named beside an FMU, which has its terms built in: it says nothing, but must be one."""
+    if part.fmu is None:
+        return  # looked at by `of_model`
+    terms = part.groups[names[0]].terms
+    if term_named(value) not in terms:
+        shown = [term for term in terms if term in terms]
+        text = f"names no term; it may be left out, since {part.fmu.name} has its terms built in"
+        mistakes.append(unknown((*part.path, *names), value, text, str(value), shown))
 
 
 def _is_table(part: Part, names: tuple[str, ...]) -> bool:

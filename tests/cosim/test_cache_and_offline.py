@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import tomllib
 import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -223,7 +224,8 @@ class TestOffline:
 
 class TestCommandLine:
     def test_version(self, dcone: Dcone) -> None:
-        assert dcone("--version")[:2] == (0, "dcone 0.1.0\n")
+        told = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]["version"]
+        assert dcone("--version")[:2] == (0, f"dcone {told}\n")
 
     def test_help_loads_nothing_heavy(self) -> None:
         program = (

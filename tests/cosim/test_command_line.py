@@ -268,3 +268,10 @@ def test_the_bar_fits_its_terminal(width: int) -> None:
     assert "12,346 of 21,608 s" in text or "12,345.6 of 21,608 s" in text
     bare = re.sub(r"\x1b\[[?0-9;]*[A-Za-z]", "", text)
     assert max(len(line) for line in bare.replace("\r", "\n").splitlines()) <= width
+
+
+@pytest.mark.parametrize("closed", ["1", "2", "1 2"])
+def test_streams_closed_from_the_start(closed: str) -> None:
+    shut = " ".join(f"{stream}>&-" for stream in closed.split())
+    program = f"{sys.executable} -c 'from dcone_cosim.cli import main; main()' list {shut}"
+    assert subprocess.run(["bash", "-c", program], check=False).returncode == 0

@@ -178,3 +178,13 @@ proportional = "4e-3 N/m"
     assert code == 0, err
     assert "removal, controller: reel_control" in out
     assert "controller.tension -> removal.reel.tension" in out
+
+
+def test_what_an_fmu_prints_is_not_in_the_answer(dcone: Dcone, tmp_path: Path) -> None:
+    """In this process its binary writes to our stdout; the answer for machines stays JSON."""
+    fmu = build(tmp_path, "removal", "NOISE", when=-1.0)
+    (tmp_path / "noisy.toml").write_text(FOREIGN.format(fmu=fmu, isolate="false", more=""))
+    code, out, err = dcone("run", "noisy.toml", "-o", "noisy", "--no-figures", "--json")
+    assert code == 0, err
+    assert json.loads(out)["status"] == "completed"
+    assert "noise" in err
