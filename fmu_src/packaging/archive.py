@@ -1,5 +1,9 @@
 """FMUs on demand: built once for what goes into them, kept in a cache, and written byte for byte reproducibly.
 
+The same sources and the versions in PACKAGES give the same files. The archive around them, and the picture, are
+deflated by the zlib that Python and Pillow were linked with, so the archive has the same bytes where that is the same
+too. The key leaves zlib out: what an FMU does, and so its GUID, does not depend on it.
+
 The cache holds an FMU for each platform. One for several platforms is put together from those: they differ in their
 libraries alone. The IR is worked out once, since every FMU carries it among its sources.
 """
@@ -21,8 +25,8 @@ from fmu_src.interface import Interface
 from fmu_src.packaging import c_header, compile, description, documentation, link, picture, sources, tools
 from fmu_src.packaging.platforms import WIN64, Platform, host
 
-PACKAGES = ("numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow")
-"""Tools whose version settles what comes out."""
+PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
+"""What settles by its version what comes out: the tools, and this package, whose version the description tells."""
 SOURCES = Path(__file__).parents[1]
 EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]

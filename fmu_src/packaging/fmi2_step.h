@@ -15,6 +15,11 @@ static fmi2Status check_ends(instance *i, double span) {
     return fmi2OK;
 }
 
+/* A rate of an input lasts one step; from here on the inputs are held. */
+static void hold_inputs(instance *i) {
+    for (int k = 0; k < DCONE_MOVING; k++) i->block[moving_table[k].rate].real = 0.0;
+}
+
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_return) {
     instance *i = c;
     (void)no_return;
@@ -28,12 +33,16 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     if (step == 0.0) return fmi2OK;
     /* a master that adds up times drifts by rounding: the gap is closed, so that the model sees none */
     double span = (time - i->at.time) + step;
+    if (span <= 0.0) { /* drift is longer than the step: the FMU is there already, and waits for the master */
+        hold_inputs(i);
+        i->at.derived = 0;
+        return fmi2OK;
+    }
     if (check_ends(i, span) != fmi2OK) return fmi2Error;
     i->block[FAULT_CODE].integer = 0;
     i->at.derived = 0;
     if (run(i, STEP, i->at.time, span)) return tell_fault(i, STEP);
-    /* the model has left the inputs where they have come to; from here on they are held */
-    for (int k = 0; k < DCONE_MOVING; k++) i->block[moving_table[k].rate].real = 0.0;
+    hold_inputs(i); /* where the model has left them: where they have come to */
     i->at.moved = 0;
     i->at.time = time + step;
     return fmi2OK;

@@ -2,7 +2,7 @@
 
    Every library holds `dcone_entry`, made for any processor of its kind. One for x86-64 may hold a second that needs
    AVX2 and its companions; it gives the same bits sooner. DCONE_V3 tells that it is there. The choice is made once,
-   when the library is loaded. */
+   when the library is loaded: `entry` is all that is global and not constant, and nothing writes it afterwards. */
 
 entry_function dcone_entry;
 

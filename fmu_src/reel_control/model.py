@@ -24,7 +24,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     terms         {} or {"motor": "lag"}
 
     Valid    any
-    Source   physics.md, section 2
+    Source   fmu_src/reel_control/README.md, What is computed
     Checked  tests/reel_control/test_law.py
     """
     interface = MODEL.interface(terms)

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from fmu_src.tethered_deorbit.command import make_command, make_shortest
 from fmu_src.tethered_deorbit.faults import blame, own_slot
-from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, NO_LENGTH, REELS
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
 
@@ -32,22 +33,16 @@ def make_locked(elastic_stiffness: Callable[..., Any]) -> Reel:
     modulus_slot, diameter_slot = own_slot("tether.youngs_modulus", own), own_slot("tether.diameter", own)
     damping_slot, offset_slot = own_slot("tether.damping_ratio", own), own_slot("reel.length_offset", own)
 
-    @kernel
-    def asked(record: Any) -> tuple[float, float]:
-        r = record[0]
-        return r.reel_length_offset, r.rate_reel_length_offset
-
-    @kernel
-    def leave(record: Any, value: float) -> None:
-        record[0].reel_length_offset = value
+    asked, leave = make_command("reel_length_offset")
+    shortest_on_the_way = make_shortest(offset_slot)
 
     @kernel
     def prepare(record: Any, value: float, rate: float, duration: float) -> int:
         r = record[0]
         length = r.tether_rest_length + value
-        shortest = min(length, length + rate * duration)
-        if not 0.0 < shortest < math.inf:
-            return blame(record, NO_LENGTH, offset_slot, shortest)
+        shortest, fault = shortest_on_the_way(record, length, rate, duration)
+        if fault != 0:
+            return int(fault)
         stiffness = elastic_stiffness(r.tether_youngs_modulus, r.tether_diameter, length)
         if not r.tether_damping_ratio >= 0.0:
             return blame(record, BAD_PARAMETER, damping_slot, r.tether_damping_ratio)

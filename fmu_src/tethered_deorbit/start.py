@@ -128,7 +128,7 @@ def start_state(record: Any, state: Array, longest: float) -> int:
     longest       longest separation for the first three         [m]
 
     Valid    perigee above the equatorial radius
-    Source   physics.md, section 2
+    Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_start.py
     """
     r = record[0]

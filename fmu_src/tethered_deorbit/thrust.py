@@ -127,7 +127,7 @@ def make_thrust(direction: str, reel: str = "locked") -> Thrust:
     reel          the law of the line, whose variables come before the thruster's
 
     Valid    point masses: no torque, no plume on the target
-    Source   physics.md, section 2
+    Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, tests/tethered_deorbit/test_ramps.py
     """
     add = {"along_track": _add_along_track, "velocity": _add_along_velocity, "tether": _add_along_tether}[direction]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.tethered_deorbit.command import make_command, make_shortest
 from fmu_src.tethered_deorbit.faults import blame, own_slot
-from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, NO_LENGTH, REELS
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
 
@@ -25,7 +26,7 @@ def make_linear() -> Reel:
     with the commanded length; the damping stays on dl/dt itself.
 
     Valid    winding speeds and tensions within what the reel can do
-    Source   physics.md, section 2
+    Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, tests/tethered_deorbit/test_ramps.py
     """
     own = REELS.terms["linear"].variables
@@ -35,22 +36,16 @@ def make_linear() -> Reel:
     )
     offset_slot = own_slot("reel.length_offset", own)
 
-    @kernel
-    def asked(record: Any) -> tuple[float, float]:
-        r = record[0]
-        return r.reel_length_offset, r.rate_reel_length_offset
-
-    @kernel
-    def leave(record: Any, value: float) -> None:
-        record[0].reel_length_offset = value
+    asked, leave = make_command("reel_length_offset")
+    shortest_on_the_way = make_shortest(offset_slot)
 
     @kernel
     def prepare(record: Any, value: float, rate: float, duration: float) -> int:
         r = record[0]
         length = r.reel_length + value
-        shortest = min(length, length + rate * duration)
-        if not 0.0 < shortest < math.inf:
-            return blame(record, NO_LENGTH, offset_slot, shortest)
+        _, fault = shortest_on_the_way(record, length, rate, duration)
+        if fault != 0:
+            return int(fault)
         if not r.reel_proportional_gain >= 0.0:
             return blame(record, BAD_PARAMETER, proportional_slot, r.reel_proportional_gain)
         if not r.reel_derivative_gain >= 0.0:
@@ -149,14 +144,7 @@ def make_commanded() -> Reel:
     """
     command_slot = own_slot("reel.tension", REELS.terms["commanded"].variables)
 
-    @kernel
-    def asked(record: Any) -> tuple[float, float]:
-        r = record[0]
-        return r.reel_tension, r.rate_reel_tension
-
-    @kernel
-    def leave(record: Any, value: float) -> None:
-        record[0].reel_tension = value
+    asked, leave = make_command("reel_tension")
 
     @kernel
     def prepare(record: Any, value: float, rate: float, duration: float) -> int:

@@ -24,7 +24,6 @@ from tests.interop.job import Job, Row, Value
 Points = Callable[[float, int], Iterator[tuple[float, float]]]
 """`points(step, steps)`: time and size [s] of each step."""
 
-GRIDS = ("binary", "decimal")
 LOOKS = 8
 """Looks at all outputs, evenly spread; the last is the end."""
 

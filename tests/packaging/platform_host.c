@@ -1,9 +1,9 @@
 /* A plain importer: loads an FMU's library, makes an experiment, prints what it is asked for after every step.
 
-   platform_host LIBRARY GUID STEP COUNT [=REFERENCE:VALUE | =REFERENCEi:VALUE | ?REFERENCE | @PATH]...
+   platform_host LIBRARY GUID STEP COUNT [=REFERENCE:VALUE | =REFERENCEi:VALUE | ?REFERENCE | @PATH | +PATH]...
 
    =7:2.5 sets a Real parameter, =7i:3 an Integer one, ?9 asks for a Real output; @PATH names a file for the serialised
-   state at the end. C99, and nothing but what each system calls its loader. */
+   state at the end, and +PATH one that holds a serialised state to go on from. C99, and nothing but what each system calls its loader. */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static int load(const char *path) { return (library = dlopen(path, RTLD_NOW)) !=
 static void (*find(const char *name))(void) { return (void (*)(void))dlsym(library, name); }
 #endif
 
-enum { MOST = 512 };
+enum { MOST = 512, MOST_BYTES = 1 << 24 };
 
 #define CALL(NAME) ((NAME##TYPE *)call(#NAME))
 
@@ -63,11 +63,27 @@ static void write_state(fmi2Component c, const char *path) {
     require(CALL(fmi2FreeFMUstate)(c, &state), "fmi2FreeFMUstate");
 }
 
+/* Goes on from a serialised state; the time at which that is. */
+static double read_state(fmi2Component c, const char *path) {
+    static fmi2Byte bytes[MOST_BYTES];
+    fmi2FMUstate state = NULL;
+    fmi2Real time = 0.0;
+    FILE *file = fopen(path, "rb");
+    if (!file) fail(path);
+    size_t size = fread(bytes, 1, MOST_BYTES, file);
+    if (size == MOST_BYTES || fclose(file)) fail(path);
+    require(CALL(fmi2DeSerializeFMUstate)(c, bytes, size, &state), "fmi2DeSerializeFMUstate");
+    require(CALL(fmi2SetFMUstate)(c, state), "fmi2SetFMUstate");
+    require(CALL(fmi2FreeFMUstate)(c, &state), "fmi2FreeFMUstate");
+    require(CALL(fmi2GetRealStatus)(c, fmi2LastSuccessfulTime, &time), "fmi2GetRealStatus");
+    return time;
+}
+
 int main(int count, char **given) {
     static fmi2ValueReference asked[MOST];
     static fmi2Real values[MOST];
     size_t n = 0;
-    const char *state = NULL;
+    const char *state = NULL, *earlier = NULL;
     if (count < 5) fail("platform_host LIBRARY GUID STEP COUNT ...");
     if (!load(given[1])) fail("the library can not be loaded");
     fmi2CallbackFunctions functions = {log_message, calloc, free, NULL, NULL};
@@ -78,6 +94,8 @@ int main(int count, char **given) {
         fmi2ValueReference reference = (fmi2ValueReference)strtoul(given[k] + 1, &rest, 10);
         if (given[k][0] == '@') {
             state = given[k] + 1;
+        } else if (given[k][0] == '+') {
+            earlier = given[k] + 1;
         } else if (given[k][0] == '?' && n < MOST) {
             asked[n++] = reference;
         } else if (*rest == 'i') {
@@ -91,9 +109,9 @@ int main(int count, char **given) {
     require(CALL(fmi2SetupExperiment)(c, fmi2False, 0.0, 0.0, fmi2False, 0.0), "fmi2SetupExperiment");
     require(CALL(fmi2EnterInitializationMode)(c), "fmi2EnterInitializationMode");
     require(CALL(fmi2ExitInitializationMode)(c), "fmi2ExitInitializationMode");
-    const double step = strtod(given[3], NULL);
+    const double step = strtod(given[3], NULL), begin = earlier ? read_state(c, earlier) : 0.0;
     for (int i = 0; i < atoi(given[4]); i++) {
-        require(CALL(fmi2DoStep)(c, i * step, step, fmi2True), "fmi2DoStep");
+        require(CALL(fmi2DoStep)(c, begin + i * step, step, fmi2True), "fmi2DoStep");
         require(CALL(fmi2GetReal)(c, asked, n, values), "fmi2GetReal");
         for (size_t k = 0; k < n; k++) printf("%.17g%c", values[k], k + 1 < n ? ' ' : '\n');
     }

@@ -191,6 +191,17 @@ def test_fingerprint_follows_terms_and_tools(monkeypatch):
     assert first != archive.fingerprint(model.interface(CAPTURE))
 
 
+def test_fingerprint_follows_the_packages_own_version(monkeypatch):
+    """The description tells it, so an FMU of another version is another FMU."""
+    interface = MODELS["net_capture"].interface(CAPTURE)
+    first = archive.fingerprint(interface)
+    found = archive.version
+    monkeypatch.setattr(archive, "version", lambda name: "9.9" if name == "dcone-cosim" else found(name))
+    assert archive.fingerprint(interface) != first
+    monkeypatch.setattr(archive, "version", lambda name: "9.9" if name == "pytest" else found(name))
+    assert archive.fingerprint(interface) == first
+
+
 def test_damaged_fmu_in_the_cache_is_built_again(fmu, tmp_path, monkeypatch):
     path, _ = fmu("tethered_deorbit")
     interface = MODELS["tethered_deorbit"].interface(CASES["tethered_deorbit"][0])

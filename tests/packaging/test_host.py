@@ -11,6 +11,7 @@ from tests.packaging import toy
 from tests.packaging.driven import SMALL, Driven, library_of
 
 HOST = Path(__file__).parent / "host.c"
+NO_VALGRIND = "memcheck was not run: valgrind is not on this machine (Debian: apt-get install valgrind)"
 VALGRIND = ["valgrind", "--error-exitcode=99", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect", "-q"]
 
 
@@ -69,7 +70,7 @@ def test_host_takes_it_through_its_life(host, hosted, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_valgrind_finds_nothing(host, hosted, name):
     if not shutil.which("valgrind"):
-        pytest.skip("valgrind is not on this machine")
+        pytest.skip(NO_VALGRIND)
     done = subprocess.run([*VALGRIND, host, *hosted(name)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
 
@@ -77,7 +78,7 @@ def test_valgrind_finds_nothing(host, hosted, name):
 def test_valgrind_would_find_a_leak(tmp_path, hosted):
     """The twin: a host that forgets to free its second instance."""
     if not shutil.which("valgrind"):
-        pytest.skip("valgrind is not on this machine")
+        pytest.skip(NO_VALGRIND)
     program = compile_host(tmp_path, "-DFORGETFUL")
     done = subprocess.run([*VALGRIND, program, *hosted("toy")], capture_output=True, text=True)
     assert done.returncode == 99

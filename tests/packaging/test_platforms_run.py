@@ -125,21 +125,41 @@ def test_processor_without_avx2_takes_the_plain_path(model, native, cache, tmp_p
     assert difference(rows, native[model]) == 0.0
 
 
-def test_state_crosses_platforms(cache, tmp_path):
-    """A state saved on arm64 has this machine's size and GUID."""
+def run_tow(platform, launcher, cache, folder, *more):
+    """Rows of the tow on a platform, with more arguments for the importer."""
+    folder.mkdir()
+    fmu = platform_cases.build("tethered_deorbit", platform, cache)
+    return platform_cases.run_case(
+        "tethered_deorbit", fmu, folder, launcher, platform.targets[0].triple, more=list(map(str, more))
+    )
+
+
+@pytest.fixture(scope="module")
+def saved(cache, tmp_path_factory):
+    """A state of the tow saved on this machine, in a file, and the rows when it goes on from there, here."""
+    folder = tmp_path_factory.mktemp("saved")
+    run_tow(platforms.LINUX64, (), cache, folder / "first", f"@{folder / 'state'}")
+    return folder / "state", run_tow(platforms.LINUX64, (), cache, folder / "second", f"+{folder / 'state'}")
+
+
+def test_a_loaded_state_goes_on(saved, native, cache, tmp_path, monkeypatch):
+    """As one long run does, to the last bit; and elsewhere than a run from the start."""
+    case = CASES["tethered_deorbit"]
+    monkeypatch.setitem(CASES, "tethered_deorbit", replace(case, count=2 * case.count))
+    whole = run_tow(platforms.LINUX64, (), cache, tmp_path / "whole")
+    assert difference(saved[1], whole[case.count :]) == 0.0
+    assert difference(saved[1], native["tethered_deorbit"]) > SPREAD
+
+
+def test_state_crosses_platforms(saved, cache, tmp_path):
+    """A state is saved with one layout on both, and one saved here goes on on arm64."""
     if not ARM_LIBRARIES.is_dir():
         pytest.skip(f"no arm64 libraries in {ARM_LIBRARIES} (Debian: libc6-arm64-cross)")
-    model = "tethered_deorbit"
-    states = []
-    for platform, launcher in (
-        (platforms.LINUX64, ()),
-        (platforms.LINUX_AARCH64, (qemu("aarch64"), "-L", str(ARM_LIBRARIES))),
-    ):
-        folder = tmp_path / platform.name
-        folder.mkdir()
-        fmu = platform_cases.build(model, platform, cache)
-        triple = platform.targets[0].triple
-        platform_cases.run_case(model, fmu, folder, launcher, triple, more=[f"@{folder / 'state'}"])
-        states.append((folder / "state").read_bytes())
-    assert len(states[0]) == len(states[1])
-    assert states[0][:56] == states[1][:56]  # what kind of state, and of which GUID
+    arm = platforms.LINUX_AARCH64, (qemu("aarch64"), "-L", str(ARM_LIBRARIES)), cache
+    path, rows = saved
+    run_tow(*arm, tmp_path / "saving", f"@{tmp_path / 'state'}")
+    here, there = path.read_bytes(), (tmp_path / "state").read_bytes()
+    assert len(here) == len(there)
+    assert here[:8] == there[:8]  # what kind of state
+    assert here[16:64] == there[16:64]  # of which GUID; between them stands the check word of all that follows
+    assert difference(run_tow(*arm, tmp_path / "loading", f"+{path}"), rows) < SPREAD

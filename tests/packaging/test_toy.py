@@ -176,6 +176,33 @@ def test_an_error_breaks_the_instance_until_it_is_reset(running, built_toy):
     assert running.step(0.0, 1.0) == OK
 
 
+@pytest.mark.parametrize("back", [1e-5, 2e-6, 1e-6])
+def test_a_step_shorter_than_the_drift_behind_it_is_none(make, back):
+    """At 6000 s times may differ by 1.2e-5 s. The FMU is ahead of its master then, and lets it come."""
+    raw = make()
+    raw.start({"push": 1.0})
+    assert raw.step(0.0, 6000.0) == OK
+    before = raw.get("x", "y")
+    assert raw.ramp("push", 0.5) == OK
+    assert raw.step(6000.0 - back, 1e-6) == OK
+    assert raw.get("steps", kind="Integer") == 1
+    assert raw.get("x", "y") == before
+    assert raw.output_rate("y") == (OK, 1.0)  # the ramp went with its step
+    assert raw.step(6000.0 - back + 1e-6, 2.0) == OK
+    assert raw.get("x") == pytest.approx(6002.0 - back + 1e-6, abs=1e-11)
+    assert raw.get("steps", kind="Integer") == 2
+
+
+def test_a_step_that_reaches_beyond_the_drift_is_made(make):
+    """The twin."""
+    raw = make()
+    raw.start({"push": 1.0})
+    raw.step(0.0, 6000.0)
+    assert raw.step(6000.0 - 1e-5, 2e-5) == OK
+    assert raw.get("x") == pytest.approx(6000.00001, abs=1e-11)
+    assert raw.step(6000.0 - 2e-5, 1e-6) == ERROR
+
+
 def test_the_stop_time_holds(make):
     raw = make()
     raw.start(stop=1.0)

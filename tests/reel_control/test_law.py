@@ -134,7 +134,9 @@ def regulator(thrust: float = -0.01) -> np.ndarray:
 def test_default_gains_are_the_regulators() -> None:
     """Those on length and rate; its other two gains a reel can not have. Without thrust the gains are others."""
     gains = regulator()
-    assert gains == pytest.approx([-5.78290, -3.41930, 2.93980, -0.21854], abs=1e-4)  # physics.md, section 2
+    assert gains == pytest.approx(
+        [-5.78290, -3.41930, 2.93980, -0.21854], abs=1e-4
+    )  # see fmu_src/reel_control/README.md
     scale = REDUCED * RATE
     assert pytest.approx(-gains[0] * scale * RATE, rel=2e-4) == STIFFNESS
     assert pytest.approx(-gains[1] * scale, rel=2e-4) == DAMPING
