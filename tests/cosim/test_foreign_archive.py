@@ -132,22 +132,6 @@ def test_an_entry_that_escapes(tmp_path: Path, description: str, name: str) -> N
     assert not list(tmp_path.parent.rglob("evil*"))
 
 
-def test_one_too_large_is_not_unpacked(tmp_path: Path, description: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A small file may hold far more than it is large: 2 GB of zeros take 2 MB."""
-    places = tmp_path / "temporary"
-    places.mkdir()
-    monkeypatch.setattr("tempfile.tempdir", str(places))
-    content = {XML: description, BINARY: "\0" * 10**6}
-    path = tmp_path / "it.fmu"
-    path.write_bytes(zipped(content))
-    assert path.stat().st_size < 10**5
-    with Archive(path) as archive:
-        assert archive.can_save
-    monkeypatch.setattr("dcone_cosim.fmu.archive.LARGEST", 10**6)
-    assert re.search(r"refused: unpacked it has 1,0\d\d,\d\d\d bytes; at most 1,000,000 are taken", refusal(path))
-    assert not list(places.iterdir())
-
-
 def test_two_of_a_name_are_refused_and_aliases_are_not(tmp_path: Path, description: str) -> None:
     twice = description.replace('name="target.mass"', 'name="chaser.mass"')
     assert "two variables named 'chaser.mass'" in refused(tmp_path, {XML: twice, BINARY: ""})
