@@ -49,14 +49,10 @@ def unpack(fmu, folder):
     return Path(folder), library
 
 
-def smooth_outputs(fmu):
-    """Names and value references of the continuous Real outputs."""
+def real_outputs(fmu):
+    """Names and value references of the Real outputs, peaks and counts of time among them."""
     variables = read_model_description(str(fmu)).modelVariables
-    return {
-        v.name: v.valueReference
-        for v in variables
-        if v.causality == "output" and v.type == "Real" and v.variability == "continuous"
-    }
+    return {v.name: v.valueReference for v in variables if v.causality == "output" and v.type == "Real"}
 
 
 def compile_host(target, folder):
@@ -78,7 +74,7 @@ def run_case(model, fmu, folder, launcher=(), target="x86_64-linux-gnu.2.17", en
     description = read_model_description(str(fmu))
     references = {v.name: (v.valueReference, "i" if v.type == "Integer" else "") for v in description.modelVariables}
     given = [f"={references[n][0]}{references[n][1]}:{v!r}" for n, v in case.parameters.items()]
-    asked = [f"?{reference}" for reference in smooth_outputs(fmu).values()]
+    asked = [f"?{reference}" for reference in real_outputs(fmu).values()]
     host = compile_host(target, folder)
     done = subprocess.run(
         [*launcher, str(host), str(library), description.guid, repr(case.step), str(case.count), *given, *asked, *more],
