@@ -139,7 +139,7 @@ def _unpack(path: Path) -> Path:
             raise FmuError(
                 f"{path}: a damaged FMU; the file is cut short or was changed on its way ({error})"
             ) from None
-        if isinstance(error, RuntimeError | NotImplementedError):
+        if isinstance(error, RuntimeError):  # encrypted, or packed by a method that is not known
             raise FmuError(f"{path}: not a readable FMU ({error})") from None
         raise
     return folder

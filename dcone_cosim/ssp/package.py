@@ -90,9 +90,9 @@ class Package:
             raise InputError(f"{self.path}: {name} has {size:,} bytes; at most {largest:,} are read")
         try:
             return self._archive.read(name)
-        except (zipfile.BadZipFile, OSError, EOFError, NotImplementedError, ValueError) as error:
+        except (zipfile.BadZipFile, OSError, EOFError, ValueError) as error:
             raise InputError(f"{self.path}: {name} is damaged ({error})") from error
-        except Exception as error:  # zlib.error, lzma.LZMAError
+        except Exception as error:  # zlib.error, lzma.LZMAError, a method that is not known
             raise InputError(f"{self.path}: {name} cannot be unpacked ({error})") from error
 
     def unpack(self, name: str, folder: Path, as_name: str) -> Path:
