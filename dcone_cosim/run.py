@@ -24,7 +24,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.recorder import Snapshots, TugLog
@@ -40,22 +39,6 @@ PACKAGES = (
 
 def default_folder(scene: str) -> Path:
     return Path("runs") / f"{scene}-{datetime.now().strftime('%Y%m%dT%H%M%S')}"
-
-
-def write(
-    run: RunResult,
-    folder: Path,
-    fmus: Mapping[str, Mapping[str, Any]],
-    summary: Mapping[str, Any],
-    started: datetime,
-    with_csv: bool = False,
-    draw: Callable[[Path], Any] | None = None,
-    force: bool = False,
-) -> Path:
-    """Write the run folder, `draw` adding the figures; returns where it is: another name when this one was taken."""
-    with atomic_folder(folder, force) as draft:
-        fill(draft.path, run, fmus, summary, started, with_csv, draw)
-    return draft.folder
 
 
 def fill(

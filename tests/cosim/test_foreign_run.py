@@ -6,7 +6,6 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -20,10 +19,10 @@ from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.phases import CaptureLoop, CapturePlan
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.run import write
 from dcone_cosim.scenes.scene import Scene
 from tests.cosim.fmus.build import build
 from tests.cosim.mock_components import MockCapture
+from tests.cosim.written import write
 
 Make = Callable[..., Scene]
 ISOLATED, HERE = True, False
@@ -129,7 +128,7 @@ def test_one_clear_error(make_scene: Make, tmp_path: Path, switch: str, isolate:
         assert word in result.message
     assert result.message.count("\n") == 2
     assert "in a step of 10 s" in result.message or "its output" in words[0]
-    write(result, tmp_path / "run", {}, summary.as_dict(result), datetime.now(UTC))
+    write(result, tmp_path / "run", summary.as_dict(result))
     provenance = json.loads((tmp_path / "run" / "provenance.json").read_text())
     assert (provenance["status"], provenance["exit_code"]) == ("FMU failed", FMU_FAILED)
     assert {"capture.parquet", "removal.parquet", "ledger.json"} <= {p.name for p in (tmp_path / "run").iterdir()}
@@ -189,7 +188,7 @@ def test_its_own_end_is_no_failure(make_scene: Make, tmp_path: Path, isolate: bo
     assert labels[-1] == "recorded, in whole steps", "it went on beyond them, as ended_at says"
     from dcone_cosim.reports.figures import draw_all
 
-    write(result, tmp_path / "run", {}, summary.as_dict(result), datetime.now(UTC), draw=lambda p: draw_all(result, p))
+    write(result, tmp_path / "run", summary.as_dict(result), draw=lambda p: draw_all(result, p))
     assert json.loads((tmp_path / "run" / "provenance.json").read_text())["exit_code"] == 0
 
 

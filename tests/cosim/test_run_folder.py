@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +13,9 @@ import pytest
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.run import write
 from dcone_cosim.scenes.scene import Scene
 from tests.cosim.mock_components import MockCapture, MockRemoval
+from tests.cosim.written import write
 
 
 @pytest.fixture
@@ -28,7 +27,7 @@ def result(make_scene: Callable[..., Scene]) -> RunResult:
 
 
 def put(result: RunResult, folder: Path, **more: object) -> None:
-    write(result, folder, {}, summary.as_dict(result), datetime.now(UTC), **more)  # type: ignore[arg-type]
+    write(result, folder, summary.as_dict(result), **more)
 
 
 def test_what_is_in_the_folder(result: RunResult, tmp_path: Path) -> None:
@@ -110,9 +109,9 @@ def test_what_has_the_name_keeps_it(result: RunResult, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
     (tmp_path / "link").symlink_to("nowhere")
     for name in ("full", "file", "link"):
-        assert write(result, tmp_path / name, {}, {}, datetime.now(UTC)) == tmp_path / f"{name}-2"
+        assert write(result, tmp_path / name, {}) == tmp_path / f"{name}-2"
         assert (tmp_path / f"{name}-2" / "summary.json").exists()
-        assert write(result, tmp_path / name, {}, {}, datetime.now(UTC), force=True) == tmp_path / f"{name}-3"
+        assert write(result, tmp_path / name, {}, force=True) == tmp_path / f"{name}-3"
     assert (tmp_path / "full" / "thesis.tex").read_text() == "years of work"
     put(result, tmp_path / "late", draw=lambda _: (tmp_path / "late").mkdir())
     assert not list((tmp_path / "late").iterdir())
