@@ -37,7 +37,7 @@ FAULTS = (
     Fault(
         START_STRETCHED,
         "error",
-        "start.separation exceeds the line's length and target.attachment_distance: a locked line would start stretched",
+        "start.separation exceeds the line and target.attachment_distance: a locked line would start stretched",
         True,
     ),
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 
 class Reel(NamedTuple):
-    """Kernels of one law; lengths in m, rates in m/s, tension in N. `length` is that of the line between its attachments
-    (see `tether.line_length`), not the distance of the bodies.
+    """Kernels of one law; lengths in m, rates in m/s, tension in N. `length` is that of the line between its
+    attachments (see `tether.line_length`), not the distance of the bodies.
 
     asked(record) -> (value, rate)                          what the input says
     leave(record, value)                                    write the value reached back to the input
