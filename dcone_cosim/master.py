@@ -338,7 +338,7 @@ def _close_ledger(record: HandoffRecord, component: Steppable) -> None:
 
 def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:
     """Sizes that do not depend on the frame they are formed in, as far as the component gives the outputs for them."""
-    handed, given = record.handed, record.line_parameters
+    handed, attachment = record.handed, record.line_parameters.get(ATTACHMENT)
     joint, chaser = handed.joint, handed.chaser
     relative, rate = joint.position - chaser.position, joint.velocity - chaser.velocity
     distance, speed = float(np.linalg.norm(relative)), float(np.linalg.norm(rate))
@@ -348,8 +348,8 @@ def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:
         ("size of relative.position", _elements("relative.position"), distance, CROSS_CHECK * distance, "m"),
         ("size of relative.velocity", _elements("relative.velocity"), speed, turned, "m/s"),
     ]
-    if ATTACHMENT in given:
-        length = abs(distance - given[ATTACHMENT])
+    if attachment is not None:
+        length = abs(distance - attachment)
         expected.append(("size of tether.length", ("tether.length",), length, CROSS_CHECK * distance, "m"))
     checks = []
     for label, names, given, tolerance, unit in expected:

@@ -65,8 +65,8 @@ def test_the_mission(dcone: Both, tmp_path: Path) -> None:
 
 
 def test_the_mission_keeps_its_slack(dcone: Both, tmp_path: Path) -> None:
-    """14 m of line less the distance of its attachments, from what each phase recorded by itself; with the attachment in
-    the centre of mass two metres were lost. The bend at the vertex is a millimetre."""
+    """14 m of line less the distance of its attachments, from what each phase recorded by itself; with the attachment
+    in the centre of mass two metres were lost. The bend at the vertex is a millimetre."""
     code, written = dcone("run", "mission", "-o", "out", "--no-figures", "--set", "removal.duration=600 s")
     assert code == 0, written
     capture, removal = (pyarrow.parquet.read_table(tmp_path / "out" / f"{p}.parquet") for p in ("capture", "removal"))
