@@ -202,7 +202,7 @@ def test_the_accounts_say_what_is_lost_and_what_is_dropped() -> None:
 @pytest.mark.parametrize("name", REMOVAL_SETS)
 def test_a_row_opens_from_1e_12_on(name: str) -> None:
     """Of what enters its row, whichever value the removal holds otherwise than it was told; below, none does."""
-    made, found = handed(2)
+    _, found = handed(2)
     size = found.parameters[name] if "mass" in name else 12.0 if "position" in name else 5e-3
     for part, opens in ((0.1e-12, False), (200e-12, True)):
         wrong = dict(found.parameters)
@@ -260,7 +260,7 @@ def test_without_recoil_the_chaser_has_its_speed_before_the_shot(seed: int) -> N
 
 
 def test_the_spin_check_is_arithmetic_one_can_follow() -> None:
-    """A ball-like body of 100, 200, 300 kg m2 with 5 N m s about its first axis turns at 0.05 rad/s; half the diagonal of
+    """A body of 100, 200, 300 kg m2 with 5 N m s about its first axis turns at 0.05 rad/s; half the diagonal of
     2 x 4 x 4 m is 3 m. From 10 mm/s, 0.01 N on 2000 kg over 4 m of slack: v^2 = 1e-4 + 2 x 5e-6 x 4."""
     _, found = handed(0)
     spin = np.array([5.0, 0.0, 0.0])

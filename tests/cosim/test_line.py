@@ -119,11 +119,9 @@ def test_an_fmu_that_takes_no_line_says_what_is_lost(make_scene: Make, line: flo
     assert "not carried" in lost.account
     assert (SLACK in rows) == (line is not None)
     if line is not None:
-        slack = rows[SLACK]
-        assert (slack.before, slack.after, slack.accounted) == pytest.approx(
-            (14.0 - REACH, 0.0, 14.0 - REACH), rel=1e-13
-        )
-        assert "not carried" in slack.account
+        row, slack = rows[SLACK], 14.0 - REACH
+        assert (row.before, row.after, row.accounted) == pytest.approx((slack, 0.0, slack), rel=1e-13)
+        assert "not carried" in row.account
     assert LENGTH not in rows
 
 
@@ -132,7 +130,7 @@ def test_a_working_reel_is_told_the_offset(make_scene: Make) -> None:
     scene = make_scene("capture", "removal")
     scene.phases[1].main.parameters.pop(REST)  # type: ignore[attr-defined]
     scene.phases[1].main.defaults.pop(REST)  # type: ignore[attr-defined]
-    scene.phases[1].main.parameters["reel.length"] = 15.0  # type: ignore[index]
+    scene.phases[1].main.defaults["reel.length"] = 15.0  # type: ignore[index]
     result, made, rows = hand_over(scene, without=[REST])
     assert result.exit_code == SUCCESS, result.message
     assert made[1].values[ATTACHMENT] == pytest.approx(OFF_CENTER, rel=1e-13)
