@@ -12,7 +12,7 @@ import pytest
 from dcone_cosim.errors import HANDOFF_FAILED, SUCCESS
 from dcone_cosim.handoff import prepare
 from dcone_cosim.ledger import LedgerRow
-from dcone_cosim.line import line_notes, line_of
+from dcone_cosim.line import Line, line_notes, line_of, line_parameters
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
@@ -102,6 +102,7 @@ def test_an_fmu_that_does_not_know_the_offset_gets_a_longer_line(make_scene: Mak
         assert (row.before, row.after, row.accounted) == pytest.approx((before, after, accounted), abs=1e-12)
         assert row.closed
     for quantity in (OFFSET, LENGTH):
+        assert "no target.attachment_distance: its line is longer" in rows[quantity].account
         assert "stiffness of that length" in rows[quantity].account
 
 
@@ -116,7 +117,7 @@ def test_an_fmu_that_takes_no_line_says_what_is_lost(make_scene: Make, line: flo
     assert len(made) == 3
     lost = rows[OFFSET]
     assert (lost.before, lost.after, lost.accounted) == pytest.approx((OFF_CENTER, 0.0, OFF_CENTER), rel=1e-13)
-    assert "not carried" in lost.account
+    assert lost.account == "not carried: the removal FMU has neither target.attachment_distance nor tether.rest_length"
     assert (SLACK in rows) == (line is not None)
     if line is not None:
         row, slack = rows[SLACK], 14.0 - REACH
@@ -159,7 +160,9 @@ def test_the_estimate_of_the_first_tug_has_the_slack_handed_over(make_scene: Mak
     assert result.handoff.spin.tolerance == 0.1
 
 
-@pytest.mark.parametrize(("length", "accepted"), [(REACH, True), (REACH * (1.0 - 2e-6), False), (REACH * 1.0001, True)])
+@pytest.mark.parametrize(
+    ("length", "accepted"), [(REACH, True), (REACH * (1.0 - 0.9e-6), True), (REACH * (1.0 - 1.1e-6), False)]
+)
 def test_a_line_that_is_too_short_is_refused(make_scene: Make, length: float, accepted: bool) -> None:
     """Judged between the attachments; one that is tight to a millionth was handed over when it came taut."""
     scene = make_scene("capture", "removal")
@@ -172,6 +175,14 @@ def test_a_line_that_is_too_short_is_refused(make_scene: Make, length: float, ac
         assert result.handoff.failure == result.message
         for told in (f"{REACH:.6g} m apart", f"{length:.6g} m long", f"t = {INSTANT:.6g} s"):
             assert told in result.message
+
+
+def test_a_millionth_is_where_a_line_is_too_short() -> None:
+    """Of its length, and not of another; one of unknown length is not."""
+    for reach, overrun in ((1e3, False), (1e3 + 0.99e-3, False), (1e3 + 1.01e-3, True)):
+        assert Line(1e3, reach, 2.0, 1e3).overrun is overrun
+    assert not Line(1.0, 1.0 + 1e-6, 0.0, 1.0).overrun
+    assert not Line(None, 1e3, 2.0, 1e3).overrun
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -195,6 +206,12 @@ def test_what_is_said_beforehand() -> None:
     assert line_notes([ATTACHMENT, REST]) == []
     assert "longer by as much" in line_notes([REST])[0]
     assert "not carried" in line_notes(["reel.length"])[0]
+
+
+def test_a_line_of_unknown_length_sets_none() -> None:
+    line = Line(None, 10.0, 2.0, 12.0)
+    assert line_parameters(line, [REST]) == line_parameters(line, []) == {}
+    assert line_parameters(line, [REST, ATTACHMENT]) == {ATTACHMENT: 2.0}
 
 
 @pytest.mark.parametrize("without", [[], [ATTACHMENT]])
