@@ -138,7 +138,8 @@ class MockCapture(MockComponent):
         good = self.ends_as in ("captured", "settled")
         self.values["captured"] = float(done and good)
         self.values["outcome"] = float(OUTCOMES.index(self.ends_as) if done else 0)
-        self.values["t_capture"] = self.instant if done and good and self.reports else -1.0
+        if "t_capture" in self.values:
+            self.values["t_capture"] = self.instant if done and good and self.reports else -1.0
 
 
 class MockRemoval(MockComponent):

@@ -49,7 +49,7 @@ def test_takes_the_end_of_the_step_when_steps_have_one_length() -> None:
     component.can_vary_step = False
     result = run(component, stop_there=True)
     assert result.located == 7.5
-    assert "takes only steps of one length" in result.located_by
+    assert result.located_by == "end of the macro step of 0.5 s: this FMU takes only steps of one length"
     assert {size for _, size in component.calls} == {0.5}
 
 
@@ -115,6 +115,7 @@ def test_an_instant_at_which_it_is_not_captured_is_not_believed(tells: float) ->
     assert 0.0 <= result.located - INSTANT <= 1e-6
     assert component.time == result.located
     assert result.located_by.startswith("halving")
+    assert all(size > 0.0 for _, size in component.calls)
 
 
 def test_an_instant_told_for_the_end_of_the_step() -> None:
@@ -132,12 +133,24 @@ def test_an_instant_told_too_late_within_the_step_is_taken_at_its_word() -> None
 
 
 def test_settled_is_another_instant_than_captured() -> None:
-    """`t_capture` lies in the step in which the net settles, and is not gone to."""
-    component = Told(INSTANT, settles=7.4)
-    result = run(component, hand_over="settled", stop_there=True)
+    """`t_capture` lies in the step in which the net settles, before or after that, and is not gone to."""
+    for tells in (INSTANT, 7.45, 7.5):
+        component = Told(tells, settles=7.4)
+        result = run(component, hand_over="settled", stop_there=True)
+        assert result.located is not None
+        assert 0.0 <= result.located - 7.4 <= 1e-6
+        assert component.values["settled"] == 1.0
+        assert result.located_by.startswith("halving")
+
+
+@pytest.mark.parametrize("instant", [0.3, 0.7, 1.7, INSTANT])
+def test_an_fmu_that_tells_no_instant(instant: float) -> None:
+    component = MockCapture(instant)
+    del component.values["t_capture"], component.variables["t_capture"]
+    result = run(component, stop_there=True)
     assert result.located is not None
-    assert 0.0 <= result.located - 7.4 <= 1e-6
-    assert component.values["settled"] == 1.0
+    assert 0.0 <= result.located - instant <= 1e-6
+    assert result.located_by.startswith("halving")
 
 
 @pytest.mark.parametrize(
@@ -159,3 +172,12 @@ def test_the_step_that_is_halved_begins_where_it_was_taken() -> None:
     assert component.calls[:7] == [(0.0, 0.5), (0.0, 0.5), *halves]
     assert result.located is not None
     assert 0.0 <= result.located - 0.3 <= 1e-6
+
+
+def test_a_step_of_a_millionth_of_a_second_is_not_halved() -> None:
+    component = MockCapture(0.7e-6)
+    component.enter_initialisation(0.0)
+    component.exit_initialisation()
+    result = CaptureLoop(component, CapturePlan(1e-6, 1e-5, stop_there=True), Progress()).run()
+    assert result.located == 1e-6
+    assert result.located_by == "halving the macro step to 1e-06 s"

@@ -117,7 +117,9 @@ def test_bodies_have_the_spin_inertia_and_energy_of_their_points(seed: int) -> N
     close(found.catch_energy, inner, made.net.energy())
     for body, points in ((found.target, made.target), (found.joint, made.joint)):
         assert spin_energy(body) == pytest.approx(points.energy_if_rigid(), rel=1e-11)
-    assert spin_energy(Body(1.0, np.zeros(3), np.zeros(3), np.ones(3))) == 0.0
+    point = Body(1.0, np.zeros(3), np.zeros(3))
+    assert (point.spin.tolist(), point.inertia.tolist()) == ([0.0] * 3, [[0.0] * 3] * 3)
+    assert spin_energy(replace(point, spin=np.ones(3))) == 0.0
     close(found.vertex, made.vertex @ made.axes, 10.0)
 
 
@@ -195,8 +197,24 @@ def test_the_accounts_say_what_is_lost_and_what_is_dropped() -> None:
     assert lost == pytest.approx(made.all.energy() - after - made.joint.energy_if_rigid(), rel=1e-5)
     assert "lost" in rows["kinetic energy"].account.split(",")[0]
     assert "spin" in rows["kinetic energy"].account.split(",")[1]
-    assert "became spin" in rows["angular momentum, orbital part, radial"].account
-    assert "dropped" in rows["angular momentum, spin part, radial"].account
+    joined = "became spin when the net joined the target"
+    assert rows["angular momentum, orbital part, radial"].account == joined
+    assert rows["angular momentum, spin part, radial"].account == "dropped: a point target has no spin"
+    assert {row.account for name, row in rows.items() if "m" in name and row.unit in ("kg", "kg m", "N s")} == {""}
+
+
+def test_sizes_are_those_of_the_capture() -> None:
+    """What a removal holds otherwise does not count in them, nor the sign of an energy."""
+    _, found = handed(3)
+    size = {row.quantity: row.magnitude for row in ledger(found, found.parameters)}
+    wrong = {name: 2.0 * value for name, value in found.parameters.items()}
+    assert {row.quantity: row.magnitude for row in ledger(found, wrong)} == size
+    plus, minus = (
+        next(row for row in ledger(replace(found, catch_energy=energy), found.parameters) if row.unit == "J")
+        for energy in (5.0, -5.0)
+    )
+    assert plus.magnitude == pytest.approx(minus.magnitude, rel=1e-14)
+    assert plus.before == pytest.approx(minus.before + 10.0, rel=1e-14)
 
 
 @pytest.mark.parametrize("name", REMOVAL_SETS)
@@ -229,6 +247,7 @@ def test_closure_is_a_share_of_what_enters() -> None:
             "relative_closure": row.closure,
             "closed": closed,
         }
+    assert LedgerRow("x", "kg", 1e-12, 0.0, 0.0, "", 1.0).closed
     assert LedgerRow("x", "kg", 0.0, 0.0, 0.0, "", 0.0).closure == 0.0
     assert LedgerRow("x", "kg", 1e-30, 0.0, 0.0, "", 0.0).closure == math.inf
     assert not LedgerRow("x", "kg", 1e-30, 0.0, 0.0, "", 0.0).closed
