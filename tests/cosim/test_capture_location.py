@@ -181,3 +181,19 @@ def test_a_step_of_a_millionth_of_a_second_is_not_halved() -> None:
     result = CaptureLoop(component, CapturePlan(1e-6, 1e-5, stop_there=True), Progress()).run()
     assert result.located == 1e-6
     assert result.located_by == "halving the macro step to 1e-06 s"
+
+
+def test_a_state_that_does_not_come_back_is_told_with_its_time() -> None:
+    """After the first half of the step, which went too far: back to 7 s it should be."""
+
+    class Forgetful(MockCapture):
+        restored = 0
+
+        def restore(self, key: str = "") -> None:
+            super().restore(key)
+            self.restored += 1
+            self.values["chaser.position[2]"] += self.restored > 2
+
+    result = run(Forgetful(INSTANT), stop_there=True)
+    assert result.error is not None
+    assert "at t = 7 s its output chaser.position[2] was -12.035 before, -11.035 after" in str(result.error)

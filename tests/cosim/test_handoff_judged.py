@@ -17,6 +17,7 @@ from dcone_cosim.handoff import (
     REMOVAL_SETS,
     Body,
     Handoff,
+    SpinCheck,
     check_spin,
     held_bodies,
     mean_motion,
@@ -297,6 +298,8 @@ def test_the_spin_check_is_arithmetic_one_can_follow() -> None:
     limit = 0.15 / math.sqrt(1.4e-4)
     for tolerance, accepted in ((1.001 * limit, True), (0.999 * limit, False)):
         assert check_spin(handed_over, size, 4.0, -0.01, tolerance).accepted is accepted
+    assert SpinCheck(1.0, 10.0, 0.1).accepted, "the tolerance itself is allowed"
+    assert SpinCheck(0.0, 0.0, 0.1).accepted
     still = replace(handed_over, chaser=replace(chaser, velocity=joint.velocity))
     assert check_spin(still, size, 0.0, 0.0, 0.1).share == math.inf
     point = replace(handed_over, joint=replace(joint, inertia=np.zeros((3, 3))))

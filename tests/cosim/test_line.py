@@ -117,6 +117,8 @@ def test_an_fmu_that_takes_no_line_says_what_is_lost(make_scene: Make, line: flo
     assert len(made) == 3
     lost = rows[OFFSET]
     assert (lost.before, lost.after, lost.accounted) == pytest.approx((OFF_CENTER, 0.0, OFF_CENTER), rel=1e-13)
+    size = (line or 0.0) + REACH + OFF_CENTER + DISTANCE
+    assert lost.magnitude == pytest.approx(size, rel=1e-13)
     assert lost.account == "not carried: the removal FMU has neither target.attachment_distance nor tether.rest_length"
     assert (SLACK in rows) == (line is not None)
     if line is not None:
