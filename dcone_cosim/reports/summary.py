@@ -162,8 +162,8 @@ def _of_line(record: HandoffRecord) -> Iterator[Finding]:
         if row.quantity == SLACK:
             yield Finding("hand-off", "slack", "slack of the line", row.before, "m")
             yield Finding("hand-off", "slack_after", "slack in the removal", row.after, "m")
-        if row.quantity in (OFFSET, SLACK) and row.account:
-            yield Finding("hand-off", f"{row.quantity.replace(' ', '_')}_account", row.quantity, row.account)
+        if row.quantity == OFFSET and row.account:
+            yield Finding("hand-off", "line_carried", "line", row.account)
 
 
 MOST_OUTPUTS = 12

@@ -302,5 +302,7 @@ def test_the_spin_check_is_arithmetic_one_can_follow() -> None:
     assert SpinCheck(0.0, 0.0, 0.1).accepted
     still = replace(handed_over, chaser=replace(chaser, velocity=joint.velocity))
     assert check_spin(still, size, 0.0, 0.0, 0.1).share == math.inf
+    slim = replace(handed_over, joint=replace(joint, inertia=np.diag([0.4, 200.0, 300.0])))
+    assert check_spin(slim, size, 4.0, -0.01, 0.1).attachment_speed == pytest.approx(37.5, rel=1e-12)
     point = replace(handed_over, joint=replace(joint, inertia=np.zeros((3, 3))))
     assert check_spin(point, size, 4.0, -0.01, 0.1).attachment_speed == 0.0

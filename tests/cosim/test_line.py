@@ -106,8 +106,9 @@ def test_an_fmu_that_does_not_know_the_offset_gets_a_longer_line(make_scene: Mak
         assert "stiffness of that length" in rows[quantity].account
 
 
-@pytest.mark.parametrize("line", [None, 14.0])
+@pytest.mark.parametrize("line", [None, 14.0, 5.0])
 def test_an_fmu_that_takes_no_line_says_what_is_lost(make_scene: Make, line: float | None) -> None:
+    """Nor can such a line be too short for it."""
     scene = make_scene("capture", "removal")
     del scene.phases[1].main.parameters[REST]  # type: ignore[attr-defined]
     scene.phases[1].main.defaults.clear()  # type: ignore[attr-defined]
@@ -122,7 +123,7 @@ def test_an_fmu_that_takes_no_line_says_what_is_lost(make_scene: Make, line: flo
     assert lost.account == "not carried: the removal FMU has neither target.attachment_distance nor tether.rest_length"
     assert (SLACK in rows) == (line is not None)
     if line is not None:
-        row, slack = rows[SLACK], 14.0 - REACH
+        row, slack = rows[SLACK], line - REACH
         assert (row.before, row.after, row.accounted) == pytest.approx((slack, 0.0, slack), rel=1e-13)
         assert "not carried" in row.account
     assert LENGTH not in rows

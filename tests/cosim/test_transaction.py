@@ -159,16 +159,17 @@ def test_the_spin_is_judged_at_the_scene_s_tolerance(make_scene: Make) -> None:
     assert refused.exit_code == HANDOFF_FAILED
     assert spinning(make_scene, 1.001 * limit, spin_tolerance=0.11).exit_code == SUCCESS
     assert spinning(make_scene, 0.999 * limit, spin_tolerance=0.09).exit_code == HANDOFF_FAILED
-    told = spinning(make_scene, 5.0)
+    told = spinning(make_scene, 0.05, spin_tolerance=1e-3)
     assert told.handoff is not None
-    assert told.handoff.spin.share == pytest.approx(share(5.0), rel=1e-6)
+    assert told.handoff.spin.share == pytest.approx(share(0.05), rel=1e-6)
     assert told.handoff.failure == told.message
-    spin = 5.0 + joining * RATE
+    spin = 0.05 + joining * RATE
+    assert f"{spin:.4g}" != "0.05", "the net's share shows"
     for text in (
         "hand-off refused: the removal's point target cannot carry the spin, and the spin would change the answer\n",
         f"spin of target and net {spin:.4g} N m s ",
         f"moves the tether's end at up to {spin / smallest * arm:.4g} m/s,\n",
-        f"{share(5.0):.3g} times the {tug:.4g} m/s of the first tug; handoff.spin_tolerance allows 0.1\n",
+        f"{share(0.05):.3g} times the {tug:.4g} m/s of the first tug; handoff.spin_tolerance allows 0.001\n",
         "a removal whose target is a rigid body would carry it",
     ):
         assert text in told.message
