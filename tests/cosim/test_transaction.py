@@ -110,6 +110,25 @@ def test_a_removal_that_ignores_where_the_line_is_made_fast_is_caught(make_scene
     assert f"the removal computes {DISTANCE:.12g} m" in wrong.message
 
 
+def test_a_chaser_nearer_than_the_attachment_is_compared_by_size(make_scene: Make) -> None:
+    """The vertex far behind the target: the line's length is then less than nothing, and a bend of 28 m is told."""
+
+    class Beyond(MockCapture):
+        def refresh(self) -> None:
+            super().refresh()
+            self.values |= {"vertex.position[1]": 0.0, "vertex.position[2]": 14.0}
+
+    scene = make_scene("capture", "removal")
+    scene.phases[1].main.parameters["tether.rest_length"] = 30.0  # type: ignore[index]
+    result = run(scene, Telling, Beyond(INSTANT, reports=True))
+    assert result.exit_code == SUCCESS, result.message
+    assert result.handoff is not None
+    check = next(check for check in result.handoff.checks if check.quantity == "size of tether.length")
+    assert check.given == pytest.approx(14.0 - 6.0 * CATCH / 1006.0 - DISTANCE, rel=1e-9)
+    slack = next(row for row in result.handoff.rows if row.quantity == "slack of the line")
+    assert slack.after - slack.before == pytest.approx(2.0 * (14.0 - 6.0 * CATCH / 1006.0), rel=1e-9)
+
+
 def test_a_removal_that_lacks_a_parameter_is_named(make_scene: Make) -> None:
     class Short(MockRemoval):
         def set(self, values: dict[str, float]) -> None:  # type: ignore[override]
@@ -128,7 +147,11 @@ def test_a_removal_that_lacks_a_parameter_is_named(make_scene: Make) -> None:
 
 def test_an_open_row_is_told_in_full(make_scene: Make) -> None:
     result = run(make_scene("capture", "removal"), lambda: MockRemoval({"target.mass": 1.01}))
-    line = next(line for line in result.message.splitlines() if "mass, target and net" in line)
+    first, *lines = result.message.splitlines()
+    assert first == "hand-off violated: the ledger does not close"
+    assert len(lines) > 3
+    assert all(line.startswith("  ") and line.endswith(" of the sum of magnitudes") for line in lines)
+    line = next(line for line in lines if "mass, target and net" in line)
     assert line.strip().startswith("mass, target and net: before 1006 kg, after 1016.0")
     assert "difference -10.1 kg is 0.00335 of the sum of magnitudes" in line
 
