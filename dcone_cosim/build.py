@@ -5,6 +5,7 @@ No other module of this package knows `fmu_src`: everything else works on an FMU
 
 from __future__ import annotations
 
+import math
 import os
 import time as clock
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -101,11 +102,18 @@ def cannot_work(
 
         capacity = int(terms["nodes"]) if "nodes" in terms else None
         return [Refusal(*row) for row in refusals(values, duration, capacity)]
-    longest = values.get("tether.rest_length")
-    separation = values["start.separation"]
-    if handed_over or values["start.condition"] == HANDED_OVER or longest is None or separation <= longest:
+    if handed_over or values["start.condition"] == HANDED_OVER:
         return []
-    expected = f"must be at most tether.rest_length, {longest:g} m, or the locked line would start stretched"
+    separation, attachment = values["start.separation"], values["target.attachment_distance"]
+    rest_length = values.get("tether.rest_length", math.inf)
+    longest = rest_length + attachment
+    if separation > longest:
+        sum_of = "tether.rest_length" + (" + target.attachment_distance" if attachment else "")
+        expected = f"must be at most {sum_of}, {longest:g} m, or the locked line would start stretched"
+    elif separation <= attachment:
+        expected = f"must exceed target.attachment_distance, {attachment:g} m: the line ends there"
+    else:
+        return []
     return [Refusal("start.separation", f"{separation:g} m", expected)]
 
 

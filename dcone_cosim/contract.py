@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, spoken_dimension
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS
+from dcone_cosim.line import ATTACHMENT, REST_LENGTH
 from dcone_cosim.names import nearest
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ ENDED = "ended"
 CAPTURE_NEEDS = ("target", "closing")
 """Tables of a scene without which no capture can ever be reported."""
 
-LINE = {"capture": "tether.length", "removal": "tether.rest_length"}
+LINE = {"capture": "tether.length", "removal": REST_LENGTH}
 """Length of the line in each phase: one and the same line."""
 
 HANDED_OVER = "handed_over"
@@ -48,16 +49,19 @@ TUG_PREFIX = "tug["
 TUG_FIELDS = ("time", "peak", "speed")
 
 
-Need = Literal["always", "hand-over", "captured", "settled", "tether_taut", "optional"]
+Need = Literal["always", "hand-over", "captured", "settled", "tether_taut", "slack", "optional"]
 NEEDS: Mapping[str, str] = {
     "always": "always",
     "hand-over": "for a hand-over to the removal",
     "captured": "to hand over, unless hand_over says otherwise",
     "settled": 'for hand_over = "settled"',
     "tether_taut": 'for hand_over = "tether_taut"',
+    "slack": "to be handed the line as it is; without it the line handed over is longer by as much",
     "optional": "reported if it is there",
 }
 """What a variable is needed for."""
+OPTIONAL = ("slack", "optional")
+"""Needs without which an FMU can be swapped in all the same."""
 
 _EACH = tuple(f"[{i}]" for i in (1, 2, 3))
 _WANTED: Mapping[str, Sequence[tuple[Need, Sequence[str]]]] = {
@@ -72,6 +76,7 @@ _WANTED: Mapping[str, Sequence[tuple[Need, Sequence[str]]]] = {
     ),
     "removal": (
         ("hand-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
+        ("slack", (ATTACHMENT,)),
         ("always", ("separation", "tether.tension")),
         ("optional", ("tether.rest_length", "thrust.level")),
         ("optional", tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in _EACH)),
@@ -137,7 +142,7 @@ def check_contract(archive: Archive, phase: str, then_removal: bool = False, han
     for row in asked(phase):
         info = archive.variables.get(row.name)
         needed = row.needed(then_removal, hand_over if phase == "capture" else NEVER)
-        if info is not None and (needed or row.need == "optional"):
+        if info is not None and (needed or row.need in OPTIONAL):
             found += [f"{row.name}: {fault}" for fault in _faults(row, info)]
         elif info is None and needed:
             missing.append(row)
@@ -161,7 +166,7 @@ def near_misses(archive: Archive, phase: str) -> list[str]:
     spare = [name for name in archive.variables if name not in names]
     found = []
     for row in rows:
-        if row.name not in archive.variables and row.need == "optional":
+        if row.name not in archive.variables and row.need in OPTIONAL:
             for name in difflib.get_close_matches(row.name, spare, n=1, cutoff=ALIKE):
                 if archive.variables[name].causality == row.causality:
                     found.append(f"{archive.path.name}: nobody looks for its {name!r}; did you mean {row.name!r}?")

@@ -26,6 +26,7 @@ CAPTURE_OUTPUTS = (
     *(f"chaser.{what}[{i}]" for what in ("position", "velocity") for i in (1, 2, 3)),
     *(f"target.{what}[{i}]" for what in ("position", "velocity", "rate", "inertia", "spin") for i in (1, 2, 3)),
     *(f"target.attitude[{i}]" for i in (1, 2, 3, 4)),
+    *(f"vertex.position[{i}]" for i in (1, 2, 3)),
     "catch.mass",
     *(f"catch.{what}[{i}]" for what in ("position", "velocity", "spin") for i in (1, 2, 3)),
     *(f"catch.inertia[{i}]" for i in range(1, 7)),
@@ -66,13 +67,15 @@ class Body:
 
 @dataclass(frozen=True)
 class Handoff:
-    """What is handed over: the bodies before, the joined body, and the removal's parameters."""
+    """What is handed over: the bodies before, the joined body, where the line is made fast on it [m] (3,), and the
+    removal's parameters."""
 
     chaser: Body
     target: Body
     catch: Body
     catch_energy: float
     joint: Body
+    vertex: Vector
     turning: Vector
     parameters: dict[str, float]
 
@@ -167,7 +170,8 @@ def prepare(capture: Values, frame_rate: float) -> Handoff:
     inner = capture["energy.kinetic"] - 0.5 * catch.mass * float(catch.velocity @ catch.velocity)
     inner += float(turning @ seen_spin) + 0.5 * float(turning @ inertia @ turning)
     joint = join(target, catch, turning)
-    return Handoff(chaser, target, catch, inner, joint, turning, pair_parameters(chaser, joint))
+    vertex = _vector(capture, "vertex.position")
+    return Handoff(chaser, target, catch, inner, joint, vertex, turning, pair_parameters(chaser, joint))
 
 
 def held_bodies(removal: Values) -> tuple[Body, Body]:
@@ -210,13 +214,13 @@ class SpinCheck:
         return self.attachment_speed <= self.tolerance * self.tug_speed
 
 
-def check_spin(handed: Handoff, size: Vector, rest_length: float, thrust: float, tolerance: float) -> SpinCheck:
+def check_spin(handed: Handoff, size: Vector, slack: float, thrust: float, tolerance: float) -> SpinCheck:
     """Compare the speed the dropped spin gives the attachment with the relative speed of the first tug.
 
-        v_tug^2 = v_rel^2 + 2 (|F|/m_chaser) (L0 - distance)
+        v_tug^2 = v_rel^2 + 2 (|F|/m_chaser) s
 
     size          edges of the target                            [m]    (3,)
-    rest_length   L0 of the tether                               [m]
+    slack         s of the tether                                [m]
     thrust        F of the chaser                                [N]
 
     Valid    as an estimate: gravity between hand-over and first tug is left out
@@ -226,8 +230,7 @@ def check_spin(handed: Handoff, size: Vector, rest_length: float, thrust: float,
     arm = 0.5 * float(np.linalg.norm(size))
     speed = float(np.linalg.norm(joint.spin)) / smallest * arm if smallest > 0.0 else 0.0
     relative = joint.velocity - chaser.velocity
-    slack = max(0.0, rest_length - float(np.linalg.norm(joint.position - chaser.position)))
-    tug = math.sqrt(float(relative @ relative) + 2.0 * abs(thrust) / chaser.mass * slack)
+    tug = math.sqrt(float(relative @ relative) + 2.0 * abs(thrust) / chaser.mass * max(0.0, slack))
     return SpinCheck(speed, tug, tolerance)
 
 

@@ -27,7 +27,7 @@ KINDS = ("c", "pythonfmu")
 PHASES = ("capture", "removal")
 _TEMPLATE_HAS = (
     *("t_capture", "outcome", "separation", "relative.position", "relative.velocity"),
-    *("tether.rest_length", "thrust.level"),
+    *("tether.rest_length", "target.attachment_distance", "thrust.level"),
 )
 """Optional variables that the templates have, beside all that is needed for something."""
 LOG_CATEGORIES = (

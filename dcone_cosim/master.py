@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HANDED_OVER, NEVER, OUTCOMES
+from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HANDED_OVER, LINE, NEVER, OUTCOMES
 from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
 from dcone_cosim.fmu.component import CallError, Steppable
 from dcone_cosim.handoff import (
@@ -24,11 +24,13 @@ from dcone_cosim.handoff import (
     Handoff,
     SpinCheck,
     check_spin,
+    held_bodies,
     mean_motion,
     prepare,
     without_recoil,
 )
 from dcone_cosim.ledger import LedgerRow, ledger
+from dcone_cosim.line import ATTACHMENT, LINE_HELD, REST_LENGTH, Line, line_of, line_parameters, line_rows
 from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.mistakes import places_named
@@ -55,12 +57,17 @@ class Check:
 
 @dataclass
 class HandoffRecord:
-    """The transaction as it went: what was mapped, its ledger, the spin check, and why it failed if it did."""
+    """The transaction as it went: what was mapped, its ledger, the spin check, and why it failed if it did.
+
+    line_parameters   what is set in the removal so that its line is the capture's
+    """
 
     time: float
     located_by: str
     handed: Handoff
+    line: Line
     spin: SpinCheck
+    line_parameters: dict[str, float] = field(default_factory=dict)
     rows: list[LedgerRow] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
     failure: str = ""
@@ -165,13 +172,15 @@ def _run_capture(
                 run.fail("hand-off refused", text, HANDOFF_FAILED)
                 return
             removal = next(p for p in run.scene.phases if p.name == "removal")
+            length = LINE["capture"]
             try:
-                values = component.get(names)
+                values = component.get([*names, length] if length in component.variables else names)
             except FmuError as error:
                 run.fail("FMU failed", str(error), FMU_FAILED)
                 return
-            handed = prepare(values, mean_motion(_altitude(run, removal)))
-            run.handoff = HandoffRecord(result.located, result.located_by, handed, SpinCheck(0.0, 0.0, 0.0))
+            handed = prepare(values, mean_motion(_altitude(removal)))
+            line = line_of(handed, values.get(length, _setting(removal, REST_LENGTH)))
+            run.handoff = HandoffRecord(result.located, result.located_by, handed, line, SpinCheck(0.0, 0.0, 0.0))
     finally:
         component.close()
 
@@ -180,9 +189,15 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _altitude(run: RunResult, removal: PhaseScene) -> float:
-    given = removal.main.parameters.get("orbit.altitude")
-    return float(removal.main.defaults["orbit.altitude"] if given is None else given)
+def _setting(phase: PhaseScene, name: str) -> float | None:
+    """What a parameter of the phase is in the scene, or by default; None when its FMU has none of that name."""
+    return phase.main.parameters.get(name, phase.main.defaults.get(name))
+
+
+def _altitude(removal: PhaseScene) -> float:
+    altitude = _setting(removal, "orbit.altitude")
+    assert altitude is not None, "the contract asks for it"
+    return altitude
 
 
 def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress) -> None:
@@ -207,6 +222,9 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
             raise
         run.fail("FMU failed", str(error), FMU_FAILED)
         return
+    if record is not None:
+        record.line_parameters = line_parameters(record.line, component.variables)
+        parameters |= record.line_parameters
     try:
         try:
             run.parameters["removal"] = _start(component, parameters, start, phase.duration)
@@ -268,23 +286,19 @@ def advanced(anomaly: float, by: float) -> float:
 
 def _check_before(run: RunResult, phase: PhaseScene, record: HandoffRecord) -> None:
     """Refuse a hand-off that the removal could not carry truthfully."""
-
-    def value(name: str, absent: float) -> float:
-        return float(phase.main.parameters.get(name, phase.main.defaults.get(name, absent)))
-
     capture = run.parameters["capture"]
     size = np.array([capture[f"target.size[{i}]"] for i in (1, 2, 3)])
-    rest_length = value("tether.rest_length", value("reel.length", np.inf))
     tolerance = float(run.scene.handoff.get("spin_tolerance", 0.1))
-    handed = record.handed
-    distance = float(np.linalg.norm(handed.joint.position - handed.chaser.position))
-    slack = rest_length if np.isfinite(rest_length) else distance
-    spin = check_spin(handed, size, slack, value("thrust.level", 0.0), tolerance)
+    handed, line = record.handed, record.line
+    elastic, commanded = _setting(phase, REST_LENGTH), _setting(phase, "reel.length")
+    length = commanded if elastic is None else elastic
+    slack = 0.0 if length is None else length + line.attachment - line.distance
+    spin = check_spin(handed, size, slack, _setting(phase, "thrust.level") or 0.0, tolerance)
     record.spin = spin
-    if "tether.rest_length" in phase.main.defaults and distance > rest_length:
+    if elastic is not None and line.overrun:
         raise HandoffError(
-            f"hand-off refused: at t = {record.time:.6g} s target and chaser are {distance:.6g} m apart, "
-            f"the tether is {rest_length:.6g} m long; give it more, or shoot from nearer"
+            f"hand-off refused: at t = {record.time:.6g} s the chaser and the net's vertex are {line.reach:.6g} m "
+            f"apart, the tether is {line.length:.6g} m long; give it more, or shoot from nearer"
         )
     if not spin.accepted:
         raise HandoffError(
@@ -302,9 +316,11 @@ def _close_ledger(record: HandoffRecord, component: Steppable) -> None:
     missing = [name for name in REMOVAL_SETS if name not in component.variables]
     if missing:
         raise HandoffError(f"hand-off violated: the removal FMU lacks {', '.join(missing)}")
-    held = component.get(REMOVAL_SETS)
-    record.rows = ledger(record.handed, held)
-    record.checks = _cross_check(record.handed, component)
+    held = component.get([*REMOVAL_SETS, *(name for name in LINE_HELD if name in component.variables)])
+    chaser, target = held_bodies(held)
+    apart = float(np.linalg.norm(target.position - chaser.position))
+    record.rows = ledger(record.handed, held) + line_rows(record.line, record.line_parameters, held, apart)
+    record.checks = _cross_check(record, component)
     broken = [
         f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}, "
         f"difference {row.difference:.3g} {row.unit} is {row.closure:.3g} of the sum of magnitudes"
@@ -320,8 +336,9 @@ def _close_ledger(record: HandoffRecord, component: Steppable) -> None:
         raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
 
 
-def _cross_check(handed: Handoff, component: Steppable) -> list[Check]:
+def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:
     """Sizes that do not depend on the frame they are formed in, as far as the component gives the outputs for them."""
+    handed, attachment = record.handed, record.line_parameters.get(ATTACHMENT)
     joint, chaser = handed.joint, handed.chaser
     relative, rate = joint.position - chaser.position, joint.velocity - chaser.velocity
     distance, speed = float(np.linalg.norm(relative)), float(np.linalg.norm(rate))
@@ -331,6 +348,9 @@ def _cross_check(handed: Handoff, component: Steppable) -> list[Check]:
         ("size of relative.position", _elements("relative.position"), distance, CROSS_CHECK * distance, "m"),
         ("size of relative.velocity", _elements("relative.velocity"), speed, turned, "m/s"),
     ]
+    if attachment is not None:
+        length = abs(distance - attachment)
+        expected.append(("size of tether.length", ("tether.length",), length, CROSS_CHECK * distance, "m"))
     checks = []
     for label, names, given, tolerance, unit in expected:
         if all(name in component.variables for name in names):

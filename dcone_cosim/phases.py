@@ -217,7 +217,9 @@ class CaptureLoop:
         """
         component, result = self.component, self.result
         place = self.place.get("t_capture")
-        reported = float(self.read.values[place]) if place is not None and self.plan.hand_over == "captured" else -1.0
+        reported = (
+            float(self.read.values[place]) if place is not None and self.plan.hand_over == "captured" else math.nan
+        )
         if not self.can_locate:
             why = "takes only steps of one length" if component.can_save else "cannot save its state"
             result.located_by = f"end of the macro step of {end - begin:g} s: this FMU {why}"

@@ -192,7 +192,12 @@ def _write_ledger(run: RunResult, draft: Path) -> None:
             "spin": {"value": handed.joint.spin, "unit": "N m s"},
             "inertia": {"value": handed.joint.inertia, "unit": "kg m2"},
         },
-        "set_in_removal": handed.parameters,
+        "line": {
+            "length": {"value": record.line.length, "unit": "m"},
+            "attachment_distance": {"value": record.line.attachment, "unit": "m"},
+            "slack": {"value": record.line.slack, "unit": "m"},
+        },
+        "set_in_removal": handed.parameters | record.line_parameters,
         "failure": record.failure,
     }
     _write_json(draft / "ledger.json", content)

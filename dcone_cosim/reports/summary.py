@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dcone_cosim.handoff import spin_energy
+from dcone_cosim.line import OFFSET, SLACK
 from dcone_cosim.master import HandoffRecord, RunResult
 from dcone_cosim.phases import PhaseResult
 from orbital.constants import EARTH_MU
@@ -142,12 +143,27 @@ def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
     yield Finding("hand-off", "spin_energy_dropped", "energy of the dropped spin", spin_energy(handed.joint), "J")
     yield Finding("hand-off", "attachment_speed", "it moves the tether's end by at most", 1e3 * speed, "mm/s")
     yield Finding("hand-off", "tug_speed", "speed of the first tug, estimated", 1e3 * spin.tug_speed, "mm/s")
+    yield from _of_line(record)
     if record.rows:
         worst = max(record.rows, key=lambda row: row.closure)
         yield Finding("hand-off", "ledger_closure", "ledger closes to", worst.closure)
         energy = next(row for row in record.rows if row.quantity == "kinetic energy")
         lost = energy.accounted - spin_energy(handed.joint)
         yield Finding("hand-off", "energy_lost", "energy lost as the net joins", lost, "J")
+
+
+def _of_line(record: HandoffRecord) -> Iterator[Finding]:
+    """Which line was handed over, and what is not as it was."""
+    line = record.line
+    if line.length is not None:
+        yield Finding("hand-off", "line", "line, from the chaser to the net's vertex", line.length, "m")
+    yield Finding("hand-off", "attachment_distance", "vertex to centre of mass", line.attachment, "m")
+    for row in record.rows:
+        if row.quantity == SLACK:
+            yield Finding("hand-off", "slack", "slack of the line", row.before, "m")
+            yield Finding("hand-off", "slack_after", "slack in the removal", row.after, "m")
+        if row.quantity == OFFSET and row.account:
+            yield Finding("hand-off", "line_carried", "line", row.account)
 
 
 MOST_OUTPUTS = 12

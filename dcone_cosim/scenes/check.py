@@ -17,6 +17,7 @@ from dcone_cosim import build
 from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER, check_contract, near_misses
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
+from dcone_cosim.line import line_notes
 from dcone_cosim.scenes.coupling import about_components, about_one_length, read_connections, read_coupling
 from dcone_cosim.scenes.fmus import file_of, offer, opened
 from dcone_cosim.scenes.keys import (
@@ -218,6 +219,8 @@ def _close_calls(phases: Mapping[str, _Phase], chosen: list[str]) -> Iterator[st
         archive = phases[name].main.part.archive
         if archive is not None:
             yield from near_misses(archive, name)
+            if name == "removal" and len(chosen) == len(PHASES):
+                yield from (f"{archive.path.name}: {note}" for note in line_notes(archive.variables))
 
 
 def _named_model(part: Part, tables: dict[str, Any], mistakes: list[Mistake]) -> bool:

@@ -13,6 +13,7 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.handoff import REMOVAL_SETS
+from dcone_cosim.line import ATTACHMENT
 from dcone_cosim.scenes.keys import COUPLING_KEYS, HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
 from dcone_cosim.scenes.parts import term_named
 from dcone_cosim.scenes.scene import PHASES
@@ -62,7 +63,7 @@ def _owned(present: Sequence[str]) -> tuple[str, ...]:
     """Beginnings of names that the hand-off sets when both phases run."""
     if len(present) < len(PHASES):
         return ()
-    return ("start.", *(name.partition("[")[0] for name in REMOVAL_SETS))
+    return ("start.", ATTACHMENT, *(name.partition("[")[0] for name in REMOVAL_SETS))
 
 
 def _somewhere(document: Mapping[str, Any], name: str) -> bool:

@@ -9,6 +9,7 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER
 from dcone_cosim.handoff import REMOVAL_SETS
+from dcone_cosim.line import ATTACHMENT
 from dcone_cosim.scenes.keys import MOST_STEPS, SHARED
 from dcone_cosim.scenes.mistakes import Mistake, shown, unknown
 from dcone_cosim.scenes.parts import Part
@@ -61,7 +62,7 @@ def about_hand_over(document: dict[str, Any], mains: Mapping[str, Part], chosen:
 
 def set_by_handoff(document: dict[str, Any], removal: Part) -> Iterator[Mistake]:
     """Keys of the removal that the hand-off sets, and orbits on which the two phases do not fit together."""
-    owned = {name.partition("[")[0] for name in (*REMOVAL_SETS, "start.condition")}
+    owned = {name.partition("[")[0] for name in (*REMOVAL_SETS, ATTACHMENT, "start.condition")}
     text = "is set by the hand-off from the capture; leave it out, or run the removal alone"
     tables = document["removal"]
     for section, keys in tables.items():
@@ -121,7 +122,8 @@ def about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
 
 
 def about_line(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
-    """The one line of two phases: the same length in both, and more than the distance it has to span at the shot."""
+    """The one line of two phases: the same length in both, and more than the least it has to span at the shot: from the
+    chaser to the nearest point that a target of that size can have, however it lies."""
     if len(scene.phases) < len(PHASES):
         return
     capture, removal = ({**phase.main.defaults, **phase.main.parameters} for phase in scene.phases)
@@ -142,6 +144,7 @@ def about_line(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
     if not all(name in capture for name in start):
         return
     distance, speed = (math.hypot(*(capture[name] for name in names)) for names in (start[:3], start[3:]))
-    if length <= distance - speed * scene.phases[0].duration:
-        text = f"must exceed {distance:.6g} m, the distance from chaser to target at the shot: a locked line would "
-        yield Mistake(paths[at], told[at], text + "start stretched", f"{length:g} m")
+    nearest = distance - 0.5 * math.hypot(*(capture.get(f"target.size[{i}]", 0.0) for i in (1, 2, 3)))
+    if length <= nearest - speed * scene.phases[0].duration:
+        text = f"must exceed {nearest:.6g} m, the distance from the chaser to the target's nearest point at the shot: "
+        yield Mistake(paths[at], told[at], text + "a locked line would start stretched", f"{length:g} m")

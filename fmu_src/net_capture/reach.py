@@ -149,8 +149,8 @@ def _about_shot(parameters: Parameters, duration: float) -> Iterator[Refusal]:
     near = distance - half_diagonal
     place, shown = "chaser.start_position", _text(chaser, " m")
     tether = parameters.get("tether.length")
-    if tether is not None and tether < distance:
-        expected = f"must be at least {distance:.4g} m, the distance to the target"
+    if tether is not None and tether < near:
+        expected = f"must be at least {near:.4g} m, the distance to the target's nearest point"
         yield Refusal("tether.length", f"{tether:g} m", expected)
     girth = 2.0 * (sum(size) - max(size))
     if 4.0 * side <= girth:

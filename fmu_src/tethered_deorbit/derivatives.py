@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.law import Reel
-from fmu_src.tethered_deorbit.tether import length_acceleration
+from fmu_src.tethered_deorbit.tether import length_acceleration, line_length
 from orbital.constants import EARTH_MU
 from orbital.frames import orbital_basis
 from orbital.kernel import kernel
@@ -77,13 +77,13 @@ def make_differentiate(inertial: Callable[..., Any], reel: Reel) -> Callable[...
     """
 
     @kernel
-    def differentiate(record: Any, state: Array, rate: Array, length: float, speed: float) -> None:
+    def differentiate(record: Any, state: Array, rate: Array, separation: float, speed: float) -> None:
         """Rates at one instant, at which the inputs in force begin to move.
 
         state         R, V, rho, rho'  of `layout`, inertial     (12,)
         rate          room for its rate                          (12,)
-        length        l      of the line                         [m]
-        speed         l'     of lengthening                      [m/s]
+        separation    s      of the centres of mass              [m]
+        speed         s'     its rate, which is the line's       [m/s]
 
             a' = 2 a^2/mu V.(A - g),   E' = M V.(A - g),   g = -mu R/|R|^3
             (energy.relative)' = m_r (q.q' - 3 n^2 x x' + n^2 z z' + n n' (z^2 - 3 x^2)) + that of the line
@@ -94,7 +94,8 @@ def make_differentiate(inertial: Callable[..., Any], reel: Reel) -> Callable[...
         """
         r = record[0]
         inertial(record, state, rate, 0.0)
-        acceleration = length_acceleration(state[6:9], state[9:12], rate[9:12], length, speed)
+        acceleration = length_acceleration(state[6:9], state[9:12], rate[9:12], separation, speed)
+        length = line_length(record, separation)
         r.rate_length_rate = acceleration
         r.rate_tension = 0.0
         r.partial_tension = 0.0

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from fmu_src.integrators import AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.law import Reel
-from fmu_src.tethered_deorbit.tether import length_acceleration, length_rate
+from fmu_src.tethered_deorbit.tether import length_acceleration, length_rate, line_length
 from fmu_src.tethered_deorbit.turning import turning_share
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
@@ -50,10 +50,11 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
     @kernel
     def signals(record: Any, state: Array, rate: Array, elapsed: float) -> tuple[float, float, float, float]:
         position, velocity, acceleration = state[6:9], state[9:12], rate[9:12]
-        length = norm(position)
-        speed = length_rate(position, velocity, length)
-        change = length_acceleration(position, velocity, acceleration, length, speed)
-        change += turning_share(record, position, velocity, length)
+        separation = norm(position)
+        speed = length_rate(position, velocity, separation)
+        change = length_acceleration(position, velocity, acceleration, separation, speed)
+        change += turning_share(record, position, velocity, separation)
+        length = line_length(record, separation)
         since = record[0].state_since + elapsed
         tension = reel.tension(record, length, speed, since)
         tension_rate = reel.tension_rate(record, length, speed, change, since)

@@ -37,7 +37,7 @@ FAULTS = (
     Fault(
         START_STRETCHED,
         "error",
-        "start.separation exceeds the line's length: a locked line would start stretched",
+        "start.separation exceeds the line and target.attachment_distance: a locked line would start stretched",
         True,
     ),
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),
@@ -115,7 +115,9 @@ def _ring(name: str, unit: str, description: str) -> Variable:
 BODIES = (
     _positive("chaser.mass", "kg", "chaser with thruster, reel and propellant; held constant", 2000.0, 1e6),
     _positive("target.mass", "kg", "debris with the net that holds it", 1000.0, 1e6),
-)
+    _parameter("target.attachment_distance", "m", "from the target's centre of mass to where the line is made fast",
+               0.0, 0.0, 1e4),
+)  # fmt: skip
 
 ORBIT = (
     _parameter("orbit.altitude", "m", "semi-major axis less the equatorial radius, 6378.137 km", 800e3, 100e3, 1e8,
@@ -136,7 +138,7 @@ START = (
         CONDITIONS,
     ),
     _choice("start.leading", "the body that is ahead on the orbit (not for handed_over)", LEADERS),
-    _positive("start.separation", "m", "distance of the two bodies (not for handed_over)", 10.0, 1e5),
+    _positive("start.separation", "m", "distance of the two centres of mass (not for handed_over)", 10.0, 1e5),
     _start("start.center_position", "m", "handed over: centre of mass less the orbit's point, its orbital frame", 1e6),
     _start("start.center_velocity", "m/s", "handed over: its rate as seen in that turning frame", 1e4),
     _start("start.relative_position", "m", "handed over: target minus chaser, the same frame", 1e6),
@@ -154,7 +156,8 @@ OUTPUTS = (
     _out("tether.tension", "N", "in the line, zero when slack", 1.0, "rate.tension",
          partials=(("reel.length_offset", "partial.tension"), ("reel.tension", "partial.tension"))),
     _out("tether.tension_peak", "N", "largest over the last macro step, also between its ends", 1.0, discrete=True),
-    _out("tether.length", "m", "distance of the two ends", 10.0, "tether.length_rate"),
+    _out("tether.length", "m", "between its attachments: separation less target.attachment_distance", 10.0,
+         "tether.length_rate"),
     _out("tether.length_rate", "m/s", "its rate of change", 0.01, "rate.length_rate"),
     _out("tether.taut", "1", "the line carries tension", kind="Boolean", discrete=True,
          partials=(("reel.length_offset", "partial.jump"), ("reel.tension", "partial.jump"))),
@@ -164,7 +167,7 @@ OUTPUTS = (
     _ring("time", "s", "when the tug began, newest first; zero when absent"),
     _ring("peak", "N", "its largest tension; grows until the line is slack again"),
     _ring("speed", "m/s", "rate of lengthening as it began"),
-    _out("separation", "m", "distance of chaser and target", 10.0, "tether.length_rate"),
+    _out("separation", "m", "distance of the two centres of mass", 10.0, "tether.length_rate"),
     _vector("chaser.position", "m", "inertial", 7e6, "chaser.velocity"),
     _vector("chaser.velocity", "m/s", "inertial", 7e3, "rate.chaser_velocity"),
     _vector("target.position", "m", "inertial", 7e6, "target.velocity"),

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 
 class Reel(NamedTuple):
-    """Kernels of one law; lengths in m, rates in m/s, tension in N.
+    """Kernels of one law; lengths in m, rates in m/s, tension in N. `length` is that of the line between its
+    attachments (see `tether.line_length`), not the distance of the bodies.
 
     asked(record) -> (value, rate)                          what the input says
     leave(record, value)                                    write the value reached back to the input
@@ -26,7 +27,7 @@ class Reel(NamedTuple):
     energy(record, length, since)                           stored in a taut line [J]
     energy_rate(record, length, rate, since)                its time derivative [W]
     partials(record, length, rate) -> (by tension, by energy)   derivatives by the command of a taut line, at since = 0
-    start_limit(record)                                     longest separation with which a pair may start
+    start_limit(record)                                     longest line with which a pair may start
     """
 
     asked: Callable[..., Any]

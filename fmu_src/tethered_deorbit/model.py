@@ -20,7 +20,7 @@ from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish
 from fmu_src.tethered_deorbit.reel import make_reel
 from fmu_src.tethered_deorbit.start import start_state
-from fmu_src.tethered_deorbit.tether import add_tension, elastic_stiffness, length_rate
+from fmu_src.tethered_deorbit.tether import add_tension, elastic_stiffness, length_rate, line_length
 from fmu_src.tethered_deorbit.thrust import make_no_thrust, make_thrust
 from fmu_src.tethered_deorbit.trajectory import make_measure, make_trajectory
 from fmu_src.tethered_deorbit.turning import add_turning
@@ -45,6 +45,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     references = MODEL.interface(terms).references
     command_slot = references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     chaser_mass, target_mass = references["chaser.mass"], references["target.mass"]
+    attachment = references["target.attachment_distance"]
     tolerance_orbit, tolerance_separation, tolerance_stretch = (
         references[f"solver.tolerance_{what}"] for what in ("orbit", "separation", "stretch")
     )
@@ -57,9 +58,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         add_gravity(record, state, rate)
         thrust.add(record, state, rate, since)
         if record[0].state_taut:
-            length = norm(state[6:9])
-            speed = length_rate(state[6:9], state[9:12], length)
-            add_tension(record, state, rate, reel.tension(record, length, speed, since), length)
+            separation = norm(state[6:9])
+            speed = length_rate(state[6:9], state[9:12], separation)
+            tension = reel.tension(record, line_length(record, separation), speed, since)
+            add_tension(record, state, rate, tension, separation)
 
     @kernel
     def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:
@@ -84,9 +86,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     def judge_line(record: Any, state: Array) -> float:
         """Decide afresh whether the line is taut, from the law alone; returns its rate of lengthening [m/s]."""
         r = record[0]
-        length = norm(state[6:9])
-        speed: float = length_rate(state[6:9], state[9:12], length)
-        r.state_taut = 1 if reel.taut(record, length, speed) else 0
+        separation = norm(state[6:9])
+        speed: float = length_rate(state[6:9], state[9:12], separation)
+        r.state_taut = 1 if reel.taut(record, line_length(record, separation), speed) else 0
         return speed
 
     @kernel
@@ -104,6 +106,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return blame(record, BAD_PARAMETER, chaser_mass, r.chaser_mass)
         if not r.target_mass > 0.0:
             return blame(record, BAD_PARAMETER, target_mass, r.target_mass)
+        if not 0.0 <= r.target_attachment_distance < math.inf:
+            return blame(record, BAD_PARAMETER, attachment, r.target_attachment_distance)
         if not r.solver_tolerance_orbit > 0.0:
             return blame(record, BAD_PARAMETER, tolerance_orbit, r.solver_tolerance_orbit)
         if not r.solver_tolerance_separation > 0.0:
@@ -297,13 +301,13 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 return fail(record, code, r.state_begin)
         note_tension(record, work, target)
         here = work[layout.HERE : layout.SLOPE]
-        length, speed = trajectory.state_at(record, work, target, here)
+        separation, speed = trajectory.state_at(record, work, target, here)
         if not finite(here):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), target)
         radius = norm(here[0:3])
         if radius < EARTH_EQUATORIAL_RADIUS:
             return fail(record, blame(record, GROUND, 0, radius), target)
-        publish(record, here, length, speed, r.state_since + (target - r.state_begin))
+        publish(record, here, separation, speed, r.state_since + (target - r.state_begin))
         thrust.publish(record, target)
         r.tether_tension_peak = max(r.tether_tension_peak, r.tether_tension)
         r.state_published = target
@@ -316,7 +320,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         """Outputs that depend directly on inputs, or derivatives, for the inputs of now; the state stays."""
         r = record[0]
         here = work[layout.HERE : layout.SLOPE]
-        length, speed = trajectory.state_at(record, work, r.state_published, here)
+        separation, speed = trajectory.state_at(record, work, r.state_published, here)
         command, command_rate, taut = r.state_command, r.state_command_rate, r.state_taut
         force, force_rate = r.state_thrust, r.state_thrust_rate
         asked, asked_rate = reel.asked(record)
@@ -332,11 +336,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if differentiating:
             asked_force, asked_force_rate = thrust.asked(record)
             thrust.put(record, asked_force, force_rate if asked_force == force else asked_force_rate)
-            differentiate(record, here, work[layout.SLOPE : layout.LOW], length, speed)
+            differentiate(record, here, work[layout.SLOPE : layout.LOW], separation, speed)
             thrust.publish_rate(record)
             thrust.put(record, force, force_rate)
         else:
-            publish(record, here, length, speed, 0.0)
+            publish(record, here, separation, speed, 0.0)
         reel.prepare(record, command, command_rate, 0.0)
         r.state_taut = taut
         return 0

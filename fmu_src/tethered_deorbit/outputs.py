@@ -8,6 +8,7 @@ from typing import Any
 
 from fmu_src.tethered_deorbit.interface import TUGS
 from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.tether import line_length
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.frames import orbital_basis, relative_to_orbital
 from orbital.hill import hill_jacobi
@@ -57,20 +58,21 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
     """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
 
     @kernel
-    def publish(record: Any, state: Array, length: float, rate: float, since: float) -> None:
+    def publish(record: Any, state: Array, separation: float, rate: float, since: float) -> None:
         """Outputs at one instant; `state` (12,) as in `layout`, and `state.taut`, the line's condition there.
 
-        length        l      of the line                         [m]
-        rate          l'     of lengthening                      [m/s]
+        separation    s      of the centres of mass              [m]
+        rate          s'     its rate, which is the line's       [m/s]
         since         time   since the inputs in force began to move  [s]
 
-        energy.relative = m_r (hill_jacobi + k s^2/(2 m_r)),   s = l - l0 while taut (a locked reel's elastic energy)
+        energy.relative = m_r (hill_jacobi + k d^2/(2 m_r)),   d = l - l0 while taut (a locked reel's elastic energy)
 
         Checked  tests/tethered_deorbit/test_start.py
         """
         r = record[0]
         position, velocity = state[6:9], state[9:12]
-        r.separation = length
+        length = line_length(record, separation)
+        r.separation = separation
         r.tether_length = length
         r.tether_length_rate = rate
         r.tether_taut = r.state_taut

@@ -16,6 +16,7 @@ from fmu_src.tethered_deorbit.interface import (
     START_STRETCHED,
     VBAR,
 )
+from fmu_src.tethered_deorbit.tether import line_length
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.frames import orbital_basis, relative_to_inertial, state_to_inertial
 from orbital.kepler import elements_to_state
@@ -125,7 +126,7 @@ def start_state(record: Any, state: Array, longest: float) -> int:
 
     The plus sign holds when the target leads.
 
-    longest       longest separation for the first three         [m]
+    longest       longest line for the first three               [m]
 
     Valid    perigee above the equatorial radius
     Source   fmu_src/tethered_deorbit/README.md, What is computed
@@ -142,9 +143,9 @@ def start_state(record: Any, state: Array, longest: float) -> int:
         if not norm(r.start_relative_position) > 0.0:
             return blame(record, NO_LINE, RELATIVE_POSITION, 0.0)
     else:
-        if not r.start_separation > 0.0:
+        if not line_length(record, r.start_separation) > 0.0:
             return blame(record, BAD_PARAMETER, SEPARATION, r.start_separation)
-        if r.start_separation > longest:
+        if line_length(record, r.start_separation) > longest:
             return blame(record, START_STRETCHED, SEPARATION, r.start_separation)
     if r.start_condition == SAME_ORBIT:
         return int(_same_orbit(record, state))

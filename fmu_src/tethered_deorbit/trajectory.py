@@ -103,8 +103,8 @@ class Trajectory(NamedTuple):
 
     restart(record, work, time)               begin anew at the state stored as END
     advance(record, work, longest) -> fault   take the next step, up to a change of the line, but no longer [s]
-    state_at(record, work, time, out) -> (length [m], its rate [m/s])   state within the current step, inertial axes;
-                                              the line's length from before the axes are turned back: the bits of
+    state_at(record, work, time, out) -> (separation [m], its rate [m/s])   state within the current step, inertial
+                                              axes; the separation from before the axes are turned back: the bits of
                                               the tension do not depend on who looks
     """
 
@@ -257,9 +257,9 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
             scheme.dense_value(
                 work[layout.BEGIN : layout.END], work[layout.DENSE : layout.WORK], fraction, 0, layout.SIZE, out
             )
-        length = norm(out[6:9])
-        speed = length_rate(out[6:9], out[9:12], length)
+        separation = norm(out[6:9])
+        speed = length_rate(out[6:9], out[9:12], separation)
         turn_back(record, since, out)
-        return length, speed
+        return separation, speed
 
     return Trajectory(restart, advance, state_at)

@@ -20,10 +20,11 @@ def _no_limit(record: Any) -> float:
 def make_linear() -> Reel:
     """A reel that controls tension, its line stiff against what it does.
 
-        T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt),   T_ff = 3 n^2 m_r l_c,   l_c = commanded length + offset
+        T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt),   T_ff = 3 n^2 m_r (l_c + a),   l_c = commanded length + offset
 
-    The feed-forward is the tension at rest about the local vertical, n the mean motion of the reference orbit. It moves
-    with the commanded length; the damping stays on dl/dt itself.
+    The feed-forward is the tension at rest about the local vertical, n the mean motion of the reference orbit: the tide
+    pulls by the distance of the centres, so a, from the attachment to the target's, counts in it. It moves with the
+    commanded length; the damping stays on dl/dt itself.
 
     Valid    winding speeds and tensions within what the reel can do
     Source   fmu_src/tethered_deorbit/README.md, What is computed
@@ -55,7 +56,8 @@ def make_linear() -> Reel:
         r.state_length = length
         r.state_stiffness = r.reel_proportional_gain
         r.state_damping = r.reel_derivative_gain
-        r.state_feed_forward = 3.0 * r.state_mean_motion * r.state_mean_motion * r.state_reduced_mass * length
+        apart = length + r.target_attachment_distance
+        r.state_feed_forward = 3.0 * r.state_mean_motion * r.state_mean_motion * r.state_reduced_mass * apart
         r.state_frequency = max(
             math.sqrt(r.state_stiffness / r.state_reduced_mass), r.state_damping / r.state_reduced_mass
         )
@@ -69,7 +71,8 @@ def make_linear() -> Reel:
         commanded, forward = r.state_length, r.state_feed_forward
         if r.state_command_rate != 0.0:
             commanded = r.state_length + r.state_command_rate * since
-            forward *= commanded / r.state_length
+            attachment = r.target_attachment_distance
+            forward *= (commanded + attachment) / (r.state_length + attachment)
         stretch = length - commanded
         force: float = forward + r.state_stiffness * stretch + r.state_damping * rate
         return force
@@ -79,7 +82,8 @@ def make_linear() -> Reel:
         r = record[0]
         slope: float = r.state_stiffness * (rate - r.state_command_rate) + r.state_damping * acceleration
         if r.state_command_rate != 0.0:
-            slope += r.state_feed_forward * r.state_command_rate / r.state_length
+            apart = r.state_length + r.target_attachment_distance
+            slope += r.state_feed_forward * r.state_command_rate / apart
         return slope
 
     @kernel
@@ -111,7 +115,7 @@ def make_linear() -> Reel:
     @kernel
     def partials(record: Any, length: float, rate: float) -> tuple[float, float]:
         r = record[0]
-        by_tension = r.state_feed_forward / r.state_length - r.state_stiffness
+        by_tension = r.state_feed_forward / (r.state_length + r.target_attachment_distance) - r.state_stiffness
         by_energy = -r.state_stiffness * (length - r.state_length)
         return by_tension, by_energy
 

@@ -26,7 +26,7 @@ def scene_of(*phases: str, **handoff: Any) -> Scene:
                 "removal",
                 "mock",
                 parameters={"tether.rest_length": 20.0, "thrust.level": -0.01, "orbit.altitude": 800e3},
-                defaults={"tether.rest_length": 12.0},
+                defaults={"tether.rest_length": 12.0, "target.attachment_distance": 0.0},
                 choices={"start.condition": ("same_orbit", "handed_over")},
             ),
             10.0,

@@ -1,7 +1,7 @@
 """Stand-ins for FMUs, in plain Python: they offer what the master asks of a component, and nothing else.
 
 `MockCapture` drifts a target, a chaser and a net along straight lines and is captured at a set instant; `MockRemoval`
-holds what it is given and reports tugs from a list. Both can be told to misbehave.
+holds what it is given and reports tugs from a list. Both can be told to misbehave, or to lack what is optional.
 """
 
 from __future__ import annotations
@@ -101,6 +101,7 @@ class MockCapture(MockComponent):
         outcome: str = "captured",
         spin: float = 0.0,
         fails_at: float = np.inf,
+        line: float | None = None,
     ) -> None:
         super().__init__("capture", can_save)
         self.instant, self.reports, self.ends_as, self.fails_at = instant, reports, outcome, fails_at
@@ -113,6 +114,9 @@ class MockCapture(MockComponent):
         self.declare(elements("target.inertia"), "output", 1500.0)
         self.declare(elements("target.spin"), "output")
         self.declare(elements("target.attitude", 4), "output")
+        self.declare(elements("vertex.position"), "output")
+        if line is not None:
+            self.declare(["tether.length"], "parameter", line)
         self.declare(["catch.mass"], "output", 6.0)
         for name in ("catch.position", "catch.velocity", "catch.spin"):
             self.declare(elements(name), "output")
@@ -130,10 +134,12 @@ class MockCapture(MockComponent):
         done = self.time >= self.instant
         self.values["chaser.position[2]"] = -12.0 - 0.005 * self.time
         self.values["catch.position[2]"] = -12.0 + 5.0 / 3.0 * self.time
+        self.values |= {"vertex.position[1]": 0.3, "vertex.position[2]": self.values["catch.position[2]"] - 1.5}
         good = self.ends_as in ("captured", "settled")
         self.values["captured"] = float(done and good)
         self.values["outcome"] = float(OUTCOMES.index(self.ends_as) if done else 0)
-        self.values["t_capture"] = self.instant if done and good and self.reports else -1.0
+        if "t_capture" in self.values:
+            self.values["t_capture"] = self.instant if done and good and self.reports else -1.0
 
 
 class MockRemoval(MockComponent):
@@ -146,10 +152,14 @@ class MockRemoval(MockComponent):
         tampered: Mapping[str, float] | None = None,
         tugs: Sequence[tuple[float, float, float]] = (),
         grows: float = 0.0,
+        without: Sequence[str] = (),
     ) -> None:
         super().__init__("removal")
         self.tampered, self.tugs, self.grows = dict(tampered or {}), list(tugs), grows
-        self.declare(["chaser.mass", "target.mass", "start.condition", "tether.rest_length"], "parameter")
+        self.declare(["chaser.mass", "target.mass", "start.condition"], "parameter")
+        line = {"tether.rest_length": 12.0, "target.attachment_distance": 0.0}
+        for name in line.keys() - set(without):
+            self.declare([name], "parameter", line[name])
         self.declare(["orbit.altitude", "orbit.true_anomaly", "thrust.level"], "parameter")
         for name in ("center_position", "center_velocity", "relative_position", "relative_velocity"):
             self.declare(elements(f"start.{name}"), "parameter")

@@ -114,10 +114,13 @@ def test_a_title_is_a_text() -> None:
 def test_a_line_shorter_than_the_way_is_refused_before_the_shot() -> None:
     """Whether the capture has a tether of its own or not; a chaser that closes in may have a shorter one."""
     both = complaint(changed("mission", (REST, 'rest_length = "5 m"')))
-    assert "must exceed 12 m, the distance from chaser to target" in both
+    # 12 m less half the diagonal of 2.5 x 3.9 x 2.5 m
+    assert "must exceed 9.36799 m, the distance from the chaser to the target's nearest point" in both
     without = (f"[capture.tether]\n{PAID_OUT}\n", "")
     alone = complaint(changed("mission", without, (REST, 'rest_length = "5 m"')))
-    assert 'removal.tether.rest_length = "5 m": must exceed 12 m' in alone
+    assert 'removal.tether.rest_length = "5 m": must exceed 9.36799 m' in alone
+    assert parse(changed("mission", without, (REST, 'rest_length = "9.4 m"')), "a", "a").phases
+    assert "must exceed 9.36799 m" in complaint(changed("mission", without, (REST, 'rest_length = "9.3 m"')))
     nearing = (MUZZLE, MUZZLE + '\nstart_velocity = ["0 m/s", "1 m/s", "0 m/s"]')
     assert parse(changed("mission", without, (REST, 'rest_length = "5 m"'), nearing), "a", "a").phases
 
@@ -144,6 +147,10 @@ def test_what_is_refused_is_close_to_what_is_not() -> None:
     ]:
         assert parse(changed("mission", change), "a", "a").phases
     assert parse(changed("table2-deorbit", ('separation = "10 m"', 'separation = "12 m"')), "a", "a").phases
+    off_center = ("[removal.target]", '[removal.target]\nattachment_distance = "3 m"')
+    for separation, told in (("14.9 m", ""), ("15.1 m", "attachment_distance, 15 m"), ("3 m", "must exceed")):
+        text = changed("table2-deorbit", ('separation = "10 m"', f'separation = "{separation}"'), off_center)
+        assert told in complaint(text) if told else parse(text, "a", "a").phases
 
 
 def test_nodes_are_counted_as_the_kernel_counts_them() -> None:

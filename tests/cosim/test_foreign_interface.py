@@ -97,7 +97,9 @@ def test_both_c_templates_fly_a_mission(kits: dict[str, Path], make_scene: Make)
                 archive = capture if phase == "capture" else removal
                 return archive.isolate(name) if isolate else archive.instantiate(name)
 
-            result = run_scene(make_scene("capture", "removal", spin_tolerance=1e9), instantiate, Progress())
+            scene = make_scene("capture", "removal", spin_tolerance=1e9)
+            scene.phases[0].main.parameters["tether.length"] = 20.0  # type: ignore[index]
+            result = run_scene(scene, instantiate, Progress())
             assert result.exit_code == SUCCESS, result.message
             assert result.handoff is not None
             assert result.handoff.time == 16.0 / 3.0

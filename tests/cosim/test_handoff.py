@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -101,15 +103,7 @@ def test_a_mistake_opens_the_ledger(name: str, factor: float, quantity: str) -> 
 
 def test_a_spin_with_the_wrong_sign_opens_the_ledger() -> None:
     handed = prepare(capture_values(5), RATE)
-    flipped = Handoff(
-        handed.chaser,
-        handed.target,
-        handed.catch,
-        handed.catch_energy,
-        Body(handed.joint.mass, handed.joint.position, handed.joint.velocity, -handed.joint.spin, handed.joint.inertia),
-        handed.turning,
-        handed.parameters,
-    )
+    flipped = replace(handed, joint=replace(handed.joint, spin=-handed.joint.spin))
     assert any("spin part" in row.quantity for row in ledger(flipped, held(handed)) if not row.closed)
 
 

@@ -65,7 +65,9 @@ class TestNew:
         text = re.sub(r"\n#   ", " ", begun("mission"))
         scene = next(p for p in load("mission").phases if p.name == phase)
         rows = [v for v in build.settable(build.MODELS[phase].interface(scene.main.terms)) if v.section != "orbit"]
-        owned = ("start.", "target.mass", "chaser.mass") if phase == "removal" else ("\0",)
+        owned = (
+            ("start.", "target.mass", "target.attachment_distance", "chaser.mass") if phase == "removal" else ("\0",)
+        )
         told = [v for v in rows if not build.scene_name(v).startswith(owned)]
         assert len(told) > 8
         for v in told:

@@ -171,3 +171,38 @@ def test_what_an_fmu_prints_is_not_in_the_answer(dcone: Dcone, tmp_path: Path) -
     assert code == 0, err
     assert json.loads(out)["status"] == "completed"
     assert "noise" in err
+
+
+@pytest.mark.parametrize("knows", [True, False])
+def test_where_the_line_is_made_fast_is_handed_over_or_its_line_longer(
+    dcone: Dcone, tmp_path: Path, knows: bool
+) -> None:
+    """An FMU that does not know the distance of the attachment keeps the slack by a longer line, and the scene's check,
+    the ledger and the summary say so; one that knows it has the line of the scene."""
+
+    def without(xml: str) -> str:
+        return xml if knows else xml.replace('name="target.attachment_distance"', 'name="size.of_something"')
+
+    (tmp_path / "mine.toml").write_text(towed_by(build(tmp_path / "theirs", change=without), isolate=False))
+    told = "has no target.attachment_distance: its line is longer by as much"
+    code, out, err = dcone("validate", "mine.toml")
+    assert code == 0
+    assert (told in " ".join((out + err).split())) is not knows
+    code, _, err = dcone("run", "mine.toml", "-o", "out", "--no-figures")
+    assert code == 0, err
+    ledger = json.loads((tmp_path / "out" / "ledger.json").read_text())
+    rows = {row["quantity"]: row for row in ledger["rows"] if row["unit"] == "m"}
+    offset = rows["attachment to centre of mass"]
+    assert offset["before"] == pytest.approx(1.98, abs=0.1)
+    assert offset["after"] == (offset["before"] if knows else 0.0)
+    line = rows["length of the line"]
+    assert (line["before"], line["after"]) == (
+        14.0,
+        14.0 if knows else pytest.approx(14.0 + offset["before"], rel=1e-14),
+    )
+    assert (told in line["account"]) is not knows
+    slack = rows["slack of the line"]
+    assert 0.0 <= slack["after"] - slack["before"] < 2e-3
+    assert ("target.attachment_distance" in ledger["set_in_removal"]) is knows
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())["hand-off"]
+    assert (told in str(summary)) is not knows

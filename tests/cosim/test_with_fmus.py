@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -56,11 +57,32 @@ def test_the_mission(dcone: Both, tmp_path: Path) -> None:
     assert all(row["closed"] for row in ledger["rows"])
     removal = found["removal"]
     assert removal["first_tug"]["value"] < removal["first_tug_without_recoil"]["value"] - 100.0
-    assert removal["first_tug_peak"]["value"] > 2.0 * removal["first_tug_peak_without_recoil"]["value"]
+    assert removal["first_tug_peak"]["value"] > 1.5 * removal["first_tug_peak_without_recoil"]["value"]
     assert {p.suffix for p in (tmp_path / "out").iterdir()} == {".json", ".csv", ".parquet", ".png", ".toml"}
     assert len(list((tmp_path / "out").glob("*.png"))) == 4
     tugs = pyarrow.parquet.read_table(tmp_path / "out" / "tugs.parquet")
     assert len(tugs) == removal["tugs"]["value"]
+
+
+def test_the_mission_keeps_its_slack(dcone: Both, tmp_path: Path) -> None:
+    """14 m of line less the distance of its attachments, from what each phase recorded by itself; with the attachment
+    in the centre of mass two metres were lost. The bend at the vertex is a millimetre."""
+    code, written = dcone("run", "mission", "-o", "out", "--no-figures", "--set", "removal.duration=600 s")
+    assert code == 0, written
+    capture, removal = (pyarrow.parquet.read_table(tmp_path / "out" / f"{p}.parquet") for p in ("capture", "removal"))
+
+    def place(of: str) -> list[float]:
+        return [capture[f"{of}.position[{i}]"][-1].as_py() for i in (1, 2, 3)]
+
+    slack = 14.0 - math.dist(place("vertex"), place("chaser"))
+    assert slack == pytest.approx(3.906, abs=0.1)
+    assert 0.0 <= 14.0 - removal["tether.length"][0].as_py() - slack < 2e-3
+    assert removal["separation"][0].as_py() - removal["tether.length"][0].as_py() == pytest.approx(1.98, abs=0.1)
+    told = summary_of(tmp_path / "out")["hand-off"]
+    assert told["slack"]["value"] == pytest.approx(slack, abs=1e-9)
+    assert told["line"]["value"] == 14.0
+    tug = summary_of(tmp_path / "out")["removal"]["first_tug"]["value"]
+    assert tug == pytest.approx(slack / 17.25e-3, rel=0.02)  # 17.45 mm/s at the hand-over, 17.05 as it ends
 
 
 def test_table_2_has_its_first_tug_where_it_belongs(dcone: Both, tmp_path: Path) -> None:

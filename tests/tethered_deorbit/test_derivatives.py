@@ -14,14 +14,17 @@ CASES: dict[str, tuple[dict[str, float], dict[str, float]]] = {
     "commanded": ({"reel.tension": 5e-3, "thrust.offset": 2e-3}, {"reel.tension": 0.2}),
 }
 """Per law: how the inputs move, and where they stand before."""
+LENGTH = {"locked": "tether.rest_length", "linear": "reel.length"}
 STEP = 0.02
 CHANGING = ("tether.tension", "tether.length_rate", "chaser.velocity[1]", "relative.velocity[2]", "energy.relative")
 """Outputs whose rate is far above what a difference can tell."""
 
 
-def swinging(reel: str, thrust: str = "along_track") -> Instance:
+def swinging(reel: str, thrust: str = "along_track", attached: float = 0.0) -> Instance:
     """A taut line, aslant and out of the plane, on an ellipse, all its inputs moving."""
     parameters = {"start.condition": HANDED_OVER, "orbit.eccentricity": 0.05, "orbit.true_anomaly": 1.0}
+    parameters["target.attachment_distance"] = attached
+    parameters |= {LENGTH[reel]: 12.0 - attached} if reel in LENGTH else {}
     i = Instance(MODEL, {"reel": reel, "thrust": thrust}, parameters | {"thrust.level": -0.5})
     i.array("start_relative_position")[:] = 8.0, 8.5, 3.0
     i.array("start_relative_velocity")[:] = 0.01, -0.01, 0.02
@@ -41,14 +44,15 @@ def values(i: Instance) -> dict[str, float]:
     return {name: i[name] for name, _ in names}
 
 
+@pytest.mark.parametrize("attached", [0.0, 1.0])
 @pytest.mark.parametrize("reel", CASES)
-def test_rates(reel: str) -> None:
+def test_rates(reel: str, attached: float) -> None:
     """Differences of fourth order over four steps, in all of which the inputs move alike.
 
     They can tell rounding of the value over the step, and no more. The rate of relative.position lacks the turning of
     the orbital plane, 1e-8 m/s here.
     """
-    i = swinging(reel)
+    i = swinging(reel, attached=attached)
     i.step(0.5)
     seen = []
     rates: dict[str, float] = {}
@@ -71,10 +75,11 @@ def test_rates(reel: str) -> None:
             assert difference != pytest.approx(1.01 * rate, abs=allowed), name
 
 
+@pytest.mark.parametrize("attached", [0.0, 1.0])
 @pytest.mark.parametrize("reel", CASES)
-def test_partials(reel: str) -> None:
+def test_partials(reel: str, attached: float) -> None:
     """Differences by the input at a standing state, through what a tool sees after it has set the input."""
-    i = swinging(reel)
+    i = swinging(reel, attached=attached)
     i.step(0.5)
     (name,) = CASES[reel][1]
     size = {"locked": 1e-7, "linear": 1e-3, "commanded": 1e-3}[reel]

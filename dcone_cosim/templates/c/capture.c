@@ -33,6 +33,7 @@ fmi2Status model_outputs(model *m) {
     for (k = 0; k < 3; k++) m->values[CHASER_POSITION_1 + k] = m->time * m->values[CHASER_VELOCITY_1 + k];
     m->values[CHASER_POSITION_2] -= distance;
     m->values[CATCH_POSITION_2] = captured ? 0.0 : speed * m->time - distance;
+    m->values[VERTEX_POSITION_2] = m->values[CATCH_POSITION_2];
     m->values[TETHER_PAID_OUT] = m->values[CATCH_POSITION_2] - m->values[CHASER_POSITION_2];
     m->values[CAPTURED] = m->values[SETTLED] = m->values[OUTCOME] = captured;
     return fmi2OK;
