@@ -47,10 +47,10 @@ class Shot:
         return OUTCOMES[int(self.record.outcome)]
 
 
-@pytest.mark.parametrize("share", [0.84, 1.0])
-def test_captured_at_the_first_look_with_five_sixths_inside(shoot, share):
+@pytest.mark.parametrize("share", [24 / 27, 1.0])
+def test_captured_at_the_first_look_with_all_but_an_edge_inside(shoot, share):
     shot = Shot(shoot)
-    assert shot.tell(0.83, 3.0) == "flying"
+    assert shot.tell(23 / 27, 3.0) == "flying"
     assert (shot.record.captured, shot.record.t_capture, shot.record.enclosure_at_capture) == (0, -1.0, -1.0)
     assert shot.tell(share, LOOK) == "captured"
     assert shot.record.captured == 1
