@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from fmu_src.net_capture import outcome, tether
-from fmu_src.net_capture.interface import OUTCOMES
+from fmu_src.net_capture.interface import MODEL, OUTCOMES
 from orbital.kernel import kernel
 from tests.conftest import CAPTURE
 
-TERMS = {name: term for name, term in CAPTURE.items() if name != "settling"}
+TERMS = {name: term for name, term in CAPTURE.items() if name not in ("settling", "tether")}
 LOOK = 0.01
 
 
@@ -24,9 +24,12 @@ judge = outcome.make_judge(TERMS, tether.towards_chaser, told)
 class Shot:
     """A shot whose cord is short of the girth by a metre, judged with the shares inside that it is told."""
 
-    def __init__(self, shoot, **values):
-        self.net = shoot({}, TERMS)
-        self.record = self.net.record.view(np.recarray)[0]
+    def __init__(self, **values):
+        self.record = MODEL.interface(TERMS).make_record().view(np.recarray)[0]
+        outcome.start_enclosure(self.record)
+        self.record.girth = 16.0
+        self.record.t_capture = -1.0
+        self.record.measure_every = 1
         self.record.closing_t_start = self.record.trigger_time = 11.2
         self.record.mouth_cord_length = 15.0
         self.record.contact_first_time = 10.0
@@ -48,8 +51,8 @@ class Shot:
 
 
 @pytest.mark.parametrize("share", [24 / 27, 1.0])
-def test_captured_at_the_first_look_with_all_but_an_edge_inside(shoot, share):
-    shot = Shot(shoot)
+def test_captured_at_the_first_look_with_all_but_an_edge_inside(share):
+    shot = Shot()
     assert shot.tell(23 / 27, 3.0) == "flying"
     assert (shot.record.captured, shot.record.t_capture, shot.record.enclosure_at_capture) == (0, -1.0, -1.0)
     assert shot.tell(share, LOOK) == "captured"
@@ -60,16 +63,16 @@ def test_captured_at_the_first_look_with_all_but_an_edge_inside(shoot, share):
 
 
 @pytest.mark.parametrize("values", [{"mouth_cord_length": 16.1}, {"closing_t_start": -1.0}])
-def test_not_captured_before_the_mouth_is_narrower_than_the_target(shoot, values):
-    shot = Shot(shoot, **values)
+def test_not_captured_before_the_mouth_is_narrower_than_the_target(values):
+    shot = Shot(**values)
     assert shot.tell(1.0, 3.0) == "flying"
     assert shot.record.enclosure_share == -1.0
     assert shot.tell(0.0, 3.0) == "flying"
 
 
 @pytest.mark.parametrize(("touched", "name"), [(10.0, "slipped_off"), (-1.0, "missed")])
-def test_a_target_outside_for_a_second_is_out(shoot, touched, name):
-    shot = Shot(shoot, contact_first_time=touched)
+def test_a_target_outside_for_a_second_is_out(touched, name):
+    shot = Shot(contact_first_time=touched)
     assert shot.tell(0.49, 0.99) == "flying"
     assert shot.tell(0.51, LOOK) == "flying"
     assert shot.tell(0.49, 0.99) == "flying"
@@ -78,14 +81,14 @@ def test_a_target_outside_for_a_second_is_out(shoot, touched, name):
     assert (shot.record.captured, shot.record.t_lost) == (0, -1.0)
 
 
-def test_what_stands_in_the_mouth_till_the_time_is_up_was_not_closed(shoot):
-    shot = Shot(shoot)
+def test_what_stands_in_the_mouth_till_the_time_is_up_was_not_closed():
+    shot = Shot()
     assert shot.tell(0.7, 11.2 + 20.0 - 12.0) == "flying"
     assert shot.tell(0.7, 2 * LOOK) == "not_closed"
 
 
-def test_a_momentary_flip_takes_no_capture_back(shoot):
-    shot = Shot(shoot)
+def test_a_momentary_flip_takes_no_capture_back():
+    shot = Shot()
     shot.tell(1.0, LOOK)
     for _ in range(5):
         assert shot.tell(0.2, 0.9) == "captured"
@@ -94,8 +97,8 @@ def test_a_momentary_flip_takes_no_capture_back(shoot):
     assert shot.record.enclosure_at_capture == 1.0
 
 
-def test_a_capture_is_taken_back_when_the_target_has_been_out_for_a_second(shoot):
-    shot = Shot(shoot)
+def test_a_capture_is_taken_back_when_the_target_has_been_out_for_a_second():
+    shot = Shot()
     shot.tell(0.9, 1.0)
     last = shot.time
     assert shot.tell(0.3, 0.99) == "captured"

@@ -122,7 +122,7 @@ def follow(number: int, seed: int = SEED, end: float = END) -> dict[str, Any]:
     return row
 
 
-def share(part: int, whole: int) -> dict[str, Any]:
+def proportion(part: int, whole: int) -> dict[str, Any]:
     """A count with its 95 % interval (Clopper and Pearson)."""
     interval = binomtest(part, whole).proportion_ci(0.95, "exact")
     return {"count": part, "of": whole, "interval": [round(interval.low, 4), round(interval.high, 4)]}
@@ -142,42 +142,48 @@ def summarise(rows: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     return {
         "shots": len(rows),
         "captured": len(taken),
-        "taken_back_within_30_s": share(sum(within(r, 30.0) for r in taken), len(taken)),
-        "taken_back_within_60_s": share(sum(within(r, MINUTE) for r in taken), len(taken)),
+        "taken_back_within_30_s": proportion(sum(within(r, 30.0) for r in taken), len(taken)),
+        "taken_back_within_60_s": proportion(sum(within(r, MINUTE) for r in taken), len(taken)),
         "hold_to_the_end": len(good),
         "hold_but_refused": sum(r["captured"] is None for r in good),
         "later_than_cord_short_s": {
-            "median": round(float(np.median(late)), 2),
-            "mean": round(float(np.mean(late)), 2),
-            "nine_of_ten": round(float(np.quantile(late, 0.9)), 2),
-            "most": round(max(late), 2),
+            name: round(float(np.quantile(late, part)), 2) if late else None
+            for name, part in (("half", 0.5), ("nine_of_ten", 0.9), ("all", 1.0))
         },
         "centre_only_rule": {
             "captured": len(old),
-            "taken_back_within_30_s": share(
+            "taken_back_within_30_s": proportion(
                 sum(o["lost"] is not None and o["lost"] - o["captured"] <= 30.0 for o in old), len(old)
             ),
-            "taken_back_within_60_s": share(
+            "taken_back_within_60_s": proportion(
                 sum(o["lost"] is not None and o["lost"] - o["captured"] <= MINUTE for o in old), len(old)
             ),
         },
     }
 
 
-def main(how_many: int = SHOTS) -> dict[str, Any]:
-    rows = []
-    for number in range(how_many):
-        rows.append(follow(number))
-        print(json.dumps(rows[-1]), flush=True)
+def write(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """Store the result of the shots so far, a row on each line."""
     result = {
         "command": COMMAND,
         "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")},
         "seed": SEED,
         "summary": summarise(rows),
-        "rows": rows,
     }
-    head = json.dumps({**result, "rows": []}, indent=1).removesuffix("[]\n}")
-    RESULT.write_text(head + "[\n" + ",\n".join(json.dumps(row) for row in rows) + "\n]}\n")
+    head = json.dumps(result, indent=1).removesuffix("\n}")
+    lines = ",\n".join(json.dumps(row) for row in rows)
+    RESULT.write_text(f'{head},\n "rows": [\n{lines}\n ]\n}}\n')
+    return result
+
+
+def main(how_many: int = SHOTS) -> dict[str, Any]:
+    """Follow so many shots; the result is stored after each, so that a run may be cut short."""
+    rows: list[dict[str, Any]] = []
+    result: dict[str, Any] = {}
+    for number in range(how_many):
+        rows.append(follow(number))
+        print(json.dumps(rows[-1]), flush=True)
+        result = write(rows)
     print(json.dumps(result["summary"], indent=1))
     return result
 
