@@ -112,11 +112,39 @@ def _of_capture(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
             whole = not unit and math.isfinite(last[name])
             value = int(last[name]) if whole else last[name]
             yield Finding("capture", name, label, value, unit)
+    yield from _of_catch(last, result)
     parameters = run.parameters.get("capture", {})
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))
         yield Finding("capture", "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+
+
+_CATCH_ROWS = (
+    ("t_capture", "captured at", "s"),
+    ("enclosure.at_capture", "share of the target inside by then", ""),
+    ("mouth.margin_at_capture", "girth less mouth cord by then", "m"),
+    ("enclosure.least", "least share inside since", ""),
+)
+
+
+def _of_catch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Finding]:
+    """When the target counted as caught, how that looked, and whether it lasted as long as the phase went on."""
+    if not last.get("t_capture", -1.0) >= 0.0:
+        return
+    for name, label, unit in _CATCH_ROWS:
+        if name in last:
+            yield Finding("capture", name, label, last[name], unit)
+    if "t_lost" not in last:
+        return
+    seen = result.end - result.start - last["t_capture"]
+    if last["t_lost"] >= 0.0:
+        text = f"no: the target was out again {last['t_lost'] - last['t_capture']:.3g} s later"
+    elif seen > 1e-6:
+        text = f"yes, for the {seen:.3g} s to the end of the phase"
+    else:
+        text = "not seen: the phase ends here"
+    yield Finding("capture", "lasted", "did it last", text)
 
 
 def _of_end(phase: str, result: PhaseResult) -> Iterator[Finding]:

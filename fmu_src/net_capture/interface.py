@@ -134,7 +134,7 @@ BASE = (
     peak("thread.tension_peak", "N", "largest tension of any thread over the last macro step"),
     count("thread.taut", "threads now taut"),
     flag("closed", "mouth drawn to its locked length"),
-    flag("captured", "the mouth can not pass the target any more"),
+    flag("captured", "the mouth is closed behind the target, and the target has not come out since"),
     flag("settled", "the net moves no more relative to the target"),
     peak("t_capture", "s", "instant of capture, since the shot; -1 before"),
     Variable(

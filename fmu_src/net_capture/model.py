@@ -23,6 +23,7 @@ from fmu_src.interface import INITIALISE, SIZE, STEP
 from fmu_src.net_capture import (
     closure,
     contact,
+    enclosure,
     environment,
     folding,
     formulas,
@@ -60,7 +61,8 @@ def make_entry(terms):
     kick_body = environment.hill_kick_body if is_hill else environment.no_kick_body
     kick_nodes = environment.hill_kick_nodes if is_hill else environment.no_kick_nodes
     weigh_nodes = environment.hill_weigh_nodes if is_hill else environment.no_weigh_nodes
-    judge = outcome.make_judge(terms, tether.towards_chaser)
+    share_inside = enclosure.make_share(target.sample, target.SAMPLES)
+    judge = outcome.make_judge(terms, tether.towards_chaser, share_inside)
     frame_rate_of = environment.hill_rate if is_hill else environment.no_rate
 
     @kernel
@@ -357,6 +359,7 @@ def make_entry(terms):
                 return interface.INSIDE_TARGET
         if has_closing:
             closure.start_closing(p)
+            outcome.start_enclosure(p)
         quality.start_mouth(p)
         quality.measure_net(p, work, 0.0)
         for axis in range(3):

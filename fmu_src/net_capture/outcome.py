@@ -1,4 +1,10 @@
-"""How a shot stands: captured, settled, or one of the ways to fail."""
+"""How a shot stands: captured, settled, or one of the ways to fail.
+
+`captured` has to last: once the cord still out is shorter than the target's smallest girth, the target counts as caught
+when net and mouth go round most of it (see `enclosure`), so that the mouth has passed its middle and would have to pass
+it again. While it stands in the mouth nothing is decided. It is out, then or later, when less than half of it has been
+inside for a while: the cap over a slack mouth is a guess, and may cut through the target for a moment.
+"""
 
 from fmu_src.net_capture import quality
 from fmu_src.net_capture.interface import OUTCOMES
@@ -6,11 +12,30 @@ from orbital.kernel import kernel
 
 FLYING, CAPTURED, SETTLED, MISSED, SLIPPED_OFF, NOT_CLOSED, TETHER_TAUT = range(len(OUTCOMES))
 
+CAUGHT = 8 / 9
+"""Share of the target's sample points inside from which it is caught: all of a box but one edge. What hovers about less
+may still come out (tests/net_capture/evidence)."""
+OUT = 0.5
+"""Share inside below which the target is on its way out."""
+OUT_TIME = 1.0
+"""For how long [s] before it counts as out."""
 
-def make_judge(terms, towards_chaser):
+
+@kernel
+def start_enclosure(p):
+    """Nothing looked at, nothing caught, nothing lost."""
+    p.enclosure_share = -1.0
+    p.enclosure_at_capture = -1.0
+    p.enclosure_least = -1.0
+    p.mouth_margin_at_capture = -1.0
+    p.t_lost = -1.0
+
+
+def make_judge(terms, towards_chaser, share_inside):
     """Kernel `judge(p, work, time)` of the model built with these terms.
 
     towards_chaser   kernel (p, work) -> distance from vertex to chaser [m]
+    share_inside     kernel (p, work) -> share of the target that net and mouth go round [1]
     """
     has_target = "target" in terms
     has_contact = "contact" in terms
@@ -22,24 +47,45 @@ def make_judge(terms, towards_chaser):
     def judge_flight(p, work, time):
         """Capture, or one of the ways to fail."""
         if has_target:
-            beyond = quality.least_depth_beyond(p, work, p.target_place)
             if has_closing:
                 if p.closing_t_start >= 0.0 and p.mouth_cord_length < p.girth:
-                    if beyond > 0.0 and quality.encloses(p, work, p.target_place):
-                        p.outcome = CAPTURED
-                        p.captured = 1
-                        p.t_capture = time
-                        if has_settling:
-                            p.calm_since = time
-                    else:
+                    look_inside(p, work, time)
+                    if p.enclosure_share >= CAUGHT:
+                        catch(p, time)
+                    elif is_out(p, time):
                         p.outcome = fail(p)
-                elif p.trigger_time >= 0.0 and time > p.trigger_time + p.closing_timeout:
+                if p.outcome == FLYING and p.trigger_time >= 0.0 and time > p.trigger_time + p.closing_timeout:
                     p.outcome = NOT_CLOSED
-            elif beyond > p.net_side:
+            elif quality.least_depth_beyond(p, work, p.target_place) > p.net_side:
                 p.outcome = fail(p)
         if has_tether:
             if p.outcome == FLYING and towards_chaser(p, work) >= p.tether_length:
                 p.outcome = TETHER_TAUT
+
+    @kernel
+    def look_inside(p, work, time):
+        """Share of the target that is inside, and when at least half was (the first look counts as if it were)."""
+        share = share_inside(p, work)
+        if share >= OUT or p.enclosure_share < 0.0:
+            p.enclosure_half_in = time
+        p.enclosure_share = share
+
+    @kernel
+    def is_out(p, time):
+        """Whether less than half of the target has been inside for long enough."""
+        return time >= p.enclosure_half_in + OUT_TIME
+
+    @kernel
+    def catch(p, time):
+        """The target is caught: keep how that looked."""
+        p.outcome = CAPTURED
+        p.captured = 1
+        p.t_capture = time
+        p.enclosure_at_capture = p.enclosure_share
+        p.enclosure_least = p.enclosure_share
+        p.mouth_margin_at_capture = p.girth - p.mouth_cord_length
+        if has_settling:
+            p.calm_since = time
 
     @kernel
     def fail(p):
@@ -52,10 +98,15 @@ def make_judge(terms, towards_chaser):
     def judge_catch(p, work, time):
         """Whether a catch holds, and whether it has settled."""
         if has_target:
-            if p.grid % (10 * p.measure_every) == 0 and not quality.encloses(p, work, p.target_place):
+            if p.grid % (10 * p.measure_every) == 0:
+                look_inside(p, work, time)
+                if p.enclosure_share < p.enclosure_least:
+                    p.enclosure_least = p.enclosure_share
+            if is_out(p, time):
                 p.outcome = SLIPPED_OFF
                 p.captured = 0
                 p.settled = 0
+                p.t_lost = time
             elif has_settling:
                 quality.measure_net(p, work, 0.0)
                 squared = 0.0

@@ -56,3 +56,22 @@ def box_girth(size):
     """
     longest = max(size[0], max(size[1], size[2]))
     return 2.0 * (size[0] + size[1] + size[2] - longest)
+
+
+BOX_SAMPLES = 27
+"""Sample points of a box: its centre, the middles of its faces and edges, and its corners."""
+
+
+@kernel
+def box_sample(point, half, number):
+    """point = sample point `number` of a box, of the grid of three by three by three points, the first axis fastest.
+
+    point        in body axes, from the centre   [m]  (3,)
+    half         half the edges                  [m]  (3,)
+    number       0 to 26; 13 is the centre       [1]
+
+    Checked  tests/net_capture/test_enclosure.py
+    """
+    for i in range(3):
+        point[i] = (number % 3 - 1) * half[i]
+        number //= 3

@@ -234,11 +234,33 @@ CLOSING = {
             at_least_zero("closing.damping_ratio", "1", "of the cord between two bullets", 0.106),
             positive("closing.lock_length", "m", "a pair is locked when its cord is shorter than this", 0.25),
             positive(
-                "closing.timeout", "s", "after this long since the trigger an open mouth counts as not closed", 20.0
+                "closing.timeout",
+                "s",
+                "after this long since the trigger a mouth that is not closed behind the target counts as not closed",
+                20.0,
             ),
             Variable("close.command", "1", "input", "start the winches", False, kind="Boolean"),
-            output("mouth.cord_length", "m", "length of cord still out: the perimeter the mouth can not exceed"),
+            output(
+                "mouth.cord_length",
+                "m",
+                "length of cord still out: the way round the bullets can not be longer, the net's slack sides can",
+            ),
             output("mouth.girth", "m", "smallest girth of the target, which the mouth would have to pass"),
+            peak(
+                "mouth.margin_at_capture",
+                "m",
+                "girth of the target less cord out, at the instant of capture; -1 before",
+            ),
+            peak(
+                "enclosure.share",
+                "1",
+                "share of the target's sample points that net and mouth go round, at the last look; "
+                "-1 until the cord is shorter than the girth",
+            ),
+            peak("enclosure.at_capture", "1", "that share at the instant of capture; -1 before"),
+            peak("enclosure.least", "1", "least share since the capture; -1 before"),
+            peak("t_lost", "s", "instant at which the target was out of the net again after a capture; -1 before"),
+            state("enclosure_half_in", "s", "when at least half of the target was last inside"),
             count("mouth.locked_pairs", "pairs of bullets whose cord is shorter than the lock length"),
             peak("cord.tension_max", "N", "largest tension of the cord since the start"),
             peak("cord.tension_peak", "N", "largest tension of the cord over the last macro step"),

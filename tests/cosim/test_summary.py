@@ -103,6 +103,46 @@ class TestLowering:
         assert "too little" in str(self.rows(make_scene, 500.0, 0.01, 1.0)["lowered"].value)
 
 
+class TestLasting:
+    """What a capture looked like, and what came of it."""
+
+    def rows(self, make_scene: MakeScene, lost: float, end: float) -> dict[str, summary.Finding]:
+        columns: dict[str, Sequence[float]] = {
+            "t_capture": [-1.0, 15.2],
+            "enclosure.at_capture": [-1.0, 25 / 27],
+            "mouth.margin_at_capture": [-1.0, 0.1],
+            "enclosure.least": [-1.0, 0.75],
+            "t_lost": [-1.0, lost],
+        }
+        names = list(columns)
+        kinds = {name: VariableInfo(name, i, "Real", "1", "output", "") for i, name in enumerate(names)}
+        recorder = Recorder(names, kinds)
+        for i, time in enumerate((0.0, end)):
+            recorder.add(time, np.array([columns[name][i] for name in names]))
+        return found(RunResult(make_scene("capture"), {"capture": PhaseResult("capture", 0.0, recorder)}))
+
+    def test_a_capture_that_held(self, make_scene: MakeScene) -> None:
+        rows = self.rows(make_scene, -1.0, 20.2)
+        assert (rows["t_capture"].value, rows["mouth.margin_at_capture"].value) == (15.2, 0.1)
+        assert rows["enclosure.at_capture"].value == pytest.approx(0.926, abs=1e-3)
+        assert rows["enclosure.least"].value == 0.75
+        assert rows["lasted"].value == "yes, for the 5 s to the end of the phase"
+
+    def test_a_capture_that_was_taken_back(self, make_scene: MakeScene) -> None:
+        assert self.rows(make_scene, 19.7, 20.2)["lasted"].value == "no: the target was out again 4.5 s later"
+
+    def test_a_phase_that_ends_with_the_capture(self, make_scene: MakeScene) -> None:
+        assert self.rows(make_scene, -1.0, 15.2)["lasted"].value == "not seen: the phase ends here"
+
+    def test_nothing_without_a_capture(self, whole: RunResult, make_scene: MakeScene) -> None:
+        def instantiate(phase: str, name: str):
+            return MockCapture(instant=1e9)
+
+        assert "t_capture" not in found(run_scene(make_scene("capture"), instantiate, Progress()))
+        # a foreign FMU tells when, and nothing of how it looked
+        assert {"t_capture", "lasted"} & set(found(whole)) == {"t_capture"}
+
+
 @pytest.fixture
 def whole(make_scene: MakeScene) -> RunResult:
     def instantiate(phase: str, name: str):

@@ -1,45 +1,9 @@
-"""Whether a closed surface goes round a point, and the mouth measures."""
-
-import itertools
+"""The mouth measures, and mass properties of the net."""
 
 import numpy as np
 import pytest
 
-from fmu_src.net_capture.quality import crossing
 from fmu_src.net_capture.topology import MASS, NODE_PLANES
-
-CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
-
-
-def cube_triangles():
-    """The faces of a cube, outward, as triangles of corners."""
-    for axis, side in itertools.product(range(3), (-1.0, 1.0)):
-        face = [c for c in CORNERS if c[axis] == side]
-        a, b, c, d = face[0], face[1], face[3], face[2]
-        if np.dot(np.cross(b - a, c - b), side * np.eye(3)[axis]) < 0.0:
-            b, d = d, b
-        yield a, b, c
-        yield a, c, d
-
-
-def winding(function, point):
-    return sum(function(None, None, point, *a, *b, *c) for a, b, c in cube_triangles())
-
-
-@pytest.mark.parametrize("function", [crossing, crossing.py_func])
-def test_winding_number_tells_inside_from_outside(function):
-    generator = np.random.default_rng(3)
-    for point in generator.uniform(-2.0, 2.0, size=(200, 3)):
-        inside = bool(np.abs(point).max() < 1.0)
-        assert (winding(function, point) != 0) == inside
-
-
-def test_an_open_cube_does_not_close_by_itself():
-    """The twin: with a face missing some point inside is seen as outside, so the cap over the mouth is needed."""
-    open_cube = list(cube_triangles())[2:]
-    open_cube = [t for t in open_cube if not all(p[2] == 1.0 for p in t)]
-    point = np.array([0.05, 0.02, 0.9])
-    assert sum(crossing(None, None, point, *a, *b, *c) for a, b, c in open_cube) == 0
 
 
 def test_mouth_area_of_the_folded_net_is_its_square(shoot):

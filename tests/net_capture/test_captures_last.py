@@ -1,0 +1,55 @@
+"""What is called captured stays in the net: a few shots here, hundreds in the stored result (see `evidence.shots`)."""
+
+import json
+
+import pytest
+
+from tests.net_capture.evidence import shots
+from tests.net_capture.evidence.shots import RESULT, draw, follow, main, summarise
+
+SLIPPERY = (1, 2, 3)
+"""Poorly aimed shots that the rule of version 0.2.0 called captured; some of them slip off within seconds."""
+
+
+def stored():
+    return json.loads(RESULT.read_text())
+
+
+def test_what_the_centre_alone_took_and_lost_is_not_taken():
+    """The twin is the old rule, on the same shots: it takes what does not last."""
+    rows = [follow(number, end=45.0) for number in SLIPPERY]
+    assert not [row for row in rows if row["lost"] is not None]
+    assert [row for row in rows if row["centre_only"]["lost"] is not None]
+
+
+def test_the_stored_result_is_of_these_shots_and_adds_up():
+    result = stored()
+    assert result["command"] == "python -m tests.net_capture.evidence.shots"
+    assert [row["number"] for row in result["rows"]] == list(range(len(result["rows"])))
+    assert summarise(result["rows"]) == result["summary"]
+    for row in result["rows"]:
+        assert {name: row[name] for name in ("scene", "tilt", "distance", "roll", "spin")} == draw(row["number"])[2]
+        if row["captured"] is not None:
+            assert row["inside_at_capture"] >= 0.888
+            assert row["end"] >= row["captured"] + 60.0 or row["lost"] is not None
+
+
+def test_a_count_carries_its_interval():
+    """Clopper and Pearson for none of n: the upper limit u solves (1 - u)^n = 0.025."""
+    told = shots.proportion(0, 150)
+    assert told["interval"][0] == 0.0
+    assert (1.0 - told["interval"][1]) ** 150 == pytest.approx(0.025, rel=2e-2)
+
+
+@pytest.mark.evidence
+def test_captures_last():
+    """Every shot again; the stored result follows.
+
+    Nothing comes out in the half minute in which a hand-over happens. Within a minute some do, between two bullets: the
+    sides of the net there are slack loops longer than the target's girth, which no judgement of the mouth can close.
+    """
+    summary = main()["summary"]
+    assert summary["shots"] == 200
+    assert summary["taken_back_within_30_s"]["count"] <= 0.01 * summary["captured"]
+    assert summary["taken_back_within_60_s"]["count"] <= 0.05 * summary["captured"]
+    assert summary["hold_but_refused"] <= 0.05 * summary["hold_to_the_end"]
