@@ -127,25 +127,27 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def find_change(record: Any, work: Array) -> float:
+        """Looked for only where the signal rises.
+
+        At the begin of a step that follows a change the signal is zero to rounding, of either sign, and falls: taken by
+        its sign alone, the change just made would be found once more.
+        """
         ensure_dense(record, work)
         low = 0.0
         value_low, slope_low, _, _ = at(record, work, low)
         for i in range(INTERVALS):
             high = (i + 1.0) / INTERVALS
             value_high, slope_high, _, _ = at(record, work, high)
-            if value_high > 0.0:
-                if value_low <= 0.0:
-                    return root(record, work, low, high, CROSSING)
-                # On the wrong side from the start, by rounding: right at once, unless it comes back in between.
-                if slope_low < 0.0 and slope_high > 0.0:
-                    bottom = root(record, work, low, high, CROSSING_SLOPE)
-                    if at(record, work, bottom)[CROSSING] <= 0.0:
-                        return root(record, work, bottom, high, CROSSING)
-                return low
-            if slope_low > 0.0 and slope_high < 0.0:
-                top = root(record, work, low, high, CROSSING_SLOPE)
-                if at(record, work, top)[CROSSING] > 0.0:
-                    return root(record, work, low, top, CROSSING) if value_low <= 0.0 else low
+            first, value_first, last, value_last = low, value_low, high, value_high
+            if slope_low <= 0.0 < slope_high:
+                first = root(record, work, low, high, CROSSING_SLOPE)
+                value_first = at(record, work, first)[CROSSING]
+            elif slope_high <= 0.0 < slope_low:
+                last = root(record, work, low, high, CROSSING_SLOPE)
+                value_last = at(record, work, last)[CROSSING]
+            if max(slope_low, slope_high) > 0.0 and value_last > 0.0:
+                # above zero from where it begins to rise, by rounding: the change is due at once
+                return root(record, work, first, last, CROSSING) if value_first <= 0.0 else first
             low, value_low, slope_low = high, value_high, slope_high
         return -1.0
 

@@ -188,7 +188,9 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
                 break
             step = better
             attempt(record, work, step)
-        r.state_event = 1
+        value, slope, _, _ = end_signals(record, work)
+        # What has risen and fallen again within the least time between two changes was none.
+        r.state_event = 1 if value > 0.0 or slope > 0.0 else 0
 
     @kernel
     def advance(record: Any, work: Array, longest: float) -> int:
