@@ -158,7 +158,7 @@ OUTPUTS = (
     _out("tether.length_rate", "m/s", "its rate of change", 0.01, "rate.length_rate"),
     _out("tether.taut", "1", "the line carries tension", kind="Boolean", discrete=True,
          partials=(("reel.length_offset", "partial.jump"), ("reel.tension", "partial.jump"))),
-    _count("tether.tug_count", "how often the line has gone taut; taut at the start counts"),
+    _count("tether.tug_count", "how often the line has gone taut and pulled; taut at the start counts"),
     _out("tether.angle", "rad", "of the line chaser to target in the orbital plane, from the local vertical towards "
          "along-track", 1.0, "rate.angle", display_unit="deg"),
     _ring("time", "s", "when the tug began, newest first; zero when absent"),
@@ -200,6 +200,9 @@ STATE = (
     _state("next_step", "s", "size to try next"),
     _state("error", "1", "error of the last step, in tolerances"),
     _state("published", "s", "latest communication point"),
+    _state("tug_begun", "1", "the line has gone taut and not pulled yet", "Integer"),
+    _state("tug_time", "s", "when it last went taut"),
+    _state("tug_speed", "m/s", "its rate of lengthening then"),
     _state("tug_peak", "N", "largest tension of the current tug up to the begin of the step"),
     _state("total_mass", "kg", "of the pair"),
     _state("reduced_mass", "kg", "of the pair"),

@@ -17,12 +17,12 @@ from fmu_src.tethered_deorbit.environment import add_gravity
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
-from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish
+from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import make_reel
 from fmu_src.tethered_deorbit.start import start_state
 from fmu_src.tethered_deorbit.tether import add_tension, elastic_stiffness, length_rate
 from fmu_src.tethered_deorbit.thrust import make_no_thrust, make_thrust
-from fmu_src.tethered_deorbit.trajectory import make_measure, make_trajectory
+from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_measure, make_trajectory
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
@@ -151,8 +151,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.tether_tension_peak = r.tether_tension
         if r.state_taut:
             begin_tug(record, time, speed)
+            note_pull(record, r.tether_tension)
             r.state_tug_peak = r.tether_tension
-            r.tug_peak[0] = r.tether_tension
         thrust.publish(record, time)
         return 0
 
@@ -167,7 +167,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         trajectory.state_at(record, work, r.state_published, here)
         for i in range(layout.SIZE):
             work[layout.END + i] = here[i]
-        if r.state_taut:
+        if r.state_taut and not r.state_tug_begun:
             r.state_tug_peak = r.tug_peak[0]
         command, command_rate = reel.asked(record)
         code = reel.prepare(record, command, command_rate, duration)
@@ -214,7 +214,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         """
         command, command_rate = reel.asked(record)
         if command_rate != 0.0:
-            reel.leave(record, command + command_rate * duration)
+            reached = command + command_rate * duration
+            # A ramp that ends at zero to rounding ends at zero: a tension of 1e-19 N would be a taut line.
+            reel.leave(record, 0.0 if abs(reached) <= ROUNDING * abs(command) else reached)
         thrust.leave(record, duration)
         return int(begin_anew(record, work, 0.0))
 
@@ -245,8 +247,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             recent = events.largest_tension(record, work, first, final)
         r.tether_tension_peak = max(r.tether_tension_peak, recent)
         # What is carried on comes from whole steps alone, so that it does not depend on the communication points.
-        r.tug_peak[0] = max(r.state_tug_peak, so_far)
-        if complete:
+        note_pull(record, so_far)
+        if complete and not r.state_tug_begun:
             r.state_tug_peak = r.tug_peak[0]
 
     @kernel

@@ -32,6 +32,8 @@ FIRST_FREE_STEP = 0.05
 SHORTEST_CONTACT = 1.0e-6
 """Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
 LANDING_ITERATIONS = 5
+LAST = 1.0 - 1.0e-12
+"""Fraction of a step from which on it is over, to the accuracy with which a change is located."""
 ROUNDING = 4.0 * 2.220446049250313e-16
 SHORTEST = 32.0 * ROUNDING
 """Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
@@ -241,7 +243,8 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r.state_error = error
         if not (r.state_taut and quiet(record, work)):
             fraction = events.find_change(record, work)
-            if fraction >= 0.0:
+            # Where moving inputs end a step, a change in its last digit is the next one's to judge: they may turn round.
+            if fraction >= 0.0 and not (fraction >= LAST and longest < math.inf):
                 land(record, work, fraction)
         return 0
 
