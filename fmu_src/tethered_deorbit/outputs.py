@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.interface import TUGS
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
@@ -79,7 +80,7 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
 
     @kernel
     def publish(record: Any, state: Array, length: float, rate: float, since: float) -> None:
-        """Outputs at one instant; `state` (12,) as in `layout`, and `state.taut`, the line's condition there.
+        """Outputs at one instant; `state` (13,) as in `layout`, and `state.taut`, the line's condition there.
 
         length        l      of the line                         [m]
         rate          l'     of lengthening                      [m/s]
@@ -94,6 +95,7 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
         r.separation = length
         r.tether_length = length
         r.tether_length_rate = rate
+        r.tether_impulse = state[layout.IMPULSE]
         r.tether_taut = r.state_taut
         r.tether_tension = max(0.0, reel.tension(record, length, rate, since)) if r.state_taut else 0.0
         for i in range(3):
