@@ -217,11 +217,14 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
         The line is judged only when it is known how the next step begins.
         """
+        r = record[0]
         command, command_rate = reel.asked(record)
         if command_rate != 0.0:
             reached = command + command_rate * duration
-            # A ramp that ends at zero to rounding ends at zero: a tension of 1e-19 N would be a taut line.
-            reel.leave(record, 0.0 if abs(reached) <= ROUNDING * abs(command) else reached)
+            # A ramp that ends at zero to rounding, of the times too, ends at zero: 1e-19 N would be a taut line.
+            times = abs(r.state_start) + r.state_published
+            exact = abs(reached) > ROUNDING * (abs(command) + abs(command_rate) * times)
+            reel.leave(record, reached if exact else 0.0)
         thrust.leave(record, duration)
         return int(begin_anew(record, work, 0.0))
 
