@@ -35,8 +35,8 @@ class Events(NamedTuple):
     ensure_dense(record, work)                            compute the dense output of the step unless it is there
     find_change(record, work) -> fraction                 of the step at which slack and taut change, or -1
     tension_range(record, work, first, last) -> (least, largest)   tension [N] between two fractions of the step
-    nearest(record, work, last) -> (fraction, distance)   where the length turns from shorter to longer and is least [m],
-                                                          up to a fraction of the step; infinite when it does nowhere
+    nearest(record, work, last) -> (fraction, distance)   where the length turns from shorter to longer and is least
+                                                          [m], up to a fraction of the step; infinite if nowhere
     """
 
     signals: Callable[..., Any]

@@ -245,7 +245,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r.state_error = error
         if not (r.state_taut and quiet(record, work)):
             fraction = events.find_change(record, work)
-            # Where moving inputs end a step, a change in its last digit is the next one's to judge: they may turn round.
+            # Where moving inputs end a step, a change in its last digit is for the next to judge: they may turn round.
             if fraction >= 0.0 and not (fraction >= LAST and longest < math.inf):
                 land(record, work, fraction)
         return 0

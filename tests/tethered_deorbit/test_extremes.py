@@ -31,7 +31,6 @@ def test_range_of_a_vibration(step: float) -> None:
     """T = P + (k s - P) cos(w t), P the pull of the tide: between 2 P - k s and k s in every whole period."""
     pull = references.equilibrium_tension(RATE, 12.0, REDUCED)
     period = math.tau / oscillators.natural_frequency(STIFFNESS, REDUCED)
-    assert 2.0 > period / 2.0  # half a period: one of the two is always in it
     i = hanging(1.5 * pull / STIFFNESS)
     assert i["tether.tension_peak"] == i["tether.tension_least"] == i["tether.tension"]
     for _ in range(5):
@@ -44,7 +43,7 @@ def test_range_of_a_vibration(step: float) -> None:
 
 
 def test_range_over_a_long_step_is_that_of_the_short_ones() -> None:
-    """Through slack and taut, to what the tolerance of the stretch is worth; where the line was slack the least is zero."""
+    """Through slack and taut, to what the tolerance of the stretch is worth; slack makes the least zero."""
     for zeta, parts in ((0.05, 400), (0.5, 400)):
         whole, short = hanging(2e-5, zeta), hanging(2e-5, zeta)
         for length in (1.0, 40.0, 300.0):
@@ -63,7 +62,13 @@ def test_range_over_a_long_step_is_that_of_the_short_ones() -> None:
 
 def test_range_of_a_ramp() -> None:
     i = Instance(MODEL, COMMANDED, {"reel.tension": 0.5}).initialise()
-    for rate, least, largest in ((0.02, 0.5, 0.7), (-0.01, 0.6, 0.7), (-0.1, 0.0, 0.6), (0.2, 0.0, 1.6), (0.0, 1.6, 1.6)):
+    for rate, least, largest in (
+        (0.02, 0.5, 0.7),
+        (-0.01, 0.6, 0.7),
+        (-0.1, 0.0, 0.6),
+        (0.2, 0.0, 1.6),
+        (0.0, 1.6, 1.6),
+    ):
         i.set_rates({"reel.tension": rate})
         i.step(10.0)
         assert i["tether.tension_least"] == pytest.approx(least, rel=1e-14)

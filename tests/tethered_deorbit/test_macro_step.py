@@ -147,7 +147,7 @@ def test_same_bits_whatever_the_start_time(start: float) -> None:
 
 
 def test_communication_points_at_a_late_start() -> None:
-    """t += 0.1 from 1e6 s, whose last digit is 1e-10 s: the steps are taken, a gap is refused and told in that clock."""
+    """t += 0.1 from 1e6 s, whose last digit is 1e-10 s: steps are taken, a gap is refused and told in that clock."""
     i = Instance(MODEL, TERMS).initialise(1e6)
     for _ in range(3000):
         i.step(0.1)
