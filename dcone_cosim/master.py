@@ -59,6 +59,7 @@ class Check:
 class HandoffRecord:
     """The transaction as it went: what was mapped, its ledger, the spin check, and why it failed if it did.
 
+    time              of the hand-over, since the shot [s]
     line_parameters   what is set in the removal so that its line is the capture's
     """
 
@@ -132,7 +133,7 @@ def _run_capture(
     component = instantiate("capture", "capture")
     try:
         try:
-            run.parameters["capture"] = _start(component, phase.main.parameters, 0.0, phase.duration)
+            run.parameters["capture"] = _start(component, phase.main.parameters, phase.start, phase.duration)
             plan = CapturePlan(
                 phase.macro_step,
                 phase.duration,
@@ -140,6 +141,7 @@ def _run_capture(
                 then_removal,
                 float(phase.options.get("after_capture", np.inf)),
                 phase.options.get("snapshots", ()),
+                phase.start,
             )
             loop = CaptureLoop(component, plan, progress)
         except FmuError as error:
@@ -204,10 +206,10 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
     parameters, start = dict(phase.main.parameters), phase.start
     record = run.handoff
     if record is not None:
-        start = record.time
+        start = run.phases["capture"].origin + record.time
         parameters |= record.handed.parameters
         anomaly = parameters.get("orbit.true_anomaly", phase.main.defaults.get("orbit.true_anomaly", 0.0))
-        parameters["orbit.true_anomaly"] = advanced(anomaly, record.handed.turning[2] * start)
+        parameters["orbit.true_anomaly"] = advanced(anomaly, record.handed.turning[2] * record.time)
         parameters["start.condition"] = phase.choice("start.condition", HANDED_OVER)
         try:
             _check_before(run, phase, record)
@@ -228,7 +230,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
     try:
         try:
             run.parameters["removal"] = _start(component, parameters, start, phase.duration)
-            loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress)
+            loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress, origin=start)
         except FmuError as error:
             if record is None:
                 raise cannot_begin(run.scene, "removal", error) from error
@@ -248,7 +250,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
             except FmuError as error:
                 run.fail("FMU failed", str(error), FMU_FAILED)
                 return
-        progress.begin("removal", start, start + phase.duration)
+        progress.begin("removal", 0.0, phase.duration)
         result = loop.run()
         progress.end()
     finally:
@@ -257,7 +259,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
     if result.error is not None:
         run.fail("FMU failed", str(result.error), FMU_FAILED)
     elif record is not None and run.scene.handoff.get("compare_without_recoil", True):
-        run.comparison = _compare(run, phase, parameters, instantiate, progress)
+        run.comparison = _compare(run, phase, parameters, start, instantiate, progress)
 
 
 def _run_plain(run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress) -> None:
@@ -364,7 +366,12 @@ def _elements(name: str) -> tuple[str, ...]:
 
 
 def _compare(
-    run: RunResult, phase: PhaseScene, parameters: dict[str, Any], instantiate: Instantiate, progress: Progress
+    run: RunResult,
+    phase: PhaseScene,
+    parameters: dict[str, Any],
+    start: float,
+    instantiate: Instantiate,
+    progress: Progress,
 ) -> PhaseResult | None:
     """The same removal with the shot's momentum left out: what the recoil changes."""
     record = run.handoff
@@ -374,9 +381,9 @@ def _compare(
     try:
         component = instantiate("removal", "removal without recoil")
         try:
-            _start(component, parameters | without_recoil(record.handed, velocity), record.time, phase.duration)
-            loop = RemovalLoop(component, phase.macro_step, record.time, phase.duration, progress)
-            progress.begin("removal without recoil", record.time, record.time + phase.duration)
+            _start(component, parameters | without_recoil(record.handed, velocity), start, phase.duration)
+            loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress, origin=start)
+            progress.begin("removal without recoil", 0.0, phase.duration)
             result = loop.run()
             progress.end()
         finally:

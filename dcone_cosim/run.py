@@ -122,28 +122,36 @@ def _arrow(values: npt.NDArray[Any]) -> Any:
 
 def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
     for name, result in run.phases.items():
-        yield name, phase_table(result)
+        clock = clock_of(run, name)
+        yield name, phase_table(result, clock)
         if result.snapshots.times:
-            yield "nodes", nodes_table(result.snapshots)
+            yield "nodes", nodes_table(result.snapshots, clock)
         if result.tugs is not None:
-            yield "tugs", tugs_table(result.tugs, _clock(result))
+            yield "tugs", tugs_table(result.tugs, clock)
     if run.comparison is not None and run.comparison.tugs is not None:
-        yield "removal_without_recoil_tugs", tugs_table(run.comparison.tugs, _clock(run.comparison))
+        yield "removal_without_recoil_tugs", tugs_table(run.comparison.tugs, clock_of(run, "removal"))
 
 
-def _clock(result: PhaseResult) -> str:
-    """Which clock the times of a phase are of."""
-    if result.start == 0.0:
-        return "time since the phase began"
-    return f"time since the shot, as in removal.parquet; the removal began at {result.start!r} s"
+def clock_of(run: RunResult, phase: str) -> str:
+    """What the times of a phase count from, in words."""
+    if phase == "capture":
+        return "since the shot"
+    if phase != "removal":
+        return "time of the phase's FMU"
+    if run.handoff is None:
+        return "since the removal began"
+    return f"since the hand-over, which was {run.handoff.time!r} s after the shot"
 
 
-def phase_table(result: PhaseResult) -> pa.Table:
+def phase_table(result: PhaseResult, clock: str) -> pa.Table:
+    """One row per communication point; `clock` says what its time is counted from."""
     recorder = result.recorder
-    return _table([(name, recorder.units[name], recorder.column(name)) for name in recorder.names])
+    return _table(
+        [(name, recorder.units[name], recorder.column(name)) for name in recorder.names], time={"clock": clock}
+    )
 
 
-def nodes_table(snapshots: Snapshots) -> pa.Table:
+def nodes_table(snapshots: Snapshots, clock: str) -> pa.Table:
     """One row per node and snapshot: time, node counted from 1, position."""
     positions = np.concatenate(snapshots.nodes)
     counts = [len(nodes) for nodes in snapshots.nodes]
@@ -152,7 +160,7 @@ def nodes_table(snapshots: Snapshots) -> pa.Table:
         ("node", "1", np.concatenate([np.arange(1, count + 1) for count in counts])),
     ]
     columns += [(f"position[{i + 1}]", "m", np.ascontiguousarray(positions[:, i])) for i in range(3)]
-    return _table(columns)
+    return _table(columns, time={"clock": clock})
 
 
 def tugs_table(tugs: TugLog, clock: str) -> pa.Table:
@@ -175,7 +183,7 @@ def _write_ledger(run: RunResult, draft: Path) -> None:
     handed = record.handed
     rows = [row.as_dict() for row in record.rows]
     content = {
-        "time": {"value": record.time, "unit": "s"},
+        "time": {"value": record.time, "unit": "s", "clock": "since the shot"},
         "located_by": record.located_by,
         "rows": rows,
         "cross_checks": [vars(check) for check in record.checks],

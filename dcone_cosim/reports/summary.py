@@ -163,7 +163,7 @@ def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
     relative = handed.joint.velocity - handed.chaser.velocity
     distance = handed.joint.position - handed.chaser.position
     dropped, speed = float(np.linalg.norm(handed.joint.spin)), spin.attachment_speed
-    yield Finding("hand-off", "time", "at", record.time, "s")
+    yield Finding("hand-off", "time", "after the shot", record.time, "s")
     yield Finding("hand-off", "mass", "target and net", handed.joint.mass, "kg")
     yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
     yield Finding("hand-off", "relative_speed", "relative speed", 1e3 * float(np.linalg.norm(relative)), "mm/s")
@@ -218,9 +218,10 @@ def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     told = "recorded, in whole steps" if result.ended_by else "simulated"
     yield Finding("removal", "simulated", told, elapsed, "s")
     yield from _of_end("removal", result)
-    yield from _of_tugs(result, "")
+    begin = " the hand-over" if run.handoff is not None else ""
+    yield from _of_tugs(result, "", begin)
     if run.comparison is not None:
-        yield from _of_tugs(run.comparison, "_without_recoil")
+        yield from _of_tugs(run.comparison, "_without_recoil", begin)
     if not len(recorder):
         return
     last = recorder.last()
@@ -264,7 +265,8 @@ def _of_lowering(result: PhaseResult) -> Iterator[Finding]:
         yield Finding("removal", "lowering_rate", "that is", lowered / elapsed * DAY, "m/day")
 
 
-def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
+def _of_tugs(result: PhaseResult, suffix: str, begin: str) -> Iterator[Finding]:
+    """Of one removal; `begin` is what its times count from, "" where that needs no word."""
     tugs = result.tugs
     if tugs is None:
         return
@@ -280,7 +282,7 @@ def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
     if real:
         time, peak, speed = tugs.rows[real[0]]
         seen, mark = ("_seen", " seen") if real[0] > 1 + taut else ("", "")
-        yield Finding("removal", f"first_tug{seen}{suffix}", f"first tug{mark} after{note}", time - result.start, "s")
+        yield Finding("removal", f"first_tug{seen}{suffix}", f"first tug{mark} after{begin}{note}", time, "s")
         yield Finding("removal", f"first_tug{seen}_speed{suffix}", f"its speed{note}", 1e3 * speed, "mm/s")
         yield Finding("removal", f"first_tug{seen}_peak{suffix}", f"its peak{note}", peak, "N")
     recorder = result.recorder
