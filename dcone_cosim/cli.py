@@ -94,6 +94,7 @@ def run(
         progress.close()
     result = written.result
     from dcone_cosim.reports import summary
+    from dcone_cosim.reports.warnings import warnings
 
     with _reader_may_leave():
         if json:
@@ -106,6 +107,8 @@ def run(
             typer.echo(f"results in {written.folder}")
     for note in written.notes:
         _complain(f"note: {note}")
+    for warning in warnings(result):
+        _complain(f"warning: {warning}")
     if result.message:
         _complain(result.message)
     raise typer.Exit(result.exit_code)
@@ -240,7 +243,7 @@ def validate(
         try:
             scene = named(name, settings or ())
             phases = ", ".join(phase.name for phase in scene.phases)
-            answer["notes"] = list(scene.notes)
+            answer["notes"], answer["warnings"] = list(scene.notes), list(scene.cautions)
         except DconeError as error:
             answer |= {"ok": False, "error": str(error), **exits.details(error)}
             if not json:
@@ -251,6 +254,8 @@ def validate(
                     typer.echo(f"{name}: ok ({phases})")
                 for note in scene.notes:
                     _complain(f"note: {note}")
+                for caution in scene.cautions:
+                    _complain(f"warning: {caution}")
         answers.append(answer)
     if json:
         import json as writer

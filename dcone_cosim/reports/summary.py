@@ -12,6 +12,7 @@ import numpy as np
 from dcone_cosim.handoff import spin_energy
 from dcone_cosim.master import HandoffRecord, RunResult
 from dcone_cosim.phases import PhaseResult
+from dcone_cosim.reports.warnings import approach, warnings
 from orbital.constants import EARTH_MU
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ def as_dict(run: RunResult) -> dict[str, Any]:
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,
+        "warnings": warnings(run),
     }
     for row in findings(run):
         unit = {} if isinstance(row.value, str) else {"unit": row.unit or "1"}
@@ -188,7 +190,16 @@ def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     ):
         if name in last:
             yield Finding("removal", name, label, scale * last[name], unit)
+    yield from _of_approach(result)
     yield from _of_lowering(result)
+
+
+def _of_approach(result: PhaseResult) -> Iterator[Finding]:
+    nearest = approach(result)
+    if nearest is not None:
+        recorded = " recorded" if nearest.recorded else ""
+        yield Finding("removal", "approach", f"least distance{recorded}", nearest.distance, "m")
+        yield Finding("removal", "approach_time", "that was at", nearest.time, "s")
 
 
 NEAR = 1e-4
@@ -215,9 +226,10 @@ def _of_lowering(result: PhaseResult) -> Iterator[Finding]:
     if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
         yield Finding("removal", "lowered", "orbit lowered by", "too little to tell from the pair's own motion")
         return
-    yield Finding("removal", "lowered", "orbit lowered by", lowered, "m")
+    key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
+    yield Finding("removal", key, f"orbit {key} by", abs(lowered), "m")
     if elapsed >= 2.0 * math.pi * math.sqrt(float(axis[0]) ** 3 / EARTH_MU):
-        yield Finding("removal", "lowering_rate", "that is", lowered / elapsed * DAY, "m/day")
+        yield Finding("removal", rate, "that is", abs(lowered) / elapsed * DAY, "m/day")
 
 
 def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:

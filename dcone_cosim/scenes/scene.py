@@ -95,6 +95,7 @@ class Scene:
     source     where it was read from, for messages
     places     where each key was written
     notes      what is no mistake, and may be one all the same
+    cautions   what it means that its user may not expect, as far as its values tell it
     """
 
     name: str
@@ -105,6 +106,7 @@ class Scene:
     source: str = ""
     places: Places = field(default_factory=lambda: Places("", ""))
     notes: tuple[str, ...] = ()
+    cautions: tuple[str, ...] = ()
 
     @property
     def sha256(self) -> str:
