@@ -120,7 +120,10 @@ def test_every_kind_of_place_can_be_set(setting: str) -> None:
     [
         ((), "Table 1: a 24 m net takes a 4 x 8 x 4 m box"),
         (("capture.net.side=12 m",), "{} (changed: capture.net.side = 12 m)"),
-        (('capture.net.side="12 m"', "capture.solver.seed=3"), "{} (changed: capture.net.side = 12 m, capture.solver.seed = 3)"),
+        (
+            ('capture.net.side="12 m"', "capture.solver.seed=3"),
+            "{} (changed: capture.net.side = 12 m, capture.solver.seed = 3)",
+        ),
         (("capture.net.side=12 m", "capture.net.side=20 m"), "{} (changed: capture.net.side = 20 m)"),
         (('capture.target.size=["1 m", "2 m", "3 m"]',), '{} (changed: capture.target.size = ["1 m", "2 m", "3 m"])'),
         (("capture.net.side=24 m",), "{}"),
