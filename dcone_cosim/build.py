@@ -17,6 +17,7 @@ from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
+from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Model, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
@@ -24,7 +25,7 @@ from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["CATALOGUE", "MODELS", "Group", "Interface", "Model", "Range", "Variable"]
+__all__ = ["CATALOGUE", "MODELS", "Group", "Implied", "Interface", "Model", "Range", "Variable"]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""
@@ -132,6 +133,28 @@ def cautions_after(
     seen          gives the `Range` that an output had, None for one that is not there
     """
     return _spoken(phase, CAUTIONS[phase].after(values, given, terms, seen))
+
+
+def implied(phase: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Implied]:
+    """What the values of a phase of ours come to, by the formulas that its model computes with.
+
+    values        every parameter and input of the phase by FMI name, SI
+    """
+    # these import the kernels, and with them numba
+    from fmu_src.net_capture import implied as of_net_capture
+    from fmu_src.tethered_deorbit import implied as of_tethered_deorbit
+
+    models = {"capture": of_net_capture, "removal": of_tethered_deorbit}
+    return list(models[phase].rows(values, terms)) if phase in models else []
+
+
+def masses_after(capture: Mapping[str, float]) -> dict[str, float]:
+    """Masses of the pair [kg] that a capture of ours with these values hands over, by the removal's names."""
+    from fmu_src.net_capture.implied import catch_mass
+
+    if "target.mass" not in capture:
+        return {}
+    return {"chaser.mass": capture["chaser.mass"], "target.mass": capture["target.mass"] + catch_mass(capture)}
 
 
 def _spoken(phase: str, found: Iterable[Caution]) -> list[str]:

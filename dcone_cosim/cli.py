@@ -186,19 +186,26 @@ def list_scenes() -> None:
 
 
 @app.command()
-def inspect(scene: SceneName, settings: Settings = None, offline: Offline = False) -> None:
-    """Show what is in the FMUs of a scene, and what is left out.
+def inspect(scene: SceneName, settings: Settings = None, json: Json = False, offline: Offline = False) -> None:
+    """Show what is in the FMUs of a scene, what is left out, and what its values come to.
 
-    Terms, nodes, threads, states, variables, bytes; of an FMU from elsewhere what it tells of itself.
+    Terms, nodes, threads, states, variables, bytes; stiffness, masses, periods, momentum and energy of the shot,
+    substeps; of an FMU from elsewhere what it tells of itself.
     """
     _promise(offline)
     from dcone_cosim.commands import named
-    from dcone_cosim.reports.inspection import show
+    from dcone_cosim.reports import inspection
 
     progress = _progress()
     try:
         with _reader_may_leave():
-            show(named(scene, settings or ()), _console(), progress)
+            chosen = named(scene, settings or ())
+            if json:
+                from dcone_cosim.run import as_json
+
+                typer.echo(as_json(inspection.as_dict(chosen, progress)))
+            else:
+                inspection.show(chosen, _console(), progress)
     finally:
         progress.close()
 

@@ -24,23 +24,15 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
         thread is not None
         and {"net.side", "net.mesh", "net.mass", "net.density", "net.youngs_modulus"} <= values.keys()
     ):
+        from fmu_src.net_capture.implied import (
+            thread_section,
+        )  # and with it numba, which a look at a scene does without
+
         modulus = values["net.youngs_modulus"]
-        fibre = fibre_of(modulus)
-        stiffness = modulus * thread_area(values)
+        fibre, stiffness = fibre_of(modulus), modulus * thread_section(values)
         yield from strained("thread.tension_max", "a thread", thread.largest, stiffness, fibre.strain, fibre.name)
     if cord is not None and "closing.axial_stiffness" in values:
         name, stiffness = "closing.axial_stiffness", values["closing.axial_stiffness"]
         # the default is a nylon cord; of one that is given nothing is known but its stiffness
         limit, fibre_name = (ARAMID, "para-aramid (nylon 66: 20 %)") if name in given else (NYLON, "nylon 66")
         yield from strained("cord.tension_max", "the closing cord", cord.largest, stiffness, limit, fibre_name)
-
-
-def thread_area(values: Values) -> float:
-    """Area [m2] of a thread's section.
-
-        A = m / (rho L),   L = 2 a (a / b + 1)
-
-    of a square net of side a [m], mesh b [m], mass m [kg] and density rho [kg/m3]; L is the length of all threads
-    """
-    length = 2.0 * values["net.side"] * (values["net.side"] / values["net.mesh"] + 1.0)
-    return values["net.mass"] / (values["net.density"] * length)

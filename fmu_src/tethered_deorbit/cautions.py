@@ -52,11 +52,11 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
             yield Caution("thrust.level", f"the orbit was raised, by {axis.last - axis.first:.3g} m")
     peak = seen("tether.tension_peak") or seen("tether.tension")
     if peak is not None and {"tether.youngs_modulus", "tether.diameter"} <= values.keys():
-        modulus = values["tether.youngs_modulus"]
-        section = 0.25 * math.pi * values["tether.diameter"] ** 2
-        fibre = fibre_of(modulus)
+        from fmu_src.tethered_deorbit.implied import axial_stiffness  # and with it numba, as for the net
+
+        fibre = fibre_of(values["tether.youngs_modulus"])
         yield from strained(
-            "tether.tension_peak", "the line", peak.largest, modulus * section, fibre.strain, fibre.name
+            "tether.tension_peak", "the line", peak.largest, axial_stiffness(values), fibre.strain, fibre.name
         )
 
 

@@ -44,4 +44,4 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
         tide = equilibrium_tension(rate, length, reduced)
         yield Implied("tide.tension", "tension at rest under the tide, 3 n^2 m_r l", tide, "N")
         critical = references.critical_thrust(rate, length, values["chaser.mass"])
-        yield Implied("vbar.critical_thrust", "thrust that keeps a tow on V-bar, 3 n^2 l m_c, at least", critical, "N")
+        yield Implied("vbar.critical_thrust", "least thrust of a stable tow on V-bar, 3 n^2 l m_c", critical, "N")
