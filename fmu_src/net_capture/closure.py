@@ -4,15 +4,25 @@ Each winch runs at its no-load speed less the share of the tension in its stall 
 
     dL/dt = -v0 (1 - T / T_stall)   while 0 <= T < T_stall, otherwise 0
 
-so the cord is ratcheted: its length out is a bound on the mouth's perimeter that only falls.
+so the cord is ratcheted: its length out is a bound on the mouth's perimeter that only falls. No winch winds its pair
+shorter than the lock length, so no cord is ever shorter, and none is stiffer than the stability bound reckons with.
+
+The book of the cord, T_e = EA (s - L)/L the elastic part of its tension T:
+
+    by the winches   [T + T_e^2 / (2 EA)] (-dL)        by the trapezoidal rule over the substep
+    to the dashpots  (T - T_e) (ds - dL)
+    stored           EA (s - L)^2 / (2 L)
 """
 
 import math
 
-from fmu_src.net_capture.topology import FX, FY, FZ, U, V, W, X, Y, Z, bullet_node, node_plane
+from fmu_src.net_capture.formulas import cord_damping, cord_stiffness
+from fmu_src.net_capture.topology import FX, P, X, bullet_node, node_plane
 from orbital.kernel import kernel
 
 TRIGGER_TIME, TRIGGER_CONTACT, TRIGGER_DISTANCE = range(3)
+NEWTON_STEPS = 4
+"""Of the winding law, from a start that is right to second order: the last changes nothing above rounding."""
 
 
 @kernel
@@ -21,28 +31,40 @@ def start_closing(p):
     p.trigger_time = -1.0
     p.closing_t_start = -1.0
     p.closing_work = 0.0
+    p.cord_dissipated = 0.0
+    p.cord_power = 0.0
     p.cord_tension_max = 0.0
     p.cord_tension_peak = 0.0
     p.mouth_locked_pairs = 0
     for i in range(4):
-        p.cord_length[i] = p.net_side
-    p.mouth_cord_length = 4.0 * p.net_side
+        p.cord_length[i] = max(p.net_side, p.closing_lock_length)
+        p.cord_rate[i] = 0.0
+    p.mouth_cord_length = 4.0 * p.cord_length[0]
 
 
 @kernel
-def span(p, work, i):
-    """Distance between bullet i and the next [m]."""
+def bullets_apart(p, work, i):
+    """Distance between bullet i and the next [m], and its rate by the predicted velocities [m/s]."""
     a = bullet_node(p.knots, i)
     b = bullet_node(p.knots, (i + 1) % 4)
-    dx = node_plane(p, work, X)[b] - node_plane(p, work, X)[a]
-    dy = node_plane(p, work, Y)[b] - node_plane(p, work, Y)[a]
-    dz = node_plane(p, work, Z)[b] - node_plane(p, work, Z)[a]
-    return math.sqrt(dx * dx + dy * dy + dz * dz)
+    squared = 0.0
+    product = 0.0
+    for axis in range(3):
+        position = node_plane(p, work, X + axis)
+        velocity = node_plane(p, work, P + axis)
+        d = position[b] - position[a]
+        squared += d * d
+        product += d * (velocity[b] - velocity[a])
+    distance = math.sqrt(squared)
+    return distance, product / distance if distance > 0.0 else 0.0
 
 
 @kernel
 def pull_trigger(p, work, now, first_contact, beyond):
-    """Start the winches when their trigger has fallen and its delay has passed; the cord is then drawn straight."""
+    """Start the winches when their trigger has fallen and its delay has passed; what is loose of the cord is taken in.
+
+    A pair that stands closer than the lock length has its cord slack, at that length.
+    """
     if p.trigger_time < 0.0 and (
         p.close_command != 0
         or (p.closing_trigger == TRIGGER_TIME and now >= p.closing_time)
@@ -53,7 +75,9 @@ def pull_trigger(p, work, now, first_contact, beyond):
     if p.closing_t_start < 0.0 and p.trigger_time >= 0.0 and now >= p.trigger_time + p.closing_delay:
         p.closing_t_start = now
         for i in range(4):
-            p.cord_length[i] = span(p, work, i)
+            distance, rate = bullets_apart(p, work, i)
+            p.cord_length[i] = max(distance, p.closing_lock_length)
+            _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i])
 
 
 @kernel
@@ -64,72 +88,117 @@ def cord_energy(p, distance, length):
 
 
 @kernel
-def cord_tension(p, stiffness, damping, stretch, rate, winding):
+def cord_tension(stiffness, damping, stretch, rate, speed, stall):
     """Tension [N] of a stretched cord that a winch may be drawing in.
 
         T = k (s - L) + d (ds/dt - dL/dt),   dL/dt = -v0 (1 - T / T_stall) while the winch turns
 
     The dashpot works on the cord's own stretch rate, so the winch's law and the tension are solved together.
 
-    stiffness  k     EA / L                                     [N/m]
-    damping    d     dashpot of the cord                        [N s/m]
-    stretch    s - L distance of the bullets less cord out      [m]
-    rate       ds/dt of their distance                          [m/s]
-    winding    false once the pair is locked
+    stiffness  k        EA / L                                     [N/m]
+    damping    d        dashpot of the cord                        [N s/m]
+    stretch    s - L    distance of the bullets less cord out      [m]
+    rate       ds/dt    of their distance                          [m/s]
+    speed      v0       of the winch without load; 0 once locked   [m/s]
+    stall      T_stall  tension at which it stands still           [N]
+
+    Checked  tests/net_capture/test_closing.py
     """
-    still = stiffness * stretch + damping * rate
-    if not winding or still >= p.closing_stall_force:
-        return still if still > 0.0 else 0.0
-    drag = damping * p.closing_speed / p.closing_stall_force
-    tension = (still + damping * p.closing_speed) / (1.0 + drag)
+    tension = stiffness * stretch + damping * rate
+    if tension < stall:
+        tension = (tension + damping * speed) / (1.0 + damping * speed / stall)
     return tension if tension > 0.0 else 0.0
 
 
 @kernel
-def draw_cord(p, work, h):
-    """Pull neighbouring bullets together and wind the winches by one substep."""
+def pull_of_cord(p, distance, rate, length):
+    """Tension of one pair's cord [N], and the rate of its length [m/s] as the winch turns under it."""
+    speed = p.closing_speed if length > p.closing_lock_length else 0.0
+    tension = 0.0
+    if distance > length:
+        stiffness = cord_stiffness(p.closing_axial_stiffness, length)
+        damping = cord_damping(p.closing_damping_ratio, stiffness, p.bullets_mass)
+        tension = cord_tension(stiffness, damping, distance - length, rate, speed, p.closing_stall_force)
+    turning = speed * (1.0 - tension / p.closing_stall_force)
+    return tension, -turning if turning > 0.0 else 0.0
+
+
+@kernel
+def winch_force(p, distance, rate, length):
+    """What a winch works against per length wound [N]: T + T_e^2 / (2 EA)."""
+    tension, _ = pull_of_cord(p, distance, rate, length)
+    stretch = distance - length
+    elastic = p.closing_axial_stiffness * stretch / length if stretch > 0.0 else 0.0
+    return tension + 0.5 * elastic * elastic / p.closing_axial_stiffness
+
+
+@kernel
+def pull_mouth(p, work):
+    """Pull neighbouring bullets together; sum what the cord's dashpots take [W]."""
+    p.cord_power = 0.0
     if p.closing_t_start < 0.0:
         return
-    x = node_plane(p, work, X)
-    y = node_plane(p, work, Y)
-    z = node_plane(p, work, Z)
-    u = node_plane(p, work, U)
-    v = node_plane(p, work, V)
-    w = node_plane(p, work, W)
-    fx = node_plane(p, work, FX)
-    fy = node_plane(p, work, FY)
-    fz = node_plane(p, work, FZ)
+    for i in range(4):
+        distance, rate = bullets_apart(p, work, i)
+        length = p.cord_length[i]
+        tension, winding = pull_of_cord(p, distance, rate, length)
+        p.cord_force[i] = winch_force(p, distance, rate, length)
+        if tension > p.cord_tension_peak:
+            p.cord_tension_peak = tension
+        if distance > length:
+            elastic = cord_stiffness(p.closing_axial_stiffness, length) * (distance - length)
+            p.cord_power += (tension - elastic) * (rate - winding)
+            a = bullet_node(p.knots, i)
+            b = bullet_node(p.knots, (i + 1) % 4)
+            for axis in range(3):
+                position = node_plane(p, work, X + axis)
+                force = node_plane(p, work, FX + axis)
+                share = tension / distance * (position[b] - position[a])
+                force[a] += share
+                force[b] -= share
+
+
+@kernel
+def wound(p, distance, rate, length, winding, h):
+    """Length of a pair's cord one substep on [m], and how fast it then changes [m/s].
+
+        L' = L + h/2 (dL/dt + dL'/dt),   dL'/dt by the winch's law at L'
+
+    distance, rate   of the bullets at the end of the substep    [m], [m/s]
+    length, winding  L, dL/dt at its begin                       [m], [m/s]
+
+    The trapezoidal rule, solved by Newton's method: a short cord makes the law stiff, and this bounds no step.
+    """
+    known = length + 0.5 * h * winding
+    shorter = max(length + h * winding, p.closing_lock_length)
+    for _ in range(NEWTON_STEPS):
+        _, then = pull_of_cord(p, distance, rate, shorter)
+        slope = 1.0
+        if distance > shorter and then < 0.0:
+            stiffness = cord_stiffness(p.closing_axial_stiffness, shorter)
+            damping = cord_damping(p.closing_damping_ratio, stiffness, p.bullets_mass)
+            yielding = p.closing_speed / (p.closing_stall_force + damping * p.closing_speed)
+            slope += 0.5 * h * yielding * stiffness * distance / shorter
+        shorter -= (shorter - known - 0.5 * h * then) / slope
+        shorter = min(max(shorter, p.closing_lock_length), length)
+    _, then = pull_of_cord(p, distance, rate, shorter)
+    return shorter, then
+
+
+@kernel
+def wind_cord(p, work, h):
+    """Wind the winches by the substep at whose end the bullets now are."""
+    if p.closing_t_start < 0.0:
+        return
     locked = 0
     total = 0.0
     for i in range(4):
-        a = bullet_node(p.knots, i)
-        b = bullet_node(p.knots, (i + 1) % 4)
-        dx = x[b] - x[a]
-        dy = y[b] - y[a]
-        dz = z[b] - z[a]
-        distance = math.sqrt(dx * dx + dy * dy + dz * dz)
-        length = p.cord_length[i]
-        tension = 0.0
-        if distance > length:
-            stiffness = p.closing_axial_stiffness / length
-            damping = 2.0 * p.closing_damping_ratio * math.sqrt(0.5 * stiffness * p.bullets_mass)
-            rate = ((u[b] - u[a]) * dx + (v[b] - v[a]) * dy + (w[b] - w[a]) * dz) / distance
-            tension = cord_tension(p, stiffness, damping, distance - length, rate, length > p.closing_lock_length)
-            if tension > 0.0:
-                q = tension / distance
-                fx[a] += q * dx
-                fy[a] += q * dy
-                fz[a] += q * dz
-                fx[b] -= q * dx
-                fy[b] -= q * dy
-                fz[b] -= q * dz
-        if tension > p.cord_tension_peak:
-            p.cord_tension_peak = tension
-        if length > p.closing_lock_length and tension < p.closing_stall_force:
-            shorter = length - h * p.closing_speed * (1.0 - tension / p.closing_stall_force)
-            if shorter < p.closing_lock_length:
-                shorter = p.closing_lock_length
-            p.closing_work += tension * (length - shorter)
+        if p.cord_length[i] > p.closing_lock_length:
+            distance, rate = bullets_apart(p, work, i)
+            length = p.cord_length[i]
+            shorter, p.cord_rate[i] = wound(p, distance, rate, length, p.cord_rate[i], h)
+            against = 0.5 * (p.cord_force[i] + winch_force(p, distance, rate, shorter))
+            p.closing_work += against * (length - shorter)
             p.cord_length[i] = shorter
         if p.cord_length[i] <= p.closing_lock_length:
             locked += 1
@@ -145,5 +214,6 @@ def stored_in_cord(p, work):
         return 0.0
     energy = 0.0
     for i in range(4):
-        energy += cord_energy(p, span(p, work, i), p.cord_length[i])
+        distance, _ = bullets_apart(p, work, i)
+        energy += cord_energy(p, distance, p.cord_length[i])
     return energy

@@ -1,14 +1,17 @@
 """Composition of the net capture model: only here do the terms meet.
 
 One substep, from grid time n h to (n + 1) h (leapfrog: velocities live half a substep back, so one evaluation of the
-forces serves; second order, stable to h = 2 (sqrt(1 + z^2) - z) / omega_max, see `orbital.oscillators`):
+forces serves; second order, dashpots included, see `environment.kick`; stable to `explicit_step_limit` of
+`orbital.oscillators`):
 
-    forces at x_n        threads, closing cord, tension at the vertex
+    forces at x_n        threads, closing cord, tension at the vertex; dashpots by the velocity predicted for n h
     kick                 v_{n+1/2} = v_{n-1/2} + h F / m, and gravity
-    contact              impulses on the nodes that would end below the surface
     drift                x_{n+1} = x_n + h v_{n+1/2}
+    contact              impulses on the nodes that ended below the surface, which they then have not done
+    winches              the cord out at (n + 1) h
 
-The grid is counted in integers from the start, whatever the macro step, so a scene gives the same bits in every tool.
+The grid is counted in integers from the start, whatever the macro step, so a scene gives the same bits in every tool;
+and all times count from there, whatever the clock of the tool says.
 """
 
 import math
@@ -22,6 +25,7 @@ from fmu_src.net_capture import (
     contact,
     environment,
     folding,
+    formulas,
     interface,
     outcome,
     quality,
@@ -32,7 +36,7 @@ from fmu_src.net_capture import (
 )
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
-from orbital.oscillators import explicit_step_limit
+from orbital.vectors import dot
 
 MEASURE_INTERVAL = 0.01
 """Seconds between two looks at mouth and capture: a whole number of substeps fits."""
@@ -55,6 +59,7 @@ def make_entry(terms):
     is_hill = terms["gravity"] == "hill"
     kick_body = environment.hill_kick_body if is_hill else environment.no_kick_body
     kick_nodes = environment.hill_kick_nodes if is_hill else environment.no_kick_nodes
+    weigh_nodes = environment.hill_weigh_nodes if is_hill else environment.no_weigh_nodes
     judge = outcome.make_judge(terms, tether.towards_chaser)
     frame_rate_of = environment.hill_rate if is_hill else environment.no_rate
 
@@ -87,31 +92,62 @@ def make_entry(terms):
     @kernel
     def choose_substep(p):
         """Rest length, stiffness and damping of a segment, the stability bound, and a substep that divides the grid."""
-        thread = p.net_mass / (2 * p.knots * (p.knots - 1))
-        area = p.net_mass / (p.net_density * 2 * p.knots * (p.knots - 1) * p.net_mesh)
-        stiffness = p.net_youngs_modulus * area / p.net_mesh
+        total = formulas.square_net_length(p.net_side, p.net_mesh)
+        area = formulas.thread_area(p.net_mass, p.net_density, total)
+        knot = 2.0 * p.net_mass * p.net_mesh / total
+        stiffness = formulas.axial_stiffness(p.net_youngs_modulus, area, p.net_mesh)
+        damping = formulas.thread_dashpot(p.net_damping_ratio, stiffness, knot)
         p.thread_length = p.net_mesh / p.net_segments
         p.thread_stiffness = stiffness * p.net_segments
-        p.thread_damping = 2.0 * p.net_damping_ratio * math.sqrt(stiffness * 2.0 * thread) * p.net_segments
-        bound = explicit_step_limit(p.thread_stiffness, 2.0 * thread / p.net_segments, p.thread_damping)
+        p.thread_damping = damping * p.net_segments
+        node = knot / p.net_segments
+        stiffness_rate = 4.0 * p.thread_stiffness / node
+        damping_rate = 4.0 * p.thread_damping / node
+        bound = formulas.longest_step(stiffness_rate, damping_rate)
+        step = formulas.accurate_step(stiffness_rate, damping_rate)
         if has_closing:
-            hardest = p.closing_axial_stiffness / p.closing_lock_length
-            dashpot = 2.0 * p.closing_damping_ratio * math.sqrt(0.5 * hardest * p.bullets_mass)
-            bound = min(bound, explicit_step_limit(hardest, 2.0 * p.bullets_mass, dashpot))
+            cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
+            dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.bullets_mass)
+            bullet = p.bullets_mass + 0.5 * node
+            stiffness_rate = 2.0 * (p.thread_stiffness + cord) / bullet
+            damping_rate = 2.0 * (p.thread_damping + dashpot) / bullet
+            bound = min(bound, formulas.longest_step(stiffness_rate, damping_rate))
+            step = min(step, formulas.accurate_step(stiffness_rate, damping_rate))
+        if p.solver_step_ratio > 0.0:
+            step = p.solver_step_ratio * bound
         p.solver_stability_bound = bound
-        if not p.solver_step_ratio * bound > SMALLEST_SUBSTEP:
-            p.fault_value = p.solver_step_ratio * bound
+        if not step > SMALLEST_SUBSTEP:
+            p.fault_value = step
             return interface.STEP_TOO_SMALL
-        p.measure_every = math.ceil(MEASURE_INTERVAL / (p.solver_step_ratio * bound) - 1e-9)
+        p.measure_every = math.ceil(MEASURE_INTERVAL / step - 1e-9)
         p.solver_substep = MEASURE_INTERVAL / p.measure_every
         return 0
 
     @kernel
     def add_forces(p, work):
         """All forces at the present positions into the force planes."""
-        p.thread_taut = threads.add_thread_forces(p, work)
+        threads.add_thread_forces(p, work)
+        if has_closing:
+            closure.pull_mouth(p, work)
         if has_tether:
             tether.pull_vertex(p, work)
+
+    @kernel
+    def clear_forces(p, work):
+        """Nothing in the force planes."""
+        for axis in range(3):
+            force = topology.node_plane(p, work, topology.FX + axis)
+            for i in range(force.size):
+                force[i] = 0.0
+
+    @kernel
+    def kick_bodies(p, work, h):
+        """Chaser and target by one kick; their own acceleration goes into `p.pull`."""
+        if has_tether:
+            tether.pull_chaser(p, work, p.pull)
+        kick_body(p, p.chaser_place, p.chaser_drift, p.pull, h)
+        if has_target:
+            kick_body(p, p.target_place, p.target_drift, p.rest, h)
 
     @kernel
     def substep(p, work):
@@ -119,34 +155,60 @@ def make_entry(terms):
         h = p.solver_substep
         frame_rate = frame_rate_of(p)
         add_forces(p, work)
+        p.thread_loss += h * p.thread_power
         if has_closing:
-            closure.draw_cord(p, work, h)
-        if has_tether:
-            change = p.scratch[25:28]
-            tether.change_of_speed(p, work, change, h)
-            for axis in range(3):
-                p.chaser_drift[axis] += change[axis]
-        kick_body(p, p.chaser_place, p.chaser_drift, h)
-        if has_target:
-            kick_body(p, p.target_place, p.target_velocity, h)
+            p.cord_loss += h * p.cord_power
+        kick_bodies(p, work, h)
         slots = p.node_slots
         for start in range(0, slots, topology.CHUNK):
             n = min(topology.CHUNK, slots - start)
-            threads.kick_nodes(p, work, start, n, h)
             kick_nodes(p, work, start, n, h)
+            threads.drift_nodes(p, work, start, n, h)
             if has_contact:
                 contact.touch_nodes(p, work, start, n, frame_rate, h)
-            threads.drift_nodes(p, work, start, n, h)
         for axis in range(3):
             p.chaser_place[axis] += h * p.chaser_drift[axis]
         if has_target:
             target.drift_target(p, frame_rate, h)
+        if has_closing:
+            closure.wind_cord(p, work, h)
+        if has_tether:
+            tether.reel_in(p, work)
         p.grid += 1
 
     @kernel
+    def begin_leapfrog(p, work):
+        """Take the velocities of the start half a substep back; as they are they are those predicted for the start."""
+        h = p.solver_substep
+        for axis in range(3):
+            p.pull[axis] = 0.0
+            p.rest[axis] = 0.0
+            velocity = topology.node_plane(p, work, topology.U + axis)
+            predicted = topology.node_plane(p, work, topology.P + axis)
+            for i in range(velocity.size):
+                predicted[i] = velocity[i]
+        add_forces(p, work)
+        kick_bodies(p, work, -0.5 * h)
+        kick_nodes(p, work, 0, p.node_slots, -0.5 * h)
+        for axis in range(3):
+            velocity = topology.node_plane(p, work, topology.U + axis)
+            predicted = topology.node_plane(p, work, topology.P + axis)
+            force = topology.node_plane(p, work, topology.FX + axis)
+            for i in range(velocity.size):
+                change = 2.0 * (predicted[i] - velocity[i])
+                predicted[i] = velocity[i] - change
+                force[i] = 0.0
+        p.thread_loss = -0.5 * h * p.thread_power
+        if has_closing:
+            p.cord_loss = 0.0
+        if has_tether:
+            p.tether_work = 0.0
+            p.tether_reach = tether.towards_chaser(p, work)
+
+    @kernel
     def now(p):
-        """Grid time [s]."""
-        return p.start_time + p.grid * p.solver_substep
+        """Grid time since the shot [s]."""
+        return p.grid * p.solver_substep
 
     @kernel
     def look(p, work):
@@ -165,27 +227,21 @@ def make_entry(terms):
     @kernel
     def measure(p, work, ahead):
         """All outputs, `ahead` seconds after the last substep; nothing of the state changes."""
-        slots = p.node_slots
+        half = 0.5 * p.solver_substep
         add_forces(p, work)
+        weigh_nodes(p, work)
         elastic = threads.elastic_energy(p, work)
+        p.thread_dissipated = p.thread_loss + half * p.thread_power
         if has_closing:
             elastic += closure.stored_in_cord(p, work)
+            p.cord_dissipated = p.cord_loss + half * p.cord_power
             p.closed = 1 if p.mouth_locked_pairs == 4 else 0
         quality.measure_net(p, work, ahead)
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic
-        for axis in range(3):
-            p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_drift[axis]
-            p.chaser_velocity[axis] = p.chaser_drift[axis]
-        if has_tether:
-            change = p.scratch[25:28]
-            tether.change_of_speed(p, work, change, 0.5 * p.solver_substep)
-            for axis in range(3):
-                p.chaser_velocity[axis] += change[axis]
+        place_bodies(p, work, ahead)
         quality.add_body_momenta(p, p.chaser_mass, p.chaser_position, p.chaser_velocity)
         if has_target:
-            for axis in range(3):
-                p.target_position[axis] = p.target_place[axis] + ahead * p.target_velocity[axis]
             target.measure_target(p)
             target.turn(p.target_attitude, p.target_pose, p.target_rate, p, frame_rate_of(p), ahead)
             quality.add_body_momenta(p, p.target_mass, p.target_position, p.target_velocity)
@@ -205,12 +261,49 @@ def make_entry(terms):
             if p.cord_tension_peak > p.cord_tension_max:
                 p.cord_tension_max = p.cord_tension_peak
         p.solver_steps = p.grid
-        for plane in range(topology.FX, topology.FX + 3):
-            force = topology.node_plane(p, work, plane)
-            for i in range(slots):
-                force[i] = 0.0
-        finite = math.isfinite(p.energy_total) and math.isfinite(p.momentum[0] + p.momentum[1] + p.momentum[2])
+        clear_forces(p, work)
+        balance = energy_balance(p, work)
+        p.energy_remainder = p.energy_start - balance
+        finite = math.isfinite(balance) and math.isfinite(p.momentum[0] + p.momentum[1] + p.momentum[2])
         return 0 if finite else interface.NOT_FINITE
+
+    @kernel
+    def place_bodies(p, work, ahead):
+        """Places `ahead` seconds on and velocities now of chaser and target: half a kick after those they keep."""
+        for axis in range(3):
+            p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_drift[axis]
+            p.chaser_velocity[axis] = p.chaser_drift[axis]
+            if has_target:
+                p.target_position[axis] = p.target_place[axis] + ahead * p.target_drift[axis]
+                p.target_velocity[axis] = p.target_drift[axis]
+        if has_tether:
+            tether.pull_chaser(p, work, p.pull)
+        kick_body(p, p.chaser_place, p.chaser_velocity, p.pull, 0.5 * p.solver_substep)
+        if has_target:
+            kick_body(p, p.target_place, p.target_velocity, p.rest, 0.5 * p.solver_substep)
+
+    @kernel
+    def energy_balance(p, work):
+        """Energy of all bodies now [J], with what contact and dashpots took and without what the winches gave."""
+        energy = p.energy_total + p.thread_dissipated
+        energy += 0.5 * p.chaser_mass * dot(p.chaser_velocity, p.chaser_velocity)
+        if has_target:
+            energy += p.target_energy
+        if has_contact:
+            energy += p.contact_loss
+        if has_closing:
+            energy += p.cord_dissipated - p.closing_work
+        if has_tether:
+            energy -= p.tether_work
+        if is_hill:
+            potential = environment.potential_of_nodes(p, work)
+            potential += p.chaser_mass * environment.hill_potential(p, p.chaser_place)
+            if has_target:
+                potential += p.target_mass * environment.hill_potential(p, p.target_place)
+                potential -= p.mean_motion * p.target_spin[2]
+            p.energy_potential = potential
+            energy += potential
+        return energy
 
     @kernel
     def write_nodes(p, work, ahead):
@@ -270,7 +363,12 @@ def make_entry(terms):
             p.chaser_place[axis] = p.chaser_start_position[axis]
             recoil = p.catch_mass * (p.catch_velocity[axis] - p.chaser_start_velocity[axis])
             p.chaser_drift[axis] = p.chaser_start_velocity[axis] - recoil / p.chaser_mass
-        return measure(p, work, 0.0)
+        begin_leapfrog(p, work)
+        p.energy_start = 0.0
+        fault = measure(p, work, 0.0)
+        p.energy_start = -p.energy_remainder
+        p.energy_remainder = 0.0
+        return fault
 
     @kernel
     def advance(p, work, end):

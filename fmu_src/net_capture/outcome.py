@@ -60,7 +60,7 @@ def make_judge(terms, towards_chaser):
                 quality.measure_net(p, work, 0.0)
                 squared = 0.0
                 for i in range(3):
-                    relative = p.catch_velocity[i] - p.target_velocity[i]
+                    relative = p.catch_velocity[i] - p.target_drift[i]
                     squared += relative * relative
                 if squared > p.settling_speed * p.settling_speed:
                     p.calm_since = time

@@ -1,7 +1,8 @@
 """Measures of a shot: mouth, energies and momenta, and whether the target is caught.
 
 Velocities are kept half a substep back; a measure uses those at the instant itself, v + h a / 2, and between two
-substeps positions on the straight line the next substep follows.
+substeps positions on the straight line the next substep follows. All that accelerates a node must stand in the force
+planes.
 """
 
 import math
@@ -103,10 +104,10 @@ def watch_mouth(p, work, now, interval):
     area = mouth_area(p, work)
     if area > p.mouth_area_max:
         p.mouth_area_max = area
-        p.mouth_t_max = now - p.start_time
+        p.mouth_t_max = now
     if area > OPEN_ENOUGH * p.net_side * p.net_side:
         if p.mouth_t80 < 0.0:
-            p.mouth_t80 = now - p.start_time
+            p.mouth_t80 = now
         p.mouth_time_above_80 += interval
 
 

@@ -38,7 +38,7 @@ def place_target(p):
     normalise(p.target_pose, p.target_pose)
     for i in range(3):
         p.target_place[i] = 0.0
-        p.target_velocity[i] = 0.0
+        p.target_drift[i] = 0.0
         p.target_rate[i] = p.target_start_rate[i]
         p.scratch[i] = principal[i] * p.target_start_rate[i]
     rotate(p.target_spin, p.target_pose, p.scratch[0:3])
@@ -85,7 +85,7 @@ def turn(out, attitude, rate, p, frame_rate, h):
 def drift_target(p, frame_rate, h):
     """Move and turn the target by one substep with its momenta held."""
     for i in range(3):
-        p.target_place[i] += h * p.target_velocity[i]
+        p.target_place[i] += h * p.target_drift[i]
     half = p.scratch[9:13]
     rate = p.scratch[0:3]
     rate_from_spin(p, rate, p.target_pose)

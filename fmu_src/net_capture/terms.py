@@ -103,6 +103,12 @@ GRAVITY = {
                 maximum=1e8,
                 display_unit="km",
             ),
+            output(
+                "energy.potential",
+                "J",
+                "of all bodies in the orbital frame: m n2 (z2 - 3 x2) / 2, less n times the target's spin about the "
+                "orbit normal; with the kinetic energies it makes the Jacobi integral",
+            ),
             state("mean_motion", "rad/s", "of the orbital frame"),
         ),
     ),
@@ -164,6 +170,7 @@ TARGET = {
             Variable("target.inertia[#]", "kg.m2", "output", "about the body axes", shape=(3,)),
             vector("target.spin", "N.m.s", "angular momentum about the target's centre of mass, orbital axes"),
             state("target_place[#]", "m", "centre of mass at the last substep", shape=(3,)),
+            state("target_drift[#]", "m/s", "velocity of the centre of mass half a substep back", shape=(3,)),
             state("target_pose[#]", "1", "attitude at the last substep", shape=(4,)),
             state("girth", "m", "smallest girth"),
             output("target.energy", "J", "kinetic energy of translation and spin of the target"),
@@ -185,7 +192,7 @@ CONTACT = {
                 maximum=1.0,
             ),
             count("contact.nodes", "nodes now on the surface"),
-            peak("contact.first_time", "s", "first touch; -1 before"),
+            peak("contact.first_time", "s", "first touch, since the shot; -1 before"),
             peak("contact.impulse", "N.s", "sum of the sizes of all impulses so far"),
             state("half_size[#]", "m", "half the edges of the target", shape=(3,)),
             Variable("target_turn[#][#]", "1", "state", "rotation matrix from body to frame", shape=(3, 3)),
@@ -211,7 +218,7 @@ CLOSING = {
                 maximum=len(TRIGGERS) - 1,
                 choices=TRIGGERS,
             ),
-            at_least_zero("closing.time", "s", "when the winches start, for trigger time", 11.2),
+            at_least_zero("closing.time", "s", "when the winches start, since the shot, for trigger time", 11.2),
             Variable(
                 "closing.distance",
                 "m",
@@ -236,9 +243,14 @@ CLOSING = {
             peak("cord.tension_max", "N", "largest tension of the cord since the start"),
             peak("cord.tension_peak", "N", "largest tension of the cord over the last macro step"),
             output("closing.work", "J", "work done by the winches so far"),
-            peak("closing.t_start", "s", "when the winches started; -1 before"),
+            output("cord.dissipated", "J", "taken by the cord's dashpots so far"),
+            peak("closing.t_start", "s", "when the winches started, since the shot; -1 before"),
             state("cord_length[#]", "m", "cord out between neighbouring bullets", shape=(4,)),
-            state("trigger_time", "s", "when the trigger fell; -1 before"),
+            state("cord_rate[#]", "m/s", "rate of that length", shape=(4,)),
+            state("cord_force[#]", "N", "what each winch works against per length wound", shape=(4,)),
+            state("cord_power", "W", "what the cord's dashpots take now"),
+            state("cord_loss", "J", "taken by the cord's dashpots up to half a substep back"),
+            state("trigger_time", "s", "when the trigger fell, since the shot; -1 before"),
         ),
     )
 }
@@ -250,6 +262,8 @@ TETHER = {
             positive("tether.length", "m", "length that can be paid out", 100.0),
             Variable("tether.vertex_tension", "N", "input", "tension at the vertex, towards the chaser", nominal=1.0),
             output("tether.paid_out", "m", "distance from the chaser to the vertex"),
+            output("tether.work", "J", "work done by the tension signal so far"),
+            state("tether_reach", "m", "distance from the chaser to the vertex at the last substep"),
         ),
     )
 }
@@ -260,7 +274,7 @@ SETTLING = {
         (
             positive("settling.speed", "m/s", "speed of the net's centre of mass relative to the target", 0.1),
             positive("settling.time", "s", "how long it must stay below", 2.0),
-            state("calm_since", "s", "since when the net has been slow"),
+            state("calm_since", "s", "since when the net has been slow, from the shot"),
         ),
     )
 }

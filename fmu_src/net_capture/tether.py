@@ -32,12 +32,20 @@ def towards_chaser(p, work):
 
 
 @kernel
-def change_of_speed(p, work, out, duration):
-    """out = change [m/s] of the chaser's velocity under the tension signal over a duration [s]."""
+def pull_chaser(p, work, out):
+    """out = acceleration [m/s2] of the chaser under the tension signal."""
     away = towards_chaser(p, work)
     for axis in range(3):
         pull = p.tether_vertex_tension * p.scratch[axis] / away if away > 0.0 else 0.0
-        out[axis] = -duration * pull / p.chaser_mass
+        out[axis] = -pull / p.chaser_mass
+
+
+@kernel
+def reel_in(p, work):
+    """Book the work of the reel over the substep just taken: the tension times what the line has come in."""
+    away = towards_chaser(p, work)
+    p.tether_work += p.tether_vertex_tension * (p.tether_reach - away)
+    p.tether_reach = away
 
 
 @kernel

@@ -19,9 +19,10 @@ import math
 
 from orbital.kernel import kernel, view
 
-X, Y, Z, U, V, W, FX, FY, FZ, INVERSE_MASS, MASS = range(11)
-"""Node planes: position [m], velocity half a substep back [m/s], force [N], 1/m [1/kg] (zero: unused slot), m [kg]."""
-NODE_PLANES = 11
+X, Y, Z, P, Q, R, FX, FY, FZ, U, V, W, INVERSE_MASS, MASS = range(14)
+"""Node planes: position [m], velocity predicted for the same instant [m/s], force [N], velocity half a substep back
+[m/s], 1/m [1/kg] (zero: unused slot), m [kg]."""
+NODE_PLANES = 14
 
 LENGTH_SQUARED, PEAK = range(2)
 """Thread planes: squared rest length [m2], infinite where nothing is joined; peak tension in this macro step [N]."""

@@ -92,7 +92,7 @@ def test_a_node_bounces_with_the_restitution_asked_for(shoot, restitution):
 
 
 def test_settled_comes_after_captured(shoot):
-    net = shoot({"closing.time": 11.2}, CAPTURE)
+    net = shoot({"closing.time": 11.2, "settling.speed": 0.3}, CAPTURE)
     while net.time < 60.0 and not net["settled"]:
         net.step(0.5)
     assert net["settled"] == 1

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fmu_src.net_capture.quality import crossing
+from fmu_src.net_capture.topology import MASS, NODE_PLANES
 
 CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
 
@@ -53,8 +54,8 @@ def test_mass_properties_are_those_of_the_nodes(shoot):
     net = shoot({"net.mesh": 2.0})
     net.step(5.0)
     slots = int(net.record["node_slots"][0])
-    planes = net.work[: 11 * slots].reshape(11, slots)
-    mass = planes[10]
+    planes = net.work[: NODE_PLANES * slots].reshape(NODE_PLANES, slots)
+    mass = planes[MASS]
     centre = (planes[:3] * mass).sum(axis=1) / mass.sum()
     assert net.array("catch_position") == pytest.approx(centre, rel=1e-12)
     arms = (planes[:3] - centre[:, None]).T

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from fmu_src.net_capture import threads
-from fmu_src.net_capture.threads import drift, find_taut, kick, pull, thread_tension
-from fmu_src.net_capture.topology import gather
+from fmu_src.net_capture.environment import kick
+from fmu_src.net_capture.threads import drift, find_taut, pull, thread_tension
+from fmu_src.net_capture.topology import FX, INVERSE_MASS, MASS, NODE_PLANES, P, U, gather
 
 K, XI, L = 13740.0, 0.106, 1.0
 
@@ -15,22 +16,22 @@ K, XI, L = 13740.0, 0.106, 1.0
 def two_masses(m, d, stretch_rate, h, steps, tension=thread_tension):
     """Two masses on one thread along x, by the model's own kernels; returns lengths and tensions."""
     slots = 2
-    nodes = np.zeros(11 * slots)
-    planes = nodes.reshape(11, slots)
+    nodes = np.zeros(NODE_PLANES * slots)
+    planes = nodes.reshape(NODE_PLANES, slots)
     planes[0] = (0.0, L)
-    planes[3] = (-0.5 * stretch_rate, 0.5 * stretch_rate)
+    planes[U] = planes[P] = (-0.5 * stretch_rate, 0.5 * stretch_rate)
     excess, lanes, peak = np.zeros(1), np.zeros(1), np.zeros(1)
-    inverse = np.full(slots, 1.0 / m)
+    inverse = planes[INVERSE_MASS] = np.full(slots, 1.0 / m)
     lengths, tensions = [L], [0.0]
     for _ in range(steps):
         peak[:] = 0.0
         x, y, z = planes[0], planes[1], planes[2]
         if find_taut(excess, x[:1], y[:1], z[:1], x[1:], y[1:], z[1:], np.array([L * L])):
             gather(lanes, excess)
-            pull(lanes, nodes, slots, 0, 1, peak, L, K, d)
+            pull(lanes, nodes, slots, 0, 1, peak, L, K, d, h)
         for axis in range(3):
-            kick(planes[3 + axis], planes[6 + axis], inverse, h)
-            drift(planes[axis], planes[3 + axis], planes[6 + axis], h)
+            kick(planes[U + axis], planes[P + axis], planes[FX + axis], inverse, h)
+            drift(planes[axis], planes[U + axis], planes[FX + axis], h)
         lengths.append(x[1] - x[0])
         tensions.append(peak[0])
     return np.array(lengths), np.array(tensions)
@@ -112,7 +113,7 @@ def test_cutting_threads_keeps_mass_and_length(shoot, segments, mesh):
     assert net["net.nodes"] == knots * knots + 2 * (segments - 1) * knots * (knots - 1)
     assert net["catch.mass"] == pytest.approx(0.33 + 2.0 + 0.15, rel=1e-12)
     slots = int(net.record["node_slots"][0])
-    mass = net.work[10 * slots : 11 * slots]
+    mass = net.work[MASS * slots : (MASS + 1) * slots]
     assert np.count_nonzero(mass) == net["net.nodes"]
 
 
