@@ -16,7 +16,7 @@ from dcone_cosim.phases import PhaseResult
 
 SPREADS: Mapping[str, Mapping[str, float]] = {
     "capture": {
-        "handed_over_at": 4e-4,
+        "handed_over_at": 5e-4,
         "contact.first_time": 2e-3,
         "mouth.t80": 8e-4,
         "mouth.t_max": 1e-3,
@@ -26,6 +26,9 @@ SPREADS: Mapping[str, Mapping[str, float]] = {
         "mouth.cord_length": 5e-3,
         "contact.loss": 0.03,
         "closing.work": 0.02,
+        "thread.dissipated": 0.03,
+        "cord.dissipated": 0.03,
+        "energy.remainder": 0.08,
         "tether.paid_out": 5e-4,
     },
     "hand-off": {
@@ -80,9 +83,10 @@ def spreads(run: RunResult) -> dict[tuple[str, str], float]:
 
 
 def _still_tugs(removal: PhaseResult) -> bool:
-    if removal.tugs is None or not removal.tugs.rows:
+    if removal.tugs is None or not removal.tugs.rows or not len(removal.recorder):
         return False
-    return max(time for time, _, _ in removal.tugs.rows.values()) - removal.start > PREDICTABLE
+    latest = max(time for time, _, _ in removal.tugs.rows.values())
+    return bool(latest - removal.recorder["time"][0] > PREDICTABLE)
 
 
 def digits(value: float, spread: float, most: int = 6) -> str:

@@ -113,6 +113,9 @@ _CAPTURE_ROWS = (
     ("mouth.girth", "girth it would have to pass", "m"),
     ("contact.loss", "energy lost in contact", "J"),
     ("closing.work", "work of the winches", "J"),
+    ("thread.dissipated", "taken by the threads' dashpots", "J"),
+    ("cord.dissipated", "taken by the cord's dashpots", "J"),
+    ("energy.remainder", "left over in the energy book", "J"),
     ("tether.paid_out", "tether paid out", "m"),
     ("net.nodes", "nodes of the net", ""),
     ("net.threads", "threads of the net", ""),
@@ -127,7 +130,7 @@ def _of_capture(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
         yield Finding("capture", "located_by", "found by", result.located_by)
     for name, label, unit in _CAPTURE_ROWS:
-        if name in last and not last[name] < 0.0:
+        if name in last and not (unit == "s" and last[name] < 0.0):  # an instant that has not come is told as -1
             whole = not unit and math.isfinite(last[name])
             value = int(last[name]) if whole else last[name]
             yield Finding("capture", name, label, value, unit)

@@ -22,7 +22,8 @@ def thread_section(values: Values) -> float:
 
 def thread_mass(values: Values) -> float:
     """Mass [kg] of a thread from knot to knot."""
-    return thread_section(values) * values["net.density"] * values["net.mesh"]
+    length = formula(formulas.square_net_length)(values["net.side"], values["net.mesh"])
+    return values["net.mass"] * values["net.mesh"] / length
 
 
 def catch_mass(values: Values) -> float:
