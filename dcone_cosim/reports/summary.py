@@ -13,9 +13,8 @@ from dcone_cosim.handoff import spin_energy
 from dcone_cosim.master import HandoffRecord, RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.reports import chaos
-from dcone_cosim.reports.tension import last_orbit
+from dcone_cosim.reports.tension import last_orbit, orbital_period
 from dcone_cosim.reports.warnings import approach, warnings
-from orbital.constants import EARTH_MU
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -263,7 +262,7 @@ def _of_lowering(result: PhaseResult) -> Iterator[Finding]:
         return
     key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
     yield Finding("removal", key, f"orbit {key} by", abs(lowered), "m")
-    if elapsed >= 2.0 * math.pi * math.sqrt(float(axis[0]) ** 3 / EARTH_MU):
+    if elapsed >= orbital_period(float(axis[0])):
         yield Finding("removal", rate, "that is", abs(lowered) / elapsed * DAY, "m/day")
 
 

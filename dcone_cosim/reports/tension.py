@@ -28,6 +28,14 @@ class Tension(NamedTuple):
     sampled: frozenset[str]
 
 
+def orbital_period(axis: float) -> float:
+    """Period [s] of an orbit about the Earth, 2 pi sqrt(a^3 / mu); `orbital.twobody` has it too, and numba with it.
+
+    axis          a   semi-major                                 [m]
+    """
+    return 2.0 * math.pi * math.sqrt(axis**3 / EARTH_MU)
+
+
 def last_orbit(result: PhaseResult) -> Tension | None:
     """Tension from the last row that lies an orbit or more before the end; None when nothing is recorded of it.
 
@@ -44,7 +52,7 @@ def last_orbit(result: PhaseResult) -> Tension | None:
     time = recorder["time"] - recorder["time"][0]
     period = math.inf
     if "center.semi_major_axis" in recorder and recorder["center.semi_major_axis"][-1] > 0.0:
-        period = 2.0 * math.pi * math.sqrt(float(recorder["center.semi_major_axis"][-1]) ** 3 / EARTH_MU)
+        period = orbital_period(float(recorder["center.semi_major_axis"][-1]))
     begin = int(np.searchsorted(time, time[-1] - period, side="right")) - 1
     is_orbit, begin = begin >= 0, max(begin, 0)
     rows, steps = slice(begin, None), slice(begin + 1, None)

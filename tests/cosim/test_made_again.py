@@ -149,6 +149,7 @@ def test_every_value_is_told_as_a_number(dcone: Dcone, tmp_path: Path, scene: st
     phase = told(tmp_path / "out")["phases"]["removal"]
     assert phase["inputs"]["thrust.offset"] == phase["given"]["thrust.offset"] == 0.005
     assert "thrust.offset" not in phase["parameters"]
+    assert phase["handed_over"] == {}
     values = [*phase["inputs"].values(), *phase["parameters"].values()]
     assert all(isinstance(value, int | float) for value in values)
 

@@ -76,8 +76,9 @@ def after(
 
 
 def test_propellant_beyond_two_hundredths_of_the_mass(make_scene: MakeScene) -> None:
-    assert "61 kg were used, 2 % of the pair's mass" in after(make_scene, {"chaser.propellant": [0.0, 30.0, 61.0]})
-    assert after(make_scene, {"chaser.propellant": [0.0, 30.0, 59.0]}) == ""
+    """Of 3000 kg, 60 kg are that."""
+    assert "60.1 kg were used, 2 % of the pair's mass" in after(make_scene, {"chaser.propellant": [0.0, 30.0, 60.1]})
+    assert after(make_scene, {"chaser.propellant": [0.0, 30.0, 59.9]}) == ""
 
 
 @pytest.mark.parametrize("output", ["tether.tension_peak", "tether.tension"])
