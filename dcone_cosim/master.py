@@ -31,7 +31,7 @@ from dcone_cosim.handoff import (
 )
 from dcone_cosim.ledger import LedgerRow, ledger
 from dcone_cosim.line import ATTACHMENT, LINE_HELD, REST_LENGTH, Line, line_of, line_parameters, line_rows
-from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
+from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, standing
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.mistakes import places_named
 from dcone_cosim.scenes.scene import PHASES, PhaseScene, Scene
@@ -76,11 +76,18 @@ class HandoffRecord:
 
 @dataclass
 class RunResult:
-    """All that a run leaves behind."""
+    """All that a run leaves behind.
+
+    parameters   every parameter of each phase as it stood when the phase began, SI
+    inputs       every input likewise
+    given        what the master set before that: what the scene says and what was handed over
+    """
 
     scene: Scene
     phases: dict[str, PhaseResult] = field(default_factory=dict)
     parameters: dict[str, dict[str, float]] = field(default_factory=dict)
+    inputs: dict[str, dict[str, float]] = field(default_factory=dict)
+    given: dict[str, dict[str, float]] = field(default_factory=dict)
     handoff: HandoffRecord | None = None
     comparison: PhaseResult | None = None
     status: str = "completed"
@@ -89,6 +96,13 @@ class RunResult:
 
     def fail(self, status: str, message: str, exit_code: int) -> None:
         self.status, self.message, self.exit_code = status, message, exit_code
+
+    def begin(self, phase: PhaseScene, component: Steppable, values: Mapping[str, float], start: float) -> None:
+        """Set the values, initialise the phase's component at `start` [s], and keep what then stands."""
+        self.given[phase.name] = dict(values)
+        _start(component, values, start, phase.duration)
+        self.parameters[phase.name] = standing(component, "parameter")
+        self.inputs[phase.name] = standing(component, "input")
 
 
 def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> RunResult:
@@ -107,12 +121,11 @@ def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> Run
     return run
 
 
-def _start(component: Steppable, parameters: Mapping[str, float], start: float, duration: float) -> dict[str, float]:
-    """Set parameters and initialise; returns every parameter read back."""
-    component.set(parameters)
+def _start(component: Steppable, values: Mapping[str, float], start: float, duration: float) -> None:
+    """Set parameters and inputs, and initialise."""
+    component.set(values)
     component.enter_initialisation(start, start + duration)
     component.exit_initialisation()
-    return parameters_of(component, parameters)
 
 
 def cannot_begin(scene: Scene, phase: str, error: FmuError) -> FmuError | InputError:
@@ -133,7 +146,7 @@ def _run_capture(
     component = instantiate("capture", "capture")
     try:
         try:
-            run.parameters["capture"] = _start(component, phase.main.parameters, phase.start, phase.duration)
+            run.begin(phase, component, phase.main.parameters, phase.start)
             plan = CapturePlan(
                 phase.macro_step,
                 phase.duration,
@@ -229,7 +242,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
         parameters |= record.line_parameters
     try:
         try:
-            run.parameters["removal"] = _start(component, parameters, start, phase.duration)
+            run.begin(phase, component, parameters, start)
             loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress, origin=start)
         except FmuError as error:
             if record is None:
@@ -267,7 +280,7 @@ def _run_plain(run: RunResult, phase: PhaseScene, instantiate: Instantiate, prog
     component = instantiate(phase.name, phase.name)
     try:
         try:
-            run.parameters[phase.name] = _start(component, phase.main.parameters, phase.start, phase.duration)
+            run.begin(phase, component, phase.main.parameters, phase.start)
             loop = RemovalLoop(component, phase.macro_step, phase.start, phase.duration, progress)
         except FmuError as error:
             raise cannot_begin(run.scene, phase.name, error) from error

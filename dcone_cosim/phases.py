@@ -11,8 +11,6 @@ import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import restoring
@@ -330,8 +328,8 @@ class RemovalLoop:
             self.progress.at(end)
 
 
-def parameters_of(component: Steppable, given: Mapping[str, float]) -> dict[str, float]:
-    """Every parameter of the component as it now stands: what was given and what was left at its start value."""
-    names = [v.name for v in component.variables.values() if v.causality == "parameter" and v.kind in KINDS]
+def standing(component: Steppable, causality: str) -> dict[str, float]:
+    """Every parameter, or every input, of the component as it now stands, whether it was given or left at its start."""
+    names = [v.name for v in component.variables.values() if v.causality == causality and v.kind in KINDS]
     present = component.get(names) if names else {}
-    return {name: present.get(name, float(np.nan)) for name in dict.fromkeys((*given, *names))}
+    return {name: present[name] for name in names}

@@ -1,6 +1,6 @@
 """The run folder: everything a run leaves, written whole or not at all.
 
-    summary.json  provenance.json  scene.toml  ledger.json  ledger.csv
+    summary.json  provenance.json  scene.toml  fmus/*.fmu  ledger.json  ledger.csv
     capture.parquet  nodes.parquet  removal.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
     *.png
 
@@ -27,6 +27,7 @@ import numpy.typing as npt
 from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.recorder import Snapshots, TugLog
+from dcone_cosim.scenes.kept import keep
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -35,6 +36,10 @@ PACKAGES = (
     *("dcone-cosim", "numpy", "fmpy", "astropy", "tomlkit", "pyarrow", "matplotlib", "typer"),
     *("numba", "llvmlite", "ziglang"),
 )
+
+
+OPTIONS = ("hand_over", "after_capture", "snapshots")
+"""What a scene tells the master of a phase, beside its steps."""
 
 
 def default_folder(scene: str) -> Path:
@@ -50,12 +55,11 @@ def fill(
     with_csv: bool = False,
     draw: Callable[[Path], Any] | None = None,
 ) -> None:
-    """Put everything into the folder."""
+    """Put everything into the folder, and what the run was made from, so that it can be made again."""
     import pyarrow.csv
     import pyarrow.parquet
 
-    source = "SystemStructure.ssd" if run.scene.source.lower().endswith(".ssp") else "scene.toml"
-    (folder / source).write_text(run.scene.text, encoding="utf-8")
+    keep(run.scene, folder)
     for name, table in _tables(run):
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet")
         if with_csv:
@@ -217,7 +221,11 @@ def _write_ledger(run: RunResult, draft: Path) -> None:
 
 
 def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: datetime) -> dict[str, Any]:
-    """What made these numbers: versions, machine, FMUs, every parameter, and the time it took."""
+    """What made these numbers: versions, machine, FMUs, every value that a model was given, and the time it took.
+
+    `dcone run` on the folder makes the run again from the scene that is kept in it; this says what that scene came to.
+    Values are SI; `given` are those that the master set, `handed_over` those of them that the scene does not say.
+    """
     versions = {}
     for package in PACKAGES:
         try:
@@ -227,20 +235,27 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
     phases = {}
     settings = {phase.name: phase for phase in run.scene.phases}
     for name, result in run.phases.items():
-        phase = settings[name]
+        phase, given = settings[name], run.given.get(name, {})
         phases[name] = {
             **fmus.get(name, {}),
             "terms": dict(phase.main.terms),
+            "start": {"value": result.start, "unit": "s"},
             "macro_step": {"value": phase.macro_step, "unit": "s"},
             "duration": {"value": phase.duration, "unit": "s"},
+            "options": {key: value for key, value in phase.options.items() if key in OPTIONS},
             "steps": result.steps,
             "cpu": {"value": result.cpu, "unit": "s"},
             "wall": {"value": result.wall, "unit": "s"},
             "parameters": run.parameters.get(name, {}),
+            "inputs": run.inputs.get(name, {}),
+            "given": given,
+            "handed_over": {n: value for n, value in given.items() if phase.main.parameters.get(n) != value},
         }
     return {
         "scene": run.scene.name,
+        "scene_sha256": run.scene.sha256,
         "settings": [override.argument for override in run.scene.places.overrides],
+        "handoff": dict(run.scene.handoff),
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,

@@ -29,7 +29,7 @@ Signals = tuple[float, float, float, float, float, float, float]
 class Events(NamedTuple):
     """Kernels that look into the current step.
 
-    signals(record, state, rate, elapsed) -> (crossing, its rate, tension, its rate, separation, its rate, the rate of that)
+    signals(record, state, rate, elapsed) -> (crossing, its rate, tension, its rate, separation, its rate, that one's)
                                                           of any state of the step, in its axes, `elapsed` [s] after its
                                                           begin; the line as it is now
     ensure_dense(record, work)                            compute the dense output of the step unless it is there

@@ -21,12 +21,13 @@ from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import make_reel
 from fmu_src.tethered_deorbit.start import start_state
-from fmu_src.tethered_deorbit.tether import add_tension, elastic_stiffness, length_rate, line_length
+from fmu_src.tethered_deorbit.tether import add_tension, length_rate, line_length
 from fmu_src.tethered_deorbit.thrust import make_no_thrust, make_thrust
 from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_measure, make_trajectory
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
+from orbital.oscillators import reduced_mass
 from orbital.twobody import mean_motion
 from orbital.vectors import Array, norm
 
@@ -42,7 +43,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
-    reel = make_reel(terms["reel"], elastic_stiffness)
+    reel = make_reel(terms["reel"])
     references = MODEL.interface(terms).references
     command_slot = references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     chaser_mass, target_mass = references["chaser.mass"], references["target.mass"]
@@ -130,7 +131,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_total_mass = r.chaser_mass + r.target_mass
         r.state_chaser_share = r.chaser_mass / r.state_total_mass
         r.state_target_share = r.target_mass / r.state_total_mass
-        r.state_reduced_mass = r.chaser_mass * r.state_target_share
+        r.state_reduced_mass = reduced_mass(r.chaser_mass, r.target_mass)
         r.state_mean_motion = mean_motion(EARTH_EQUATORIAL_RADIUS + r.orbit_altitude, EARTH_MU)
         command, _ = reel.asked(record)
         code = reel.prepare(record, command, 0.0, 0.0)
