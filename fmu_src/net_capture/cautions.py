@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Mapping
 
 from fmu_src.cautions import ARAMID, NYLON, Caution, Seen, fibre_of, heavily_damped, low, strained
 
 Values = Mapping[str, float]
+
+LEFT_OVER = 0.01
+"""Share of the energy that came in which the scheme may gain or lose without a word."""
 
 
 def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> Iterator[Caution]:
@@ -15,10 +19,27 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
         yield Caution("orbit.altitude", sentence)
     yield from heavily_damped("net.damping_ratio", values.get("net.damping_ratio"), "a thread's going taut")
     yield from heavily_damped("closing.damping_ratio", values.get("closing.damping_ratio"), "the cord's going taut")
+    if values.get("solver.step_ratio", 0.0) > 0.0:
+        yield from _long_steps(values, terms)
+
+
+def _long_steps(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
+    """A substep that the scene gives, longer than its damping allows."""
+    from fmu_src.net_capture.implied import substeps  # and with it numba
+
+    bound, accurate = substeps(values, terms)
+    ratio, enough = values["solver.step_ratio"], accurate / bound
+    if ratio > enough * (1.0 + 1e-9):
+        yield Caution(
+            "solver.step_ratio",
+            f"{ratio:g} is more than this damping allows: the mouth area may be off by more than 0.3 % and the energy by "
+            f"more than 1 %; {math.floor(1e3 * enough) / 1e3:g} would hold them, and so does leaving it out",
+        )
 
 
 def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen: Seen) -> Iterator[Caution]:
     """From what came out."""
+    yield from _unbalanced(values, seen)
     thread, cord = seen("thread.tension_max"), seen("cord.tension_max")
     if (
         thread is not None
@@ -36,3 +57,18 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
         # the default is a nylon cord; of one that is given nothing is known but its stiffness
         limit, fibre_name = (ARAMID, "para-aramid (nylon 66: 20 %)") if name in given else (NYLON, "nylon 66")
         yield from strained("cord.tension_max", "the closing cord", cord.largest, stiffness, limit, fibre_name)
+
+
+def _unbalanced(values: Values, seen: Seen) -> Iterator[Caution]:
+    """An energy book that leaves over more than a hundredth of what came in: the scheme's own error."""
+    left, kinetic, work = seen("energy.remainder"), seen("energy.kinetic"), seen("closing.work")
+    if left is None or kinetic is None:
+        return
+    entered = kinetic.first + (work.largest if work is not None else 0.0)
+    size = max(abs(left.least), abs(left.largest))
+    if size > LEFT_OVER * entered:
+        yield Caution(
+            "energy.remainder",
+            f"the book leaves {size:.2g} J over of the {entered:.3g} J that came in, {100.0 * size / entered:.2g} %: the "
+            "scheme's own error, which falls with the square of solver.step_ratio",
+        )

@@ -118,3 +118,26 @@ def accurate_step(stiffness_rate: float, damping_rate: float) -> float:
     omega = math.sqrt(2.0 * stiffness_rate)
     zeta = damping_rate / omega
     return min((0.3 + 1.77 * zeta) / omega, 0.9 * longest_step(stiffness_rate, damping_rate))
+
+
+@kernel
+def substep_limits(
+    thread: float, dashpot: float, node_mass: float, cord: float, cord_dashpot: float, bullet_mass: float
+) -> tuple[float, float]:
+    """Stability bound of a net and the step that is accurate [s], the least of an inner node's and a bullet's.
+
+    thread, dashpot      of one piece of thread                                  [N/m], [N s/m]
+    node_mass            of an inner node, two pieces' worth                     [kg]
+    cord, cord_dashpot   of a closing cord at its lock length; 0 without one     [N/m], [N s/m]
+    bullet_mass          of each, without the thread that hangs on it            [kg]
+
+    Checked  tests/net_capture/test_formulas.py
+    """
+    stiffness_rate, damping_rate = 4.0 * thread / node_mass, 4.0 * dashpot / node_mass
+    bound, accurate = longest_step(stiffness_rate, damping_rate), accurate_step(stiffness_rate, damping_rate)
+    corner = bullet_mass + 0.5 * node_mass
+    stiffness_rate, damping_rate = 2.0 * (thread + cord) / corner, 2.0 * (dashpot + cord_dashpot) / corner
+    return (
+        min(bound, longest_step(stiffness_rate, damping_rate)),
+        min(accurate, accurate_step(stiffness_rate, damping_rate)),
+    )

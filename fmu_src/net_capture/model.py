@@ -102,19 +102,13 @@ def make_entry(terms):
         p.thread_length = p.net_mesh / p.net_segments
         p.thread_stiffness = stiffness * p.net_segments
         p.thread_damping = damping * p.net_segments
-        node = knot / p.net_segments
-        stiffness_rate = 4.0 * p.thread_stiffness / node
-        damping_rate = 4.0 * p.thread_damping / node
-        bound = formulas.longest_step(stiffness_rate, damping_rate)
-        step = formulas.accurate_step(stiffness_rate, damping_rate)
+        cord = 0.0
+        dashpot = 0.0
         if has_closing:
             cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
             dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.bullets_mass)
-            bullet = p.bullets_mass + 0.5 * node
-            stiffness_rate = 2.0 * (p.thread_stiffness + cord) / bullet
-            damping_rate = 2.0 * (p.thread_damping + dashpot) / bullet
-            bound = min(bound, formulas.longest_step(stiffness_rate, damping_rate))
-            step = min(step, formulas.accurate_step(stiffness_rate, damping_rate))
+        node = knot / p.net_segments
+        bound, step = formulas.substep_limits(p.thread_stiffness, p.thread_damping, node, cord, dashpot, p.bullets_mass)
         if p.solver_step_ratio > 0.0:
             step = p.solver_step_ratio * bound
         p.solver_stability_bound = bound

@@ -68,11 +68,8 @@ def test_the_bound_holds_for_net_and_cord_together(ratio, cord, bullet):
     damping = formulas.thread_dashpot(ratio, stiffness, knot)
     dashpot = formulas.cord_damping(0.106, cord, bullet)
     mass, k, c = matrices(5, stiffness, damping, knot, bullet, cord, dashpot)
-    corner = bullet + 0.5 * knot
-    bound = min(
-        formulas.longest_step(4.0 * stiffness / knot, 4.0 * damping / knot),
-        formulas.longest_step(2.0 * (stiffness + cord) / corner, 2.0 * (damping + dashpot) / corner),
-    )
+    bound, accurate = formulas.substep_limits(stiffness, damping, knot, cord, dashpot, bullet)
+    assert accurate <= 0.9 * bound * (1.0 + 1e-12)
     assert largest(mass, k, c, bound) < 1.0 + 1e-5
     # and it is not far from the edge: half as much again diverges
     assert largest(mass, k, c, 1.5 * bound) > 1.01
