@@ -32,8 +32,8 @@ def _long_steps(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
     if ratio > enough * (1.0 + 1e-9):
         yield Caution(
             "solver.step_ratio",
-            f"{ratio:g} is more than this damping allows: the mouth area may be off by more than 0.3 % and the energy by "
-            f"more than 1 %; {math.floor(1e3 * enough) / 1e3:g} would hold them, and so does leaving it out",
+            f"{ratio:g} is more than this damping allows: the mouth area may be off by more than 0.3 % and the energy "
+            f"by more than 1 %; {math.floor(1e3 * enough) / 1e3:g} would hold them, and so does leaving it out",
         )
 
 
@@ -69,6 +69,6 @@ def _unbalanced(values: Values, seen: Seen) -> Iterator[Caution]:
     if size > LEFT_OVER * entered:
         yield Caution(
             "energy.remainder",
-            f"the book leaves {size:.2g} J over of the {entered:.3g} J that came in, {100.0 * size / entered:.2g} %: the "
-            "scheme's own error, which falls with the square of solver.step_ratio",
+            f"the book leaves {size:.2g} J over of the {entered:.3g} J that came in, {100.0 * size / entered:.2g} %: "
+            "the scheme's own error, which falls with the square of solver.step_ratio",
         )
