@@ -109,12 +109,14 @@ class Archives:
                     "fmu": self._identity(phase, component),
                     "terms": dict(component.terms),
                     "parameters": {**component.defaults, **component.parameters},
+                    "given": dict(component.parameters),
                 }
                 for component in phase.others
             }
         coupled = self._coupled.get(phase.name)
         if coupled is not None:
-            facts["connections"] = [f"{c.source}.{c.output} -> {c.target}.{c.input}" for c in phase.connections]
+            facts["connections"] = [str(c) for c in phase.connections]
+            facts["transformations"] = {str(c): [c.factor, c.offset] for c in phase.connections}
             facts["coupling"] = {
                 **vars(phase.coupling),
                 "step": {"value": phase.coupling.step or phase.macro_step, "unit": "s"},
@@ -125,6 +127,8 @@ class Archives:
 
     def _identity(self, phase: PhaseScene, component: ComponentScene) -> dict[str, Any]:
         archive = self._of[phase.name, component.name]
+        rows = archive.description.modelVariables
+        texts = {row.name: row.start for row in rows if row.type == "String" and row.causality == "parameter"}
         return {
             "file": archive.path.name if component.fmu is None else str(archive.path.absolute()),
             "sha256": archive.sha256,
@@ -133,6 +137,8 @@ class Archives:
             "generation_tool": archive.description.generationTool,
             "ours": component.fmu is None,
             "isolated": component.isolate,
+            "timeout": {"value": component.timeout, "unit": "s"} if component.isolate else None,
+            "texts": texts,
         }
 
     def __enter__(self) -> Archives:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 import time as clock
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,15 +17,22 @@ from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
 from fmu_src.catalogue import MODELS as CATALOGUE
+from fmu_src.cautions import Caution, Range, Seen
+from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Model, Value, Variable
+from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
+from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["CATALOGUE", "MODELS", "Group", "Interface", "Model", "Variable"]
+__all__ = ["CATALOGUE", "MODELS", "Group", "Implied", "Interface", "Model", "Range", "Variable"]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""
+
+CAUTIONS = {"capture": net_capture_cautions, "removal": tethered_deorbit_cautions}
+"""What the model of each phase has to say of a run."""
 
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
@@ -115,6 +122,52 @@ def cannot_work(
     else:
         return []
     return [Refusal("start.separation", f"{separation:g} m", expected)]
+
+
+def cautions(phase: str, values: Mapping[str, float], given: Collection[str], terms: Mapping[str, str]) -> list[str]:
+    """What a phase of ours means that its user may not expect, in plain sentences, as far as values alone tell it.
+
+    values        every parameter and input of the phase by FMI name, SI
+    given         names of those that the scene gives
+    """
+    return _spoken(phase, CAUTIONS[phase].before(values, given, terms))
+
+
+def cautions_after(
+    phase: str, values: Mapping[str, float], given: Collection[str], terms: Mapping[str, str], seen: Seen
+) -> list[str]:
+    """What came out of a phase that its user may not expect; of an FMU from elsewhere as far as its names tell it.
+
+    seen          gives the `Range` that an output had, None for one that is not there
+    """
+    return _spoken(phase, CAUTIONS[phase].after(values, given, terms, seen))
+
+
+def implied(phase: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Implied]:
+    """What the values of a phase of ours come to, by the formulas that its model computes with.
+
+    values        every parameter and input of the phase by FMI name, SI
+    """
+    # these import the kernels, and with them numba
+    from fmu_src.net_capture import implied as of_net_capture
+    from fmu_src.tethered_deorbit import implied as of_tethered_deorbit
+
+    models = {"capture": of_net_capture, "removal": of_tethered_deorbit}
+    return list(models[phase].rows(values, terms)) if phase in models else []
+
+
+def masses_after(capture: Mapping[str, float]) -> dict[str, float]:
+    """Masses of the pair [kg] that a capture of ours with these values hands over, by the removal's names."""
+    from fmu_src.net_capture.implied import catch_mass
+
+    if "target.mass" not in capture:
+        return {}
+    return {"chaser.mass": capture["chaser.mass"], "target.mass": capture["target.mass"] + catch_mass(capture)}
+
+
+def _spoken(phase: str, found: Iterable[Caution]) -> list[str]:
+    """Cautions as a scene would name what they are about; the orbit is that of all phases."""
+    return [f"{c.about if c.about.startswith('orbit.') else f'{phase}.{c.about}'}: {c.sentence}" for c in found]
 
 
 def cache_folder() -> Path:

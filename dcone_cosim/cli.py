@@ -94,6 +94,7 @@ def run(
         progress.close()
     result = written.result
     from dcone_cosim.reports import summary
+    from dcone_cosim.reports.warnings import warnings
 
     with _reader_may_leave():
         if json:
@@ -106,6 +107,8 @@ def run(
             typer.echo(f"results in {written.folder}")
     for note in written.notes:
         _complain(f"note: {note}")
+    for warning in warnings(result):
+        _complain(f"warning: {warning}")
     if result.message:
         _complain(result.message)
     raise typer.Exit(result.exit_code)
@@ -183,19 +186,26 @@ def list_scenes() -> None:
 
 
 @app.command()
-def inspect(scene: SceneName, settings: Settings = None, offline: Offline = False) -> None:
-    """Show what is in the FMUs of a scene, and what is left out.
+def inspect(scene: SceneName, settings: Settings = None, json: Json = False, offline: Offline = False) -> None:
+    """Show what is in the FMUs of a scene, what is left out, and what its values come to.
 
-    Terms, nodes, threads, states, variables, bytes; of an FMU from elsewhere what it tells of itself.
+    Terms, nodes, threads, states, variables, bytes; stiffness, masses, periods, momentum and energy of the shot,
+    substeps; of an FMU from elsewhere what it tells of itself.
     """
     _promise(offline)
     from dcone_cosim.commands import named
-    from dcone_cosim.reports.inspection import show
+    from dcone_cosim.reports import inspection
 
     progress = _progress()
     try:
         with _reader_may_leave():
-            show(named(scene, settings or ()), _console(), progress)
+            chosen = named(scene, settings or ())
+            if json:
+                from dcone_cosim.run import as_json
+
+                typer.echo(as_json(inspection.as_dict(chosen, progress)))
+            else:
+                inspection.show(chosen, _console(), progress)
     finally:
         progress.close()
 
@@ -240,7 +250,7 @@ def validate(
         try:
             scene = named(name, settings or ())
             phases = ", ".join(phase.name for phase in scene.phases)
-            answer["notes"] = list(scene.notes)
+            answer["notes"], answer["warnings"] = list(scene.notes), list(scene.cautions)
         except DconeError as error:
             answer |= {"ok": False, "error": str(error), **exits.details(error)}
             if not json:
@@ -251,6 +261,8 @@ def validate(
                     typer.echo(f"{name}: ok ({phases})")
                 for note in scene.notes:
                     _complain(f"note: {note}")
+                for caution in scene.cautions:
+                    _complain(f"warning: {caution}")
         answers.append(answer)
     if json:
         import json as writer

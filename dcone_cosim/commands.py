@@ -19,6 +19,7 @@ from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import style, summary
 from dcone_cosim.run import default_folder, fill
+from dcone_cosim.scenes.kept import unlike
 from dcone_cosim.scenes.scene import Scene, find, load, parse, read_text
 
 LEFT_BEHIND = (
@@ -65,6 +66,8 @@ def run_and_write(
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
+        if Path(name) == Path(scene.source).parent:
+            notes += unlike(Path(name), facts)
 
         def draw(path: Path) -> None:
             progress.say("drawing")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal
@@ -48,6 +48,13 @@ NODE_PREFIX = "node["
 TUG_PREFIX = "tug["
 TUG_FIELDS = ("time", "peak", "speed")
 
+EXTREMES: Mapping[str, Callable[[float, float], float]] = {
+    "tether.tension_peak": max,
+    "tether.tension_least": min,
+    "thread.tension_peak": max,
+    "cord.tension_peak": max,
+}
+"""Outputs that are the largest or least over the FMU's last step, and how those of several steps become that of all."""
 
 Need = Literal["always", "hand-over", "captured", "settled", "tether_taut", "slack", "optional"]
 NEEDS: Mapping[str, str] = {
@@ -80,7 +87,8 @@ _WANTED: Mapping[str, Sequence[tuple[Need, Sequence[str]]]] = {
         ("always", ("separation", "tether.tension")),
         ("optional", ("tether.rest_length", "thrust.level")),
         ("optional", tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in _EACH)),
-        ("optional", ("tether.tension_peak", "tether.taut", "tether.tug_count")),
+        ("optional", ("tether.tension_peak", "tether.tension_least", "tether.impulse")),
+        ("optional", ("approach.distance", "approach.time", "tether.taut", "tether.tug_count")),
         ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
         ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
     ),

@@ -59,6 +59,7 @@ def show(phase: str, console: Console) -> None:
     console.print(
         "Another unit of the same dimension may be declared: values are converted by the FMU's own definition."
     )
+    console.print("Every instant it tells counts from its own start, whatever time it is told to start at.")
     if phase == "removal":
         console.print("tug[1..n] is a ring of the latest tugs, newest first, as long as the FMU likes.")
 

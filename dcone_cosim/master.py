@@ -31,7 +31,7 @@ from dcone_cosim.handoff import (
 )
 from dcone_cosim.ledger import LedgerRow, ledger
 from dcone_cosim.line import ATTACHMENT, LINE_HELD, REST_LENGTH, Line, line_of, line_parameters, line_rows
-from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, parameters_of
+from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop, standing
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.mistakes import places_named
 from dcone_cosim.scenes.scene import PHASES, PhaseScene, Scene
@@ -59,6 +59,7 @@ class Check:
 class HandoffRecord:
     """The transaction as it went: what was mapped, its ledger, the spin check, and why it failed if it did.
 
+    time              of the hand-over, since the shot [s]
     line_parameters   what is set in the removal so that its line is the capture's
     """
 
@@ -75,11 +76,18 @@ class HandoffRecord:
 
 @dataclass
 class RunResult:
-    """All that a run leaves behind."""
+    """All that a run leaves behind.
+
+    parameters   every parameter of each phase as it stood when the phase began, SI
+    inputs       every input likewise
+    given        what the master set before that: what the scene says and what was handed over
+    """
 
     scene: Scene
     phases: dict[str, PhaseResult] = field(default_factory=dict)
     parameters: dict[str, dict[str, float]] = field(default_factory=dict)
+    inputs: dict[str, dict[str, float]] = field(default_factory=dict)
+    given: dict[str, dict[str, float]] = field(default_factory=dict)
     handoff: HandoffRecord | None = None
     comparison: PhaseResult | None = None
     status: str = "completed"
@@ -88,6 +96,13 @@ class RunResult:
 
     def fail(self, status: str, message: str, exit_code: int) -> None:
         self.status, self.message, self.exit_code = status, message, exit_code
+
+    def begin(self, phase: PhaseScene, component: Steppable, values: Mapping[str, float], start: float) -> None:
+        """Set the values, initialise the phase's component at `start` [s], and keep what then stands."""
+        self.given[phase.name] = dict(values)
+        _start(component, values, start, phase.duration)
+        self.parameters[phase.name] = standing(component, "parameter")
+        self.inputs[phase.name] = standing(component, "input")
 
 
 def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> RunResult:
@@ -106,12 +121,11 @@ def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> Run
     return run
 
 
-def _start(component: Steppable, parameters: Mapping[str, float], start: float, duration: float) -> dict[str, float]:
-    """Set parameters and initialise; returns every parameter read back."""
-    component.set(parameters)
+def _start(component: Steppable, values: Mapping[str, float], start: float, duration: float) -> None:
+    """Set parameters and inputs, and initialise."""
+    component.set(values)
     component.enter_initialisation(start, start + duration)
     component.exit_initialisation()
-    return parameters_of(component, parameters)
 
 
 def cannot_begin(scene: Scene, phase: str, error: FmuError) -> FmuError | InputError:
@@ -132,7 +146,7 @@ def _run_capture(
     component = instantiate("capture", "capture")
     try:
         try:
-            run.parameters["capture"] = _start(component, phase.main.parameters, 0.0, phase.duration)
+            run.begin(phase, component, phase.main.parameters, phase.start)
             plan = CapturePlan(
                 phase.macro_step,
                 phase.duration,
@@ -140,6 +154,7 @@ def _run_capture(
                 then_removal,
                 float(phase.options.get("after_capture", np.inf)),
                 phase.options.get("snapshots", ()),
+                phase.start,
             )
             loop = CaptureLoop(component, plan, progress)
         except FmuError as error:
@@ -204,10 +219,10 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
     parameters, start = dict(phase.main.parameters), phase.start
     record = run.handoff
     if record is not None:
-        start = record.time
+        start = run.phases["capture"].origin + record.time
         parameters |= record.handed.parameters
         anomaly = parameters.get("orbit.true_anomaly", phase.main.defaults.get("orbit.true_anomaly", 0.0))
-        parameters["orbit.true_anomaly"] = advanced(anomaly, record.handed.turning[2] * start)
+        parameters["orbit.true_anomaly"] = advanced(anomaly, record.handed.turning[2] * record.time)
         parameters["start.condition"] = phase.choice("start.condition", HANDED_OVER)
         try:
             _check_before(run, phase, record)
@@ -227,8 +242,8 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
         parameters |= record.line_parameters
     try:
         try:
-            run.parameters["removal"] = _start(component, parameters, start, phase.duration)
-            loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress)
+            run.begin(phase, component, parameters, start)
+            loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress, origin=start)
         except FmuError as error:
             if record is None:
                 raise cannot_begin(run.scene, "removal", error) from error
@@ -248,7 +263,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
             except FmuError as error:
                 run.fail("FMU failed", str(error), FMU_FAILED)
                 return
-        progress.begin("removal", start, start + phase.duration)
+        progress.begin("removal", 0.0, phase.duration)
         result = loop.run()
         progress.end()
     finally:
@@ -257,7 +272,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
     if result.error is not None:
         run.fail("FMU failed", str(result.error), FMU_FAILED)
     elif record is not None and run.scene.handoff.get("compare_without_recoil", True):
-        run.comparison = _compare(run, phase, parameters, instantiate, progress)
+        run.comparison = _compare(run, phase, parameters, start, instantiate, progress)
 
 
 def _run_plain(run: RunResult, phase: PhaseScene, instantiate: Instantiate, progress: Progress) -> None:
@@ -265,7 +280,7 @@ def _run_plain(run: RunResult, phase: PhaseScene, instantiate: Instantiate, prog
     component = instantiate(phase.name, phase.name)
     try:
         try:
-            run.parameters[phase.name] = _start(component, phase.main.parameters, phase.start, phase.duration)
+            run.begin(phase, component, phase.main.parameters, phase.start)
             loop = RemovalLoop(component, phase.macro_step, phase.start, phase.duration, progress)
         except FmuError as error:
             raise cannot_begin(run.scene, phase.name, error) from error
@@ -364,7 +379,12 @@ def _elements(name: str) -> tuple[str, ...]:
 
 
 def _compare(
-    run: RunResult, phase: PhaseScene, parameters: dict[str, Any], instantiate: Instantiate, progress: Progress
+    run: RunResult,
+    phase: PhaseScene,
+    parameters: dict[str, Any],
+    start: float,
+    instantiate: Instantiate,
+    progress: Progress,
 ) -> PhaseResult | None:
     """The same removal with the shot's momentum left out: what the recoil changes."""
     record = run.handoff
@@ -374,9 +394,9 @@ def _compare(
     try:
         component = instantiate("removal", "removal without recoil")
         try:
-            _start(component, parameters | without_recoil(record.handed, velocity), record.time, phase.duration)
-            loop = RemovalLoop(component, phase.macro_step, record.time, phase.duration, progress)
-            progress.begin("removal without recoil", record.time, record.time + phase.duration)
+            _start(component, parameters | without_recoil(record.handed, velocity), start, phase.duration)
+            loop = RemovalLoop(component, phase.macro_step, start, phase.duration, progress, origin=start)
+            progress.begin("removal without recoil", 0.0, phase.duration)
             result = loop.run()
             progress.end()
         finally:

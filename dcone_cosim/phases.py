@@ -1,6 +1,7 @@
 """The two phases as loops over communication points, each on one component; what they leave is a `PhaseResult`.
 
-Every communication point is start + i * macro_step, from an integer, so nothing accumulates.
+Every communication point is start + i * macro_step, from an integer, so nothing accumulates. The times of a capture or
+a removal count from its begin, whatever time its FMU is told to begin at; those of any other phase are its FMU's.
 """
 
 from __future__ import annotations
@@ -10,12 +11,11 @@ import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_FIELDS, TUG_PREFIX
+from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import restoring
 from dcone_cosim.fmu.component import KINDS, Readable, Row, Steppable, Terminated, output_names
+from dcone_cosim.holding import holding
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 
@@ -31,6 +31,7 @@ class CapturePlan:
     stop_there     end at the trigger, since a removal follows; otherwise go on
     after_capture  go on for this long after the trigger [s]
     snapshots      when to keep node positions [s]; empty: evenly spread
+    start          time the FMU is told to begin at [s]; all other times count from there, the shot
     """
 
     macro_step: float
@@ -39,12 +40,15 @@ class CapturePlan:
     stop_there: bool = False
     after_capture: float = math.inf
     snapshots: Sequence[float] = ()
+    start: float = 0.0
 
 
 @dataclass
 class PhaseResult:
     """What a phase leaves: its columns, and how it came out.
 
+    start        of its own times [s]: 0 for a capture or a removal
+    origin       what these are counted from, in the time of its FMU [s]
     outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
     located      instant of the hand-over [s] and how it was found, None when there was none
     error        the failure that ended the phase early
@@ -67,11 +71,12 @@ class PhaseResult:
     coupling: Mapping[str, float] = field(default_factory=dict)
     ended_by: str = ""
     ended_at: float = math.nan
+    origin: float = 0.0
 
     def ended(self, end: Terminated) -> None:
         """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:
         the last row stays that of the communication point before."""
-        self.outcome, self.ended_by, self.ended_at = ENDED, end.said, end.time
+        self.outcome, self.ended_by, self.ended_at = ENDED, end.said, end.time - self.origin
 
     @property
     def end(self) -> float:
@@ -104,11 +109,11 @@ class CaptureLoop:
     """Steps a capture FMU until it has handed over, failed, or run out of time."""
 
     def __init__(self, component: Steppable, plan: CapturePlan, progress: Progress) -> None:
-        self.component = component
+        self.component = holding(component)
         self.plan = plan
         self.progress = progress
         names = output_names(component.variables, without=(NODE_PREFIX,))
-        self.read = component.reader(names)
+        self.read = self.component.row(names)
         self.place = {name: i for i, name in enumerate(self.read.names)}
         nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
         self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
@@ -125,6 +130,7 @@ class CaptureLoop:
             0.0,
             Recorder(self.read.names, component.variables, grid_steps(plan.duration, plan.macro_step) + 3),
             Snapshots(plan.snapshots),
+            origin=plan.start,
         )
 
     def _need(self, name: str) -> None:
@@ -162,21 +168,27 @@ class CaptureLoop:
         result.coupling = coupling_of(self.component)
         return result
 
+    def _step(self, begin: float, end: float) -> None:
+        """Between two times since the shot."""
+        origin = self.plan.start
+        self.component.step(origin + begin, (origin + end) - (origin + begin))
+
     def _save(self) -> None:
         self._kept = restoring.save(self.component, self.read)
 
     def _restore(self, time: float) -> None:
-        restoring.restore(self.component, self.read, self._kept, time)
+        restoring.restore(self.component, self.read, self._kept, self.plan.start + time)
 
     def _record(self, time: float, force: bool = False) -> None:
         self.result.recorder.add(time, self.read())
+        self.component.begin_row()
         if self.read_nodes is not None and (self.result.snapshots.due(time, 1e-9) or force):
             count = int(self.read.values[self.place["net.nodes"]]) if "net.nodes" in self.place else None
             positions = self.read_nodes().reshape(-1, 3)
             self.result.snapshots.add(time, positions[:count])
 
     def _run(self) -> None:
-        plan, result, component = self.plan, self.result, self.component
+        plan, result = self.plan, self.result
         self._record(0.0)
         last = plan.duration
         for i in range(grid_steps(plan.duration, plan.macro_step)):
@@ -186,7 +198,7 @@ class CaptureLoop:
             searching = result.located is None and plan.hand_over != NEVER
             if searching and self.can_locate:
                 self._save()
-            component.step(begin, end - begin)
+            self._step(begin, end)
             result.steps += 1
             self.read()
             if searching and self.triggered():
@@ -199,7 +211,7 @@ class CaptureLoop:
                     break
                 end = min(end, last)
                 if at < end:
-                    component.step(at, end - at)
+                    self._step(at, end)
                     self._record(end)
             else:
                 self._record(end)
@@ -211,7 +223,7 @@ class CaptureLoop:
         result.outcome = self.outcome()
 
     def _locate(self, begin: float, end: float) -> float:
-        """Instant of the trigger in the step just taken; the component is left there.
+        """Instant of the trigger in the step just taken, since the shot; the component is left there.
 
         Goes to `t_capture` when the FMU reports it in the step, otherwise halves the step down to `LOCATED_TO`.
         """
@@ -227,9 +239,10 @@ class CaptureLoop:
                 result.located_by += f" (it reports {reported:.9g} s)"
             return end
         low, high = begin, end
-        restoring.replay(component, self.read, self._kept, begin, end)
+        origin = self.plan.start
+        restoring.replay(component, self.read, self._kept, origin + begin, origin + end)
         if begin < reported < end:
-            component.step(begin, reported - begin)
+            self._step(begin, reported)
             self.read()
             if self.triggered():
                 result.located_by = "the FMU's own t_capture, reached from its saved state"
@@ -237,12 +250,12 @@ class CaptureLoop:
             low = reported
             self._save()
         elif reported == end:
-            component.step(begin, end - begin)
+            self._step(begin, end)
             result.located_by = "the FMU's own t_capture"
             return end
         while high - low > LOCATED_TO:
             middle = 0.5 * (low + high)
-            component.step(low, middle - low)
+            self._step(low, middle)
             self.read()
             if self.triggered():
                 high = middle
@@ -250,33 +263,37 @@ class CaptureLoop:
             else:
                 low = middle
                 self._save()
-        component.step(low, high - low)
+        self._step(low, high)
         result.located_by = f"halving the macro step to {high - low:.2g} s"
         return high
 
 
 class RemovalLoop:
-    """Steps a removal FMU for its duration and gathers its tugs."""
+    """Steps a removal FMU, or that of any other phase, for its duration and gathers its tugs.
+
+    start        time the FMU is told to begin at [s]
+    origin       in that time, what the times of the result are counted from [s]
+    """
 
     def __init__(
-        self, component: Steppable, macro_step: float, start: float, duration: float, progress: Progress
+        self,
+        component: Steppable,
+        macro_step: float,
+        start: float,
+        duration: float,
+        progress: Progress,
+        origin: float = 0.0,
     ) -> None:
-        self.component = component
-        self.macro_step, self.start, self.duration = macro_step, start, duration
+        self.component = holding(component)
+        self.macro_step, self.duration = macro_step, duration
         self.progress = progress
-        self.read = component.reader(output_names(component.variables, without=(NODE_PREFIX, TUG_PREFIX)))
-        place = {name: i for i, name in enumerate(self.read.names)}
-        self.count_at, self.taut_at = place.get("tether.tug_count"), place.get("tether.taut")
-        ring = 0
-        while all(f"{TUG_PREFIX}{ring + 1}].{field}" in component.variables for field in TUG_FIELDS):
-            ring += 1
-        names = [f"{TUG_PREFIX}{i}].{field}" for i in range(1, ring + 1) for field in TUG_FIELDS]
-        self.read_ring: Readable | None = component.reader(names) if ring and self.count_at is not None else None
+        self.read = self.component.row(output_names(component.variables, without=(NODE_PREFIX, TUG_PREFIX)))
         self.result = PhaseResult(
             component.name,
-            start,
+            start - origin,
             Recorder(self.read.names, component.variables, grid_steps(duration, macro_step) + 1),
-            tugs=TugLog(ring) if self.read_ring is not None else None,
+            tugs=self.component.tugs,
+            origin=origin,
         )
 
     def run(self) -> PhaseResult:
@@ -293,35 +310,26 @@ class RemovalLoop:
         result.coupling = coupling_of(self.component)
         return result
 
-    def _record(self, time: float, was_taut: bool) -> bool:
-        """Add a row; true when a tug may still be growing."""
-        values = self.read()
-        self.result.recorder.add(time, values)
-        tugs = self.result.tugs
-        if tugs is None or self.read_ring is None or self.count_at is None:
-            return False
-        taut = self.taut_at is None or bool(values[self.taut_at])
-        count = int(values[self.count_at])
-        if count and (count != tugs.count or taut or was_taut):
-            tugs.update(count, self.read_ring().reshape(tugs.ring, len(TUG_FIELDS)))
-        return taut
+    def _record(self, time: float) -> None:
+        self.result.recorder.add(time, self.read())
+        self.component.begin_row()
 
     def _run(self) -> None:
         component, result = self.component, self.result
+        start, origin = result.start, result.origin
         steps = grid_steps(self.duration, self.macro_step)
-        stop = self.start + self.duration
-        taut = self._record(self.start, False)
+        self._record(start)
         for i in range(steps):
-            begin = self.start + i * self.macro_step
-            end = stop if i == steps - 1 else self.start + (i + 1) * self.macro_step
-            component.step(begin, end - begin)
+            end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
+            begun = origin + (start + i * self.macro_step)
+            component.step(begun, (origin + end) - begun)
             result.steps += 1
-            taut = self._record(end, taut)
+            self._record(end)
             self.progress.at(end)
 
 
-def parameters_of(component: Steppable, given: Mapping[str, float]) -> dict[str, float]:
-    """Every parameter of the component as it now stands: what was given and what was left at its start value."""
-    names = [v.name for v in component.variables.values() if v.causality == "parameter" and v.kind in KINDS]
+def standing(component: Steppable, causality: str) -> dict[str, float]:
+    """Every parameter, or every input, of the component as it now stands, whether it was given or left at its start."""
+    names = [v.name for v in component.variables.values() if v.causality == causality and v.kind in KINDS]
     present = component.get(names) if names else {}
-    return {name: present.get(name, float(np.nan)) for name in dict.fromkeys((*given, *names))}
+    return {name: present[name] for name in names}

@@ -128,6 +128,17 @@ class TugLog:
             time, peak, speed = latest[place].tolist()
             self.rows[count - place] = (time, peak, speed)
 
+    def latest(self) -> dict[int, tuple[float, float, float]]:
+        """The tugs that may still change, by number."""
+        return {n: self.rows[n] for n in range(max(1, self.count - self.ring + 1), self.count + 1) if n in self.rows}
+
+    def go_back(self, count: int, latest: Mapping[int, tuple[float, float, float]]) -> None:
+        """Forget all after this count; `latest` are those that have changed since."""
+        for number in range(count + 1, self.count + 1):
+            self.rows.pop(number, None)
+        self.count = count
+        self.rows |= latest
+
     @property
     def missed(self) -> int:
         """Tugs that left the ring before it was read: the macro step was too long to see them."""

@@ -1,6 +1,6 @@
 """The run folder: everything a run leaves, written whole or not at all.
 
-    summary.json  provenance.json  scene.toml  ledger.json  ledger.csv
+    summary.json  provenance.json  scene.toml  fmus/*.fmu  ledger.json  ledger.csv
     capture.parquet  nodes.parquet  removal.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
     *.png
 
@@ -27,6 +27,7 @@ import numpy.typing as npt
 from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.recorder import Snapshots, TugLog
+from dcone_cosim.scenes.kept import keep
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -35,6 +36,10 @@ PACKAGES = (
     *("dcone-cosim", "numpy", "fmpy", "astropy", "tomlkit", "pyarrow", "matplotlib", "typer"),
     *("numba", "llvmlite", "ziglang"),
 )
+
+
+OPTIONS = ("hand_over", "after_capture", "snapshots")
+"""What a scene tells the master of a phase, beside its steps."""
 
 
 def default_folder(scene: str) -> Path:
@@ -50,12 +55,11 @@ def fill(
     with_csv: bool = False,
     draw: Callable[[Path], Any] | None = None,
 ) -> None:
-    """Put everything into the folder."""
+    """Put everything into the folder, and what the run was made from, so that it can be made again."""
     import pyarrow.csv
     import pyarrow.parquet
 
-    source = "SystemStructure.ssd" if run.scene.source.lower().endswith(".ssp") else "scene.toml"
-    (folder / source).write_text(run.scene.text, encoding="utf-8")
+    keep(run.scene, folder)
     for name, table in _tables(run):
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet")
         if with_csv:
@@ -122,28 +126,36 @@ def _arrow(values: npt.NDArray[Any]) -> Any:
 
 def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
     for name, result in run.phases.items():
-        yield name, phase_table(result)
+        clock = clock_of(run, name)
+        yield name, phase_table(result, clock)
         if result.snapshots.times:
-            yield "nodes", nodes_table(result.snapshots)
+            yield "nodes", nodes_table(result.snapshots, clock)
         if result.tugs is not None:
-            yield "tugs", tugs_table(result.tugs, _clock(result))
+            yield "tugs", tugs_table(result.tugs, clock)
     if run.comparison is not None and run.comparison.tugs is not None:
-        yield "removal_without_recoil_tugs", tugs_table(run.comparison.tugs, _clock(run.comparison))
+        yield "removal_without_recoil_tugs", tugs_table(run.comparison.tugs, clock_of(run, "removal"))
 
 
-def _clock(result: PhaseResult) -> str:
-    """Which clock the times of a phase are of."""
-    if result.start == 0.0:
-        return "time since the phase began"
-    return f"time since the shot, as in removal.parquet; the removal began at {result.start!r} s"
+def clock_of(run: RunResult, phase: str) -> str:
+    """What the times of a phase count from, in words."""
+    if phase == "capture":
+        return "since the shot"
+    if phase != "removal":
+        return "time of the phase's FMU"
+    if run.handoff is None:
+        return "since the removal began"
+    return f"since the hand-over, which was {run.handoff.time!r} s after the shot"
 
 
-def phase_table(result: PhaseResult) -> pa.Table:
+def phase_table(result: PhaseResult, clock: str) -> pa.Table:
+    """One row per communication point; `clock` says what its time is counted from."""
     recorder = result.recorder
-    return _table([(name, recorder.units[name], recorder.column(name)) for name in recorder.names])
+    return _table(
+        [(name, recorder.units[name], recorder.column(name)) for name in recorder.names], time={"clock": clock}
+    )
 
 
-def nodes_table(snapshots: Snapshots) -> pa.Table:
+def nodes_table(snapshots: Snapshots, clock: str) -> pa.Table:
     """One row per node and snapshot: time, node counted from 1, position."""
     positions = np.concatenate(snapshots.nodes)
     counts = [len(nodes) for nodes in snapshots.nodes]
@@ -152,7 +164,7 @@ def nodes_table(snapshots: Snapshots) -> pa.Table:
         ("node", "1", np.concatenate([np.arange(1, count + 1) for count in counts])),
     ]
     columns += [(f"position[{i + 1}]", "m", np.ascontiguousarray(positions[:, i])) for i in range(3)]
-    return _table(columns)
+    return _table(columns, time={"clock": clock})
 
 
 def tugs_table(tugs: TugLog, clock: str) -> pa.Table:
@@ -175,7 +187,7 @@ def _write_ledger(run: RunResult, draft: Path) -> None:
     handed = record.handed
     rows = [row.as_dict() for row in record.rows]
     content = {
-        "time": {"value": record.time, "unit": "s"},
+        "time": {"value": record.time, "unit": "s", "clock": "since the shot"},
         "located_by": record.located_by,
         "rows": rows,
         "cross_checks": [vars(check) for check in record.checks],
@@ -209,7 +221,11 @@ def _write_ledger(run: RunResult, draft: Path) -> None:
 
 
 def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: datetime) -> dict[str, Any]:
-    """What made these numbers: versions, machine, FMUs, every parameter, and the time it took."""
+    """What made these numbers: versions, machine, FMUs, every value that a model was given, and the time it took.
+
+    `dcone run` on the folder makes the run again from the scene that is kept in it; this says what that scene came to.
+    Values are SI; `given` are those that the master set, `handed_over` those of them that the scene does not say.
+    """
     versions = {}
     for package in PACKAGES:
         try:
@@ -219,20 +235,27 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
     phases = {}
     settings = {phase.name: phase for phase in run.scene.phases}
     for name, result in run.phases.items():
-        phase = settings[name]
+        phase, given = settings[name], run.given.get(name, {})
         phases[name] = {
             **fmus.get(name, {}),
             "terms": dict(phase.main.terms),
+            "start": {"value": result.start, "unit": "s"},
             "macro_step": {"value": phase.macro_step, "unit": "s"},
             "duration": {"value": phase.duration, "unit": "s"},
+            "options": {key: value for key, value in phase.options.items() if key in OPTIONS},
             "steps": result.steps,
             "cpu": {"value": result.cpu, "unit": "s"},
             "wall": {"value": result.wall, "unit": "s"},
             "parameters": run.parameters.get(name, {}),
+            "inputs": run.inputs.get(name, {}),
+            "given": given,
+            "handed_over": {n: value for n, value in given.items() if phase.main.parameters.get(n) != value},
         }
     return {
         "scene": run.scene.name,
+        "scene_sha256": run.scene.sha256,
         "settings": [override.argument for override in run.scene.places.overrides],
+        "handoff": dict(run.scene.handoff),
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,

@@ -93,20 +93,28 @@ def _shorter_step(step: float, error: float) -> float:
     return step * max(LARGEST_CUT, SAFETY / math.sqrt(math.sqrt(math.sqrt(error))))
 
 
-def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], size: int) -> AdaptiveScheme:
+def make_dop853(
+    derivative: Callable[..., Any], measure: Callable[..., Any], size: int, counted: int = 0
+) -> AdaptiveScheme:
     """The explicit Runge-Kutta scheme of Dormand and Prince, order 8(5,3), with its dense output of order 7.
 
     derivative(context, state, rate, elapsed)   writes d(state)/dt, at `elapsed` [s] after the begin of the step
     measure(context, state, error)              square of the error's size in units of the tolerance [-]
     size                                        number of components
+    counted                                     components behind those that the equations do not depend on: integrals
+                                                along the way, for which no stage is formed
 
     Order      8; error estimate from embedded orders 5 and 3; dense output 7, continuous to the first derivative
     Stability  h |lambda| up to 6.4 on the negative real axis and 5.97 on the imaginary one; below that an undamped
                oscillation decays, by 2.3e-11 of its size a step at 0.5, 2.4e-8 at 1, 2.7e-5 at 2
+    A state, a rate and a row of stages hold size + counted numbers. What `measure` makes of the counted ones is its own
+    affair; where it leaves them out the others keep their bits.
+
     Cost       11 evaluations a step (the first is the last step's last), 3 more when dense output is asked for
     Source     Hairer, Norsett and Wanner (1993), section II.5 and II.6; the numbers are those of scipy's DOP853
     Checked    tests/tethered_deorbit/test_integrator.py: slope of the error 8 and 7, edges of stability
     """
+    width = size + counted
 
     @kernel
     def attempt(context: Any, start: Array, step: float, stages: Array, end: Array) -> None:
@@ -116,22 +124,27 @@ def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], siz
             for j in range(i):
                 weight = _A[i * DOP853_ROWS + j]
                 if weight != 0.0:
-                    row = stages[j * size : (j + 1) * size]
+                    row = stages[j * width : (j + 1) * width]
                     for n in range(size):
                         end[n] += weight * row[n]
             for n in range(size):
                 end[n] = start[n] + step * end[n]
-            derivative(context, end, stages[i * size : (i + 1) * size], _C[i] * step)
+            derivative(context, end, stages[i * width : (i + 1) * width], _C[i] * step)
+        for n in range(size, width):
+            integral = 0.0
+            for j in range(DOP853_STAGES):
+                integral += _A[DOP853_STAGES * DOP853_ROWS + j] * stages[j * width + n]
+            end[n] = start[n] + step * integral
 
     @kernel
     def error(context: Any, end: Array, step: float, stages: Array, low: Array, high: Array) -> float:
-        for n in range(size):
+        for n in range(width):
             low[n] = 0.0
             high[n] = 0.0
         for j in range(DOP853_STAGES + 1):
-            for n in range(size):
-                low[n] += _E3[j] * stages[j * size + n]
-                high[n] += _E5[j] * stages[j * size + n]
+            for n in range(width):
+                low[n] += _E3[j] * stages[j * width + n]
+                high[n] += _E5[j] * stages[j * width + n]
         fifth = measure(context, end, high)
         if fifth == 0.0:
             return 0.0
@@ -149,27 +162,27 @@ def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], siz
                 weight = _A[i * DOP853_ROWS + j]
                 if weight != 0.0:
                     for n in range(size):
-                        scratch[n] += weight * stages[j * size + n]
+                        scratch[n] += weight * stages[j * width + n]
             for n in range(size):
                 scratch[n] = start[n] + step * scratch[n]
-            derivative(context, scratch, stages[i * size : (i + 1) * size], _C[i] * step)
-        for n in range(size):
+            derivative(context, scratch, stages[i * width : (i + 1) * width], _C[i] * step)
+        for n in range(width):
             change = end[n] - start[n]
             first = step * stages[n]
-            last = step * stages[DOP853_STAGES * size + n]
+            last = step * stages[DOP853_STAGES * width + n]
             dense[n] = change
-            dense[size + n] = first - change
-            dense[2 * size + n] = 2.0 * change - (first + last)
+            dense[width + n] = first - change
+            dense[2 * width + n] = 2.0 * change - (first + last)
         for i in range(4):
-            for n in range(size):
+            for n in range(width):
                 scratch[n] = 0.0
             for j in range(DOP853_ROWS):
                 weight = _D[i * DOP853_ROWS + j]
                 if weight != 0.0:
-                    for n in range(size):
-                        scratch[n] += weight * stages[j * size + n]
-            for n in range(size):
-                dense[(3 + i) * size + n] = step * scratch[n]
+                    for n in range(width):
+                        scratch[n] += weight * stages[j * width + n]
+            for n in range(width):
+                dense[(3 + i) * width + n] = step * scratch[n]
 
     @kernel
     def dense_value(start: Array, dense: Array, fraction: float, first: int, count: int, out: Array) -> None:
@@ -178,7 +191,7 @@ def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], siz
             value = 0.0
             for i in range(DOP853_DENSE_ROWS):
                 row = DOP853_DENSE_ROWS - 1 - i
-                value = (value + dense[row * size + first + n]) * (fraction if i % 2 == 0 else rest)
+                value = (value + dense[row * width + first + n]) * (fraction if i % 2 == 0 else rest)
             out[n] = start[first + n] + value
 
     @kernel
@@ -189,7 +202,7 @@ def make_dop853(derivative: Callable[..., Any], measure: Callable[..., Any], siz
             slope = 0.0
             for i in range(DOP853_DENSE_ROWS):
                 row = DOP853_DENSE_ROWS - 1 - i
-                value += dense[row * size + first + n]
+                value += dense[row * width + first + n]
                 if i % 2 == 0:
                     slope = slope * fraction + value
                     value *= fraction

@@ -9,6 +9,7 @@ import math
 from orbital.kernel import kernel
 
 
+@kernel
 def line_stiffness(young_modulus: float, diameter: float, length: float) -> float:
     """Stiffness of a solid round line [N/m].
 
@@ -22,9 +23,10 @@ def line_stiffness(young_modulus: float, diameter: float, length: float) -> floa
     Source   D-CoNe paper, eq. 1
     Checked  tests/orbital/test_oscillators.py; 3926.99 N/m for the tether of Table 2
     """
-    return young_modulus * 0.25 * math.pi * diameter**2 / length
+    return young_modulus * math.pi * diameter * diameter / (4.0 * length)
 
 
+@kernel
 def reduced_mass(first: float, second: float) -> float:
     """Reduced mass of two bodies joined by a line [kg].
 
@@ -39,6 +41,7 @@ def reduced_mass(first: float, second: float) -> float:
     return first * second / (first + second)
 
 
+@kernel
 def natural_frequency(stiffness: float, mass: float) -> float:
     """Undamped angular frequency [rad/s].
 
@@ -52,6 +55,23 @@ def natural_frequency(stiffness: float, mass: float) -> float:
     Checked  tests/orbital/test_oscillators.py; period 2.589 s for Table 2
     """
     return math.sqrt(stiffness / mass)
+
+
+@kernel
+def dashpot(zeta: float, stiffness: float, mass: float) -> float:
+    """Dashpot that damps by a ratio of the critical one [N s/m]: the inverse of `damping_ratio`.
+
+        c = 2 zeta sqrt(k m)
+
+    zeta                 damping ratio                           [-]
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass of what moves              [kg]
+
+    Valid    any
+    Source   harmonic oscillator
+    Checked  tests/orbital/test_oscillators.py
+    """
+    return 2.0 * zeta * math.sqrt(stiffness * mass)
 
 
 def damping_ratio(damping: float, stiffness: float, mass: float) -> float:

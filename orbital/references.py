@@ -13,6 +13,8 @@ counts: it is the sine of the equilibrium angle.
 
 import math
 
+from orbital.kernel import kernel
+
 
 def spiral_rate(semi_major_axis: float, thrust: float, mass: float, mu: float) -> float:
     """Rate of change of the semi-major axis [m/s], averaged over a near-circular orbit.
@@ -72,6 +74,7 @@ def spiral_time(
     return -math.expm1(-delta_v / exhaust_speed) * mass * exhaust_speed / abs(thrust)
 
 
+@kernel
 def equilibrium_tension(rate: float, length: float, mass: float) -> float:
     """Tension [N] of a pair at rest in the orbital frame about the vertical, whatever the thrust.
 

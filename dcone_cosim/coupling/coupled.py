@@ -14,7 +14,9 @@ from dcone_cosim.coupling.step_control import ControlledSteps, FixedSteps, Stati
 from dcone_cosim.coupling.wiring import order_of, wire
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.component import Readable, Row, Steppable, Terminated, VariableInfo
+from dcone_cosim.holding import Held
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.recorder import TugLog
 
 BEGIN = "coupling begin"
 """Key under which the begin of a macro step is kept, for an FMU that ends itself within it."""
@@ -48,6 +50,7 @@ class Coupled:
     ) -> None:
         self.name = name
         self.components = tuple(components)
+        self._held = tuple(Held(component) for component in components)
         self.coupling = coupling
         self.can_save = all(component.can_save for component in components)
         self.can_vary_step = all(component.can_vary_step for component in components)
@@ -61,7 +64,7 @@ class Coupled:
             self._need_control(names)
         self._statistics = Statistics()
         self._exchange = Exchange(
-            self.components, links, order, coupling.method == "gauss_seidel", coupling.extrapolation == "linear"
+            self._held, links, order, coupling.method == "gauss_seidel", coupling.extrapolation == "linear"
         )
         control = ControlledSteps if coupling.control == "error" else FixedSteps
         self._steps: StepControl = control(self._exchange, coupling, self._statistics)
@@ -119,7 +122,7 @@ class Coupled:
             place, own = self._where(name)
             shares.setdefault(place, {})[own] = value
         for place, share in shares.items():
-            self.components[place].set(share)
+            self._held[place].set(share)
         self._stale = True
 
     def set_rates(self, rates: Mapping[str, float]) -> None:
@@ -132,17 +135,39 @@ class Coupled:
         return {name: found[name] for name in names}
 
     def reader(self, names: Sequence[str]) -> Readable:
+        shares = self._shares(names)
+        return self._as_one([(place, self._held[place].reader(share)) for place, share in shares])
+
+    def row(self, names: Sequence[str]) -> Readable:
+        """Like `reader`, with the extremes of all coupling steps since the last row."""
+        shares = self._shares(names)
+        return self._as_one([(place, self._held[place].row(share)) for place, share in shares])
+
+    def begin_row(self) -> None:
+        """A row has been recorded: the next step begins another."""
+        for component in self._held:
+            component.begin_row()
+
+    @property
+    def tugs(self) -> TugLog | None:
+        """The tugs of the main component."""
+        return self._held[0].tugs
+
+    def _shares(self, names: Sequence[str]) -> list[tuple[int, list[str]]]:
+        """The names by the place of the component that has them, as it knows them."""
         shares: dict[int, list[str]] = {}
         for name in names:
             place, own = self._where(name)
             shares.setdefault(place, []).append(own)
+        return sorted(shares.items())
+
+    def _as_one(self, readers: Sequence[tuple[int, Readable]]) -> Readable:
         shown = {where: name for name, where in self._of.items()}
-        readers = [(place, self.components[place].reader(share)) for place, share in sorted(shares.items())]
         return _Readers([(reader, [shown[place, own] for own in reader.names]) for place, reader in readers])
 
     def enter_initialisation(self, start: float, stop: float | None = None) -> None:
         """Prepare all to begin at `start` [s], and exchange outputs and inputs until they agree."""
-        for component in self.components:
+        for component in self._held:
             component.enter_initialisation(start, stop)
         self._exchange.forget()
         self._exchange.settle(start)
@@ -153,7 +178,7 @@ class Coupled:
         """Begin, with what was set meanwhile."""
         if self._stale:
             self._exchange.settle(self._time)
-        for component in self.components:
+        for component in self._held:
             component.exit_initialisation()
         self._exchange.settle(self._time)
         self._stale = False
@@ -205,7 +230,7 @@ class Coupled:
     def close(self) -> None:
         """Close every component; the first failure is raised once all have been."""
         failure: Exception | None = None
-        for component in self.components:
+        for component in self._held:
             try:
                 component.close()
             except Exception as error:

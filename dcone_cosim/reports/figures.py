@@ -53,7 +53,7 @@ def _figures(run: RunResult) -> Iterator[Figure]:
             yield "mouth_and_energies.png", partial(_mouth_and_energy, capture, title)
     if removal is not None and len(removal.recorder) > 1:
         if {"chaser.radius", "target.radius"} <= set(removal.recorder.names):
-            yield "orbital_radius.png", partial(_orbit, removal, title)
+            yield "orbital_radius.png", partial(_orbit, run, removal, title)
         if "tether.tension" in removal.recorder:
             yield "tether_tension.png", partial(_tension, run, removal, title)
 
@@ -105,11 +105,15 @@ def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
     style.save(figure, path)
 
 
-def _orbit(result: PhaseResult, title: str, path: Path) -> None:
+def _since(run: RunResult) -> str:
+    return "time since the hand-over" if run.handoff is not None else "time since the removal began"
+
+
+def _orbit(run: RunResult, result: PhaseResult, title: str, path: Path) -> None:
     """Orbital radius of both bodies, and of the chaser less the target: on the scale of the orbit they coincide."""
     recorder = result.recorder
-    divisor, unit = style.time_axis(result.end - result.start)
-    time = (recorder["time"] - result.start) / divisor
+    divisor, unit = style.time_axis(result.end)
+    time = recorder["time"] / divisor
     figure = style.new_figure(8.5, 6.0)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     style.margins(figure, 0.2)
@@ -123,7 +127,7 @@ def _orbit(result: PhaseResult, title: str, path: Path) -> None:
     above.legend()
     below.plot(time, recorder["chaser.radius"] - recorder["target.radius"], color=style.ACCENT, linewidth=1.0)
     below.set_ylabel("chaser over target [m]")
-    below.set_xlabel(f"time since the removal began [{unit}]")
+    below.set_xlabel(f"{_since(run)} [{unit}]")
     style.head(figure, title)
     style.save(figure, path)
 
@@ -135,8 +139,8 @@ LEAST = 1e-6
 def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> None:
     """Tension over the whole phase, logarithmic, with its tugs as stems; below, linear, the time of the tugs apart."""
     recorder = result.recorder
-    divisor, unit = style.time_axis(result.end - result.start)
-    since = recorder["time"] - result.start
+    divisor, unit = style.time_axis(result.end)
+    since = recorder["time"]
     sets = _tug_sets(run, result)
     figure = style.new_figure(8.5, 6.4)
     if sets:
@@ -155,7 +159,7 @@ def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> Non
         above.set_ylim(max(LEAST, 0.3 * values.min()), 3.0 * values.max())
     above.set_xlim(0.0, since[-1] / divisor)
     above.set_ylabel("tether tension [N]")
-    above.set_xlabel(f"time since the removal began [{unit}]")
+    above.set_xlabel(f"{_since(run)} [{unit}]")
     if above.get_legend_handles_labels()[1]:
         above.legend(loc="upper right")
     if below is not None:
@@ -166,7 +170,7 @@ def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> Non
         below.set_xlim(0.0, 1.05 * last / zoom)
         below.set_ylim(bottom=0)
         below.set_ylabel("tether tension [N]")
-        below.set_xlabel(f"the tugs apart: time since the removal began [{zoom_unit}]")
+        below.set_xlabel(f"the tugs apart: {_since(run)} [{zoom_unit}]")
     style.head(figure, title)
     style.save(figure, path)
 
@@ -190,7 +194,7 @@ def _tug_sets(run: RunResult, result: PhaseResult) -> list[tuple[str, style.Arra
         (result, "tugs", style.BULLET, True),
     ):
         if phase is not None and phase.tugs is not None and phase.tugs.rows:
-            rows = np.array(list(phase.tugs.rows.values()))[:, :2] - np.array([phase.start, 0.0])
+            rows = np.array(list(phase.tugs.rows.values()))[:, :2]
             rows = rows[rows[:, 0] > 0.0]
             if len(rows):
                 sets.append((label, rows, colour, strong))

@@ -1,68 +1,107 @@
-"""What a scene puts into its FMUs and what it leaves out, with sizes; and what is known of FMUs from elsewhere."""
+"""What a scene puts into its FMUs, what it leaves out and what it implies; and what is known of FMUs from elsewhere."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.master import cannot_begin
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
 from dcone_cosim.scenes.units import spoken
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 
+@dataclass
+class About:
+    """What is known of a component.
+
+    terms      what is in the FMU and what is left out: "in" or "left out", the term, what it adds
+    facts      label and text
+    implied    what the scene's values come to
+    """
+
+    title: str
+    phase: str
+    component: str
+    model: str
+    terms: list[tuple[str, str, str]] = field(default_factory=list)
+    facts: list[tuple[str, str]] = field(default_factory=list)
+    implied: list[build.Implied] = field(default_factory=list)
+
+
 def show(scene: Scene, console: Console, progress: Progress) -> None:
     for phase in scene.phases:
         for component in phase.components:
-            if component.fmu is None:
-                _show_ours(scene, phase, component, console, progress)
-            else:
-                _show_other(scene, phase, component, console)
+            _show(_about(scene, phase, component, progress), console)
         _show_coupling(phase, console)
 
 
-def _title(scene: Scene, phase: PhaseScene, component: ComponentScene, model: str) -> str:
+def as_dict(scene: Scene, progress: Progress) -> dict[str, Any]:
+    """For machines: every component with its terms, and `implied: {key: {label, value, unit}}`, SI."""
+    components = []
+    for phase in scene.phases:
+        for component in phase.components:
+            about = _about(scene, phase, component, progress)
+            components.append(
+                {
+                    "phase": about.phase,
+                    "component": about.component,
+                    "model": about.model,
+                    "terms": {
+                        where: [term for place, term, _ in about.terms if place == where]
+                        for where in ("in", "left out")
+                    },
+                    "facts": dict(about.facts),
+                    "implied": {
+                        row.key: {"label": row.label, "value": row.value, "unit": row.unit} for row in about.implied
+                    },
+                }
+            )
+    return {"scene": scene.name, "title": scene.title, "warnings": list(scene.cautions), "components": components}
+
+
+def _about(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: Progress) -> About:
+    of = _ours(scene, phase, component, progress) if component.fmu is None else _other(phase, component)
     which = "" if component is phase.main else f", {component.name}"
-    return f"{scene.name}, {phase.name}{which}: {model}{', isolated' if component.isolate else ''}"
+    of.title = f"{scene.name}, {phase.name}{which}: {of.model}{', isolated' if component.isolate else ''}"
+    return of
 
 
-def _show_ours(
-    scene: Scene, phase: PhaseScene, component: ComponentScene, console: Console, progress: Progress
-) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
+def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: Progress) -> About:
     with progress.working("building"):
         (path,) = build.ensure([(component.model, component.terms)], progress.say)
-    title = Text(_title(scene, phase, component, component.model), style="table.title")
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
-    for header in ("", "term", "what it adds"):
-        table.add_column(header, overflow="fold")
-    for row in _terms(component):
-        table.add_row(*(Text(cell) for cell in row))
+    about = About("", phase.name, component.name, component.model, list(_terms(component)))
+    values = {**component.defaults, **component.parameters}
+    if phase.name == PHASES[1] and component is phase.main and phase is not scene.phases[0]:
+        values |= _handed_over(scene.phases[0].main)
+    if component is phase.main:
+        about.implied += build.implied(phase.name, values, component.terms)
     try:
         with Archive(path) as archive:
-            sizes = _sizes(component, archive)
+            about.facts, more = _sizes(phase, component, archive)
     except FmuError as error:
         raise cannot_begin(scene, phase.name, error) from None
-    console.print(table)
-    _rows(sizes, console)
+    about.implied += more
+    return about
 
 
-def _show_other(scene: Scene, phase: PhaseScene, component: ComponentScene, console: Console) -> None:
-    from rich.text import Text
+def _handed_over(capture: ComponentScene) -> dict[str, float]:
+    """The masses that a removal gets from the capture before it."""
+    return build.masses_after({**capture.defaults, **capture.parameters}) if capture.fmu is None else {}
 
+
+def _other(phase: PhaseScene, component: ComponentScene) -> About:
     assert component.fmu is not None
     with Archive(component.fmu) as archive:
         about = archive.description
-        console.print(Text(_title(scene, phase, component, about.modelName), style="table.title"))
         platforms = sorted({p.parent.name for p in (archive.folder or component.fmu).glob("binaries/*/*")})
         rows = [
             ("file", str(component.fmu)),
@@ -73,10 +112,57 @@ def _show_other(scene: Scene, phase: PhaseScene, component: ComponentScene, cons
             ("variables", _counted(archive)),
             ("FMU", f"{component.fmu.stat().st_size:,} bytes"),
         ]
+        name = about.modelName
     given = [f"{name} = {value:g}" for name, value in component.parameters.items()]
     if given:
         rows.insert(4, ("set by the scene, SI", ", ".join(given)))
-    _rows(rows, console)
+    return About("", phase.name, component.name, name, [], rows)
+
+
+def _show(about: About, console: Console) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    title = Text(about.title, style="table.title")
+    if about.terms:
+        table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+        for header in ("", "term", "what it adds"):
+            table.add_column(header, overflow="fold")
+        for row in about.terms:
+            table.add_row(*(Text(cell) for cell in row))
+        console.print(table)
+    else:
+        console.print(title)
+    _rows(about.facts, console)
+    if about.implied:
+        console.print("  what that comes to:", highlight=False)
+        table = Table(show_header=False, box=None, pad_edge=False, padding=(0, 2, 0, 0))
+        table.add_column(no_wrap=True)
+        table.add_column(no_wrap=True, justify="right")
+        table.add_column(no_wrap=True)
+        for implied in about.implied:
+            table.add_row(Text(f"    {implied.label}"), *map(Text, _number(implied.value, implied.unit)))
+        console.print(table)
+        console.print()
+
+
+SMALL = {
+    "m": ("mm", 1e3, 0.1),
+    "m2": ("mm2", 1e6, 1e-2),
+    "kg": ("g", 1e3, 0.1),
+    "s": ("ms", 1e3, 0.1),
+    "m/s": ("mm/s", 1e3, 0.1),
+    "N": ("mN", 1e3, 0.1),
+}
+"""In which unit a small value is shown, how many of it make the SI unit, and below which SI value."""
+
+
+def _number(value: float, unit: str) -> tuple[str, str]:
+    """A value and its unit as a person reads them."""
+    shown, factor, below = SMALL.get(unit, (unit, 1.0, 0.0))
+    if unit == "1":
+        return f"{value:,.0f}", ""
+    return (f"{factor * value:.6g}", spoken(shown)) if abs(value) < below else (f"{value:.6g}", spoken(unit))
 
 
 def _show_coupling(phase: PhaseScene, console: Console) -> None:
@@ -113,13 +199,19 @@ def _terms(component: ComponentScene) -> Iterator[tuple[str, str, str]]:
 STATE_HEAD = 96
 """What a serialised state begins with, before record and work memory (`saved` in fmu_src/packaging/fmi2.c) [bytes]."""
 
+STEPS = {"solver.stability_bound": "longest step that is sure to be stable", "solver.substep": "substep"}
+"""Outputs of a model that tell how it will step."""
+
 
 def _counted(archive: Archive) -> str:
     counts = Counter(v.causality for v in archive.variables.values())
     return f"{len(archive.variables):,}: " + ", ".join(f"{n:,} {c}s" for c, n in sorted(counts.items()))
 
 
-def _sizes(component: ComponentScene, archive: Archive) -> list[tuple[str, str]]:
+def _sizes(
+    phase: PhaseScene, component: ComponentScene, archive: Archive
+) -> tuple[list[tuple[str, str]], list[build.Implied]]:
+    """What an instance says of itself: sizes, and how it will step."""
     interface = build.CATALOGUE[component.model].interface(component.terms)
     hidden = sum(v.size for v in interface.variables if v.causality == "state")
     with archive.instantiate(component.name) as instance:
@@ -127,6 +219,7 @@ def _sizes(component: ComponentScene, archive: Archive) -> list[tuple[str, str]]
         instance.initialise(0.0)
         sizes = [n for n in ("net.nodes", "net.threads") if n in instance.variables]
         found = {name.partition(".")[2]: int(v) for name, v in instance.get(sizes).items()}
+        told = instance.get([name for name in STEPS if name in instance.variables])
         size = instance.state_size() if instance.can_save else None
     rows = [(name, str(number)) for name, number in found.items()]
     if size is not None:
@@ -140,4 +233,13 @@ def _sizes(component: ComponentScene, archive: Archive) -> list[tuple[str, str]]
     if size is not None:
         rows.append(("one instance", f"{size:,} bytes, its variables and states"))
     rows.append(("FMU", f"{archive.path.stat().st_size:,} bytes"))
-    return rows
+    return rows, list(_steps(told, phase.duration))
+
+
+def _steps(told: Mapping[str, float], duration: float) -> Iterator[build.Implied]:
+    for name, label in STEPS.items():
+        if name in told:
+            yield build.Implied(name, label, told[name], "s")
+    if "solver.substep" in told:
+        count = duration / told["solver.substep"]
+        yield build.Implied("solver.substeps", "substeps of the whole phase, at most", count, "1")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +13,9 @@ from dcone_cosim.handoff import spin_energy
 from dcone_cosim.line import OFFSET, SLACK
 from dcone_cosim.master import HandoffRecord, RunResult
 from dcone_cosim.phases import PhaseResult
-from orbital.constants import EARTH_MU
+from dcone_cosim.reports import chaos
+from dcone_cosim.reports.tension import last_orbit, orbital_period
+from dcone_cosim.reports.warnings import approach, warnings
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,21 +23,27 @@ if TYPE_CHECKING:
 DAY = 86400.0
 
 
+SAMPLE = "~"
+"""Before a figure that is one sample of many."""
+
+
 @dataclass(frozen=True)
 class Finding:
-    """One line of the summary; `key` is its name for machines."""
+    """One line of the summary; `key` is its name for machines, `spread` that of one sample of a chaotic figure [1]."""
 
     phase: str
     key: str
     label: str
     value: float | int | str
     unit: str = ""
+    spread: float = 0.0
 
     def shown(self) -> str:
         if isinstance(self.value, str):
             return self.value
-        number = f"{self.value:d}" if isinstance(self.value, int) else f"{self.value:.6g}"
-        return f"{number} {self.unit}".rstrip()
+        whole = isinstance(self.value, int) and not self.spread
+        number = f"{self.value:d}" if whole else chaos.digits(self.value, self.spread)
+        return f"{SAMPLE if self.spread else ''}{number} {self.unit}".rstrip()
 
 
 def findings(run: RunResult) -> list[Finding]:
@@ -48,21 +56,29 @@ def findings(run: RunResult) -> list[Finding]:
         rows += _of_effort(name, result)
     if run.handoff is not None and "removal" not in run.phases:
         rows += _of_handoff(run, run.handoff)
-    return rows
+    of = chaos.spreads(run)
+    return [
+        row if isinstance(row.value, str) else replace(row, spread=of.get((row.phase, row.key), 0.0)) for row in rows
+    ]
 
 
 def as_dict(run: RunResult) -> dict[str, Any]:
-    """For machines: `{phase: {key: {value, unit}}}` beside the status; a text has no unit, a pure number the unit 1."""
+    """For machines: `{phase: {key: {value, unit}}}` beside the status; a text has no unit, a pure number the unit 1.
+
+    Values have all their digits. `one_sample` says that they do not hold, and `spread` how far, relative to the value.
+    """
     content: dict[str, Any] = {
         "scene": run.scene.name,
         "title": run.scene.title,
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,
+        "warnings": warnings(run),
     }
     for row in findings(run):
         unit = {} if isinstance(row.value, str) else {"unit": row.unit or "1"}
-        content.setdefault(row.phase, {})[row.key] = {"value": row.value, **unit}
+        sample = {"one_sample": True, "spread": row.spread} if row.spread else {}
+        content.setdefault(row.phase, {})[row.key] = {"value": row.value, **unit, **sample}
     return content
 
 
@@ -76,10 +92,13 @@ def show(run: RunResult, console: Console) -> None:
     table.add_column()
     table.add_column(justify="right")
     previous = ""
-    for row in findings(run):
+    rows = findings(run)
+    for row in rows:
         table.add_row(row.phase if row.phase != previous else "", Text(row.label), Text(row.shown()))
         previous = row.phase
     console.print(table)
+    if any(row.spread for row in rows):
+        console.print(f"{SAMPLE} one sample of a chaotic figure, with the digits that hold", highlight=False)
 
 
 _CAPTURE_ROWS = (
@@ -94,6 +113,9 @@ _CAPTURE_ROWS = (
     ("mouth.girth", "girth it would have to pass", "m"),
     ("contact.loss", "energy lost in contact", "J"),
     ("closing.work", "work of the winches", "J"),
+    ("thread.dissipated", "taken by the threads' dashpots", "J"),
+    ("cord.dissipated", "taken by the cord's dashpots", "J"),
+    ("energy.remainder", "left over in the energy book", "J"),
     ("tether.paid_out", "tether paid out", "m"),
     ("net.nodes", "nodes of the net", ""),
     ("net.threads", "threads of the net", ""),
@@ -108,7 +130,7 @@ def _of_capture(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
         yield Finding("capture", "located_by", "found by", result.located_by)
     for name, label, unit in _CAPTURE_ROWS:
-        if name in last and not last[name] < 0.0:
+        if name in last and not (unit == "s" and last[name] < 0.0):  # an instant that has not come is told as -1
             whole = not unit and math.isfinite(last[name])
             value = int(last[name]) if whole else last[name]
             yield Finding("capture", name, label, value, unit)
@@ -163,7 +185,7 @@ def _of_handoff(run: RunResult, record: HandoffRecord) -> Iterator[Finding]:
     relative = handed.joint.velocity - handed.chaser.velocity
     distance = handed.joint.position - handed.chaser.position
     dropped, speed = float(np.linalg.norm(handed.joint.spin)), spin.attachment_speed
-    yield Finding("hand-off", "time", "at", record.time, "s")
+    yield Finding("hand-off", "time", "after the shot", record.time, "s")
     yield Finding("hand-off", "mass", "target and net", handed.joint.mass, "kg")
     yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
     yield Finding("hand-off", "relative_speed", "relative speed", 1e3 * float(np.linalg.norm(relative)), "mm/s")
@@ -218,21 +240,45 @@ def _of_removal(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     told = "recorded, in whole steps" if result.ended_by else "simulated"
     yield Finding("removal", "simulated", told, elapsed, "s")
     yield from _of_end("removal", result)
-    yield from _of_tugs(result, "")
+    begin = " the hand-over" if run.handoff is not None else ""
+    yield from _of_tugs(result, "", begin)
     if run.comparison is not None:
-        yield from _of_tugs(run.comparison, "_without_recoil")
+        yield from _of_tugs(run.comparison, "_without_recoil", begin)
     if not len(recorder):
         return
+    yield from _of_tension(result)
     last = recorder.last()
     for name, label, unit, scale in (
-        ("tether.tension", "tension at the end", "N", 1.0),
         ("separation", "distance at the end", "m", 1.0),
         ("altitude", "altitude at the end", "km", 1e-3),
         ("chaser.propellant", "propellant used", "kg", 1.0),
     ):
         if name in last:
             yield Finding("removal", name, label, scale * last[name], unit)
+    yield from _of_approach(result)
     yield from _of_lowering(result)
+
+
+def _of_tension(result: PhaseResult) -> Iterator[Finding]:
+    tension = last_orbit(result)
+    if tension is None:
+        return
+    when, window = (
+        ("last orbit", "that orbit, in whole steps") if tension.is_orbit else ("whole phase", "less than an orbit:")
+    )
+    for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
+        sampled = " (of rows)" if what in tension.sampled else ""
+        told: float | str = "not told: tugs fall between the rows" if value is None else value
+        yield Finding("removal", f"tension_{what}", f"{what} tension, {when}{sampled}", told, "N")
+    yield Finding("removal", "tension_window", window, tension.window, "s")
+
+
+def _of_approach(result: PhaseResult) -> Iterator[Finding]:
+    nearest = approach(result)
+    if nearest is not None:
+        recorded = " recorded" if nearest.recorded else ""
+        yield Finding("removal", "approach", f"least distance{recorded}", nearest.distance, "m")
+        yield Finding("removal", "approach_time", "that was at", nearest.time, "s")
 
 
 NEAR = 1e-4
@@ -259,12 +305,14 @@ def _of_lowering(result: PhaseResult) -> Iterator[Finding]:
     if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
         yield Finding("removal", "lowered", "orbit lowered by", "too little to tell from the pair's own motion")
         return
-    yield Finding("removal", "lowered", "orbit lowered by", lowered, "m")
-    if elapsed >= 2.0 * math.pi * math.sqrt(float(axis[0]) ** 3 / EARTH_MU):
-        yield Finding("removal", "lowering_rate", "that is", lowered / elapsed * DAY, "m/day")
+    key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
+    yield Finding("removal", key, f"orbit {key} by", abs(lowered), "m")
+    if elapsed >= orbital_period(float(axis[0])):
+        yield Finding("removal", rate, "that is", abs(lowered) / elapsed * DAY, "m/day")
 
 
-def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
+def _of_tugs(result: PhaseResult, suffix: str, begin: str) -> Iterator[Finding]:
+    """Of one removal; `begin` is what its times count from, "" where that needs no word."""
     tugs = result.tugs
     if tugs is None:
         return
@@ -280,7 +328,7 @@ def _of_tugs(result: PhaseResult, suffix: str) -> Iterator[Finding]:
     if real:
         time, peak, speed = tugs.rows[real[0]]
         seen, mark = ("_seen", " seen") if real[0] > 1 + taut else ("", "")
-        yield Finding("removal", f"first_tug{seen}{suffix}", f"first tug{mark} after{note}", time - result.start, "s")
+        yield Finding("removal", f"first_tug{seen}{suffix}", f"first tug{mark} after{begin}{note}", time, "s")
         yield Finding("removal", f"first_tug{seen}_speed{suffix}", f"its speed{note}", 1e3 * speed, "mm/s")
         yield Finding("removal", f"first_tug{seen}_peak{suffix}", f"its peak{note}", peak, "N")
     recorder = result.recorder

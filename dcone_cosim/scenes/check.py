@@ -117,7 +117,7 @@ def check(document: dict[str, Any], text: str, name: str, places: Places, folder
         scene = Scene(name, title, text, tuple(made), handoff, places.source, places, notes)
         mistakes = [*about_steps(scene, document), *about_values(scene, document), *about_line(scene, document)]
         if not mistakes:
-            return scene
+            return replace(scene, cautions=tuple(_cautions(scene)))
     raise SceneError(mistakes, places)
 
 
@@ -221,6 +221,16 @@ def _close_calls(phases: Mapping[str, _Phase], chosen: list[str]) -> Iterator[st
             yield from near_misses(archive, name)
             if name == "removal" and len(chosen) == len(PHASES):
                 yield from (f"{archive.path.name}: {note}" for note in line_notes(archive.variables))
+
+
+def _cautions(scene: Scene) -> dict[str, None]:
+    """What the models have to say of the values; each sentence once, be it of both phases."""
+    found: list[str] = []
+    for phase in scene.phases:
+        main = phase.main
+        if main.fmu is None:
+            found += build.cautions(phase.name, {**main.defaults, **main.parameters}, main.parameters, main.terms)
+    return dict.fromkeys(found)
 
 
 def _named_model(part: Part, tables: dict[str, Any], mistakes: list[Mistake]) -> bool:

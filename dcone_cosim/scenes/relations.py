@@ -14,7 +14,7 @@ from dcone_cosim.scenes.keys import MOST_STEPS, SHARED
 from dcone_cosim.scenes.mistakes import Mistake, shown, unknown
 from dcone_cosim.scenes.parts import Part
 from dcone_cosim.scenes.scene import PHASES, Scene
-from dcone_cosim.scenes.toml_lines import Path
+from dcone_cosim.scenes.toml_lines import Path, given_at
 
 NEEDED_TERM = {"settled": "settling", "tether_taut": "tether"}
 
@@ -77,18 +77,6 @@ def set_by_handoff(document: dict[str, Any], removal: Part) -> Iterator[Mistake]
     if eccentricity and isinstance(eccentricity, int | float):
         text = "must be 0 when a capture hands over: its frame turns evenly, as on a circular orbit"
         yield Mistake((SHARED, "eccentricity"), eccentricity, text)
-
-
-def given_at(document: Any, path: Path) -> Any:
-    """What a scene says at that place, or None."""
-    for part in path:
-        if isinstance(document, dict):
-            document = document.get(str(part))
-        elif isinstance(document, list) and isinstance(part, int) and part < len(document):
-            document = document[part]
-        else:
-            return None
-    return document
 
 
 def about_steps(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:

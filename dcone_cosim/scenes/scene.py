@@ -12,6 +12,7 @@ takes a model's place (`fmu = "path.fmu"`), from its model description.
 
 from __future__ import annotations
 
+import hashlib
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -94,6 +95,7 @@ class Scene:
     source     where it was read from, for messages
     places     where each key was written
     notes      what is no mistake, and may be one all the same
+    cautions   what it means that its user may not expect, as far as its values tell it
     """
 
     name: str
@@ -104,6 +106,12 @@ class Scene:
     source: str = ""
     places: Places = field(default_factory=lambda: Places("", ""))
     notes: tuple[str, ...] = ()
+    cautions: tuple[str, ...] = ()
+
+    @property
+    def sha256(self) -> str:
+        """Of the text, by which a run knows its scene again."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
 
 
 def shipped() -> dict[str, Path]:
@@ -133,16 +141,22 @@ def find(name: str) -> Path:
 
 
 def load(name: str, settings: Sequence[str] = ()) -> Scene:
-    """The scene of that name or path, checked; a `SceneError` lists every mistake found.
+    """The scene of that name or path, or of the run whose folder that is; a `SceneError` lists every mistake found.
 
     settings     `KEY.KEY=VALUE`, each in the place of what the file says
     """
-    path = find(name)
-    if path.suffix.lower() == ".ssp":
+    from dcone_cosim.scenes.kept import Kept, kept_in
+
+    kept = kept_in(Path(name)) if name not in shipped() else None
+    if kept is None:
+        path = find(name)
+        kept = Kept(path, path.stem, ())
+    settings = (*kept.settings, *settings)
+    if kept.path.suffix.lower() == ".ssp":
         from dcone_cosim.ssp import system
 
-        return system.load(path, settings)
-    return parse(read_text(path), path.stem, str(path), path.parent, settings)
+        return system.load(kept.path, settings, kept.name)
+    return parse(read_text(kept.path), kept.name, str(kept.path), kept.path.parent, settings)
 
 
 def read_text(path: Path) -> str:
@@ -178,9 +192,10 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
     except ValueError as error:
         raise InputError(f"{source} is no scene: a number in it has thousands of digits") from error
     from dcone_cosim.scenes.check import check  # astropy is loaded only for a text that parses
-    from dcone_cosim.scenes.text import as_run, override
+    from dcone_cosim.scenes.text import as_run, name_changes, override
 
     overrides = override(document, settings)
+    name_changes(text, document, overrides)
     places = Places(source, text, tuple(overrides))
     return check(document, as_run(text, document, overrides, folder), name, places, folder)
 

@@ -1,19 +1,19 @@
 """Changes to a scene that keep its text: what the command line sets, and where its FMUs are.
 
-The text that is kept with the results runs again to the same results: it has the changed values, and its paths say
-where the FMUs were.
+The text that is kept with the results runs again to the same results: it has the changed values, a title that tells
+them, and the paths of the FMUs' copies beside it.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path as File
 from typing import Any
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.scenes.mistakes import Override
-from dcone_cosim.scenes.toml_lines import Path, dotted
+from dcone_cosim.scenes.mistakes import Override, shown
+from dcone_cosim.scenes.toml_lines import Path, dotted, given_at
 
 FORM = 'expected KEY.KEY=VALUE, such as capture.bullets.speed="4 m/s"'
 
@@ -74,13 +74,46 @@ def _fmu_paths(document: Any) -> Iterator[tuple[Path, str]]:
                 yield (*path, "fmu"), table["fmu"]
 
 
+def titled(title: str, changes: Sequence[str]) -> str:
+    """A title with what was changed, `Table 1 (changed: capture.net.side = 12 m)`: it no longer holds without it."""
+    return f"{title} (changed: {', '.join(changes)})".lstrip() if changes else title
+
+
+def setting(path: Path, value: Any) -> str:
+    """A setting as a title shows it, `capture.net.side = 12 m`."""
+    return f"{dotted(path)} = {value if isinstance(value, str) else shown(value)}"
+
+
+def name_changes(text: str, document: dict[str, Any], overrides: Sequence[Override]) -> None:
+    """Let the document's title say what the overrides changed of the text."""
+    before = tomllib.loads(text)
+    of = {change.path: given_at(document, change.path) for change in overrides if change.path != ("title",)}
+    changes = [setting(path, value) for path, value in of.items() if given_at(before, path) != value]
+    title = document.get("title", "")
+    if changes and isinstance(title, str):
+        document["title"] = titled(title, changes)
+
+
 def as_run(text: str, document: dict[str, Any], overrides: Sequence[Override], folder: File) -> str:
-    """The text with the overrides in it, and with the full paths of FMUs that are told relative to the scene."""
-    changes: dict[Path, Any] = {change.path: _at(document, change.path) for change in overrides}
+    """The text with the overrides and the title in it, and with the full paths of FMUs told relative to the scene."""
+    changes: dict[Path, Any] = {change.path: given_at(document, change.path) for change in overrides}
+    if overrides and "title" in document:
+        changes["title",] = document["title"]
     for path, given in _fmu_paths(document):
         full = str((folder / File(given).expanduser()).absolute())
         if full != given and "://" not in given and "\0" not in given:
             changes[path] = full
+    return with_values(text, changes)
+
+
+def moved(text: str, places: Mapping[File, str]) -> str:
+    """The text with other paths for its FMUs: each FMU by its full path, and where a copy of it is."""
+    found = ((path, places.get(File(given))) for path, given in _fmu_paths(tomllib.loads(text)))
+    return with_values(text, {path: place for path, place in found if place is not None})
+
+
+def with_values(text: str, changes: Mapping[Path, Any]) -> str:
+    """The text with other values at some places, and its comments as far as they can be kept."""
     if not changes:
         return text
     import tomlkit
@@ -99,12 +132,6 @@ def as_run(text: str, document: dict[str, Any], overrides: Sequence[Override], f
     except (TOMLKitError, tomllib.TOMLDecodeError, TypeError, ValueError, KeyError):
         pass
     return tomlkit.dumps(wanted)  # without the comments, but with every value
-
-
-def _at(document: Any, path: Path) -> Any:
-    for part in path:
-        document = document[part]
-    return document
 
 
 def _put(document: Any, path: Path, value: Any) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import tomllib
 from contextlib import suppress
+from typing import Any
 
 Path = tuple[str | int, ...]
 """Keys from the top of the document; a number is the place in a list, counted from 0."""
@@ -166,3 +167,15 @@ def dotted(path: Path) -> str:
             bare = re.fullmatch(r"[A-Za-z0-9_-]+", part)
             text += ("." if text else "") + (part if bare else f'"{part}"')
     return text
+
+
+def given_at(document: Any, path: Path) -> Any:
+    """What a scene says at that place, or None."""
+    for part in path:
+        if isinstance(document, dict):
+            document = document.get(str(part))
+        elif isinstance(document, list) and isinstance(part, int) and part < len(document):
+            document = document[part]
+        else:
+            return None
+    return document

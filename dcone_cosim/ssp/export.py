@@ -128,13 +128,14 @@ def _handed_over(scene: Scene, removal: PhaseScene, folder: Path) -> PhaseScene:
     """The removal as a run of the scene began it."""
     told = _json(folder, "provenance.json")
     kept = folder / "scene.toml"
-    if not kept.is_file() or kept.read_text(encoding="utf-8") != scene.text:
+    own = kept.is_file() and scene.source and Path(scene.source).is_file() and kept.samefile(scene.source)
+    if not own and told.get("scene_sha256") != scene.sha256:
         raise InputError(f"--from-run {folder}: {_unlike(scene, told)}; or export its own, {kept}")
     phase = told.get("phases", {}).get("removal")
     if phase is None:
         raise InputError(f"--from-run {folder}: that run has no removal: {told.get('message') or told.get('status')}")
     start = float(_json(folder, "ledger.json")["time"]["value"])
-    parameters = {name: float(value) for name, value in phase["parameters"].items()}
+    parameters = {name: float(value) for name, value in {**phase["parameters"], **phase.get("given", {})}.items()}
     return replace(removal, main=replace(removal.main, parameters=parameters), start=start)
 
 

@@ -12,8 +12,9 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scenes.keys import MOST_STEPS
+from dcone_cosim.scenes.mistakes import Override
 from dcone_cosim.scenes.scene import PHASES
-from dcone_cosim.scenes.text import override
+from dcone_cosim.scenes.toml_lines import given_at
 from dcone_cosim.scenes.units import Expected, Unexpected, example_of
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
@@ -50,19 +51,17 @@ def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, st
 
 
 def settings_of(
-    arguments: Sequence[str], phase: str, parts: Mapping[str, Part]
+    document: Mapping[str, Any], arguments: Sequence[Override], phase: str, parts: Mapping[str, Part]
 ) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
     """What `--set` says of the phase, and the values it gives by component, SI.
 
-    arguments    `PHASE.macro_step=0.1 s`, `COMPONENT.VARIABLE=VALUE`
+    document     values of `PHASE.macro_step`, `COMPONENT.VARIABLE`
+    arguments    where they are in it
     """
-    document: dict[str, Any] = {}
     told: dict[str, float] = {}
     values: dict[str, dict[str, float]] = {}
-    for argument in override(document, arguments):
-        given: Any = document
-        for key in argument.path:
-            given = given[key]
+    for argument in arguments:
+        given = given_at(document, argument.path)
         name = ".".join(map(str, argument.path))
         head, _, key = name.partition(".")
         try:

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.scenes.mistakes import Places
 from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
+from dcone_cosim.scenes.text import override, setting, titled
+from dcone_cosim.scenes.toml_lines import given_at
 from dcone_cosim.ssp import matching, planning
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
@@ -22,10 +25,11 @@ from dcone_cosim.ssp.parsing import Document, document
 from dcone_cosim.ssp.values import given_values
 
 
-def load(path: Path, settings: Sequence[str] = ()) -> Scene:
+def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scene:
     """The scene that a package holds, checked; an `InputError` lists every mistake found.
 
     settings    `PHASE.macro_step=0.1 s`, `COMPONENT.VARIABLE=VALUE`, each in the place of what the package says
+    shown_name  of the scene; that of the file if not given
 
     Checked  tests/cosim/test_ssp_bad.py, tests/cosim/test_ssp_export.py
     """
@@ -46,7 +50,9 @@ def load(path: Path, settings: Sequence[str] = ()) -> Scene:
     parameters = matching.parameters(values, parts, mistakes)
     connections = matching.connections(content.connections, parts, mistakes)
     name, main = planning.name_and_main(content, parts)
-    told, more = planning.settings_of(settings, name, parts)
+    changes: dict[str, Any] = {}
+    overrides = override(changes, settings)
+    told, more = planning.settings_of(changes, overrides, name, parts)
     start, duration = planning.times(content, parts, told, mistakes)
     if name == PHASES[0] and start != 0.0:
         mistakes.add(STRUCTURE, None, f"startTime = {start!r}: a capture begins at 0")
@@ -71,7 +77,10 @@ def load(path: Path, settings: Sequence[str] = ()) -> Scene:
     )
     mistakes.check()
     shown = text.decode("utf-8", "replace")
-    return Scene(path.stem, content.description, shown, (phase,), {}, str(path), Places(str(path), ""))
+    rows = {change.path: setting(change.path, given_at(changes, change.path)) for change in overrides}
+    title = titled(content.description, list(rows.values()))
+    places = Places(str(path), "", tuple(overrides))
+    return Scene(shown_name or path.stem, title, shown, (phase,), {}, str(path), places)
 
 
 def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, Part]:

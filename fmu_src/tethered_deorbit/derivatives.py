@@ -80,8 +80,8 @@ def make_differentiate(inertial: Callable[..., Any], reel: Reel) -> Callable[...
     def differentiate(record: Any, state: Array, rate: Array, separation: float, speed: float) -> None:
         """Rates at one instant, at which the inputs in force begin to move.
 
-        state         R, V, rho, rho'  of `layout`, inertial     (12,)
-        rate          room for its rate                          (12,)
+        state         R, V, rho, rho'  of `layout`, inertial     (13,)
+        rate          room for its rate                          (13,)
         separation    s      of the centres of mass              [m]
         speed         s'     its rate, which is the line's       [m/s]
 

@@ -7,6 +7,7 @@ step is found.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -20,24 +21,29 @@ from orbital.vectors import Array, norm
 
 INTERVALS = 8
 ROOT_ITERATIONS = 80
-CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE = range(4)
+CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, SEPARATION, RATE, RATE_SLOPE = range(7)
 """Signals: the crossing signal rises through zero when the line changes between slack and taut."""
+Signals = tuple[float, float, float, float, float, float, float]
 
 
 class Events(NamedTuple):
     """Kernels that look into the current step.
 
-    signals(record, state, rate, elapsed) -> (crossing, its rate, tension, its rate)   of any state of the step, in its
-                                                          axes, `elapsed` [s] after its begin; the line as it is now
+    signals(record, state, rate, elapsed) -> (crossing, its rate, tension, its rate, separation, its rate, that one's)
+                                                          of any state of the step, in its axes, `elapsed` [s] after its
+                                                          begin; the line as it is now
     ensure_dense(record, work)                            compute the dense output of the step unless it is there
     find_change(record, work) -> fraction                 of the step at which slack and taut change, or -1
-    largest_tension(record, work, first, last) -> N       between two fractions of the step
+    tension_range(record, work, first, last) -> (least, largest)   tension [N] between two fractions of the step
+    nearest(record, work, last) -> (fraction, distance)   where the separation turns from less to more and is least
+                                                          [m], up to a fraction of the step; infinite if nowhere
     """
 
     signals: Callable[..., Any]
     ensure_dense: Callable[..., Any]
     find_change: Callable[..., Any]
-    largest_tension: Callable[..., Any]
+    tension_range: Callable[..., Any]
+    nearest: Callable[..., Any]
 
 
 def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
@@ -48,7 +54,7 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
     """
 
     @kernel
-    def signals(record: Any, state: Array, rate: Array, elapsed: float) -> tuple[float, float, float, float]:
+    def signals(record: Any, state: Array, rate: Array, elapsed: float) -> Signals:
         position, velocity, acceleration = state[6:9], state[9:12], rate[9:12]
         separation = norm(position)
         speed = length_rate(position, velocity, separation)
@@ -59,10 +65,10 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
         tension = reel.tension(record, length, speed, since)
         tension_rate = reel.tension_rate(record, length, speed, change, since)
         if record[0].state_taut:
-            return -tension, -tension_rate, tension, tension_rate
+            return -tension, -tension_rate, tension, tension_rate, separation, speed, change
         onset = reel.onset(record, length, speed, since)
         onset_rate = reel.onset_rate(record, length, speed, change, since)
-        return onset, onset_rate, tension, tension_rate
+        return onset, onset_rate, tension, tension_rate, separation, speed, change
 
     @kernel
     def ensure_dense(record: Any, work: Array) -> None:
@@ -80,7 +86,7 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
             r.state_dense_ready = 1
 
     @kernel
-    def at(record: Any, work: Array, fraction: float) -> tuple[float, float, float, float]:
+    def at(record: Any, work: Array, fraction: float) -> Signals:
         """Signals at a fraction of the step; the dense output must be there."""
         dense = work[layout.DENSE : layout.WORK]
         here = work[layout.HERE : layout.SLOPE]
@@ -128,42 +134,61 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def find_change(record: Any, work: Array) -> float:
+        """Looked for only where the signal rises.
+
+        At the begin of a step that follows a change the signal is zero to rounding, of either sign, and falls: taken by
+        its sign alone, the change just made would be found once more.
+        """
         ensure_dense(record, work)
         low = 0.0
-        value_low, slope_low, _, _ = at(record, work, low)
+        value_low, slope_low, _, _, _, _, _ = at(record, work, low)
         for i in range(INTERVALS):
             high = (i + 1.0) / INTERVALS
-            value_high, slope_high, _, _ = at(record, work, high)
-            if value_high > 0.0:
-                if value_low <= 0.0:
-                    return root(record, work, low, high, CROSSING)
-                # On the wrong side from the start, by rounding: right at once, unless it comes back in between.
-                if slope_low < 0.0 and slope_high > 0.0:
-                    bottom = root(record, work, low, high, CROSSING_SLOPE)
-                    if at(record, work, bottom)[CROSSING] <= 0.0:
-                        return root(record, work, bottom, high, CROSSING)
-                return low
-            if slope_low > 0.0 and slope_high < 0.0:
-                top = root(record, work, low, high, CROSSING_SLOPE)
-                if at(record, work, top)[CROSSING] > 0.0:
-                    return root(record, work, low, top, CROSSING) if value_low <= 0.0 else low
+            value_high, slope_high, _, _, _, _, _ = at(record, work, high)
+            first, value_first, last, value_last = low, value_low, high, value_high
+            if slope_low <= 0.0 < slope_high:
+                first = root(record, work, low, high, CROSSING_SLOPE)
+                value_first = at(record, work, first)[CROSSING]
+            elif slope_high <= 0.0 < slope_low:
+                last = root(record, work, low, high, CROSSING_SLOPE)
+                value_last = at(record, work, last)[CROSSING]
+            if max(slope_low, slope_high) > 0.0 and value_last > 0.0:
+                # above zero from where it begins to rise, by rounding: the change is due at once
+                return root(record, work, first, last, CROSSING) if value_first <= 0.0 else first
             low, value_low, slope_low = high, value_high, slope_high
         return -1.0
 
     @kernel
-    def largest_tension(record: Any, work: Array, first: float, last: float) -> float:
+    def tension_range(record: Any, work: Array, first: float, last: float) -> tuple[float, float]:
         ensure_dense(record, work)
-        low = first
-        _, _, value_low, slope_low = at(record, work, low)
-        largest = value_low
+        low, here = first, at(record, work, first)
+        least = largest = here[TENSION]
+        slope_low = here[TENSION_SLOPE]
         for i in range(INTERVALS):
             high = first + (last - first) * ((i + 1.0) / INTERVALS)
-            _, _, value_high, slope_high = at(record, work, high)
-            largest = max(largest, value_high)
-            if slope_low > 0.0 and slope_high < 0.0:
-                top = root(record, work, low, high, TENSION_SLOPE)
-                largest = max(largest, at(record, work, top)[TENSION])
-            low, value_low, slope_low = high, value_high, slope_high
-        return largest
+            there = at(record, work, high)
+            slope_high = there[TENSION_SLOPE]
+            least, largest = min(least, there[TENSION]), max(largest, there[TENSION])
+            if (slope_low > 0.0) != (slope_high > 0.0):
+                turn = at(record, work, root(record, work, low, high, TENSION_SLOPE))
+                least, largest = min(least, turn[TENSION]), max(largest, turn[TENSION])
+            low, slope_low = high, slope_high
+        return least, largest
 
-    return Events(signals, ensure_dense, find_change, largest_tension)
+    @kernel
+    def nearest(record: Any, work: Array, last: float) -> tuple[float, float]:
+        ensure_dense(record, work)
+        found, distance = -1.0, math.inf
+        low, rate_low = 0.0, at(record, work, 0.0)[RATE]
+        for i in range(INTERVALS):
+            high = (i + 1.0) / INTERVALS
+            rate_high = at(record, work, high)[RATE]
+            if rate_low <= 0.0 < rate_high:
+                fraction = root(record, work, low, high, RATE)
+                separation = at(record, work, fraction)[SEPARATION]
+                if fraction <= last and separation < distance:
+                    found, distance = fraction, separation
+            low, rate_low = high, rate_high
+        return found, distance
+
+    return Events(signals, ensure_dense, find_change, tension_range, nearest)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.command import make_command, make_shortest
@@ -11,9 +10,10 @@ from fmu_src.tethered_deorbit.faults import blame, own_slot
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
+from orbital.oscillators import dashpot, line_stiffness, natural_frequency
 
 
-def make_locked(elastic_stiffness: Callable[..., Any]) -> Reel:
+def make_locked() -> Reel:
     """An elastic line with fixed ends.
 
         T = k (l - l0) + c (dl/dt - dl0/dt)   while l > l0 and T > 0, otherwise 0
@@ -43,7 +43,7 @@ def make_locked(elastic_stiffness: Callable[..., Any]) -> Reel:
         shortest, fault = shortest_on_the_way(record, length, rate, duration)
         if fault != 0:
             return int(fault)
-        stiffness = elastic_stiffness(r.tether_youngs_modulus, r.tether_diameter, length)
+        stiffness = line_stiffness(r.tether_youngs_modulus, r.tether_diameter, length)
         if not r.tether_damping_ratio >= 0.0:
             return blame(record, BAD_PARAMETER, damping_slot, r.tether_damping_ratio)
         if not r.tether_youngs_modulus > 0.0:
@@ -54,11 +54,12 @@ def make_locked(elastic_stiffness: Callable[..., Any]) -> Reel:
         r.state_command_rate = rate
         r.state_length = length
         r.state_stiffness = stiffness
-        r.state_damping = 2.0 * r.tether_damping_ratio * math.sqrt(stiffness * r.state_reduced_mass)
+        r.state_damping = dashpot(r.tether_damping_ratio, stiffness, r.state_reduced_mass)
         if shortest < length:
-            stiffness = elastic_stiffness(r.tether_youngs_modulus, r.tether_diameter, shortest)
+            stiffness = line_stiffness(r.tether_youngs_modulus, r.tether_diameter, shortest)
         # Above critical damping the dashpot is the fastest thing there is.
-        r.state_frequency = math.sqrt(stiffness / r.state_reduced_mass) * max(1.0, 2.0 * r.tether_damping_ratio)
+        fastest = max(1.0, 2.0 * r.tether_damping_ratio)
+        r.state_frequency = natural_frequency(stiffness, r.state_reduced_mass) * fastest
         r.state_taut_tolerance = r.solver_tolerance_stretch
         return 0
 

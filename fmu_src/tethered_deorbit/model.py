@@ -15,17 +15,19 @@ from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.environment import add_gravity
 from fmu_src.tethered_deorbit.events import make_events
+from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
-from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish
+from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import make_reel
 from fmu_src.tethered_deorbit.start import start_state
-from fmu_src.tethered_deorbit.tether import add_tension, elastic_stiffness, length_rate, line_length
+from fmu_src.tethered_deorbit.tether import add_tension, length_rate, line_length
 from fmu_src.tethered_deorbit.thrust import make_no_thrust, make_thrust
-from fmu_src.tethered_deorbit.trajectory import make_measure, make_trajectory
+from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_measure, make_trajectory
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
+from orbital.oscillators import reduced_mass
 from orbital.twobody import mean_motion
 from orbital.vectors import Array, norm
 
@@ -41,7 +43,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
-    reel = make_reel(terms["reel"], elastic_stiffness)
+    reel = make_reel(terms["reel"])
     references = MODEL.interface(terms).references
     command_slot = references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     chaser_mass, target_mass = references["chaser.mass"], references["target.mass"]
@@ -57,11 +59,13 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         """Rate of the state along inertial axes, or axes at rest in which it stands just now."""
         add_gravity(record, state, rate)
         thrust.add(record, state, rate, since)
+        rate[layout.IMPULSE] = 0.0
         if record[0].state_taut:
             separation = norm(state[6:9])
             speed = length_rate(state[6:9], state[9:12], separation)
             tension = reel.tension(record, line_length(record, separation), speed, since)
             add_tension(record, state, rate, tension, separation)
+            rate[layout.IMPULSE] = tension
 
     @kernel
     def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:
@@ -69,17 +73,19 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if record[0].state_taut:
             add_turning(record, state, rate, -1.0)
 
-    scheme = make_dop853(derivative, make_measure(), layout.SIZE)
+    scheme = make_dop853(derivative, make_measure(), layout.VECTORS, layout.SIZE - layout.VECTORS)
     events = make_events(reel, scheme)
+    extremes = make_extremes(events)
     trajectory = make_trajectory(derivative, scheme, events)
     publish = make_publish(reel)
     differentiate = make_differentiate(inertial, reel)
 
     @kernel
     def fail(record: Any, code: int, time: float) -> int:
+        """`time` counts from the start of the instance, as everywhere below the entry; the importer is told its own."""
         r = record[0]
         r.fault_code = code
-        r.fault_time = time
+        r.fault_time = r.state_start + time
         return code
 
     @kernel
@@ -117,62 +123,61 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return 0
 
     @kernel
-    def initialise(record: Any, work: Array, time: float) -> int:
+    def initialise(record: Any, work: Array) -> int:
         r = record[0]
         code = check(record)
         if code != 0:
-            return fail(record, code, time)
+            return fail(record, code, 0.0)
         r.state_total_mass = r.chaser_mass + r.target_mass
         r.state_chaser_share = r.chaser_mass / r.state_total_mass
         r.state_target_share = r.target_mass / r.state_total_mass
-        r.state_reduced_mass = r.chaser_mass * r.state_target_share
+        r.state_reduced_mass = reduced_mass(r.chaser_mass, r.target_mass)
         r.state_mean_motion = mean_motion(EARTH_EQUATORIAL_RADIUS + r.orbit_altitude, EARTH_MU)
         command, _ = reel.asked(record)
         code = reel.prepare(record, command, 0.0, 0.0)
         if code != 0:
-            return fail(record, code, time)
-        thrust.reset(record, time)
+            return fail(record, code, 0.0)
+        thrust.reset(record)
         code = thrust.check(record)
         if code != 0:
-            return fail(record, code, time)
+            return fail(record, code, 0.0)
         force, _ = thrust.asked(record)
         thrust.put(record, force, 0.0)
         end = work[layout.END : layout.HERE]
         code = start_state(record, end, reel.start_limit(record))
         if code != 0:
-            return fail(record, code, time)
+            return fail(record, code, 0.0)
+        end[layout.IMPULSE] = 0.0
         if not finite(end):
-            return fail(record, blame(record, NOT_FINITE, 0, 0.0), time)
-        r.state_published = time
+            return fail(record, blame(record, NOT_FINITE, 0, 0.0), 0.0)
+        r.state_published = 0.0
         r.solver_steps = 0
         r.solver_rejected = 0
         clear_tugs(record)
         speed = judge_line(record, end)
         r.state_step = 0.0
-        trajectory.restart(record, work, time)
+        trajectory.restart(record, work, 0.0)
         r.state_since = 0.0
         publish(record, end, norm(end[6:9]), speed, 0.0)
-        r.tether_tension_peak = r.tether_tension
         if r.state_taut:
-            begin_tug(record, time, speed)
-            r.state_tug_peak = r.tether_tension
-            r.tug_peak[0] = r.tether_tension
-        thrust.publish(record, time)
+            begin_tug(record, 0.0, speed)
+            note_pull(record, r.tether_tension)
+        extremes.start(record)
+        thrust.publish(record, 0.0)
         return 0
 
     @kernel
     def begin_anew(record: Any, work: Array, duration: float) -> int:
         """Put what the inputs say in force, and begin the trajectory anew, at the last communication point.
 
-        What the tug has reached so far is what was published; the rest of the step did not happen.
+        What was published stands; the rest of the step did not happen.
         """
         r = record[0]
         here = work[layout.HERE : layout.SLOPE]
         trajectory.state_at(record, work, r.state_published, here)
         for i in range(layout.SIZE):
             work[layout.END + i] = here[i]
-        if r.state_taut:
-            r.state_tug_peak = r.tug_peak[0]
+        extremes.begin_anew(record)
         command, command_rate = reel.asked(record)
         code = reel.prepare(record, command, command_rate, duration)
         if code == 0:
@@ -216,42 +221,16 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
         The line is judged only when it is known how the next step begins.
         """
+        r = record[0]
         command, command_rate = reel.asked(record)
         if command_rate != 0.0:
-            reel.leave(record, command + command_rate * duration)
+            reached = command + command_rate * duration
+            # A ramp that ends at zero to rounding, of the times too, ends at zero: 1e-19 N would be a taut line.
+            times = abs(r.state_start) + r.state_published
+            exact = abs(reached) > ROUNDING * (abs(command) + abs(command_rate) * times)
+            reel.leave(record, reached if exact else 0.0)
         thrust.leave(record, duration)
         return int(begin_anew(record, work, 0.0))
-
-    @kernel
-    def note_tension(record: Any, work: Array, until: float) -> None:
-        """Carry the peaks from the last communication point, or the begin of the step, up to `until`."""
-        r = record[0]
-        if r.state_taut == 0 or r.state_step == 0.0:
-            return
-        stages = work[layout.STAGES : layout.DENSE]
-        _, _, begin, begin_rate = events.signals(record, work[layout.BEGIN : layout.END], stages[0 : layout.SIZE], 0.0)
-        _, _, end, end_rate = events.signals(
-            record, work[layout.END : layout.HERE], stages[12 * layout.SIZE : 13 * layout.SIZE], r.state_step
-        )
-        whole = max(begin, end)
-        change, begin_change, end_change = end - begin, r.state_step * begin_rate, r.state_step * end_rate
-        still = max(abs(begin_change), abs(end_change)) <= 4.0 * r.state_stiffness * r.state_taut_tolerance
-        steady = max(abs(begin_change - change), abs(end_change - change)) <= 0.25 * abs(change)
-        short = (begin_rate >= 0.0) == (end_rate >= 0.0) and r.state_step * r.state_frequency < 1.5
-        if not (still or steady or short):
-            whole = events.largest_tension(record, work, 0.0, 1.0)
-        complete = until >= r.state_end
-        final = 1.0 if complete else max(0.0, (until - r.state_begin) / r.state_step)
-        so_far = whole if complete else events.largest_tension(record, work, 0.0, final)
-        recent = so_far
-        if r.state_published > r.state_begin:
-            first = min(final, (r.state_published - r.state_begin) / r.state_step)
-            recent = events.largest_tension(record, work, first, final)
-        r.tether_tension_peak = max(r.tether_tension_peak, recent)
-        # What is carried on comes from whole steps alone, so that it does not depend on the communication points.
-        r.tug_peak[0] = max(r.state_tug_peak, so_far)
-        if complete:
-            r.state_tug_peak = r.tug_peak[0]
 
     @kernel
     def change_line(record: Any, work: Array) -> None:
@@ -271,9 +250,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r = record[0]
         if not (math.isfinite(time) and math.isfinite(step) and step >= 0.0):
             return fail(record, blame(record, TIME_GAP, 0, step), r.state_published)
-        if abs(time - r.state_published) > TIME_DRIFT * max(1.0, abs(time)):
+        target = time + step - r.state_start
+        if abs(time - r.state_start - r.state_published) > TIME_DRIFT * max(1.0, abs(time)):
             return fail(record, blame(record, TIME_GAP, 0, time), r.state_published)
-        target = time + step
         if not target > r.state_published or step == 0.0:
             return 0
         duration = target - r.state_published
@@ -281,13 +260,13 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if code != 0:
             return code
         moving = r.state_command_rate != 0.0 or r.state_thrust_rate != 0.0
-        r.tether_tension_peak = 0.0
+        extremes.begin_macro_step(record)
         changes = 0
         while r.state_end <= target:
             radius = norm(work[layout.END : layout.END + 3])
             if radius < EARTH_EQUATORIAL_RADIUS:
                 return fail(record, blame(record, GROUND, 0, radius), r.state_end)
-            note_tension(record, work, r.state_end)
+            extremes.note(record, work, r.state_end)
             if r.state_event:
                 changes += 1
                 if changes > EVENT_LIMIT:
@@ -299,7 +278,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             code = trajectory.advance(record, work, target - r.state_end if moving else math.inf)
             if code != 0:
                 return fail(record, code, r.state_begin)
-        note_tension(record, work, target)
+        extremes.note(record, work, target)
         here = work[layout.HERE : layout.SLOPE]
         separation, speed = trajectory.state_at(record, work, target, here)
         if not finite(here):
@@ -309,14 +288,14 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return fail(record, blame(record, GROUND, 0, radius), target)
         publish(record, here, separation, speed, r.state_since + (target - r.state_begin))
         thrust.publish(record, target)
-        r.tether_tension_peak = max(r.tether_tension_peak, r.tether_tension)
         r.state_published = target
+        extremes.publish(record)
         if moving:
             return int(leave_inputs(record, work, duration))
         return 0
 
     @kernel
-    def look(record: Any, work: Array, time: float, differentiating: bool) -> int:
+    def look(record: Any, work: Array, differentiating: bool) -> int:
         """Outputs that depend directly on inputs, or derivatives, for the inputs of now; the state stays."""
         r = record[0]
         here = work[layout.HERE : layout.SLOPE]
@@ -328,10 +307,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             asked_rate = command_rate
         if not (asked == command and asked_rate == command_rate):
             if not math.isfinite(asked + asked_rate):
-                return fail(record, blame(record, BAD_PARAMETER, command_slot, asked), time)
+                return fail(record, blame(record, BAD_PARAMETER, command_slot, asked), r.state_published)
             code = reel.prepare(record, asked, asked_rate, 0.0)
             if code != 0:
-                return fail(record, code, time)
+                return fail(record, code, r.state_published)
             judge_line(record, here)
         if differentiating:
             asked_force, asked_force_rate = thrust.asked(record)
@@ -358,13 +337,14 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             r.work_size = layout.WORK
             return 0
         if command == INITIALISE:
-            return initialise(record, work, time)
+            r.state_start = time
+            return initialise(record, work)
         if command == STEP:
             return step_to(record, work, time, step)
         if command == REFRESH:
-            return look(record, work, time, False)
+            return look(record, work, False)
         if command == DIFFERENTIATE:
-            return look(record, work, time, True)
-        return fail(record, blame(record, BAD_PARAMETER, 0, float(command)), time)
+            return look(record, work, True)
+        return fail(record, blame(record, BAD_PARAMETER, 0, float(command)), r.state_published)
 
     return entry

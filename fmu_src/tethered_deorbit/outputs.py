@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.interface import TUGS
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.tether import line_length
@@ -29,29 +30,50 @@ def clear_tugs(record: Any) -> None:
         r.tug_peak[i] = 0.0
         r.tug_speed[i] = 0.0
     r.tether_tug_count = 0
+    r.state_tug_begun = 0
     r.state_tug_peak = 0.0
 
 
 @kernel
 def begin_tug(record: Any, time: float, speed: float) -> None:
-    """Put a new tug at the head of the ring; the oldest falls out.
+    """Keep in mind that the line has gone taut: it becomes a tug as soon as it pulls.
 
     time          when the line went taut                        [s]
     speed         rate of lengthening then                       [m/s]
 
-    Checked  tests/tethered_deorbit/test_macro_step.py
+    Checked  tests/tethered_deorbit/test_tugs.py
     """
     r = record[0]
+    r.state_tug_begun = 1
+    r.state_tug_time = time
+    r.state_tug_speed = speed
+    r.state_tug_peak = 0.0
+
+
+@kernel
+def note_pull(record: Any, tension: float) -> None:
+    """Carry the largest tension [N] of the present tug; the first above zero puts it at the head of the ring.
+
+    The oldest tug then falls out of it.
+
+    Checked  tests/tethered_deorbit/test_tugs.py, tests/tethered_deorbit/test_macro_step.py
+    """
+    r = record[0]
+    if not tension > 0.0:
+        return
+    if r.state_tug_begun == 0:
+        r.tug_peak[0] = max(r.state_tug_peak, tension)
+        return
+    r.state_tug_begun = 0
     for i in range(TUGS - 1):
         j = TUGS - 1 - i
         r.tug_time[j] = r.tug_time[j - 1]
         r.tug_peak[j] = r.tug_peak[j - 1]
         r.tug_speed[j] = r.tug_speed[j - 1]
-    r.tug_time[0] = time
-    r.tug_peak[0] = 0.0
-    r.tug_speed[0] = speed
+    r.tug_time[0] = r.state_tug_time
+    r.tug_peak[0] = tension
+    r.tug_speed[0] = r.state_tug_speed
     r.tether_tug_count += 1
-    r.state_tug_peak = 0.0
 
 
 def make_publish(reel: Reel) -> Callable[..., Any]:
@@ -59,7 +81,7 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
 
     @kernel
     def publish(record: Any, state: Array, separation: float, rate: float, since: float) -> None:
-        """Outputs at one instant; `state` (12,) as in `layout`, and `state.taut`, the line's condition there.
+        """Outputs at one instant; `state` (13,) as in `layout`, and `state.taut`, the line's condition there.
 
         separation    s      of the centres of mass              [m]
         rate          s'     its rate, which is the line's       [m/s]
@@ -75,6 +97,7 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
         r.separation = separation
         r.tether_length = length
         r.tether_length_rate = rate
+        r.tether_impulse = state[layout.IMPULSE]
         r.tether_taut = r.state_taut
         r.tether_tension = max(0.0, reel.tension(record, length, rate, since)) if r.state_taut else 0.0
         for i in range(3):

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.locked import make_locked
 from fmu_src.tethered_deorbit.working import make_commanded, make_linear
 
 
-def make_reel(law: str, elastic_stiffness: Callable[..., Any]) -> Reel:
-    """The kernels of a law by its name, `locked`, `linear` or `commanded`; `elastic_stiffness` is that of `tether`."""
+def make_reel(law: str) -> Reel:
+    """The kernels of a law by its name, `locked`, `linear` or `commanded`."""
     if law == "locked":
-        return make_locked(elastic_stiffness)
+        return make_locked()
     return make_linear() if law == "linear" else make_commanded()

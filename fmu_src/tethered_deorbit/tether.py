@@ -6,7 +6,6 @@ with the line, so that its attachment always lies on the line of centres.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from orbital.kernel import kernel
@@ -91,20 +90,3 @@ def add_tension(record: Any, state: Array, rate: Array, tension: float, separati
         factor = tension / (record[0].state_reduced_mass * separation)
         for i in range(3):
             rate[9 + i] -= factor * state[6 + i]
-
-
-@kernel
-def elastic_stiffness(youngs_modulus: float, diameter: float, rest_length: float) -> float:
-    """Stiffness of the line [N/m].
-
-        k = E A / l0,   A = pi d^2 / 4
-
-    youngs_modulus  E                                            [Pa]
-    diameter        d    of the load-bearing section             [m]
-    rest_length     l0   unloaded                                [m]
-
-    Valid    small strains
-    Source   D-CoNe paper, eq. 1
-    Checked  tests/tethered_deorbit/test_terms.py
-    """
-    return youngs_modulus * math.pi * diameter * diameter / (4.0 * rest_length)

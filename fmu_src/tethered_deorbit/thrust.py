@@ -16,7 +16,7 @@ from orbital.vectors import Array
 class Thrust(NamedTuple):
     """Kernels of one direction.
 
-    reset(record, time)               nothing used yet
+    reset(record)                     nothing used yet
     add(record, state, rate, since)   add the thrust to the rate of the state, `since` [s] after its force was set
     asked(record) -> (force, rate)    what level and input say [N], [N/s]
     leave(record, duration)           write the value the input has reached after a time back to it
@@ -42,6 +42,10 @@ def make_no_thrust() -> Thrust:
     """An FMU without a thruster: nothing of it is compiled."""
 
     @kernel
+    def reset(record: Any) -> None:
+        pass
+
+    @kernel
     def nothing(record: Any, time: float) -> None:
         pass
 
@@ -65,7 +69,7 @@ def make_no_thrust() -> Thrust:
     def publish_rate(record: Any) -> None:
         pass
 
-    return Thrust(nothing, add, asked, nothing, check, nothing, put, nothing, publish_rate)
+    return Thrust(reset, add, asked, nothing, check, nothing, put, nothing, publish_rate)
 
 
 @kernel
@@ -137,12 +141,12 @@ def make_thrust(direction: str, reel: str = "locked") -> Thrust:
     impulse_slot = own_slot("thrust.specific_impulse", *groups)
 
     @kernel
-    def reset(record: Any, time: float) -> None:
+    def reset(record: Any) -> None:
         r = record[0]
         r.state_thrust = 0.0
         r.state_thrust_rate = 0.0
         r.state_propellant = 0.0
-        r.state_propellant_since = time
+        r.state_propellant_since = 0.0
 
     @kernel
     def used(record: Any, time: float) -> float:

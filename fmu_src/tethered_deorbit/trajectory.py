@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.integrators import DOP853_STAGES, AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
-from fmu_src.tethered_deorbit.events import Events
+from fmu_src.tethered_deorbit.events import CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, Events, Signals
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
 from fmu_src.tethered_deorbit.tether import length_rate
@@ -32,6 +32,8 @@ FIRST_FREE_STEP = 0.05
 SHORTEST_CONTACT = 1.0e-6
 """Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
 LANDING_ITERATIONS = 5
+LAST = 1.0 - 1.0e-12
+"""Fraction of a step from which on it is over, to the accuracy with which a change is located."""
 ROUNDING = 4.0 * 2.220446049250313e-16
 SHORTEST = 32.0 * ROUNDING
 """Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
@@ -155,8 +157,8 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r.state_dense_ready = 0
 
     @kernel
-    def end_signals(record: Any, work: Array) -> tuple[float, float, float, float]:
-        signals: tuple[float, float, float, float] = events.signals(
+    def end_signals(record: Any, work: Array) -> Signals:
+        signals: Signals = events.signals(
             record, work[layout.END : layout.HERE], work[last : last + layout.SIZE], record[0].state_step
         )
         return signals
@@ -165,11 +167,12 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
     def quiet(record: Any, work: Array) -> bool:
         """A taut line whose tension cannot reach zero within the step, judged by its slope at both ends."""
         r = record[0]
-        _, _, begin, begin_rate = events.signals(
+        begin = events.signals(
             record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE], 0.0
         )
-        _, _, end, end_rate = end_signals(record, work)
-        return bool(2.0 * r.state_step * max(abs(begin_rate), abs(end_rate)) < min(begin, end))
+        end = end_signals(record, work)
+        steepest = max(abs(begin[TENSION_SLOPE]), abs(end[TENSION_SLOPE]))
+        return bool(2.0 * r.state_step * steepest < min(begin[TENSION], end[TENSION]))
 
     @kernel
     def land(record: Any, work: Array, fraction: float) -> None:
@@ -180,7 +183,8 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         step = max(least, fraction * whole)
         attempt(record, work, step)
         for _ in range(LANDING_ITERATIONS):
-            value, slope, _, _ = end_signals(record, work)
+            there = end_signals(record, work)
+            value, slope = there[CROSSING], there[CROSSING_SLOPE]
             if not abs(value) < 0.1 * abs(slope) * step:
                 break
             better = min(whole, max(least, step - value / slope))
@@ -188,7 +192,9 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
                 break
             step = better
             attempt(record, work, step)
-        r.state_event = 1
+        there = end_signals(record, work)
+        # What has risen and fallen again within the least time between two changes was none.
+        r.state_event = 1 if max(there[CROSSING], there[CROSSING_SLOPE]) > 0.0 else 0
 
     @kernel
     def advance(record: Any, work: Array, longest: float) -> int:
@@ -239,7 +245,8 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r.state_error = error
         if not (r.state_taut and quiet(record, work)):
             fraction = events.find_change(record, work)
-            if fraction >= 0.0:
+            # Where moving inputs end a step, a change in its last digit is for the next to judge: they may turn round.
+            if fraction >= 0.0 and not (fraction >= LAST and longest < math.inf):
                 land(record, work, fraction)
         return 0
 

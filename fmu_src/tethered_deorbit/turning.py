@@ -65,7 +65,7 @@ def add_turning(record: Any, state: Array, rate: Array, sign: float) -> None:
     """
     turning = record[0].state_turning
     x, y, z = sign * turning[0], sign * turning[1], sign * turning[2]
-    for i in range(0, layout.SIZE, 3):
+    for i in range(0, layout.VECTORS, 3):
         rate[i] += y * state[i + 2] - z * state[i + 1]
         rate[i + 1] += z * state[i] - x * state[i + 2]
         rate[i + 2] += x * state[i + 1] - y * state[i]
@@ -80,7 +80,7 @@ def turn_back(record: Any, time: float, vectors: Array) -> None:
     The two factors are their series, which round alike everywhere; the sum is formed so that a length keeps its last
     digit over a hundred thousand steps.
 
-    vectors       any number of vectors one after the other      (3 m,)
+    vectors       any number of vectors one after the other; what is left over stays
 
     Valid    |q| < 0.3
     Source   Rodrigues' formula
@@ -93,7 +93,7 @@ def turn_back(record: Any, time: float, vectors: Array) -> None:
         return
     a = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0))))
     b = 0.5 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0))))
-    for i in range(0, len(vectors), 3):
+    for i in range(0, len(vectors) - 2, 3):
         u = y * vectors[i + 2] - z * vectors[i + 1]
         v = z * vectors[i] - x * vectors[i + 2]
         w = x * vectors[i + 1] - y * vectors[i]

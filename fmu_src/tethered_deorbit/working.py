@@ -10,6 +10,8 @@ from fmu_src.tethered_deorbit.faults import blame, own_slot
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
+from orbital.oscillators import natural_frequency
+from orbital.references import equilibrium_tension
 
 
 @kernel
@@ -57,9 +59,9 @@ def make_linear() -> Reel:
         r.state_stiffness = r.reel_proportional_gain
         r.state_damping = r.reel_derivative_gain
         apart = length + r.target_attachment_distance
-        r.state_feed_forward = 3.0 * r.state_mean_motion * r.state_mean_motion * r.state_reduced_mass * apart
+        r.state_feed_forward = equilibrium_tension(r.state_mean_motion, apart, r.state_reduced_mass)
         r.state_frequency = max(
-            math.sqrt(r.state_stiffness / r.state_reduced_mass), r.state_damping / r.state_reduced_mass
+            natural_frequency(r.state_stiffness, r.state_reduced_mass), r.state_damping / r.state_reduced_mass
         )
         r.state_frequency = max(r.state_frequency, r.state_mean_motion)
         r.state_taut_tolerance = r.solver_tolerance_separation

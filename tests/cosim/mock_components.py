@@ -26,7 +26,7 @@ class MockComponent:
         self.can_interpolate = False
         self.values: dict[str, float] = {}
         self.variables: dict[str, VariableInfo] = {}
-        self.time = 0.0
+        self.time = self.start = 0.0
         self.calls: list[tuple[float, float]] = []
         self.closed = False
         self._kept: dict[str, tuple[float, dict[str, float]]] = {}
@@ -48,8 +48,13 @@ class MockComponent:
     def reader(self, names: Sequence[str]) -> MockReader:
         return MockReader(self, names)
 
+    @property
+    def since(self) -> float:
+        """Time since the start of this instance: what a contract's instants count."""
+        return self.time - self.start
+
     def enter_initialisation(self, start: float, stop: float | None = None) -> None:
-        self.time = start
+        self.time = self.start = start
 
     def exit_initialisation(self) -> None:
         self.refresh()
@@ -131,9 +136,9 @@ class MockCapture(MockComponent):
     def refresh(self) -> None:
         if self.time >= self.fails_at:
             raise FmuError(f"{self.name}: the mock was told to fail at {self.fails_at} s")
-        done = self.time >= self.instant
-        self.values["chaser.position[2]"] = -12.0 - 0.005 * self.time
-        self.values["catch.position[2]"] = -12.0 + 5.0 / 3.0 * self.time
+        done = self.since >= self.instant
+        self.values["chaser.position[2]"] = -12.0 - 0.005 * self.since
+        self.values["catch.position[2]"] = -12.0 + 5.0 / 3.0 * self.since
         self.values |= {"vertex.position[1]": 0.3, "vertex.position[2]": self.values["catch.position[2]"] - 1.5}
         good = self.ends_as in ("captured", "settled")
         self.values["captured"] = float(done and good)
@@ -175,9 +180,9 @@ class MockRemoval(MockComponent):
 
     def refresh(self) -> None:
         self.values["separation"] = float(np.linalg.norm([self.values[n] for n in elements("start.relative_position")]))
-        seen = [tug for tug in self.tugs if tug[0] <= self.time]
+        seen = [tug for tug in self.tugs if tug[0] <= self.since]
         self.values["tether.tug_count"] = float(len(seen))
-        self.values["tether.taut"] = float(bool(seen) and self.time - seen[-1][0] < self.grows)
+        self.values["tether.taut"] = float(bool(seen) and self.since - seen[-1][0] < self.grows)
         for place, (time, peak, speed) in enumerate(reversed(seen[-self.RING :]), start=1):
-            grown = peak if self.time - time >= self.grows else 0.5 * peak
+            grown = peak if self.since - time >= self.grows else 0.5 * peak
             self.values |= {f"tug[{place}].time": time, f"tug[{place}].peak": grown, f"tug[{place}].speed": speed}

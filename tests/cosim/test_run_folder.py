@@ -138,8 +138,14 @@ def test_an_interrupt_while_swapping_brings_the_old_run_back(
     assert [p.name for p in tmp_path.iterdir()] == ["run"]
 
 
-def test_the_times_of_tugs_say_which_clock(result: RunResult, tmp_path: Path) -> None:
+def test_every_table_says_what_its_times_count_from(result: RunResult, tmp_path: Path) -> None:
     put(result, tmp_path / "run")
-    for name in ("tugs", "removal_without_recoil_tugs"):
-        field = pyarrow.parquet.read_table(tmp_path / "run" / f"{name}.parquet").schema.field("time")
-        assert b"since the shot" in field.metadata[b"clock"]
+    tables = {path.stem: pyarrow.parquet.read_table(path) for path in (tmp_path / "run").glob("*.parquet")}
+    clocks = {name: table.schema.field("time").metadata[b"clock"].decode() for name, table in tables.items()}
+    instant = result.handoff.time
+    shot, hand_over = "since the shot", f"since the hand-over, which was {instant!r} s after the shot"
+    removal = dict.fromkeys(("removal", "tugs", "removal_without_recoil_tugs"), hand_over)
+    assert clocks == {"capture": shot} | removal
+    assert tables["capture"]["time"].to_pylist()[:: len(tables["capture"]) - 1] == [0.0, instant]
+    assert tables["removal"]["time"].to_pylist() == [10.0 * i for i in range(11)]
+    assert tables["tugs"]["time"].to_pylist() == [12.0]

@@ -113,3 +113,39 @@ def test_every_kind_of_place_can_be_set(setting: str) -> None:
         assert tomllib.loads(inline)["removal"]["chaser"] == {"mass": "2 t"}
         scene = parse(inline, "a", "a", settings=[setting])
         assert parse(scene.text, "a", "a").phases == scene.phases
+
+
+@pytest.mark.parametrize(
+    ("settings", "title"),
+    [
+        ((), "Table 1: a 24 m net takes a 4 x 8 x 4 m box"),
+        (("capture.net.side=12 m",), "{} (changed: capture.net.side = 12 m)"),
+        (
+            ('capture.net.side="12 m"', "capture.solver.seed=3"),
+            "{} (changed: capture.net.side = 12 m, capture.solver.seed = 3)",
+        ),
+        (("capture.net.side=12 m", "capture.net.side=20 m"), "{} (changed: capture.net.side = 20 m)"),
+        (('capture.target.size=["1 m", "2 m", "3 m"]',), '{} (changed: capture.target.size = ["1 m", "2 m", "3 m"])'),
+        (("capture.net.side=24 m",), "{}"),
+        (("title=Mine", "capture.net.mesh=2 m"), "Mine (changed: capture.net.mesh = 2 m)"),
+        (("title=Mine",), "Mine"),
+    ],
+)  # fmt: skip
+def test_the_title_follows(settings: tuple[str, ...], title: str) -> None:
+    """It would say 24 m of a net of 12 m otherwise; what is set to what it was has changed nothing."""
+    scene = changed(*settings, scene="table1-capture")
+    assert scene.title == title.format("Table 1: a 24 m net takes a 4 x 8 x 4 m box")
+    again = parse(scene.text, "again", "again")
+    assert again.title == scene.title
+
+
+def test_the_title_tells_all_changes_of_a_scene_that_was_changed_before() -> None:
+    first = changed("capture.net.side=12 m", scene="table1-capture")
+    second = parse(first.text, "again", "again", settings=["capture.solver.seed=3"])
+    assert second.title.endswith("(changed: capture.net.side = 12 m) (changed: capture.solver.seed = 3)")
+
+
+def test_a_scene_without_a_title_gets_one_when_changed() -> None:
+    text = "\n".join(line for line in find("table1-capture").read_text().splitlines() if not line.startswith("title"))
+    scene = parse(text, "a", "a", settings=["capture.net.side=12 m"])
+    assert scene.title == parse(scene.text, "b", "b").title == "(changed: capture.net.side = 12 m)"

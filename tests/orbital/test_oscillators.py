@@ -38,6 +38,7 @@ def snap(zeta, preload=0.0):
 
 def test_numbers_of_table_2():
     assert oscillators.line_stiffness(60e9, 1e-3, 12.0) == pytest.approx(3926.99, rel=1e-6)
+    assert oscillators.dashpot(0.05, 3926.99, 666.667) == pytest.approx(161.803, rel=1e-5)  # 0.1 sqrt(2,618,000)
     assert oscillators.reduced_mass(2000.0, 1000.0) == pytest.approx(666.667, rel=1e-6)
     period = 2 * math.pi / oscillators.natural_frequency(STIFFNESS, MASS)
     assert period == pytest.approx(2.589, abs=5e-4)

@@ -14,7 +14,6 @@ from fmu_src.tethered_deorbit.environment import add_gravity
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.thrust import make_thrust
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
-from orbital.oscillators import line_stiffness
 
 TERMS = {"reel": "locked", "thrust": "along_track"}
 STATE = np.array([5e6, -4e6, 3e6, 5e3, 5e3, -1e3, 7.0, -3.0, 9.0, 0.01, 0.02, -0.005])
@@ -77,7 +76,6 @@ def test_line_kinematics() -> None:
         assert acceleration(at[2], first(at), second(at), lengths[2], speed) == pytest.approx(second(lengths), rel=1e-6)
         assert rate(np.zeros(3), np.array([3.0, 0.0, 4.0]), 0.0) == 5.0
         assert acceleration(np.zeros(3), np.ones(3), np.ones(3), 0.0, 1.0) == 0.0
-    assert tether.elastic_stiffness(60e9, 1e-3, 12.0) == pytest.approx(line_stiffness(60e9, 1e-3, 12.0), rel=1e-15)
 
 
 @pytest.mark.parametrize("direction", ["along_track", "velocity", "tether"])

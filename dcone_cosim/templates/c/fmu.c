@@ -20,7 +20,7 @@ typedef struct {
 #define STATE_VERSION 1
 
 typedef struct {
-    double version, time, size;
+    double version, start, time, size;
     int phase, ended;
     char guid[64]; /* of the model; of a longer one its beginning */
 } saved;
@@ -67,7 +67,7 @@ static void take_start_values(instance *i) {
     size_t n;
     for (n = 0; n < model_variables; n++) i->m.values[n] = model_table[n].start;
     for (n = 0; n < model_states; n++) i->m.states[n] = 0.0;
-    i->m.time = 0.0;
+    i->m.start = i->m.time = 0.0;
     i->m.ended = 0;
     i->phase = INSTANTIATED;
 }
@@ -142,7 +142,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_given, fmi
     instance *i = c;
     (void)tolerance_given, (void)tolerance, (void)stop_given, (void)stop;
     if (i->phase != INSTANTIATED) return refuse(i, "fmi2SetupExperiment is not allowed now");
-    i->m.time = start;
+    i->m.start = start;
     return fmi2OK;
 }
 
@@ -178,11 +178,11 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     fmi2Status status;
     (void)no_going_back;
     if (i->phase != STEPPING || i->m.ended) return refuse(i, "fmi2DoStep is not allowed now");
-    i->m.time = time;
+    i->m.time = time - i->m.start;
     status = model_step(&i->m, step);
     if (status <= fmi2Warning) {
         fmi2Status outputs;
-        i->m.time = time + step;
+        i->m.time = time + step - i->m.start;
         outputs = model_outputs(&i->m);
         if (outputs > status) status = outputs;
     }
@@ -296,6 +296,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     memset(s, 0, sizeof *s);
     s->version = STATE_VERSION;
     strncpy(s->guid, model_guid, sizeof s->guid - 1);
+    s->start = i->m.start;
     s->time = i->m.time;
     s->size = (double)block();
     s->phase = (int)i->phase;
@@ -310,6 +311,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
     const saved *s = state;
     if (!s) return refuse(i, "there is no state to restore");
     if (!is_ours(s)) return refuse(i, "that state is of another FMU, or of another version of this one");
+    i->m.start = s->start;
     i->m.time = s->time;
     i->m.ended = s->ended;
     i->phase = (enum phase)s->phase;
@@ -360,7 +362,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status 
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
-    *value = ((instance *)c)->m.time;
+    *value = ((instance *)c)->m.start + ((instance *)c)->m.time;
     return fmi2OK;
 }
 

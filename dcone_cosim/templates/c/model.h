@@ -18,11 +18,12 @@ struct variable {
     double start;
 };
 
-/* One instance. The numbers of all kinds are doubles; the FMU's state is `values`, `states` and `time`. */
+/* One instance. The numbers of all kinds are doubles; the FMU's state is `values`, `states` and the times. */
 typedef struct model {
     double *values; /* one per row of the table */
     double *states; /* model_states of them, yours to use */
-    double time;    /* reached [s] */
+    double start;   /* the importer's time at the begin [s] */
+    double time;    /* reached, since the begin [s]: every instant the model takes or tells counts from there */
     int ended;      /* the model is over for good: set it, set time to when, and return fmi2Discard */
     const fmi2CallbackFunctions *callbacks;
     const char *name;
@@ -34,7 +35,7 @@ extern const size_t model_variables;
 extern const size_t model_states;
 extern const char *const model_guid;
 
-/* Begin at m->time, with the parameters as set. */
+/* Begin, at m->time = 0, with the parameters as set. */
 fmi2Status model_start(model *m);
 
 /* Advance from m->time by `step` [s]; fmu.c moves the time on afterwards. */

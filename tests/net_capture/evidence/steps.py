@@ -36,7 +36,7 @@ Curve = npt.NDArray[np.float64]
 
 
 def fly(ratio: float, seed: int, step_ratio: float = 0.0) -> tuple[Curve, float, float]:
-    """Mouth area, energy and the book's remainder every quarter of a second (60, 3); largest area; share of the bound."""
+    """Mouth area, energy and the remainder every quarter of a second (60, 3); largest area; share of the bound."""
     change = {f"solver.jitter[{i}]": 1e-6 for i in (1, 2, 3)}
     change |= {"net.damping_ratio": ratio, "solver.seed": seed, "solver.step_ratio": step_ratio}
     net = Instance(MODEL, FREE, change).initialise()

@@ -1,0 +1,111 @@
+"""What the folder of a run keeps so that the run can be made again from it alone, wherever it is moved to.
+
+    scene.toml, fmus/*.fmu                    a scene as run, with copies of the FMUs that it names
+    system.ssp, SystemStructure.ssd           a package as it was, and its structure to be read by people
+
+`dcone run FOLDER` makes the run again. Values given on the command line stand in the scene's text; a package is left as
+it is, and they are taken from the provenance.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dcone_cosim.errors import InputError
+from dcone_cosim.scenes.text import moved
+
+if TYPE_CHECKING:
+    from dcone_cosim.scenes.scene import Scene
+
+PROVENANCE, SCENE, PACKAGE, STRUCTURE, FMUS = (
+    *("provenance.json", "scene.toml", "system.ssp", "SystemStructure.ssd", "fmus"),
+)
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A run to be made again: its scene or package, its name, and the settings that are not in it yet."""
+
+    path: Path
+    name: str
+    settings: tuple[str, ...]
+
+
+def keep(scene: Scene, folder: Path) -> None:
+    """Put into the folder all that the run was made from."""
+    if scene.source.lower().endswith(".ssp"):
+        shutil.copyfile(scene.source, folder / PACKAGE)
+        (folder / STRUCTURE).write_text(scene.text, encoding="utf-8")
+        return
+    copies = _names([c.fmu.absolute() for phase in scene.phases for c in phase.components if c.fmu is not None])
+    for fmu, name in copies.items():
+        (folder / FMUS).mkdir(exist_ok=True)
+        shutil.copyfile(fmu, folder / FMUS / name)
+    text = moved(scene.text, {fmu: f"{FMUS}/{name}" for fmu, name in copies.items()}) if copies else scene.text
+    (folder / SCENE).write_text(text, encoding="utf-8")
+
+
+def _names(fmus: list[Path]) -> dict[Path, str]:
+    """A name for a copy of each, its own unless another has it."""
+    names: dict[Path, str] = {}
+    for fmu in fmus:
+        if fmu not in names:
+            same = sum(other.name == fmu.name for other in names)
+            names[fmu] = f"{fmu.stem}-{same + 1}{fmu.suffix}" if same else fmu.name
+    return names
+
+
+def kept_in(folder: Path) -> Kept | None:
+    """What to make again of the folder of a run; None when it is no such folder."""
+    provenance = folder / PROVENANCE
+    with suppress(OSError, ValueError):  # what can be no path is no folder either
+        if provenance.is_file():
+            return _kept(folder, _read(provenance))
+    return None
+
+
+def _kept(folder: Path, told: Mapping[str, Any]) -> Kept:
+    name, settings = str(told.get("scene", folder.name)), told.get("settings", [])
+    if (folder / SCENE).is_file():
+        return Kept(folder / SCENE, name, ())
+    if (folder / PACKAGE).is_file():
+        return Kept(folder / PACKAGE, name, tuple(map(str, settings)))
+    raise InputError(f"{folder} is the folder of a run, but holds neither {SCENE} nor {PACKAGE}")
+
+
+def unlike(folder: Path, facts: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """In which FMUs a run made again from a folder differs from the run that left the folder.
+
+    facts    of the FMUs of each phase as they are now, as the provenance has them
+    """
+    then, now = _identities(_read(folder / PROVENANCE).get("phases", {})), _identities(facts)
+    return [
+        f"made again with another FMU of the {name}: its SHA-256 is {now[name][:12]}..., it was {sha[:12]}..."
+        for name, sha in then.items()
+        if now.get(name, sha) != sha
+    ]
+
+
+def _identities(phases: Mapping[str, Any]) -> dict[str, str]:
+    """SHA-256 of the FMU of each phase and further component."""
+    found = {}
+    for name, phase in phases.items():
+        for part, about in ((name, phase), *((f"{name}, {n}", c) for n, c in phase.get("components", {}).items())):
+            found[part] = str(about.get("fmu", {}).get("sha256", ""))
+    return found
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path} cannot be read: {error}") from error
+    if not isinstance(content, dict):
+        raise InputError(f"{path} is no provenance of a run: expected an object")
+    return content

@@ -1,0 +1,94 @@
+"""What a scene implies for a shot: section and stiffness of thread and cord, masses of nodes, momentum and energy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from fmu_src.implied import Implied, formula
+from fmu_src.net_capture import formulas
+from fmu_src.net_capture.reach import opening_distance
+from orbital import oscillators, twobody
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+
+Values = Mapping[str, float]
+
+
+def thread_section(values: Values) -> float:
+    """Area [m2] of a thread's section."""
+    length = formula(formulas.square_net_length)(values["net.side"], values["net.mesh"])
+    return formula(formulas.thread_area)(values["net.mass"], values["net.density"], length)
+
+
+def thread_mass(values: Values) -> float:
+    """Mass [kg] of a thread from knot to knot."""
+    length = formula(formulas.square_net_length)(values["net.side"], values["net.mesh"])
+    return values["net.mass"] * values["net.mesh"] / length
+
+
+def catch_mass(values: Values) -> float:
+    """Mass [kg] of net, bullets and vertex."""
+    return values["net.mass"] + 4.0 * values["bullets.mass"] + values["vertex.mass"]
+
+
+def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
+    """Thread, nodes, shot, cord and orbit."""
+    yield from _of_thread(values)
+    yield from _of_nodes(values)
+    yield from _of_shot(values)
+    if "closing" in terms:
+        yield from _of_cord(values)
+    if "orbit.altitude" in values:
+        rate = formula(twobody.mean_motion)(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
+        yield Implied("orbit.period", "period of the orbit", 2.0 * math.pi / rate, "s")
+
+
+def _of_thread(values: Values) -> Iterator[Implied]:
+    area, modulus = thread_section(values), values["net.youngs_modulus"]
+    stiffness = formula(formulas.axial_stiffness)(modulus, area, values["net.mesh"])
+    knot = 2.0 * thread_mass(values)
+    yield Implied("thread.area", "section of a thread", area, "m2")
+    yield Implied(
+        "thread.diameter", "its diameter, were it solid and round", formula(formulas.round_diameter)(area), "m"
+    )
+    yield Implied("thread.axial_stiffness", "EA of a thread", modulus * area, "N")
+    yield Implied("thread.stiffness", "stiffness of a thread from knot to knot", stiffness, "N/m")
+    dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, knot)
+    yield Implied("thread.dashpot", "dashpot of a thread from knot to knot", dashpot, "N.s/m")
+
+
+def _of_nodes(values: Values) -> Iterator[Implied]:
+    """Half of each piece of thread that ends at a node; a knot inside the net has four, on its edge three, two in a
+    corner."""
+    piece = thread_mass(values) / values["net.segments"]
+    yield Implied("knot.mass", "mass of a knot inside the net", 2.0 * piece, "kg")
+    yield Implied("edge.mass", "mass of a knot on its edge", 1.5 * piece, "kg")
+    yield Implied("corner.mass", "mass of a corner, with its bullet", piece + values["bullets.mass"], "kg")
+    if values["net.segments"] > 1:
+        yield Implied("thread_node.mass", "mass of a node within a thread", piece, "kg")
+    yield Implied("catch.mass", "net, bullets and vertex together", catch_mass(values), "kg")
+
+
+def _of_shot(values: Values) -> Iterator[Implied]:
+    """Of the corners, which alone leave at the bullets' speed; relative to the chaser before the shot."""
+    corners = 4.0 * (thread_mass(values) / values["net.segments"] + values["bullets.mass"])
+    speed, angle = values["bullets.speed"], values["bullets.angle"]
+    momentum = corners * speed * math.cos(angle)
+    yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")
+    yield Implied("shot.energy", "energy of the shot", 0.5 * corners * speed * speed, "J")
+    yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")
+    opening = opening_distance(values["net.side"], values["net.fold_side"], speed, angle)
+    if math.isfinite(opening):
+        yield Implied("shot.opening", "bullets alone would have spread the net after", opening, "m")
+
+
+def _of_cord(values: Values) -> Iterator[Implied]:
+    """Of the cord between two bullets, which swing against each other with half a bullet's mass."""
+    for key, label, length in (
+        ("cord_open", "the cord between two bullets, net flat", values["net.side"]),
+        ("cord_locked", "the cord between two bullets, locked", values["closing.lock_length"]),
+    ):
+        stiffness = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], length)
+        frequency = formula(oscillators.natural_frequency)(stiffness, 0.5 * values["bullets.mass"])
+        yield Implied(f"{key}.stiffness", f"stiffness of {label}", stiffness, "N/m")
+        yield Implied(f"{key}.period", "its period, undamped", 2.0 * math.pi / frequency, "s")

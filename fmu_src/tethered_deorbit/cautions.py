@@ -1,0 +1,70 @@
+"""What a user may not expect of a tow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+
+from fmu_src.cautions import Caution, Seen, fibre_of, heavily_damped, low, strained
+from orbital.constants import EARTH_EQUATORIAL_RADIUS
+
+PROPELLANT = 0.02
+"""Share of the pair's mass [1] above which keeping the masses constant is told: an orbit's rate of fall and a snap's
+peak are then wrong by about as much, more than any other error of this model."""
+
+Values = Mapping[str, float]
+
+
+def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> Iterator[Caution]:
+    """From what the scene says."""
+    axis = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]
+    for sentence in low(axis * (1.0 - values["orbit.eccentricity"]) - EARTH_EQUATORIAL_RADIUS):
+        yield Caution("orbit.altitude", f"the perigee at {sentence}" if values["orbit.eccentricity"] else sentence)
+    yield from heavily_damped("tether.damping_ratio", values.get("tether.damping_ratio"), "the line's going taut")
+    if "thrust" not in terms:
+        return
+    force = _force(values)
+    if _raises(values, terms):
+        yield Caution("thrust.level", f"{force:g} N in the direction {terms['thrust']} raises the orbit")
+    if force != 0.0 and "thrust.specific_impulse" not in given:
+        isp = values["thrust.specific_impulse"]
+        yield Caution("thrust.specific_impulse", f"not given; the propellant is that of {isp:g} s, an ion engine's")
+
+
+def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen: Seen) -> Iterator[Caution]:
+    """From what came out."""
+    propellant, altitude, axis = seen("chaser.propellant"), seen("altitude"), seen("center.semi_major_axis")
+    mass = values.get("chaser.mass", math.nan) + values.get("target.mass", math.nan)
+    if propellant is not None and propellant.largest > PROPELLANT * mass:
+        yield Caution(
+            "chaser.propellant",
+            f"{propellant.largest:.3g} kg were used, {100 * propellant.largest / mass:.2g} % of the pair's mass, "
+            "and yet the masses are held constant: towards the end the pair would be that much lighter",
+        )
+    if altitude is not None and not any(low(altitude.first)):
+        for sentence in low(altitude.least):
+            yield Caution("altitude", f"the pair came down: {sentence}")
+    separation = seen("separation")
+    if axis is not None and separation is not None and not _raises(values, terms) and _force(values) != 0.0:
+        # what the pair's own motion moves the osculating axis by
+        noise = (3.0 * (separation.largest / axis.least) ** 2 + 1e-9) * axis.first
+        if axis.last - axis.first > noise:
+            yield Caution("thrust.level", f"the orbit was raised, by {axis.last - axis.first:.3g} m")
+    peak = seen("tether.tension_peak") or seen("tether.tension")
+    if peak is not None and {"tether.youngs_modulus", "tether.diameter"} <= values.keys():
+        from fmu_src.tethered_deorbit.implied import axial_stiffness  # and with it numba, as for the net
+
+        fibre = fibre_of(values["tether.youngs_modulus"])
+        yield from strained(
+            "tether.tension_peak", "the line", peak.largest, axial_stiffness(values), fibre.strain, fibre.name
+        )
+
+
+def _force(values: Values) -> float:
+    """Thrust [N] along its direction, as the scene gives it."""
+    return values.get("thrust.level", 0.0) + values.get("thrust.offset", 0.0)
+
+
+def _raises(values: Values, terms: Mapping[str, str]) -> bool:
+    """Whether the thrust is sure to raise the orbit."""
+    return terms.get("thrust") in ("along_track", "velocity") and _force(values) > 0.0

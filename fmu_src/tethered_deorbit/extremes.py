@@ -1,0 +1,136 @@
+"""Largest and least on the way: the tension over a macro step and over a tug, the separation since the start.
+
+What is carried from step to step comes from whole steps of the integrator alone, so that it does not depend on the
+communication points; what the part of a step up to a communication point adds is shown there and not carried.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from fmu_src.integrators import DOP853_STAGES
+from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.events import RATE, RATE_SLOPE, SEPARATION, TENSION, TENSION_SLOPE, Events
+from fmu_src.tethered_deorbit.outputs import note_pull
+from orbital.kernel import kernel
+from orbital.vectors import Array
+
+
+class Extremes(NamedTuple):
+    """Kernels that keep them.
+
+    start(record)                what is published stands: nothing has been yet but this instant
+    begin_macro_step(record)
+    note(record, work, until)    take in the current step of the integrator, from the last communication point or its
+                                 own begin up to a time, or its end
+    begin_anew(record)           go on from what was published at the last communication point
+    publish(record)              at a communication point, whose tension and separation are there
+    """
+
+    start: Callable[..., Any]
+    begin_macro_step: Callable[..., Any]
+    note: Callable[..., Any]
+    begin_anew: Callable[..., Any]
+    publish: Callable[..., Any]
+
+
+def make_extremes(events: Events) -> Extremes:
+    """The kernels for one law of the line and one integrator.
+
+    Checked  tests/tethered_deorbit/test_extremes.py, tests/tethered_deorbit/test_macro_step.py
+    """
+    end_rate = layout.STAGES + DOP853_STAGES * layout.SIZE
+
+    @kernel
+    def begin_anew(record: Any) -> None:
+        r = record[0]
+        r.state_approach_distance = r.approach_distance
+        r.state_approach_time = r.approach_time
+        if r.state_taut and not r.state_tug_begun:
+            r.state_tug_peak = r.tug_peak[0]
+
+    @kernel
+    def start(record: Any) -> None:
+        r = record[0]
+        r.tether_tension_peak = r.tether_tension
+        r.tether_tension_least = r.tether_tension
+        r.approach_distance = r.separation
+        r.approach_time = 0.0
+        begin_anew(record)
+
+    @kernel
+    def begin_macro_step(record: Any) -> None:
+        r = record[0]
+        r.state_peak = 0.0
+        r.state_least = math.inf
+
+    @kernel
+    def publish(record: Any) -> None:
+        r = record[0]
+        r.state_peak = max(r.state_peak, r.tether_tension)
+        r.state_least = min(r.state_least, r.tether_tension)
+        r.tether_tension_peak = r.state_peak
+        r.tether_tension_least = r.state_least
+        if r.separation < r.approach_distance:
+            r.approach_distance = r.separation
+            r.approach_time = r.state_published
+
+    @kernel
+    def note_tension(record: Any, work: Array, first: float, last: float, begin: Any, end: Any) -> None:
+        """Tension between two fractions of a taut step; the first of them is past zero after a communication point."""
+        r = record[0]
+        complete = last == 1.0
+        least, largest = min(begin[TENSION], end[TENSION]), max(begin[TENSION], end[TENSION])
+        change = end[TENSION] - begin[TENSION]
+        begin_change, end_change = r.state_step * begin[TENSION_SLOPE], r.state_step * end[TENSION_SLOPE]
+        still = max(abs(begin_change), abs(end_change)) <= 4.0 * r.state_stiffness * r.state_taut_tolerance
+        steady = max(abs(begin_change - change), abs(end_change - change)) <= 0.25 * abs(change)
+        short = (begin_change >= 0.0) == (end_change >= 0.0) and r.state_step * r.state_frequency < 1.5
+        if not (complete and (still or steady or short)):
+            least, largest = events.tension_range(record, work, 0.0, last)
+        note_pull(record, largest)
+        if complete and not r.state_tug_begun:
+            r.state_tug_peak = r.tug_peak[0]
+        if first > 0.0:
+            least, largest = events.tension_range(record, work, first, last)
+        r.state_peak = max(r.state_peak, largest)
+        r.state_least = min(r.state_least, max(0.0, least))
+
+    @kernel
+    def note_approach(record: Any, work: Array, last: float, begin: Any, end: Any) -> None:
+        """Separation in a step: at its end, and at a turn in it, which is looked for where it may be nearer than all
+        before by more than the tolerance of the separation."""
+        r = record[0]
+        r.approach_distance, r.approach_time = r.state_approach_distance, r.state_approach_time
+        fastest = max(abs(begin[RATE]), abs(end[RATE]))
+        fastest += r.state_step * max(abs(begin[RATE_SLOPE]), abs(end[RATE_SLOPE]))
+        within_reach = min(begin[SEPARATION], end[SEPARATION]) - 0.5 * r.state_step * fastest
+        if within_reach < r.approach_distance - r.solver_tolerance_separation:
+            fraction, distance = events.nearest(record, work, last)
+            if distance < r.approach_distance:
+                r.approach_distance, r.approach_time = distance, r.state_begin + fraction * r.state_step
+        if last == 1.0:
+            if end[SEPARATION] < r.approach_distance:
+                r.approach_distance, r.approach_time = end[SEPARATION], r.state_end
+            r.state_approach_distance, r.state_approach_time = r.approach_distance, r.approach_time
+
+    @kernel
+    def note(record: Any, work: Array, until: float) -> None:
+        r = record[0]
+        if r.state_step == 0.0:
+            return
+        begin = events.signals(record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.DENSE], 0.0)
+        end = events.signals(
+            record, work[layout.END : layout.HERE], work[end_rate : end_rate + layout.SIZE], r.state_step
+        )
+        last = 1.0 if until >= r.state_end else max(0.0, (until - r.state_begin) / r.state_step)
+        first = min(last, max(0.0, (r.state_published - r.state_begin) / r.state_step))
+        if r.state_taut:
+            note_tension(record, work, first, last, begin, end)
+        else:
+            r.state_least = 0.0
+        note_approach(record, work, last, begin, end)
+
+    return Extremes(start, begin_macro_step, note, begin_anew, publish)

@@ -1,0 +1,47 @@
+"""What a scene implies for a tow: the line's section and stiffness, its period, the orbit's tide."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from fmu_src.implied import Implied, formula
+from orbital import oscillators, references, twobody
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+
+line_stiffness, reduced_mass = formula(oscillators.line_stiffness), formula(oscillators.reduced_mass)
+natural_frequency, dashpot = formula(oscillators.natural_frequency), formula(oscillators.dashpot)
+equilibrium_tension, mean_motion = formula(references.equilibrium_tension), formula(twobody.mean_motion)
+
+
+def axial_stiffness(values: Mapping[str, float]) -> float:
+    """EA [N] of the line: what a metre of it would have as its stiffness times its length."""
+    return line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], 1.0)
+
+
+def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Implied]:
+    """Masses, line and orbit of the pair."""
+    reduced = reduced_mass(values["chaser.mass"], values["target.mass"])
+    rate = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
+    yield Implied("pair.reduced_mass", "reduced mass of the pair", reduced, "kg")
+    length, stiffness = 0.0, 0.0
+    if terms["reel"] == "locked":
+        length = values["tether.rest_length"] + values["reel.length_offset"]
+        stiffness = line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], length)
+        extensional = axial_stiffness(values)
+        yield Implied("line.area", "section of the line", extensional / values["tether.youngs_modulus"], "m2")
+        yield Implied("line.axial_stiffness", "EA of the line", extensional, "N")
+        yield Implied("line.stiffness", "stiffness of the line", stiffness, "N/m")
+        damping = dashpot(values["tether.damping_ratio"], stiffness, reduced)
+        yield Implied("line.dashpot", "dashpot of the line", damping, "N.s/m")
+    elif terms["reel"] == "linear":
+        length, stiffness = values["reel.length"] + values["reel.length_offset"], values["reel.proportional_gain"]
+    if stiffness > 0.0:
+        period = 2.0 * math.pi / natural_frequency(stiffness, reduced)
+        yield Implied("line.period", "period of the pair on the taut line, undamped", period, "s")
+    yield Implied("orbit.period", "period of the orbit", 2.0 * math.pi / rate, "s")
+    if length > 0.0:
+        tide = equilibrium_tension(rate, length, reduced)
+        yield Implied("tide.tension", "tension at rest under the tide, 3 n^2 m_r l", tide, "N")
+        critical = references.critical_thrust(rate, length, values["chaser.mass"])
+        yield Implied("vbar.critical_thrust", "least thrust of a stable tow on V-bar, 3 n^2 l m_c", critical, "N")

@@ -1,0 +1,197 @@
+"""What a user may not expect is said in one sentence each, and only where it is so: every case has its twin."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from dcone_cosim.master import RunResult
+from dcone_cosim.recorder import TugLog
+from dcone_cosim.reports.warnings import approach, warnings
+from dcone_cosim.scenes.scene import Scene, load, shipped
+from tests.cosim.conftest import Dcone
+from tests.cosim.test_summary import found, removal_run
+
+MakeScene = Callable[..., Scene]
+
+
+def cautions(scene: str, *settings: str) -> str:
+    return "\n".join(load(scene, settings).cautions)
+
+
+@pytest.mark.parametrize("scene", shipped())
+def test_the_shipped_scenes_give_no_cause(scene: str) -> None:
+    assert cautions(scene) == ""
+
+
+@pytest.mark.parametrize(
+    ("scene", "setting", "twin", "said"),
+    [
+        ("table2-deorbit", "orbit.altitude=119 km", "orbit.altitude=121 km", "orbit.altitude: 119 km is below 120 km"),
+        ("mission", "orbit.altitude=119 km", "orbit.altitude=121 km", "orbit.altitude: 119 km is below 120 km"),
+        ("table2-deorbit", "removal.thrust.level=0.01 N", "removal.thrust.level=0 N", "thrust.level: 0.01 N in the"),
+        ("table2-deorbit", "removal.thrust.offset=0.02 N", "removal.thrust.offset=5 mN", "thrust.level: 0.01 N in the"),
+        ("table2-deorbit", "removal.tether.damping_ratio=0.51", "removal.tether.damping_ratio=0.5", "2 zeta v"),
+        ("table1-capture", "capture.net.damping_ratio=0.51", "capture.net.damping_ratio=0.5", "2 zeta v"),
+        ("mission", "capture.closing.damping_ratio=0.6", "capture.closing.damping_ratio=0.4", "2 zeta v"),
+    ],
+)  # fmt: skip
+def test_before_a_run(scene: str, setting: str, twin: str, said: str) -> None:
+    assert cautions(scene, setting).count(said) == 1
+    assert cautions(scene, twin) == ""
+
+
+def test_the_perigee_counts() -> None:
+    """a (1 - e) = 6978.137 km x 0.93 is 111.5 km over the equatorial radius."""
+    assert "the perigee at 111.5" in cautions("table2-deorbit", "orbit.altitude=600 km", "orbit.eccentricity=0.07")
+    assert cautions("table2-deorbit", "orbit.altitude=600 km", "orbit.eccentricity=0.06") == ""
+
+
+def test_an_isp_that_was_not_given(tmp_path: Path) -> None:
+    text = Path(shipped()["table2-deorbit"]).read_text()
+    lines = [line for line in text.splitlines() if not line.startswith("specific_impulse")]
+    (tmp_path / "mine.toml").write_text("\n".join(lines))
+    assert "removal.thrust.specific_impulse: not given; the propellant is that of 3000 s" in cautions(
+        str(tmp_path / "mine.toml")
+    )
+    assert cautions(str(tmp_path / "mine.toml"), "removal.thrust.level=0 N") == ""
+
+
+def after(
+    make_scene: MakeScene,
+    columns: dict[str, Sequence[float]],
+    removal: Mapping[str, float] | None = None,
+    capture: Mapping[str, float] | None = None,
+) -> str:
+    """The warnings of a removal with these columns and parameters."""
+    run = removal_run(make_scene("removal"), columns, [100.0, 160.0, 220.0], TugLog(1))
+    masses = {"chaser.mass": 2000.0, "target.mass": 1000.0}
+    run.parameters |= {"removal": {**masses, **(removal or {})}, "capture": dict(capture or {})}
+    return "\n".join(warnings(run))
+
+
+def test_propellant_beyond_two_hundredths_of_the_mass(make_scene: MakeScene) -> None:
+    """Of 3000 kg, 60 kg are that."""
+    assert "60.1 kg were used, 2 % of the pair's mass" in after(make_scene, {"chaser.propellant": [0.0, 30.0, 60.1]})
+    assert after(make_scene, {"chaser.propellant": [0.0, 30.0, 59.9]}) == ""
+
+
+@pytest.mark.parametrize("output", ["tether.tension_peak", "tether.tension"])
+def test_a_line_strained_beyond_its_fibre(make_scene: MakeScene, output: str) -> None:
+    """EA = 60 GPa x pi (0.2 mm)^2 / 4 = 1884.96 N: 3.5 % are 65.97 N."""
+    line = {"tether.youngs_modulus": 60e9, "tether.diameter": 0.2e-3}
+    assert "66.5 N, is 3.53 % of EA = 1885 N; para-aramid" in after(make_scene, {output: [0.0, 66.5, 1.0]}, line)
+    assert after(make_scene, {output: [0.0, 65.5, 1.0]}, line) == ""
+    stiff = {**line, "tether.youngs_modulus": 110e9}
+    assert "high-modulus" in after(make_scene, {output: [0.0, 0.028 * 110e9 * 3.1416e-8, 1.0]}, stiff)
+    soft = {**line, "tether.youngs_modulus": 5e9}
+    assert after(make_scene, {output: [0.0, 0.12 * 5e9 * 3.1416e-8, 1.0]}, soft) == ""
+
+
+def capture_run(scene: Scene, columns: dict[str, Sequence[float]], parameters: dict[str, float]) -> RunResult:
+    run = removal_run(scene, columns, [0.0, 1.0], TugLog(1))
+    run.phases = {"capture": run.phases["removal"]}
+    run.parameters = {"capture": parameters}
+    return run
+
+
+def test_threads_and_cord(make_scene: MakeScene) -> None:
+    """Table 1: 1200 m of thread weigh 0.33 kg, so A = 0.19097 mm2 and EA = 13,368 N; the nylon cord has 903 N."""
+    scene = make_scene("capture")
+    net = {"net.side": 24.0, "net.mesh": 1.0, "net.mass": 0.33, "net.density": 1440.0, "net.youngs_modulus": 70e9}
+    columns = {"thread.tension_max": [0.0, 470.0], "cord.tension_max": [0.0, 150.0]}
+    cord = {**net, "closing.axial_stiffness": 903.0}
+    (thread,) = warnings(capture_run(scene, columns, cord))
+    assert thread.startswith(
+        "capture.thread.tension_max: the largest tension of a thread, 470 N, is 3.52 % of EA = 1.337e+04"
+    )
+    columns = {"thread.tension_max": [0.0, 465.0], "cord.tension_max": [0.0, 185.0]}
+    (told,) = warnings(capture_run(scene, columns, cord))
+    assert "the closing cord, 185 N, is 20.5 % of EA = 903 N; nylon 66 breaks at 20 %" in told
+    given = replace(scene.phases[0].main, parameters={"closing.axial_stiffness": 903.0})
+    scene = replace(scene, phases=(replace(scene.phases[0], main=given),))
+    columns["cord.tension_max"] = [0.0, 150.0]
+    assert "para-aramid (nylon 66: 20 %) breaks at 3.5 %" in warnings(capture_run(scene, columns, cord))[0]
+
+
+def test_a_pair_that_came_down_into_the_air(make_scene: MakeScene) -> None:
+    assert "the pair came down: 119 km is below 120 km" in after(make_scene, {"altitude": [200e3, 140e3, 119e3]})
+    assert after(make_scene, {"altitude": [200e3, 140e3, 121e3]}) == ""
+    assert after(make_scene, {"altitude": [119e3, 118e3, 117e3]}) == "", "which is said before the run"
+
+
+def test_an_orbit_that_rose(make_scene: MakeScene) -> None:
+    """By a thrust whose direction alone does not tell it; not by the pair's own motion, 7 mm at 7178 km."""
+    rising = {"separation": [12.0] * 3, "center.semi_major_axis": [7178e3, 7178e3 + 50.0, 7178e3 + 100.0]}
+    thrust = {"thrust.level": 0.01}
+    assert "removal.thrust.level: the orbit was raised, by 100 m" in after(make_scene, rising, thrust)
+    assert "raised" not in after(make_scene, rising)
+    level = {"separation": [12.0] * 3, "center.semi_major_axis": [7178e3, 7178e3, 7178e3 + 0.005]}
+    assert "raised" not in after(make_scene, level, thrust)
+
+
+class TestApproach:
+    def test_bodies_that_would_meet(self, make_scene: MakeScene) -> None:
+        """25 x 10 x 5 m: the corners are 13.693 m from the centre."""
+        size = {f"target.size[{i + 1}]": edge for i, edge in enumerate((25.0, 10.0, 5.0))}
+        told = after(make_scene, {"separation": [20.0, 5.65, 18.0]}, capture=size)
+        assert "within 5.65 m, 60 s after the removal began, by the rows recorded" in told
+        assert "the target's corners are 13.7 m from its centre, and the chaser is taken to reach 1 m" in told
+        assert "may meet" in after(make_scene, {"separation": [20.0, 14.69, 18.0]}, capture=size)
+        assert after(make_scene, {"separation": [20.0, 14.70, 18.0]}, capture=size) == ""
+
+    def test_bodies_of_no_known_size(self, make_scene: MakeScene) -> None:
+        assert "each is taken to reach 1 m" in after(make_scene, {"separation": [12.0, 1.9, 12.0]})
+        assert after(make_scene, {"separation": [12.0, 2.1, 12.0]}) == ""
+
+    def test_what_the_fmu_watched_counts_before_the_rows(self, make_scene: MakeScene) -> None:
+        columns = {
+            "separation": [12.0, 8.0, 12.0],
+            "approach.distance": [12.0, 6.5, 6.5],
+            "approach.time": [0.0, 44.0, 44.0],
+        }
+        run = removal_run(make_scene("removal"), columns, [100.0, 160.0, 220.0], TugLog(1))
+        assert approach(run.phases["removal"]) == (6.5, 44.0, False)
+        rows = found(run)
+        assert (rows["approach"].label, rows["approach"].value, rows["approach_time"].value) == (
+            "least distance",
+            6.5,
+            44.0,
+        )
+        del columns["approach.time"]
+        run = removal_run(make_scene("removal"), columns, [100.0, 160.0, 220.0], TugLog(1))
+        assert approach(run.phases["removal"]) == (8.0, 60.0, True)
+        assert found(run)["approach"].label == "least distance recorded"
+
+
+def test_they_are_told_everywhere_and_change_no_exit_code(dcone: Dcone, tmp_path: Path) -> None:
+    settings = ("--set", "removal.tether.damping_ratio=0.7", "--set", "removal.duration=1 h")
+    code, out, err = dcone("run", "table2-deorbit", "-o", "out", "--no-figures", *settings)
+    assert code == 0
+    assert err.count("warning: removal.tether.damping_ratio: 0.7 is above 0.5") == 1
+    (told,) = json.loads((tmp_path / "out" / "summary.json").read_text())["warnings"]
+    assert told.startswith("removal.tether.damping_ratio: 0.7")
+    code, out, err = dcone("validate", "table2-deorbit", *settings)
+    assert (code, err.count("warning: removal.tether.damping_ratio")) == (0, 1)
+    code, out, _ = dcone("validate", "table2-deorbit", "--json", *settings)
+    assert (code, json.loads(out)[0]["warnings"]) == (0, [told])
+
+
+def test_of_an_fmu_from_elsewhere_nothing_is_known_beforehand(make_scene: MakeScene, tmp_path: Path) -> None:
+    scene = load("table2-deorbit", ("removal.tether.damping_ratio=0.7",))
+    assert scene.cautions
+    from dcone_cosim import build
+
+    main = scene.phases[0].main
+    (path,) = build.ensure([(main.model, main.terms)], print)
+    text = (
+        f"""[removal]\nfmu = "{path}"\nmacro_step = "10 s"\nduration = "1 h"\n[removal.tether]\ndamping_ratio = 0.7\n"""
+    )
+    (tmp_path / "mine.toml").write_text(text)
+    assert load(str(tmp_path / "mine.toml")).cautions == ()
+    assert math.isclose(load(str(tmp_path / "mine.toml")).phases[0].main.parameters["tether.damping_ratio"], 0.7)
