@@ -206,7 +206,7 @@ def _of_line(record: HandoffRecord) -> Iterator[Finding]:
     """Which line was handed over, and what is not as it was."""
     line = record.line
     if line.length is not None:
-        yield Finding("hand-off", "line", "line, from the chaser to the net's vertex", line.length, "m")
+        yield Finding("hand-off", "line", "line, chaser to net's vertex", line.length, "m")
     yield Finding("hand-off", "attachment_distance", "vertex to centre of mass", line.attachment, "m")
     for row in record.rows:
         if row.quantity == SLACK:
