@@ -13,6 +13,8 @@ import pytest
 
 from dcone_cosim.fmu.archive import XML, Archive
 from dcone_cosim.fmu.component import CallError, Component
+from dcone_cosim.phases import CaptureLoop, CapturePlan
+from dcone_cosim.progress import Progress
 from tests.cosim.fmus.build import build
 
 VERSION = 0
@@ -123,3 +125,16 @@ def test_without_logging_errors_are_still_told(tmp_path: Path) -> None:
         assert {"logStatusError", "logStatusDiscard", "logStatusWarning", "logEvents", "logAll"} == {
             category.get("name") for category in listed
         }
+
+
+@pytest.mark.parametrize("start", [0.0, 100.0, -50.0])
+def test_a_capture_at_any_start_time(tmp_path: Path, start: float) -> None:
+    """Its net flies 16 m at 3 m/s, and `t_capture` counts from the shot."""
+    with Archive(build(tmp_path, "capture")) as archive, archive.instantiate("shot") as component:
+        component.initialise(start)
+        result = CaptureLoop(component, CapturePlan(0.5, 20.0, stop_there=True, start=start), Progress()).run()
+    assert result.error is None
+    assert result.located == pytest.approx(16.0 / 3.0, rel=1e-14)
+    assert "t_capture" in result.located_by
+    assert result.recorder["time"].tolist() == [0.5 * i for i in range(11)] + [result.located]
+    assert result.recorder["catch.position[2]"][10] == pytest.approx(-1.0, abs=1e-12)

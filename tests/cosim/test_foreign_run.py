@@ -133,7 +133,7 @@ def test_one_clear_error(make_scene: Make, tmp_path: Path, switch: str, isolate:
     assert (provenance["status"], provenance["exit_code"]) == ("FMU failed", FMU_FAILED)
     assert {"capture.parquet", "removal.parquet", "ledger.json"} <= {p.name for p in (tmp_path / "run").iterdir()}
     start = result.phases["removal"].start
-    # steps of 10 s from 7.12 s on, and it goes wrong in the first that goes beyond 50 s
+    # steps of 10 s, and it goes wrong in the first that goes beyond 45 s
     assert result.phases["removal"].end == pytest.approx(start + 40.0)
 
 

@@ -33,7 +33,7 @@ def build(
     """`my_PHASE.fmu` in a folder.
 
     switches    how it goes wrong, see misbehaving.c and SHIM: "CRASH", "EXIT=3"; none: it works as the template does
-    when        from which time on [s]
+    when        after how long [s]
     change      of the text of its model description
     """
     defines = switches if when is None else (*switches, f"WHEN={when!r}")

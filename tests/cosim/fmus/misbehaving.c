@@ -1,4 +1,4 @@
-/* An FMU from the C template that goes wrong, once its time has reached WHEN, in the one way that a -D switch names.
+/* An FMU from the C template that goes wrong, once it has run for WHEN seconds, in the one way that a -D switch names.
 
    It includes the template's model.c, whose functions still do the work. */
 
@@ -18,7 +18,7 @@
 #endif
 
 #ifndef WHEN
-#define WHEN 50.0
+#define WHEN 45.0
 #endif
 
 #ifdef LIES
