@@ -2,8 +2,9 @@
 
 `captured` has to last: once the cord still out is shorter than the target's smallest girth, the target counts as caught
 when net and mouth go round most of it (see `enclosure`), so that the mouth has passed its middle and would have to pass
-it again. While it stands in the mouth nothing is decided. It is out, then or later, when less than half of it has been
-inside for a while: the cap over a slack mouth is a guess, and may cut through the target for a moment.
+it again. While it stands in the mouth nothing is decided; the shot has failed when nothing is inside any more, and a
+capture is taken back when less than half is. Both must last for a while: the cap over a slack mouth is a guess, and may
+cut through the target for a moment.
 """
 
 from fmu_src.net_capture import quality
@@ -16,7 +17,7 @@ CAUGHT = 8 / 9
 """Share of the target's sample points inside from which it is caught: all of a box but one edge. What hovers about less
 may still come out (tests/net_capture/evidence)."""
 OUT = 0.5
-"""Share inside below which the target is on its way out."""
+"""Share inside below which a target that was caught is on its way out."""
 OUT_TIME = 1.0
 """For how long [s] before it counts as out."""
 
@@ -49,7 +50,7 @@ def make_judge(terms, towards_chaser, share_inside):
         if has_target:
             if has_closing:
                 if p.closing_t_start >= 0.0 and p.mouth_cord_length < p.girth:
-                    look_inside(p, work, time)
+                    look_inside(p, work, time, 0.0)
                     if p.enclosure_share >= CAUGHT:
                         catch(p, time)
                     elif is_out(p, time):
@@ -63,17 +64,17 @@ def make_judge(terms, towards_chaser, share_inside):
                 p.outcome = TETHER_TAUT
 
     @kernel
-    def look_inside(p, work, time):
-        """Share of the target that is inside, and when at least half was (the first look counts as if it were)."""
+    def look_inside(p, work, time, out):
+        """Share of the target inside, and when it was last above `out`; the first look counts as if it were."""
         share = share_inside(p, work)
-        if share >= OUT or p.enclosure_share < 0.0:
-            p.enclosure_half_in = time
+        if share > out or p.enclosure_share < 0.0:
+            p.enclosure_last_in = time
         p.enclosure_share = share
 
     @kernel
     def is_out(p, time):
-        """Whether less than half of the target has been inside for long enough."""
-        return time >= p.enclosure_half_in + OUT_TIME
+        """Whether too little of the target has been inside for long enough."""
+        return time >= p.enclosure_last_in + OUT_TIME
 
     @kernel
     def catch(p, time):
@@ -99,7 +100,7 @@ def make_judge(terms, towards_chaser, share_inside):
         """Whether a catch holds, and whether it has settled."""
         if has_target:
             if p.grid % (10 * p.measure_every) == 0:
-                look_inside(p, work, time)
+                look_inside(p, work, time, OUT)
                 if p.enclosure_share < p.enclosure_least:
                     p.enclosure_least = p.enclosure_share
             if is_out(p, time):

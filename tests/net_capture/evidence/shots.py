@@ -31,7 +31,7 @@ SHOTS = 200
 LOOK = 0.1
 """Seconds between two looks at a shot."""
 MINUTE = 60.0
-END = 80.0
+END = 95.0
 """Seconds from the shot for which every shot is followed at most: the latest captures are seen for a minute."""
 
 TABLE_1 = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic", "closing": "winches"}
@@ -138,7 +138,7 @@ def summarise(rows: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     taken = [r for r in rows if r["captured"] is not None]
     good = [r for r in rows if r["held_at_end"]]
     old = [r["centre_only"] for r in rows if r["centre_only"]["captured"] is not None]
-    late = [r["captured"] - r["cord_short"] for r in taken if r["held_at_end"]]
+    late = [max(0.0, r["captured"] - r["cord_short"]) for r in taken if r["held_at_end"]]
     return {
         "shots": len(rows),
         "captured": len(taken),
