@@ -16,7 +16,8 @@ from dcone_cosim.phases import PhaseResult
 
 SPREADS: Mapping[str, Mapping[str, float]] = {
     "capture": {
-        "handed_over_at": 5e-4,
+        "handed_over_at": 0.05,
+        "t_capture": 0.05,
         "contact.first_time": 2e-3,
         "mouth.t80": 8e-4,
         "mouth.t_max": 1e-3,
@@ -26,33 +27,49 @@ SPREADS: Mapping[str, Mapping[str, float]] = {
         "mouth.cord_length": 5e-3,
         "contact.loss": 0.03,
         "closing.work": 0.02,
-        "thread.dissipated": 0.03,
+        "thread.dissipated": 0.04,
         "cord.dissipated": 0.03,
         "energy.remainder": 0.08,
         "tether.paid_out": 5e-4,
+        "enclosure.at_capture": 0.03,
+        "enclosure.least": 0.09,
+        "mouth.margin_at_capture": 1.4,
     },
     "hand-off": {
-        "time": 4e-4,
+        "time": 0.05,
         "distance": 5e-6,
         "spin_dropped": 1e-4,
         "spin_energy_dropped": 3e-4,
         "attachment_speed": 2e-4,
+        "tug_speed": 6e-5,
+        "attachment_distance": 2e-3,
+        "slack": 8e-4,
+        "slack_after": 9e-4,
         "energy_lost": 1e-3,
-        "ledger_closure": 0.5,
+        "ledger_closure": 0.6,
     },
 }
 """Relative spread [1] of figures of a net and of what it hands over, by phase and key."""
 
 HANDED_OVER: Mapping[str, float] = {
     "tugs": 0.02,
-    "first_tug": 3e-5,
+    "first_tug": 1e-3,
+    "first_tug_speed": 9e-5,
+    "first_tug_peak": 9e-5,
+    "largest_tug_peak": 3e-4,
     "tugs_without_recoil": 0.02,
-    "first_tug_without_recoil": 3e-5,
-    "first_tug_speed_without_recoil": 5e-5,
-    "first_tug_peak_without_recoil": 5e-5,
-    "largest_tug_peak_without_recoil": 4e-5,
+    "first_tug_without_recoil": 2e-4,
+    "first_tug_speed_without_recoil": 2e-3,
+    "first_tug_peak_without_recoil": 2e-3,
+    "largest_tug_peak_without_recoil": 2e-3,
+    "tension_mean": 2e-4,
+    "tension_least": 4e-4,
+    "tension_largest": 2e-4,
+    "separation": 2e-4,
+    "approach": 5e-4,
+    "approach_time": 6e-4,
 }
-"""The same of a tow that begins with it: `mission`."""
+"""The same of a tow that begins with it, `mission`: where the vertex lies is chaotic, and with it the line's slack."""
 
 TUGGING: Mapping[str, float] = {
     "tugs": 0.3,
@@ -98,8 +115,8 @@ def digits(value: float, spread: float, most: int = 6) -> str:
     """
     if not (math.isfinite(value) and value and spread):
         return f"{value:.{most}g}"
-    place = math.floor(math.log10(2.0 * spread * abs(value)))
     leading = math.floor(math.log10(abs(value)))
+    place = min(math.floor(math.log10(2.0 * spread * abs(value))), leading)
     if leading - place >= most - 1:
         return f"{value:.{most}g}"
     if not 1e-4 <= abs(value) < 1e6:
