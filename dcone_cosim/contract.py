@@ -48,13 +48,26 @@ NODE_PREFIX = "node["
 TUG_PREFIX = "tug["
 TUG_FIELDS = ("time", "peak", "speed")
 
-EXTREMES: Mapping[str, Callable[[float, float], float]] = {
-    "tether.tension_peak": max,
-    "tether.tension_least": min,
-    "thread.tension_peak": max,
-    "cord.tension_peak": max,
+
+@dataclass(frozen=True)
+class Extreme:
+    """An output that is the largest or least of something over the FMU's last step.
+
+    choose    how those of several steps become that of all
+    of        the output that tells it for the instant itself, "" for none; a row takes in the value at its end, which
+              an input set there may have moved
+    """
+
+    choose: Callable[[float, float], float]
+    of: str = ""
+
+
+EXTREMES: Mapping[str, Extreme] = {
+    "tether.tension_peak": Extreme(max, "tether.tension"),
+    "tether.tension_least": Extreme(min, "tether.tension"),
+    "thread.tension_peak": Extreme(max),
+    "cord.tension_peak": Extreme(max),
 }
-"""Outputs that are the largest or least over the FMU's last step, and how those of several steps become that of all."""
 
 Need = Literal["always", "hand-over", "captured", "settled", "tether_taut", "slack", "optional"]
 NEEDS: Mapping[str, str] = {

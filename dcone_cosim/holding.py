@@ -118,8 +118,9 @@ class Held:
 
     def row(self, names: Sequence[str]) -> Readable:
         reader = self.component.reader(names)
-        places = [(place, name) for place, name in enumerate(reader.names) if name in self._extremes]
-        return _Row(self, reader, places) if places else reader
+        place = {name: i for i, name in enumerate(reader.names)}
+        columns = [(place[name], name, place.get(EXTREMES[name].of)) for name in self._extremes if name in place]
+        return _Row(self, reader, columns) if columns else reader
 
     @property
     def so_far(self) -> Mapping[str, float]:
@@ -160,7 +161,8 @@ class Held:
         self.component.step(time, size)
         told = self._told()
         state.so_far = {
-            name: told[name] if begins else EXTREMES[name](state.so_far[name], told[name]) for name in self._extremes
+            name: told[name] if begins else EXTREMES[name].choose(state.so_far[name], told[name])
+            for name in self._extremes
         }
         self._gather(told)
 
@@ -192,12 +194,15 @@ class Held:
 class _Row:
     """A row of a component's reader with the extremes of all steps in it."""
 
-    def __init__(self, held: Held, reader: Readable, places: Sequence[tuple[int, str]]) -> None:
-        self._held, self._reader, self._places = held, reader, places
+    def __init__(self, held: Held, reader: Readable, columns: Sequence[tuple[int, str, int | None]]) -> None:
+        """columns: place and name of an extreme, and the place of what it is the extreme of"""
+        self._held, self._reader, self._columns = held, reader, columns
         self.names, self.values = reader.names, reader.values
 
     def __call__(self) -> Row:
         values, so_far = self._reader(), self._held.so_far
-        for place, name in self._places:
+        for place, name, now in self._columns:
             values[place] = so_far.get(name, values[place])
+            if now is not None:
+                values[place] = EXTREMES[name].choose(values[place], values[now])
         return values

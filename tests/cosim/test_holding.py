@@ -220,5 +220,8 @@ def test_peaks_of_a_removal_beside_its_controller(coupling: dict[str, object]) -
     for name, choose in (("tether.tension_peak", np.max), ("tether.tension_least", np.min)):
         parts: Callable[..., np.ndarray] = choose
         assert long[name][1:].tolist() == parts(short[name][1:].reshape(-1, 6), axis=1).tolist()
+        # also at the ends of a row, where the controller has just set another tension
+        ends = np.array([long[name][1:], long["tether.tension"][1:], long["tether.tension"][:-1]])
+        assert parts(ends, axis=0) == pytest.approx(long[name][1:], rel=1e-12)
     assert (long["tether.tension_peak"][1:] >= long["tether.tension"][:-1] * (1.0 - 1e-9)).all()
     assert (long["tether.tension_peak"][1:] > short["tether.tension_peak"][6::6]).any()

@@ -47,6 +47,13 @@ def test_before_a_run(scene: str, setting: str, twin: str, said: str) -> None:
     assert cautions(scene, twin) == ""
 
 
+def test_a_frame_that_stands_still_in_the_capture_alone(tmp_path: Path) -> None:
+    text = Path(shipped()["mission"]).read_text()
+    (tmp_path / "still.toml").write_text(text.replace('law = "hill"', 'law = "none"'))
+    assert 'capture.gravity: with law = "none" the orbital frame stands still' in cautions(str(tmp_path / "still.toml"))
+    assert "gravity" not in cautions("mission") + cautions("table1-capture")
+
+
 def test_the_perigee_counts() -> None:
     """a (1 - e) = 6978.137 km x 0.93 is 111.5 km over the equatorial radius."""
     assert "the perigee at 111.5" in cautions("table2-deorbit", "orbit.altitude=600 km", "orbit.eccentricity=0.07")
