@@ -201,8 +201,9 @@ def test_moving_inputs_go_on_moving_in_the_pieces() -> None:
     held.exit_initialisation()
     held.set_rates({"reel.tension": 0.5})
     held.step(0.0, 10.0)
-    assert component.values["reel.tension"] == 5.0
     assert len(held.tugs.rows) == 9
+    assert len(component.calls) > 9
+    assert component.values["reel.tension"] == 5.0
 
 
 @pytest.mark.slow
@@ -255,3 +256,19 @@ def test_steps_before_the_one_that_overflows_are_taken_again_as_they_were() -> N
     held.settle()
     assert component.calls[3:5] == [(0.0, 0.5), (0.5, 0.5)]
     assert held.tugs.rows == dict(enumerate(TUGS[:9], start=1))
+
+
+def test_a_step_that_overflows_after_going_back() -> None:
+    """What was rolled back is not taken again."""
+    component = MockRemoval(tugs=TUGS)
+    held = Held(component)
+    held.enter_initialisation(0.0)
+    held.exit_initialisation()
+    held.step(0.0, 0.5)
+    held.save("then")
+    held.step(0.5, 0.5)
+    held.restore("then")
+    held.step(0.5, 9.5)
+    held.settle()
+    assert held.tugs.rows == dict(enumerate(TUGS[:9], start=1))
+    assert component.calls.count((0.5, 0.5)) == 1
