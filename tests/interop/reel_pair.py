@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from dcone_cosim.archives import Archives
+from dcone_cosim.contract import EXTREMES
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.scenes import scene as scenes
@@ -77,10 +78,14 @@ def at_points(package: Path, points: Points, step: float) -> Rows:
 
 
 def pairs(found: Rows, ours: Recorder | Rows, late: Iterable[str] = ()) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Ours and theirs by output, from the first step's end on; those told late a step apart."""
+    """Ours and theirs by output, from the first step's end on; those told late a step apart.
+
+    Without the extremes of a step: ours take in what is told at its end, after the exchange, a tool's do not.
+    """
     late = set(late)
     assert all(len(rows) == STEPS + 1 for rows in found.values())
-    return {n: (ours[n][1:-1], found[n][2:]) if n in late else (ours[n][1:], found[n][1:]) for n in found if n in ours}
+    shared = [name for name in found if name in ours and name not in EXTREMES]
+    return {n: (ours[n][1:-1], found[n][2:]) if n in late else (ours[n][1:], found[n][1:]) for n in shared}
 
 
 def differing(found: Rows, ours: Recorder | Rows, late: Iterable[str] = ()) -> list[str]:

@@ -104,7 +104,7 @@ def test_settled_comes_after_captured(shoot):
     ("change", "outcome"),
     [
         ({"shot.axis[2]": 1.0, "shot.axis[1]": 1.6, "closing.time": 9.0}, "missed"),
-        ({"closing.time": 7.0, "closing.speed": 8.0}, "slipped_off"),
+        ({"closing.time": 6.0, "closing.speed": 8.0}, "slipped_off"),
         ({"closing.speed": 0.1, "closing.timeout": 3.0}, "not_closed"),
         ({"tether.length": 15.0}, "tether_taut"),
     ],
