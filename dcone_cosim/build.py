@@ -180,6 +180,13 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
+def fault(path: Path) -> str:
+    """What is wrong with a file of the cache, in words that follow "is"; "" for nothing."""
+    from fmu_src.packaging.kept import fault
+
+    return fault(path)
+
+
 def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], platforms: Sequence[Any] = ()) -> Any:
     """Paths of the FMUs of each interface, one per platform, this machine's alone if none is named.
 

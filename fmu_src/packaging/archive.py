@@ -22,8 +22,8 @@ from importlib.metadata import version
 from pathlib import Path
 
 from fmu_src.interface import Interface
-from fmu_src.packaging import c_header, compile, description, documentation, link, picture, sources, tools
-from fmu_src.packaging.platforms import WIN64, Platform, host
+from fmu_src.packaging import c_header, compile, description, documentation, kept, link, picture, sources, tools
+from fmu_src.packaging.platforms import PLATFORMS, WIN64, Platform, host
 
 PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
 """What settles by its version what comes out: the tools, and this package, whose version the description tells."""
@@ -56,18 +56,21 @@ def build(
     platform = platform or host()
     key = fingerprint(interface)
     name = interface.model.name
-    path = cache / f"{name}-{key[:16]}-{platform.name}.fmu"
-    if _intact(path):
-        return path
+    path = cache / kept.file_name(name, key, platform)
+    if os.path.lexists(path):
+        wrong = kept.fault(path)
+        if not wrong:
+            return path
+        announce(f"{path} is {wrong}; it is built again")
     try:
         cache.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
     except OSError as error:
         raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
-    guid = "{" + f"{key[:8]}-{key[8:12]}-{key[12:16]}-{key[16:20]}-{key[20:32]}" + "}"
+    guid = kept.guid_of(key)
     try:
         ir = folder / "model.ll"
-        known = _kernels(cache, f"{name}-{key[:16]}-*.fmu")
+        known = _kernels(cache, name, key)
         if known is None:
             terms = ", ".join(interface.terms) or "no terms to choose"
             announce(f"building {name} with {terms} (once; kept in {cache})")
@@ -92,28 +95,27 @@ def build(
         pack(files, finished)
         if fingerprint(interface) != key:
             raise tools.BuildError(f"the sources of {name} changed while it was built: build it again")
-        os.replace(finished, path)
+        _put(finished, path)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return path
 
 
-def _kernels(cache: Path, pattern: str) -> bytes | None:
+def _kernels(cache: Path, name: str, key: str) -> bytes | None:
     """IR from an FMU of the same origin for another platform, if there is one."""
-    for path in sorted(cache.glob(pattern)):
-        if _intact(path):
+    for platform in PLATFORMS.values():
+        path = cache / kept.file_name(name, key, platform)
+        if not kept.fault(path):
             with zipfile.ZipFile(path) as archive:
                 return archive.read(f"sources/{sources.KERNELS}")
     return None
 
 
-def _intact(path: Path) -> bool:
-    """Whether a cached FMU is there and whole; a damaged one is built again."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return archive.testzip() is None
-    except (OSError, zipfile.BadZipFile):
-        return False
+def _put(finished: Path, path: Path) -> None:
+    """Move a file to its place; what is there gives way, even a folder."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    os.replace(finished, path)
 
 
 def build_all(
