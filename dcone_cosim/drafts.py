@@ -8,6 +8,7 @@ dies cannot, and the next one here removes the draft for it.
 from __future__ import annotations
 
 import itertools
+import json
 import os
 import shutil
 import sys
@@ -23,6 +24,12 @@ if sys.platform == "win32":
 else:
     import fcntl
 
+PROVENANCE = "provenance.json"
+"""The file by which a folder is known as that of a run; its `files` are all that the run wrote."""
+LITTER = (".DS_Store", "Thumbs.db", "desktop.ini")
+"""What file managers leave in every folder that they show."""
+TOLD = 5
+"""How many files of others a refusal names."""
 UNFINISHED = ".dcone-unfinished"
 """File in a draft that the process filling it holds locked."""
 
@@ -32,8 +39,16 @@ def check_free(folder: Path, force: bool) -> None:
     if not _is_free(folder):
         if not force:
             raise InputError(f"{folder} already exists; choose another place with -o, or replace it with --force")
-        if not _is_run(folder):
+        written = _written(folder)
+        if written is None:
             raise InputError(f"{folder} is not the folder of a run: --force will not replace it")
+        others = _others(folder, written)
+        if others:
+            more = f" and {len(others) - TOLD} more" if len(others) > TOLD else ""
+            raise InputError(
+                f"{folder} holds what no run wrote there: {', '.join(others[:TOLD])}{more}; "
+                "--force replaces the files of a run alone: move these, or choose another place with -o"
+            )
     above = next(p for p in folder.absolute().parents if p.exists())
     if not above.is_dir() or not os.access(above, os.W_OK):
         raise InputError(f"{folder} cannot be written: {above} is not a folder that may be written to")
@@ -45,8 +60,27 @@ def _is_free(folder: Path) -> bool:
     return folder.is_dir() and not folder.is_symlink() and not any(folder.iterdir())
 
 
-def _is_run(folder: Path) -> bool:
-    return folder.is_dir() and (folder / "provenance.json").exists()
+def contents(folder: Path) -> list[str]:
+    """Every file below, and every folder that has none, relative to it."""
+    found = []
+    for path in folder.rglob("*"):
+        if path.is_symlink() or not path.is_dir() or not any(path.iterdir()):
+            found.append(path.relative_to(folder).as_posix())
+    return sorted(found)
+
+
+def _written(folder: Path) -> set[str] | None:
+    """The files that a run wrote into its folder, as its provenance lists them; None where no run has written."""
+    try:
+        told = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
+        return {str(name) for name in told.get("files", [PROVENANCE])}
+    except (OSError, ValueError, TypeError, AttributeError):
+        return None
+
+
+def _others(folder: Path, written: set[str]) -> list[str]:
+    """What is in the folder of a run beside the files that the run wrote."""
+    return [name for name in contents(folder) if name not in written and name.rpartition("/")[2] not in LITTER]
 
 
 class Draft:
@@ -157,8 +191,10 @@ class _Lock:
 
 
 def _replace(draft: Path, place: Path) -> bool:
-    """Put the draft in the place of an earlier run, which stays if that fails; False when there is none."""
-    if not _is_run(place):
+    """Put the draft in the place of an earlier run, which stays if that fails; False when there is none, or files of
+    others have come into it meanwhile."""
+    written = _written(place)
+    if written is None or _others(place, written):
         return False
     aside = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.old.", dir=place.parent))
     old = aside / "old"

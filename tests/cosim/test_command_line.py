@@ -88,6 +88,42 @@ def test_a_folder_that_appears_meanwhile_is_not_touched(dcone: Dcone, stand_in: 
     assert Path("out-2/summary.json").exists()
 
 
+@pytest.mark.parametrize(
+    "notes", ["notes.txt", "fmus/notes.txt", "mine.parquet", "mine.png", "deep/er/notes.txt", "empty/"]
+)
+def test_force_replaces_its_own_files_alone(dcone: Dcone, stand_in: type[NoArchives], notes: str) -> None:
+    assert dcone("run", "mock", "-o", "out", "--csv")[0] == 0
+    mine = Path("out", notes)
+    mine.parent.mkdir(parents=True, exist_ok=True)
+    if notes.endswith("/"):
+        mine.mkdir()
+    else:
+        mine.write_text("years of work")
+    before = {p: p.read_bytes() for p in Path("out").rglob("*") if p.is_file()}
+    code, _, err = dcone("run", "mock", "-o", "out", "--no-figures", "--force")
+    assert code == 2
+    assert f"out holds what no run wrote there: {notes.rstrip('/')}; --force replaces the files of a run alone" in err
+    assert {p: p.read_bytes() for p in Path("out").rglob("*") if p.is_file()} == before
+    mine.rename("moved")
+    for folder in sorted(Path("out").rglob("*"), reverse=True):
+        if folder.is_dir():
+            folder.rmdir()
+    Path("out/.DS_Store").touch()
+    assert dcone("run", "mock", "-o", "out", "--no-figures", "--force")[0] == 0
+    assert not [name for name in ("capture.csv", "tension.png", ".DS_Store") if Path("out", name).exists()]
+    assert sorted(p.name for p in Path().iterdir()) == ["moved", "out"]
+
+
+def test_notes_that_come_while_it_runs_stay(dcone: Dcone, stand_in: type[NoArchives]) -> None:
+    assert dcone("run", "mock", "-o", "out", "--no-figures")[0] == 0
+    stand_in.meanwhile = staticmethod(lambda: Path("out/notes.txt").write_text("years of work"))
+    code, out, err = dcone("run", "mock", "-o", "out", "--no-figures", "--force")
+    assert (code, "results in out-2" in out, "was not touched" in err) == (0, True, True)
+    assert Path("out/notes.txt").read_text() == "years of work"
+    assert Path("out/summary.json").exists()
+    assert sorted(p.name for p in Path().iterdir()) == ["out", "out-2"]
+
+
 def test_two_runs_within_a_second_keep_their_results(
     dcone: Dcone, stand_in: type[NoArchives], monkeypatch: pytest.MonkeyPatch
 ) -> None:
