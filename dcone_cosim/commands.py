@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
-from dcone_cosim import build
+from dcone_cosim import build, interrupts
 from dcone_cosim.archives import Archives
 from dcone_cosim.drafts import atomic_folder, check_free
 from dcone_cosim.errors import InputError
@@ -60,7 +60,7 @@ def run_and_write(
     check_free(folder, force and out is not None)
     threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
     notes = list(scene.notes)
-    with atomic_folder(folder, force and out is not None) as draft:
+    with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
         if draft.removed:
             notes.append(LEFT_BEHIND)
         with Archives(scene, progress) as archives:
@@ -70,8 +70,12 @@ def run_and_write(
             notes += unlike(Path(name), facts)
 
         def draw(path: Path) -> None:
-            progress.say("drawing")
-            notes.extend(_draw(result, path))
+            if interrupts.noted():
+                notes.append("no figure was drawn: the run was interrupted")
+                return
+            with progress.working("drawing"):
+                progress.say("drawing")
+                notes.extend(_draw(result, path))
 
         fill(draft.path, result, facts, summary.as_dict(result), started, with_csv, draw if with_figures else None)
     if out is not None and draft.folder != folder:

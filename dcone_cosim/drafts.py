@@ -18,6 +18,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from dcone_cosim.errors import InputError
+from dcone_cosim.names import check_text
 
 if sys.platform == "win32":
     import msvcrt
@@ -49,9 +50,27 @@ def check_free(folder: Path, force: bool) -> None:
                 f"{folder} holds what no run wrote there: {', '.join(others[:TOLD])}{more}; "
                 "--force replaces the files of a run alone: move these, or choose another place with -o"
             )
-    above = next(p for p in folder.absolute().parents if p.exists())
-    if not above.is_dir() or not os.access(above, os.W_OK):
-        raise InputError(f"{folder} cannot be written: {above} is not a folder that may be written to")
+    _try_place(folder)
+
+
+def _try_place(folder: Path) -> None:
+    """Refuse a place where no folder can be made: it is made, beside itself where one is there, and removed again."""
+    check_text(str(folder))
+    place = folder.absolute()
+    made: list[Path] = []
+    try:
+        for part in (*reversed(place.parents), place):
+            if not os.path.lexists(part):
+                part.mkdir()
+                made.append(part)
+        os.rmdir(tempfile.mkdtemp(prefix=".", dir=place.parent))
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"{folder} cannot be written: {reason}") from None
+    finally:
+        for part in reversed(made):
+            with suppress(OSError):
+                part.rmdir()
 
 
 def _is_free(folder: Path) -> bool:
@@ -105,7 +124,7 @@ def atomic_folder(folder: Path, force: bool = False) -> Iterator[Draft]:
     path, lock = None, None
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        path = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.", dir=place.parent))
+        path = Path(tempfile.mkdtemp(prefix=".dcone-", dir=place.parent))
         path.chmod(0o755)
         lock = _Lock.of_new(path / UNFINISHED)
         draft = Draft(path, folder, _remove_left_behind(place.parent))
@@ -196,7 +215,7 @@ def _replace(draft: Path, place: Path) -> bool:
     written = _written(place)
     if written is None or _others(place, written):
         return False
-    aside = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.old.", dir=place.parent))
+    aside = Path(tempfile.mkdtemp(prefix=".dcone-old-", dir=place.parent))
     old = aside / "old"
     try:
         place.rename(old)

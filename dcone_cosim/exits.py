@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 import typer
 
 from dcone_cosim.errors import BAD_INPUT, DconeError
+from dcone_cosim.names import check_text
 
 
 @contextmanager
@@ -90,11 +91,18 @@ def _answer(text: str, exit_code: int, **more: Any) -> None:
             typer.echo(json.dumps({"error": text, "exit_code": exit_code, **more}))
 
 
-INTERRUPTED, TERMINATED = 130, 143
+BY_SIGINT, BY_SIGTERM = 130, 143
+"""Exit codes, as shells give them, of what was interrupted before there was anything to keep."""
+
+
+def _check_arguments(arguments: list[str]) -> None:
+    """Refuse what is not UTF-8 before any work: results tell of their places and settings in files of text."""
+    for argument in arguments:
+        check_text(argument)
 
 
 def _terminate(*_: object) -> NoReturn:
-    sys.exit(TERMINATED)
+    sys.exit(BY_SIGTERM)
 
 
 def run(app: Callable[..., Any]) -> NoReturn:
@@ -102,18 +110,19 @@ def run(app: Callable[..., Any]) -> NoReturn:
     _open_streams()
     before = _on_terminate(_terminate)
     try:
+        _check_arguments(sys.argv[1:])
         code = app(standalone_mode=False)
     except DconeError as error:
         _fail(str(error), error.exit_code, **details(error))
     except KeyboardInterrupt:
-        code = INTERRUPTED
+        code = BY_SIGINT
     except OSError as error:
         _fail(_of_system(error), BAD_INPUT)
     except Exception as error:
         code = _of_arguments(error)
     except SystemExit as stop:
-        if stop.code == TERMINATED:
-            _fail("terminated; nothing was written", TERMINATED)
+        if stop.code == BY_SIGTERM:
+            _fail("terminated; nothing was written", BY_SIGTERM)
         if stop.code != 1:
             raise
         # typer ends so when the reader of a help text has left
@@ -121,8 +130,8 @@ def run(app: Callable[..., Any]) -> NoReturn:
         code = 0
     finally:
         _on_terminate(before)
-    if code == INTERRUPTED:
-        _fail("interrupted; nothing was written", INTERRUPTED)
+    if code == BY_SIGINT:
+        _fail("interrupted; nothing was written", BY_SIGINT)
     sys.exit(code or 0)
 
 
