@@ -1,18 +1,16 @@
 """The cache of built FMUs: what is in it, how long a build took here, and how it is emptied.
 
 Nothing that another process is building is touched: a build works in a folder of its own, which takes no part in the
-listing, and is cleared away only when it is so old that its process must have died.
+listing, and is cleared away only when its process has died (see `scratch`).
 """
 
 from __future__ import annotations
 
 import json
 import math
-import os
 import re
 import shutil
 import statistics
-import tempfile
 import time as clock
 import zipfile
 from collections.abc import Callable, Iterator
@@ -21,10 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dcone_cosim.errors import InputError
+from dcone_cosim.scratch import clear_left, workplace
 
-ABANDONED = 86400.0
-"""Age from which the folder of an unfinished build is that of one that was killed [s]."""
-HALF_BUILT = ".*-*"
 DAY = 86400.0
 MENDED = "what should be here is built when it is needed"
 UNKNOWN = "this may take a minute or two"
@@ -80,8 +76,7 @@ def clear(folder: Path, older_than: float = 0.0) -> tuple[int, int]:
         if now - built >= older_than:
             _remove(path)
             count, size = count + 1, size + bytes_of
-    for rest in _abandoned(folder, now):
-        shutil.rmtree(rest, ignore_errors=True)
+    clear_left(folder)
     return count, size
 
 
@@ -90,13 +85,6 @@ def _remove(path: Path) -> None:
         shutil.rmtree(path)
     else:
         path.unlink(missing_ok=True)
-
-
-def _abandoned(folder: Path, now: float) -> Iterator[Path]:
-    for path in folder.glob(HALF_BUILT):
-        with suppress(OSError):
-            if path.is_dir() and now - max(p.stat().st_mtime for p in (path, *path.rglob("*"))) > ABANDONED:
-                yield path
 
 
 AGES = {"min": 60.0, "h": 3600.0, "d": DAY, "w": 7.0 * DAY}
@@ -134,11 +122,10 @@ class Times:
 
     def keep(self, seconds: float) -> None:
         """Add how long a build took; the last few count."""
-        with suppress(OSError):
-            handle, draft = tempfile.mkstemp(prefix=".times-", dir=self._path.parent)
-            with os.fdopen(handle, "w") as file:
-                json.dump({"seconds": [*self._known(), round(seconds, 1)][-5:]}, file)
-            os.replace(draft, self._path)
+        with suppress(OSError), workplace(self._path.parent) as folder:
+            draft = folder / self._path.name
+            draft.write_text(json.dumps({"seconds": [*self._known(), round(seconds, 1)][-5:]}))
+            draft.replace(self._path)
 
     def _known(self) -> list[float]:
         """The times kept; none of a file that cannot be read or is damaged, which the next build replaces."""

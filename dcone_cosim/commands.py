@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import tempfile
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
-from dcone_cosim import build, interrupts
+from dcone_cosim import build, interrupts, placed
 from dcone_cosim.archives import Archives
 from dcone_cosim.drafts import atomic_folder, check_free
 from dcone_cosim.errors import InputError
@@ -21,6 +19,7 @@ from dcone_cosim.reports import style, summary
 from dcone_cosim.run import default_folder, fill
 from dcone_cosim.scenes.kept import unlike
 from dcone_cosim.scenes.scene import Scene, find, load, parse, read_text
+from dcone_cosim.scratch import Scratch, clear_left
 
 LEFT_BEHIND = (
     "an earlier run in this place ended without a word, and what it had left was removed; "
@@ -57,11 +56,12 @@ def run_and_write(
     started = datetime.now(UTC)
     scene = named(name, settings)
     folder = out if out is not None else default_folder(scene.name)
+    left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
     threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
     notes = list(scene.notes)
     with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
-        if draft.removed:
+        if left + draft.removed:
             notes.append(LEFT_BEHIND)
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
@@ -118,16 +118,23 @@ def write_fmus(
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
+        with Scratch(out) as draft:
             with progress.working("building"):
-                drafts = build.write_fmus(ours, chosen, Path(draft), progress.say)
-            paths = [path.replace(out / path.name) for path in drafts]
+                drafts = build.write_fmus(ours, chosen, draft, progress.say)
+            paths = [_into_place(path, out / path.name) for path in drafts]
     except BaseException:
         for folder in made:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
     return paths
+
+
+def _into_place(draft: Path, path: Path) -> Path:
+    with interrupts.postponed():
+        draft.replace(path)
+        placed.note(path)
+    return path
 
 
 def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
@@ -160,6 +167,7 @@ def _write_new(path: Path, text: str) -> None:
     try:
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
+        placed.note(path)
     except FileExistsError:
         raise InputError(f"{path} is there already and was not touched; choose another name") from None
     except OSError as error:
@@ -184,9 +192,10 @@ def write_schema(out: Path | None) -> str:
         if not replaces:
             raise InputError(f"{out} is there already and is no schema of scenes; choose another name")
     try:
-        draft = out.with_name(f".{out.name}.{os.getpid()}")
-        draft.write_text(text + "\n", encoding="utf-8")
-        os.replace(draft, out)
+        with Scratch(out.absolute().parent) as folder:
+            draft = folder / "schema"
+            draft.write_text(text + "\n", encoding="utf-8")
+            _into_place(draft, out)
     except OSError as error:
         raise InputError(f"{out} cannot be written: {error.strerror or error}") from None
     return text

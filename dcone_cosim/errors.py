@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 SUCCESS = 0
+FAILED_AFTER = 1
 BAD_INPUT = 2
 CAPTURE_FAILED = 3
 HANDOFF_FAILED = 4

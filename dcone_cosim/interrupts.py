@@ -88,3 +88,20 @@ def instead_of(error: DconeError, phase: str, time: float) -> DconeError:
 
 def _interrupted(phase: str, time: float) -> Interrupted:
     return Interrupted(f"interrupted by {noted()} at t = {time:.6g} s of the {phase}; what was reached is kept")
+
+
+@contextmanager
+def postponed() -> Iterator[None]:
+    """Around what must not be cut in two, such as a rename and the note of it: signals come after it."""
+    come: list[int] = []
+    before: dict[int, Any] = {}
+    with suppress(ValueError):  # in a thread, where none comes
+        for number in SIGNALS:
+            before[number] = signal.signal(number, lambda come_now, _: come.append(come_now))
+    try:
+        yield
+    finally:
+        for caught, handler in before.items():
+            signal.signal(caught, handler if handler is not None else signal.SIG_DFL)
+        if come:
+            signal.raise_signal(come[0])

@@ -16,8 +16,9 @@ import os
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
@@ -30,6 +31,14 @@ PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pil
 SOURCES = Path(__file__).parents[1]
 EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]
+Workplace = Callable[[Path], AbstractContextManager[Path]]
+
+
+@contextmanager
+def plain_folder(parent: Path) -> Iterator[Path]:
+    """A new folder for the time of a block."""
+    with tempfile.TemporaryDirectory(prefix=".dcone-", dir=parent) as folder:
+        yield Path(folder)
 
 
 def fingerprint(interface: Interface) -> str:
@@ -47,9 +56,15 @@ def fingerprint(interface: Interface) -> str:
 
 
 def build(
-    interface: Interface, cache: Path, announce: Announce = lambda _: None, platform: Platform | None = None
+    interface: Interface,
+    cache: Path,
+    announce: Announce = lambda _: None,
+    platform: Platform | None = None,
+    workplace: Workplace = plain_folder,
 ) -> Path:
     """Path of the FMU for one platform, this machine's if none is named, in the cache; built first if it is not there.
+
+    workplace    makes a folder in the cache for the time of the work, and removes it
 
     A half-built FMU never has its final name, and two processes that build the same one do not disturb each other.
     """
@@ -62,13 +77,13 @@ def build(
         if not wrong:
             return path
         announce(f"{path} is {wrong}; it is built again")
-    try:
-        cache.mkdir(parents=True, exist_ok=True)
-        folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
-    except OSError as error:
-        raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
-    guid = kept.guid_of(key)
-    try:
+    with ExitStack() as stack:
+        try:
+            cache.mkdir(parents=True, exist_ok=True)
+            folder = stack.enter_context(workplace(cache))
+        except OSError as error:
+            raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
+        guid = kept.guid_of(key)
         ir = folder / "model.ll"
         known = _kernels(cache, name, key)
         if known is None:
@@ -96,8 +111,6 @@ def build(
         if fingerprint(interface) != key:
             raise tools.BuildError(f"the sources of {name} changed while it was built: build it again")
         _put(finished, path)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
     return path
 
 
@@ -123,11 +136,12 @@ def build_all(
     cache: Path,
     announce: Announce = lambda _: None,
     platforms: Sequence[Platform | None] = (None,),
+    workplace: Workplace = plain_folder,
 ) -> list[list[Path]]:
     """Paths of several FMUs, for each of them one per platform, those that are missing built side by side."""
 
     def build_one(interface: Interface) -> list[Path]:
-        return [build(interface, cache, announce, platform) for platform in platforms]
+        return [build(interface, cache, announce, platform, workplace) for platform in platforms]
 
     with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
         try:

@@ -20,6 +20,7 @@ import pytest
 from dcone_cosim import build, offline, progress
 from dcone_cosim.cache import Times, age, clear, listing, spoken_age
 from dcone_cosim.errors import InputError
+from dcone_cosim.scratch import workplace
 from tests.cosim.conftest import Dcone
 
 XML = '<fmiModelDescription guid="{{{}}}" modelName="{}" description="A net. Built with: {}. Left out: nodes."/>'
@@ -40,17 +41,17 @@ def keep(folder: Path, name: str, days: float, terms: str = "net square, gravity
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A cache with two FMUs, a build that is going on, and one that was killed long ago."""
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A cache with two FMUs, a build that is going on, and one that was killed."""
     monkeypatch.setenv("DCONE_CACHE", str(tmp_path))
     keep(tmp_path, CAPTURE, 40.0)
     keep(tmp_path, REMOVAL, 2.0, "reel locked")
-    for name, days in ((".net_capture-89ab-x1", 0.0), (".net_capture-cdef-x2", 3.0)):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "model.ll").write_text("half a model")
-        for path in (tmp_path / name / "model.ll", tmp_path / name):
-            os.utime(path, (time.time() - days * DAY,) * 2)
-    return tmp_path
+    with workplace(tmp_path) as living:
+        (living / "model.ll").write_text("half a model")
+        (tmp_path / ".dcone-killed.lock").touch()
+        (tmp_path / ".dcone-killed").mkdir()
+        (tmp_path / ".dcone-killed" / "model.ll").write_text("half a model")
+        yield tmp_path
 
 
 class TestCache:
@@ -71,10 +72,11 @@ class TestCache:
     def test_clear_touches_nothing_that_is_being_built(self, dcone: Dcone, folder: Path) -> None:
         code, out, _ = dcone("cache", "clear", "--older-than", "30d")
         assert (code, out.startswith("1 FMUs removed")) == (0, True)
-        assert sorted(p.name for p in folder.iterdir()) == [".net_capture-89ab-x1", f"{REMOVAL}.fmu"]
+        living, lock, kept = sorted(p.name for p in folder.iterdir())
+        assert (lock, kept) == (f"{living}.lock", f"{REMOVAL}.fmu")
         assert dcone("cache", "clear")[1].startswith("1 FMUs removed")
-        assert [p.name for p in folder.iterdir()] == [".net_capture-89ab-x1"]
-        assert (folder / ".net_capture-89ab-x1" / "model.ll").exists()
+        assert sorted(p.name for p in folder.iterdir()) == [living, lock]
+        assert (folder / living / "model.ll").exists()
 
     def test_a_cache_that_is_not_there_is_empty(self, dcone: Dcone, tmp_path: Path, monkeypatch) -> None:
         monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "none"))
@@ -145,7 +147,7 @@ class TestWaiting:
         monkeypatch.setenv("DCONE_CACHE", str(tmp_path))
         Times(tmp_path).keep(48.0)
 
-        def build_all(interfaces, cache, announce, platforms):
+        def build_all(interfaces, cache, announce, platforms, workplace):
             announce("building reel_control with  (once; kept in there)")
             announce("linking reel_control for linux64")
             return [[tmp_path / "x.fmu"] for _ in interfaces]

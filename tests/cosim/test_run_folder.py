@@ -127,7 +127,7 @@ def test_an_interrupt_while_swapping_brings_the_old_run_back(
     rename = Path.rename
 
     def interrupted(self: Path, target: Path) -> Path:
-        if target == tmp_path / "run" and self.name != "old":
+        if target == tmp_path / "run" and self.suffix != ".old":
             raise KeyboardInterrupt
         return rename(self, target)
 
