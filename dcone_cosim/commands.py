@@ -11,7 +11,7 @@ from pathlib import Path
 
 from dcone_cosim import build, interrupts, placed
 from dcone_cosim.archives import Archives
-from dcone_cosim.drafts import atomic_folder, check_free
+from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
@@ -111,8 +111,7 @@ def write_fmus(
     """
     chosen = build.platform_names(platforms) if platforms else ()
     scene = named(name, settings)
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out} is not a folder")
+    check_folder(out)
     ours = [(c.model, c.terms) for phase in scene.phases for c in phase.components if c.fmu is None]
     ours = list({build.readable_name(*wanted): wanted for wanted in ours}.values())
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]

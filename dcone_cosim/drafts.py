@@ -11,7 +11,7 @@ import itertools
 import json
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -44,17 +44,25 @@ def check_free(folder: Path, force: bool) -> None:
                 f"{folder} holds what no run wrote there: {', '.join(others[:TOLD])}{more}; "
                 "--force replaces the files of a run alone: move these, or choose another place with -o"
             )
-    _try_place(folder)
+    _try_place(folder, folder.absolute().parents)
 
 
-def _try_place(folder: Path) -> None:
-    """Refuse a place where no folder can be made, by making one of that name beside it that is not there to stay."""
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that files cannot be written to, before any work is done; one that is not there is made later."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is not a folder")
+    _try_place(folder, (folder.absolute(), *folder.absolute().parents))
+
+
+def _try_place(folder: Path, parents: Sequence[Path]) -> None:
+    """Refuse a place where no folder can be made, by making one of that name, in the first of the parents that is
+    there, that does not stay."""
     check_text(str(folder))
     place = folder.absolute()
-    above = next(p for p in place.parents if os.path.lexists(p))
+    above = next(p for p in parents if os.path.lexists(p))
     try:
         with Scratch(above) as trial:
-            (trial / place.relative_to(above)).mkdir(parents=True)
+            (trial / place.relative_to(above)).mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"{folder} cannot be written: {reason}") from None

@@ -19,6 +19,7 @@ from typing import Any
 
 from dcone_cosim import build, placed
 from dcone_cosim.coupling.options import Connection
+from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
@@ -65,8 +66,7 @@ def export_scene(
     if form not in FORMS:
         raise InputError(f"--parameters {form}: expected {' or '.join(FORMS)}{did_you_mean(form, FORMS)}")
     scene = load(name, settings)
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out} is not a folder")
+    check_folder(out)
     done = Exported()
     phases = _phases(scene, from_run, done.notes)
     ours = [(p.name, c) for p in phases for c in p.components if c.fmu is None]

@@ -198,6 +198,17 @@ class TestPlaces:
         assert (code, "cannot be written: File name too long" in err) == (2, True)
         assert not list(Path().iterdir())
 
+    @pytest.mark.parametrize("command", ["build", "export-ssp"])
+    @pytest.mark.parametrize("place", ["x" * 256, "/proc/out", os.fsdecode(b"\xff"), "file", "file/out"])
+    def test_files_for_others_too(
+        self, dcone: Dcone, monkeypatch: pytest.MonkeyPatch, command: str, place: str
+    ) -> None:
+        monkeypatch.setattr(commands.build, "_built", lambda *_: pytest.fail("the build began"))
+        Path("file").touch()
+        code, _, err = dcone(command, "table2-deorbit", "-o", place)
+        assert (code, len(err.splitlines())) == (2, 1)
+        assert [p.name for p in Path().iterdir()] == ["file"]
+
     @pytest.mark.parametrize("place", ["y" * 255, "\u5b87" * 85])
     def test_the_longest_name_works(self, dcone: Dcone, stand_ins, place: str) -> None:
         stand_ins()
