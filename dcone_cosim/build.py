@@ -16,6 +16,7 @@ from typing import Any
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scratch import workplace
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.implied import Implied
@@ -180,6 +181,13 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("dcone"))
 
 
+def fault(path: Path) -> str:
+    """What is wrong with a file of the cache, in words that follow "is"; "" for nothing."""
+    from fmu_src.packaging.kept import fault
+
+    return fault(path)
+
+
 def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], platforms: Sequence[Any] = ()) -> Any:
     """Paths of the FMUs of each interface, one per platform, this machine's alone if none is named.
 
@@ -199,7 +207,7 @@ def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], pla
         announce(text)
 
     try:
-        built = build_all(interfaces, cache_folder(), tell, list(platforms) or [host()])
+        built = build_all(interfaces, cache_folder(), tell, list(platforms) or [host()], workplace)
     except BuildError as error:
         raise FmuError(str(error)) from None
     if announced and not platforms:

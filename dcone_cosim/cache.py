@@ -1,30 +1,28 @@
 """The cache of built FMUs: what is in it, how long a build took here, and how it is emptied.
 
 Nothing that another process is building is touched: a build works in a folder of its own, which takes no part in the
-listing, and is cleared away only when it is so old that its process must have died.
+listing, and is cleared away only when its process has died (see `scratch`).
 """
 
 from __future__ import annotations
 
 import json
-import os
+import math
 import re
 import shutil
 import statistics
-import tempfile
 import time as clock
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from dcone_cosim.errors import InputError
+from dcone_cosim.scratch import clear_left, workplace
 
-ABANDONED = 86400.0
-"""Age from which the folder of an unfinished build is that of one that was killed [s]."""
-HALF_BUILT = ".*-*"
 DAY = 86400.0
+MENDED = "what should be here is built when it is needed"
 UNKNOWN = "this may take a minute or two"
 
 
@@ -44,23 +42,28 @@ class Kept:
     built: float
 
 
-def listing(folder: Path) -> list[Kept]:
-    """Every FMU of the cache, the latest first."""
+def listing(folder: Path, fault: Callable[[Path], str]) -> list[Kept]:
+    """Every FMU of the cache, the latest first; `fault` tells what is wrong with one."""
     found = []
-    for path in folder.glob("*.fmu"):
-        with suppress(OSError):
-            about = path.stat()
-            found.append(Kept(path, *_described(path), about.st_size, about.st_mtime))
+    for path, size, built in _files(folder):
+        wrong = fault(path)
+        model, terms = _described(path) if not wrong else (path.stem.partition("-")[0], "")
+        found.append(Kept(path, model, f"{wrong}; {MENDED}" if wrong else terms, size, built))
     return sorted(found, key=lambda kept: -kept.built)
 
 
+def _files(folder: Path) -> Iterator[tuple[Path, int, float]]:
+    """Whatever has the name of an FMU, with its size [bytes] and when it was written [s since the epoch]."""
+    for path in folder.glob("*.fmu"):
+        with suppress(OSError):
+            about = path.lstat()
+            yield path, about.st_size, about.st_mtime
+
+
 def _described(path: Path) -> tuple[str, str]:
-    """Model and terms of an FMU of ours; a damaged one says so."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            head = archive.read("modelDescription.xml")[:10_000].decode("utf-8", "replace")
-    except (OSError, KeyError, zipfile.BadZipFile):
-        return path.stem.rpartition("-")[0], "damaged; it is built again when it is needed"
+    """Model and terms of an FMU of ours."""
+    with zipfile.ZipFile(path) as archive:
+        head = archive.read("modelDescription.xml")[:10_000].decode("utf-8", "replace")
     name = re.search(r'modelName="([^"]*)"', head)
     terms = re.search(r"Built with: ([^.\"]*)", head)
     return name[1] if name else path.stem, terms[1] if terms else ""
@@ -69,20 +72,19 @@ def _described(path: Path) -> tuple[str, str]:
 def clear(folder: Path, older_than: float = 0.0) -> tuple[int, int]:
     """Remove what was built longer ago than this [s]; returns how many FMUs and how many bytes are gone."""
     now, count, size = clock.time(), 0, 0
-    for kept in listing(folder):
-        if now - kept.built >= older_than:
-            kept.path.unlink(missing_ok=True)
-            count, size = count + 1, size + kept.size
-    for rest in _abandoned(folder, now):
-        shutil.rmtree(rest, ignore_errors=True)
+    for path, bytes_of, built in _files(folder):
+        if now - built >= older_than:
+            _remove(path)
+            count, size = count + 1, size + bytes_of
+    clear_left(folder)
     return count, size
 
 
-def _abandoned(folder: Path, now: float) -> Iterator[Path]:
-    for path in folder.glob(HALF_BUILT):
-        with suppress(OSError):
-            if path.is_dir() and now - max(p.stat().st_mtime for p in (path, *path.rglob("*"))) > ABANDONED:
-                yield path
+def _remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 AGES = {"min": 60.0, "h": 3600.0, "d": DAY, "w": 7.0 * DAY}
@@ -115,17 +117,22 @@ class Times:
 
     def spoken(self) -> str:
         """How long to wait, in words."""
-        try:
-            times = [float(t) for t in json.loads(self._path.read_text())["seconds"]]
-        except (OSError, ValueError, KeyError, TypeError):
-            return UNKNOWN
+        times = self._known()
         return f"it took {statistics.median(times):.0f} s before" if times else UNKNOWN
 
     def keep(self, seconds: float) -> None:
         """Add how long a build took; the last few count."""
-        with suppress(OSError, ValueError, KeyError, TypeError):
-            before = json.loads(self._path.read_text())["seconds"] if self._path.exists() else []
-            handle, draft = tempfile.mkstemp(prefix=".times-", dir=self._path.parent)
-            with os.fdopen(handle, "w") as file:
-                json.dump({"seconds": [*before, round(seconds, 1)][-5:]}, file)
-            os.replace(draft, self._path)
+        with suppress(OSError), workplace(self._path.parent) as folder:
+            draft = folder / self._path.name
+            draft.write_text(json.dumps({"seconds": [*self._known(), round(seconds, 1)][-5:]}))
+            draft.replace(self._path)
+
+    def _known(self) -> list[float]:
+        """The times kept; none of a file that cannot be read or is damaged, which the next build replaces."""
+        try:
+            if not self._path.is_file():
+                return []
+            times = [float(time) for time in json.loads(self._path.read_text())["seconds"]]
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            return []
+        return times if all(0.0 <= time < math.inf for time in times) else []

@@ -79,7 +79,9 @@ def run(
 ) -> None:
     """Run a scene and write its results.
 
-    Exit code: 0 success, 2 bad input, 3 the capture failed, 4 the hand-off was refused or violated, 5 an FMU failed.
+    Exit code: 0 success, 1 the results are complete but could not be told, 2 bad input, 3 the capture failed,
+    4 the hand-off was refused or violated, 5 an FMU failed, 6 interrupted, and what was reached is kept;
+    130 or 143 interrupted, and there was nothing to keep.
     """
     _promise(offline)
     from dcone_cosim.commands import run_and_write

@@ -31,11 +31,11 @@ def path() -> None:
 @cache_app.command(name="list")
 def list_kept(json: Annotated[bool, typer.Option("--json", help="Answer as JSON.")] = False) -> None:
     """Every FMU that is kept: model, size, age, and the terms it was built with."""
-    from dcone_cosim.build import cache_folder
+    from dcone_cosim.build import cache_folder, fault
     from dcone_cosim.cache import listing, spoken_age, spoken_size
 
     folder = cache_folder()
-    found, now = listing(folder), clock.time()
+    found, now = listing(folder, fault), clock.time()
     with reader_may_leave():
         if json:
             import json as writer

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import tempfile
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
-from dcone_cosim import build
+from dcone_cosim import build, interrupts, placed
 from dcone_cosim.archives import Archives
-from dcone_cosim.drafts import atomic_folder, check_free
+from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
@@ -21,6 +19,7 @@ from dcone_cosim.reports import style, summary
 from dcone_cosim.run import default_folder, fill
 from dcone_cosim.scenes.kept import unlike
 from dcone_cosim.scenes.scene import Scene, find, load, parse, read_text
+from dcone_cosim.scratch import Scratch, clear_left
 
 LEFT_BEHIND = (
     "an earlier run in this place ended without a word, and what it had left was removed; "
@@ -57,11 +56,12 @@ def run_and_write(
     started = datetime.now(UTC)
     scene = named(name, settings)
     folder = out if out is not None else default_folder(scene.name)
+    left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
     threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
     notes = list(scene.notes)
-    with atomic_folder(folder, force and out is not None) as draft:
-        if draft.removed:
+    with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
+        if left + draft.removed:
             notes.append(LEFT_BEHIND)
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
@@ -70,8 +70,12 @@ def run_and_write(
             notes += unlike(Path(name), facts)
 
         def draw(path: Path) -> None:
-            progress.say("drawing")
-            notes.extend(_draw(result, path))
+            if interrupts.noted():
+                notes.append("no figure was drawn: the run was interrupted")
+                return
+            with progress.working("drawing"):
+                progress.say("drawing")
+                notes.extend(_draw(result, path))
 
         fill(draft.path, result, facts, summary.as_dict(result), started, with_csv, draw if with_figures else None)
     if out is not None and draft.folder != folder:
@@ -107,23 +111,29 @@ def write_fmus(
     """
     chosen = build.platform_names(platforms) if platforms else ()
     scene = named(name, settings)
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out} is not a folder")
+    check_folder(out)
     ours = [(c.model, c.terms) for phase in scene.phases for c in phase.components if c.fmu is None]
     ours = list({build.readable_name(*wanted): wanted for wanted in ours}.values())
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
+        with Scratch(out) as draft:
             with progress.working("building"):
-                drafts = build.write_fmus(ours, chosen, Path(draft), progress.say)
-            paths = [path.replace(out / path.name) for path in drafts]
+                drafts = build.write_fmus(ours, chosen, draft, progress.say)
+            paths = [_into_place(path, out / path.name) for path in drafts]
     except BaseException:
         for folder in made:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
     return paths
+
+
+def _into_place(draft: Path, path: Path) -> Path:
+    with interrupts.postponed():
+        draft.replace(path)
+        placed.note(path)
+    return path
 
 
 def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
@@ -156,6 +166,7 @@ def _write_new(path: Path, text: str) -> None:
     try:
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
+        placed.note(path)
     except FileExistsError:
         raise InputError(f"{path} is there already and was not touched; choose another name") from None
     except OSError as error:
@@ -180,9 +191,10 @@ def write_schema(out: Path | None) -> str:
         if not replaces:
             raise InputError(f"{out} is there already and is no schema of scenes; choose another name")
     try:
-        draft = out.with_name(f".{out.name}.{os.getpid()}")
-        draft.write_text(text + "\n", encoding="utf-8")
-        os.replace(draft, out)
+        with Scratch(out.absolute().parent) as folder:
+            draft = folder / "schema"
+            draft.write_text(text + "\n", encoding="utf-8")
+            _into_place(draft, out)
     except OSError as error:
         raise InputError(f"{out} cannot be written: {error.strerror or error}") from None
     return text

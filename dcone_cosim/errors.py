@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 SUCCESS = 0
+FAILED_AFTER = 1
 BAD_INPUT = 2
 CAPTURE_FAILED = 3
 HANDOFF_FAILED = 4
 FMU_FAILED = 5
+INTERRUPTED = 6
 
 
 class DconeError(Exception):
@@ -31,3 +33,9 @@ class FmuError(DconeError):
     """An FMU that cannot be loaded or that stopped: carries its own message, instance and time."""
 
     exit_code = FMU_FAILED
+
+
+class Interrupted(DconeError):
+    """A run that was asked to end: Ctrl-C or SIGTERM. What it had reached is kept."""
+
+    exit_code = INTERRUPTED

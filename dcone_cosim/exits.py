@@ -15,7 +15,9 @@ from typing import Any, NoReturn
 
 import typer
 
-from dcone_cosim.errors import BAD_INPUT, DconeError
+from dcone_cosim import placed
+from dcone_cosim.errors import BAD_INPUT, FAILED_AFTER, DconeError
+from dcone_cosim.names import check_text
 
 
 @contextmanager
@@ -79,6 +81,10 @@ def _fail(text: str, exit_code: int, **more: Any) -> NoReturn:
     """One message on stderr, and with --json the same as an object on stdout."""
     complain(f"dcone: {text}")
     _answer(text, exit_code, **more)
+    try:
+        sys.stdout.flush()
+    except OSError:
+        _to_nowhere()
     sys.exit(exit_code)
 
 
@@ -86,34 +92,43 @@ def _answer(text: str, exit_code: int, **more: Any) -> None:
     if "--json" in sys.argv[1:]:
         import json
 
-        with reader_may_leave():
+        with suppress(OSError):
             typer.echo(json.dumps({"error": text, "exit_code": exit_code, **more}))
 
 
-INTERRUPTED, TERMINATED = 130, 143
+BY_SIGINT, BY_SIGTERM = 130, 143
+"""Exit codes, as shells give them, of what was interrupted before there was anything to keep."""
+
+
+def _check_arguments(arguments: list[str]) -> None:
+    """Refuse what is not UTF-8 before any work: results tell of their places and settings in files of text."""
+    for argument in arguments:
+        check_text(argument)
 
 
 def _terminate(*_: object) -> NoReturn:
-    sys.exit(TERMINATED)
+    sys.exit(BY_SIGTERM)
 
 
 def run(app: Callable[..., Any]) -> NoReturn:
     """Run the command line and leave: an expected failure is one message and an exit code, never a traceback."""
     _open_streams()
+    placed.forget()
     before = _on_terminate(_terminate)
     try:
+        _check_arguments(sys.argv[1:])
         code = app(standalone_mode=False)
     except DconeError as error:
         _fail(str(error), error.exit_code, **details(error))
     except KeyboardInterrupt:
-        code = INTERRUPTED
+        code = BY_SIGINT
     except OSError as error:
-        _fail(_of_system(error), BAD_INPUT)
+        _fail(_of_system(error), FAILED_AFTER if placed.any_there() else BAD_INPUT)
     except Exception as error:
         code = _of_arguments(error)
     except SystemExit as stop:
-        if stop.code == TERMINATED:
-            _fail("terminated; nothing was written", TERMINATED)
+        if stop.code == BY_SIGTERM:
+            _fail("terminated; " + placed.told(), BY_SIGTERM)
         if stop.code != 1:
             raise
         # typer ends so when the reader of a help text has left
@@ -121,8 +136,8 @@ def run(app: Callable[..., Any]) -> NoReturn:
         code = 0
     finally:
         _on_terminate(before)
-    if code == INTERRUPTED:
-        _fail("interrupted; nothing was written", INTERRUPTED)
+    if code == BY_SIGINT:
+        _fail("interrupted; " + placed.told(), BY_SIGINT)
     sys.exit(code or 0)
 
 
@@ -138,7 +153,7 @@ def _of_system(error: OSError) -> str:
     """What the system refused, in one line that names the file."""
     files = " -> ".join(str(f) for f in (error.filename, error.filename2) if f is not None)
     reason = error.strerror or str(error) or type(error).__name__
-    return f"{files}: {reason}; nothing was written" if files else f"{reason}; nothing was written"
+    return f"{files}: {reason}; {placed.told()}" if files else f"{reason}; {placed.told()}"
 
 
 def _of_arguments(error: Exception) -> int:

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dcone_cosim import placed
 from dcone_cosim.contract import NEEDS, Asked, asked
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.units import BASE, by_name
@@ -90,6 +91,8 @@ def write_template(phase: str, kind: str, folder: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in content.items():
             (folder / name).write_text(text, encoding="utf-8")
+        for name in content:
+            placed.note(folder / name)
     except BaseException:
         if made:
             shutil.rmtree(folder, ignore_errors=True)

@@ -15,7 +15,17 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HANDED_OVER, LINE, NEVER, OUTCOMES
-from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
+from dcone_cosim.errors import (
+    CAPTURE_FAILED,
+    FMU_FAILED,
+    HANDOFF_FAILED,
+    SUCCESS,
+    DconeError,
+    FmuError,
+    HandoffError,
+    InputError,
+    Interrupted,
+)
 from dcone_cosim.fmu.component import CallError, Steppable
 from dcone_cosim.handoff import (
     CAPTURE_OUTPUTS,
@@ -97,6 +107,11 @@ class RunResult:
     def fail(self, status: str, message: str, exit_code: int) -> None:
         self.status, self.message, self.exit_code = status, message, exit_code
 
+    def stop(self, error: DconeError) -> None:
+        """Note what ended a phase early: an interrupt, or a failure of its FMU."""
+        status = "interrupted" if isinstance(error, Interrupted) else "FMU failed"
+        self.fail(status, str(error), error.exit_code)
+
     def begin(self, phase: PhaseScene, component: Steppable, values: Mapping[str, float], start: float) -> None:
         """Set the values, initialise the phase's component at `start` [s], and keep what then stands."""
         self.given[phase.name] = dict(values)
@@ -164,7 +179,7 @@ def _run_capture(
         progress.end()
         run.phases["capture"] = result
         if result.error is not None:
-            run.fail("FMU failed", str(result.error), FMU_FAILED)
+            run.stop(result.error)
         elif plan.hand_over == NEVER:
             result.outcome = FLOWN if result.outcome == OUTCOMES[0] else result.outcome
         elif result.located is None:
@@ -270,7 +285,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
         component.close()
     run.phases["removal"] = result
     if result.error is not None:
-        run.fail("FMU failed", str(result.error), FMU_FAILED)
+        run.stop(result.error)
     elif record is not None and run.scene.handoff.get("compare_without_recoil", True):
         run.comparison = _compare(run, phase, parameters, start, instantiate, progress)
 
@@ -291,7 +306,7 @@ def _run_plain(run: RunResult, phase: PhaseScene, instantiate: Instantiate, prog
         component.close()
     run.phases[phase.name] = result
     if result.error is not None:
-        run.fail("FMU failed", str(result.error), FMU_FAILED)
+        run.stop(result.error)
 
 
 def advanced(anomaly: float, by: float) -> float:
@@ -401,10 +416,12 @@ def _compare(
             progress.end()
         finally:
             component.close()
-        reason = result.error
+        reason: DconeError | None = result.error
     except FmuError as error:
         reason = error
     if reason is None:
         return result
+    if isinstance(reason, Interrupted):
+        run.stop(reason)
     progress.say(f"the removal without recoil is left out: {reason}")
     return None

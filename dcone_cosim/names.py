@@ -1,9 +1,11 @@
-"""Which known name a misspelt one was probably meant to be."""
+"""Names that people give: which known one a misspelt one was probably meant to be, and which cannot be told on."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+
+from dcone_cosim.errors import InputError
 
 
 def nearest(given: str, known: Iterable[str]) -> str | None:
@@ -26,3 +28,12 @@ def did_you_mean(given: str, known: Iterable[str]) -> str:
     if 0 < len(names) <= 12:
         return f"; known: {', '.join(sorted(names))}"
     return ""
+
+
+def check_text(name: str) -> None:
+    """`InputError` for a name that is not UTF-8, which no file of results could tell."""
+    try:
+        name.encode("utf-8")
+    except UnicodeEncodeError:
+        told = name.encode("utf-8", "backslashreplace").decode("utf-8")
+        raise InputError(f"{told}: this name is not UTF-8; choose another") from None

@@ -11,8 +11,9 @@ import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from dcone_cosim import interrupts
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_PREFIX
-from dcone_cosim.errors import FmuError
+from dcone_cosim.errors import DconeError, FmuError, Interrupted
 from dcone_cosim.fmu import restoring
 from dcone_cosim.fmu.component import KINDS, Readable, Row, Steppable, Terminated, output_names
 from dcone_cosim.holding import holding
@@ -51,7 +52,7 @@ class PhaseResult:
     origin       what these are counted from, in the time of its FMU [s]
     outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
     located      instant of the hand-over [s] and how it was found, None when there was none
-    error        the failure that ended the phase early
+    error        the failure, or the interrupt, that ended the phase early
     ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
     coupling     steps of several coupled FMUs: how many, rejected, forced, smallest and largest [s]
     """
@@ -67,7 +68,7 @@ class PhaseResult:
     steps: int = 0
     cpu: float = 0.0
     wall: float = 0.0
-    error: FmuError | None = None
+    error: DconeError | None = None
     coupling: Mapping[str, float] = field(default_factory=dict)
     ended_by: str = ""
     ended_at: float = math.nan
@@ -163,8 +164,8 @@ class CaptureLoop:
                 self._run()
             except Terminated as end:
                 result.ended(end)
-            except FmuError as error:
-                result.error = error
+            except (FmuError, Interrupted) as error:
+                result.error = interrupts.instead_of(error, result.name, result.end)
         result.coupling = coupling_of(self.component)
         return result
 
@@ -190,11 +191,13 @@ class CaptureLoop:
     def _run(self) -> None:
         plan, result = self.plan, self.result
         self._record(0.0)
+        interrupts.arm()
         last = plan.duration
         for i in range(grid_steps(plan.duration, plan.macro_step)):
             begin, end = i * plan.macro_step, min((i + 1) * plan.macro_step, last)
             if begin >= last:
                 break
+            interrupts.check(result.name, begin)
             searching = result.located is None and plan.hand_over != NEVER
             if searching and self.can_locate:
                 self._save()
@@ -307,8 +310,8 @@ class RemovalLoop:
                 result.outcome = "towed"
             except Terminated as end:
                 result.ended(end)
-            except FmuError as error:
-                result.error = error
+            except (FmuError, Interrupted) as error:
+                result.error = interrupts.instead_of(error, result.name, result.end)
                 result.outcome = "stopped"
         result.coupling = coupling_of(self.component)
         return result
@@ -322,7 +325,9 @@ class RemovalLoop:
         start, origin = result.start, result.origin
         steps = grid_steps(self.duration, self.macro_step)
         self._record(start)
+        interrupts.arm()
         for i in range(steps):
+            interrupts.check(result.name, start + i * self.macro_step)
             end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
             begun = origin + (start + i * self.macro_step)
             component.step(begun, (origin + end) - begun)

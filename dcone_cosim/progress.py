@@ -5,15 +5,15 @@ from __future__ import annotations
 import sys
 import threading
 import time as clock
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-REMINDER = 15.0
-"""Wall time between two lines that say that work is still going on [s]."""
+REMINDER = 8.0
+"""Wall time between two lines that say that work is still going on [s]: ten at most, on a busy computer too."""
 INTERVAL = 0.1
 """Least wall time between two updates of the bar [s]."""
 NARROW = 100
@@ -44,13 +44,32 @@ class Progress:
         """Leave the terminal as it was."""
 
 
+class _Reminder:
+    """Says something now and then from a thread of its own, until it is stopped."""
+
+    def __init__(self, remind: Callable[[], None]) -> None:
+        self._remind, self._over = remind, threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        while not self._over.wait(REMINDER):
+            self._remind()
+
+    def stop(self) -> None:
+        self._over.set()
+        self._thread.join()
+
+
 class Lines(Progress):
-    """One plain line per phase on stderr, for logs; a log that nobody reads any more does not end the run."""
+    """Plain lines on stderr, for logs: where a phase is, now and then, and how long it took. A log that nobody reads
+    any more does not end the run."""
 
     def __init__(self) -> None:
         self._phase = ""
         self._said = 0
-        self._start = self._reached = self._began = 0.0
+        self._start = self._stop = self._reached = self._began = 0.0
+        self._reminder: _Reminder | None = None
 
     def say(self, text: str) -> None:
         self._said += 1
@@ -59,33 +78,42 @@ class Lines(Progress):
 
     @contextmanager
     def working(self, what: str) -> Iterator[None]:
-        """A line every quarter of a minute, once the work has said that it begins."""
-        began, before, done = clock.perf_counter(), self._said, threading.Event()
+        """A line now and then, once the work has said that it begins."""
+        began, before = clock.perf_counter(), self._said
 
         def remind() -> None:
-            while not done.wait(REMINDER):
-                if self._said > before:
-                    self.say(f"still {what}, {clock.perf_counter() - began:.0f} s so far")
+            if self._said > before:
+                self.say(f"still {what}, {clock.perf_counter() - began:.0f} s so far")
 
-        reminder = threading.Thread(target=remind, daemon=True)
-        reminder.start()
+        reminder = _Reminder(remind)
         try:
             yield
         finally:
-            done.set()
-            reminder.join()
+            reminder.stop()
 
     def begin(self, phase: str, start: float, stop: float) -> None:
-        self._phase, self._start, self._reached = phase, start, start
+        self.close()
+        self._phase, self._start, self._stop, self._reached = phase, start, stop, start
         self._began = clock.perf_counter()
+        self._reminder = _Reminder(self._where)
+
+    def _where(self) -> None:
+        wall = clock.perf_counter() - self._began
+        self.say(f"{self._phase}: {self._reached:.6g} of {self._stop:.6g} s, {wall:.0f} s so far")
 
     def at(self, time: float) -> None:
         self._reached = time
 
     def end(self) -> None:
+        self.close()
         wall = max(clock.perf_counter() - self._began, 1e-9)
         simulated = self._reached - self._start
         self.say(f"{self._phase}: {simulated:.6g} s simulated in {wall:.2f} s, {simulated / wall:.4g} times real time")
+
+    def close(self) -> None:
+        if self._reminder is not None:
+            self._reminder.stop()
+            self._reminder = None
 
 
 class _Elapsed:

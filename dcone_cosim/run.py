@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from dcone_cosim.drafts import PROVENANCE, contents
 from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.recorder import Snapshots, TugLog
@@ -70,7 +71,8 @@ def fill(
     _write_json(folder / "summary.json", summary)
     if draw is not None:
         draw(folder)
-    _write_json(folder / "provenance.json", provenance(run, fmus, started))
+    files = sorted({*contents(folder), PROVENANCE})
+    _write_json(folder / PROVENANCE, provenance(run, fmus, started) | {"files": files})
 
 
 def _headed(field: pa.Field) -> str:

@@ -9,8 +9,6 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-import shutil
-import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
@@ -25,6 +23,7 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import NO_UNIT, Unit, by_name, read_units
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scratch import Scratch
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.component import Component
@@ -46,11 +45,12 @@ class Archive:
 
     def __init__(self, path: Path, folder: Path | None = None) -> None:
         self.path = path
-        self._owned = folder is None
+        self._unpacked: Scratch | None = None
         self.folder: Path | None = folder
         try:
             if self.folder is None:
-                self.folder = _unpack(path)
+                self._unpacked = _unpack(path)
+                self.folder = self._unpacked.path
             self.description: Any = _description(path, self.folder)
             self.variables = _variables(path, self.description)
             _check_binary(path, self.folder, self.identifier)
@@ -104,8 +104,8 @@ class Archive:
         return IsolatedComponent(self, name, timeout)
 
     def close(self) -> None:
-        if self.folder is not None and self._owned:
-            shutil.rmtree(self.folder, ignore_errors=True)
+        if self._unpacked is not None:
+            self._unpacked.remove()
         self.folder = None
 
     def __enter__(self) -> Archive:
@@ -119,10 +119,10 @@ def _flag(value: Any) -> bool:
     return value is True or str(value).lower() in ("true", "1")
 
 
-def _unpack(path: Path) -> Path:
+def _unpack(path: Path) -> Scratch:
     """Unpack into a new folder, after a look at every name in it."""
     _check_file(path)
-    folder: Path | None = None
+    folder: Scratch | None = None
     try:
         with zipfile.ZipFile(path) as content:
             for name in content.namelist():
@@ -130,11 +130,11 @@ def _unpack(path: Path) -> Path:
             size = sum(entry.file_size for entry in content.infolist())  # unpacking stops at what is declared here
             if size > LARGEST:
                 raise FmuError(f"{path}: unpacked it has {size:,} bytes; at most {LARGEST:,} are unpacked")
-            folder = Path(tempfile.mkdtemp(prefix="dcone-"))
-            content.extractall(folder)
+            folder = Scratch.temporary()
+            content.extractall(folder.path)
     except BaseException as error:
         if folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
+            folder.remove()
         if isinstance(error, zipfile.BadZipFile | zlib.error | EOFError):
             raise FmuError(
                 f"{path}: a damaged FMU; the file is cut short or was changed on its way ({error})"

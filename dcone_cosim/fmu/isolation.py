@@ -25,6 +25,7 @@ from typing import Any
 
 import numpy as np
 
+from dcone_cosim import interrupts
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.frames import NEXT_CALL, Garbled, from_fields, receive, send
@@ -184,7 +185,8 @@ class IsolatedComponent:
         self._end()
         code = self._child.returncode
         if self._late:
-            said = f"it did not answer within {self.timeout:g} s and was killed"
+            limit = interrupts.PATIENCE if interrupts.noted() else self.timeout
+            said = f"it did not answer within {limit:g} s and was killed"
         elif garbled:
             said = "its process wrote into the stream of our answers, which cannot be read any more, and was killed"
         elif alive:
@@ -221,7 +223,7 @@ class IsolatedComponent:
     def _guard(self) -> None:
         """Kill a child that is late: whoever waits for it then finds it gone."""
         while not self._over.wait(min(0.2, 0.1 * self.timeout)):
-            if clock.monotonic() > self._deadline:
+            if clock.monotonic() > self._deadline or (self._deadline < math.inf and interrupts.overdue()):
                 self._late = True
                 _kill(self._child)
                 return

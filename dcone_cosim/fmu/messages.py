@@ -10,7 +10,6 @@ from __future__ import annotations
 import ctypes
 import itertools
 import shutil
-import tempfile
 from collections import deque
 from collections.abc import Callable
 from typing import Any
@@ -19,6 +18,8 @@ import fmpy
 import fmpy.fmi1
 import fmpy.fmi2 as fmi2
 import fmpy.logging
+
+from dcone_cosim.scratch import Scratch
 
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 KEPT = 20
@@ -100,8 +101,8 @@ _callbacks.stepFinished = fmi2.fmi2StepFinishedTYPE(_finished)
 
 def _own_library() -> ctypes.CDLL:
     """A copy of fmpy's library, with a global of its own. Where a loaded file cannot be removed it is left behind."""
-    with tempfile.TemporaryDirectory(prefix="dcone-", ignore_cleanup_errors=True) as folder:
-        return ctypes.CDLL(shutil.copy(fmpy.logging.logging._name, folder))
+    with Scratch.temporary() as folder:
+        return ctypes.CDLL(str(shutil.copy(fmpy.logging.logging._name, folder)))
 
 
 _formatting = _own_library()

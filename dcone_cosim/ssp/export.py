@@ -10,7 +10,6 @@ import json
 import math
 import os
 import re
-import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -18,8 +17,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from dcone_cosim import build
+from dcone_cosim import build, placed
 from dcone_cosim.coupling.options import Connection
+from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
@@ -27,6 +27,7 @@ from dcone_cosim.fmu.units import read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene, load
+from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
 
@@ -65,8 +66,7 @@ def export_scene(
     if form not in FORMS:
         raise InputError(f"--parameters {form}: expected {' or '.join(FORMS)}{did_you_mean(form, FORMS)}")
     scene = load(name, settings)
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out} is not a folder")
+    check_folder(out)
     done = Exported()
     phases = _phases(scene, from_run, done.notes)
     ours = [(p.name, c) for p in phases for c in p.components if c.fmu is None]
@@ -77,10 +77,11 @@ def export_scene(
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".dcone-", dir=out) as draft:
-            drafts = [_zip(Path(draft) / f"{scene.name}-{phase}.ssp", content) for phase, content in contents]
+        with Scratch(out) as draft:
+            drafts = [_zip(draft / f"{scene.name}-{phase}.ssp", content) for phase, content in contents]
             for path in drafts:
                 os.replace(path, out / path.name)
+                placed.note(out / path.name)
                 done.paths.append(out / path.name)
     except BaseException:
         for folder in made:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import stat
-import tempfile
 import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -16,6 +15,7 @@ from lxml import etree
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import LARGEST
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import STRUCTURE
 
 LARGEST_XML = 64 * 2**20
@@ -138,6 +138,6 @@ def parsed(content: bytes, name: str, mistakes: Mistakes) -> etree._Element | No
     return root
 
 
-def unpacked_folder() -> tempfile.TemporaryDirectory[str]:
+def unpacked_folder() -> Scratch:
     """A folder that is removed with the object that holds it, at the latest when the program ends."""
-    return tempfile.TemporaryDirectory(prefix="dcone-ssp-")
+    return Scratch.temporary()

@@ -41,7 +41,7 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
         content = document(root, STRUCTURE, mistakes) if root is not None else None
         mistakes.check()
         assert content is not None, "without a mistake there is a structure"
-        parts = _parts(content, package, Path(folder.name), mistakes)
+        parts = _parts(content, package, folder.path, mistakes)
         mistakes.check()
         for part in parts.values():
             matching.check_ports(part, content.units, mistakes)

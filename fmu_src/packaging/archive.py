@@ -16,20 +16,29 @@ import os
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
 from fmu_src.interface import Interface
-from fmu_src.packaging import c_header, compile, description, documentation, link, picture, sources, tools
-from fmu_src.packaging.platforms import WIN64, Platform, host
+from fmu_src.packaging import c_header, compile, description, documentation, kept, link, picture, sources, tools
+from fmu_src.packaging.platforms import PLATFORMS, WIN64, Platform, host
 
 PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
 """What settles by its version what comes out: the tools, and this package, whose version the description tells."""
 SOURCES = Path(__file__).parents[1]
 EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]
+Workplace = Callable[[Path], AbstractContextManager[Path]]
+
+
+@contextmanager
+def plain_folder(parent: Path) -> Iterator[Path]:
+    """A new folder for the time of a block."""
+    with tempfile.TemporaryDirectory(prefix=".dcone-", dir=parent) as folder:
+        yield Path(folder)
 
 
 def fingerprint(interface: Interface) -> str:
@@ -47,27 +56,36 @@ def fingerprint(interface: Interface) -> str:
 
 
 def build(
-    interface: Interface, cache: Path, announce: Announce = lambda _: None, platform: Platform | None = None
+    interface: Interface,
+    cache: Path,
+    announce: Announce = lambda _: None,
+    platform: Platform | None = None,
+    workplace: Workplace = plain_folder,
 ) -> Path:
     """Path of the FMU for one platform, this machine's if none is named, in the cache; built first if it is not there.
+
+    workplace    makes a folder in the cache for the time of the work, and removes it
 
     A half-built FMU never has its final name, and two processes that build the same one do not disturb each other.
     """
     platform = platform or host()
     key = fingerprint(interface)
     name = interface.model.name
-    path = cache / f"{name}-{key[:16]}-{platform.name}.fmu"
-    if _intact(path):
-        return path
-    try:
-        cache.mkdir(parents=True, exist_ok=True)
-        folder = Path(tempfile.mkdtemp(prefix=f".{path.stem}-", dir=cache))
-    except OSError as error:
-        raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
-    guid = "{" + f"{key[:8]}-{key[8:12]}-{key[12:16]}-{key[16:20]}-{key[20:32]}" + "}"
-    try:
+    path = cache / kept.file_name(name, key, platform)
+    if os.path.lexists(path):
+        wrong = kept.fault(path)
+        if not wrong:
+            return path
+        announce(f"{path} is {wrong}; it is built again")
+    with ExitStack() as stack:
+        try:
+            cache.mkdir(parents=True, exist_ok=True)
+            folder = stack.enter_context(workplace(cache))
+        except OSError as error:
+            raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
+        guid = kept.guid_of(key)
         ir = folder / "model.ll"
-        known = _kernels(cache, f"{name}-{key[:16]}-*.fmu")
+        known = _kernels(cache, name, key)
         if known is None:
             terms = ", ".join(interface.terms) or "no terms to choose"
             announce(f"building {name} with {terms} (once; kept in {cache})")
@@ -92,28 +110,25 @@ def build(
         pack(files, finished)
         if fingerprint(interface) != key:
             raise tools.BuildError(f"the sources of {name} changed while it was built: build it again")
-        os.replace(finished, path)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        _put(finished, path)
     return path
 
 
-def _kernels(cache: Path, pattern: str) -> bytes | None:
+def _kernels(cache: Path, name: str, key: str) -> bytes | None:
     """IR from an FMU of the same origin for another platform, if there is one."""
-    for path in sorted(cache.glob(pattern)):
-        if _intact(path):
+    for platform in PLATFORMS.values():
+        path = cache / kept.file_name(name, key, platform)
+        if not kept.fault(path):
             with zipfile.ZipFile(path) as archive:
                 return archive.read(f"sources/{sources.KERNELS}")
     return None
 
 
-def _intact(path: Path) -> bool:
-    """Whether a cached FMU is there and whole; a damaged one is built again."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return archive.testzip() is None
-    except (OSError, zipfile.BadZipFile):
-        return False
+def _put(finished: Path, path: Path) -> None:
+    """Move a file to its place; what is there gives way, even a folder."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    os.replace(finished, path)
 
 
 def build_all(
@@ -121,11 +136,12 @@ def build_all(
     cache: Path,
     announce: Announce = lambda _: None,
     platforms: Sequence[Platform | None] = (None,),
+    workplace: Workplace = plain_folder,
 ) -> list[list[Path]]:
     """Paths of several FMUs, for each of them one per platform, those that are missing built side by side."""
 
     def build_one(interface: Interface) -> list[Path]:
-        return [build(interface, cache, announce, platform) for platform in platforms]
+        return [build(interface, cache, announce, platform, workplace) for platform in platforms]
 
     with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
         try:

@@ -20,33 +20,38 @@ import pytest
 from dcone_cosim import build, offline, progress
 from dcone_cosim.cache import Times, age, clear, listing, spoken_age
 from dcone_cosim.errors import InputError
+from dcone_cosim.scratch import workplace
 from tests.cosim.conftest import Dcone
 
-XML = '<fmiModelDescription modelName="{}" description="A net. Built with: {}. Left out: nodes."/>'
+XML = '<fmiModelDescription guid="{{{}}}" modelName="{}" description="A net. Built with: {}. Left out: nodes."/>'
+CAPTURE = "net_capture-0123456789abcdef-linux64"
+REMOVAL = "tethered_deorbit-456789abcdef0123-linux64"
 DAY = 86400.0
 
 
 def keep(folder: Path, name: str, days: float, terms: str = "net square, gravity none") -> Path:
     path = folder / f"{name}.fmu"
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", XML.format(name.rpartition("-")[0], terms))
+        model, key, _ = name.split("-")
+        archive.writestr("modelDescription.xml", XML.format(f"{key[:8]}-{key[8:]}", model, terms))
+        archive.writestr(f"binaries/linux64/{model}.so", b"library")
     then = time.time() - days * DAY
     os.utime(path, (then, then))
     return path
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A cache with two FMUs, a build that is going on, and one that was killed long ago."""
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A cache with two FMUs, a build that is going on, and one that was killed."""
     monkeypatch.setenv("DCONE_CACHE", str(tmp_path))
-    keep(tmp_path, "net_capture-0123", 40.0)
-    keep(tmp_path, "tethered_deorbit-4567", 2.0, "reel locked")
-    for name, days in ((".net_capture-89ab-x1", 0.0), (".net_capture-cdef-x2", 3.0)):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "model.ll").write_text("half a model")
-        for path in (tmp_path / name / "model.ll", tmp_path / name):
-            os.utime(path, (time.time() - days * DAY,) * 2)
-    return tmp_path
+    keep(tmp_path, CAPTURE, 40.0)
+    keep(tmp_path, REMOVAL, 2.0, "reel locked")
+    with workplace(tmp_path) as living:
+        (living / "model.ll").write_text("half a model")
+        (tmp_path / ".dcone-killed.lock").touch()
+        (tmp_path / ".dcone-killed").mkdir()
+        (tmp_path / ".dcone-killed" / "model.ll").write_text("half a model")
+        yield tmp_path
 
 
 class TestCache:
@@ -55,7 +60,7 @@ class TestCache:
             code, out, _ = dcone(*arguments)
             first, second, last = out.splitlines()
             assert code == 0
-            assert first.startswith("tethered_deorbit-4567.fmu")
+            assert first.startswith(f"{REMOVAL}.fmu")
             assert first.endswith("2 d  reel locked")
             assert second.endswith("40 d  net square, gravity none")
             assert last.startswith("2 FMUs, ")
@@ -67,10 +72,11 @@ class TestCache:
     def test_clear_touches_nothing_that_is_being_built(self, dcone: Dcone, folder: Path) -> None:
         code, out, _ = dcone("cache", "clear", "--older-than", "30d")
         assert (code, out.startswith("1 FMUs removed")) == (0, True)
-        assert sorted(p.name for p in folder.iterdir()) == [".net_capture-89ab-x1", "tethered_deorbit-4567.fmu"]
+        living, lock, kept = sorted(p.name for p in folder.iterdir())
+        assert (lock, kept) == (f"{living}.lock", f"{REMOVAL}.fmu")
         assert dcone("cache", "clear")[1].startswith("1 FMUs removed")
-        assert [p.name for p in folder.iterdir()] == [".net_capture-89ab-x1"]
-        assert (folder / ".net_capture-89ab-x1" / "model.ll").exists()
+        assert sorted(p.name for p in folder.iterdir()) == [living, lock]
+        assert (folder / living / "model.ll").exists()
 
     def test_a_cache_that_is_not_there_is_empty(self, dcone: Dcone, tmp_path: Path, monkeypatch) -> None:
         monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "none"))
@@ -79,9 +85,30 @@ class TestCache:
         assert not (tmp_path / "none").exists()
 
     def test_a_damaged_one_is_told_and_cleared(self, folder: Path) -> None:
-        (folder / "net_capture-0123.fmu").write_bytes(b"cut")
-        assert "damaged" in next(kept.terms for kept in listing(folder) if kept.model == "net_capture")
+        (folder / f"{CAPTURE}.fmu").write_bytes(b"cut")
+        assert "damaged" in next(kept.terms for kept in listing(folder, build.fault) if kept.model == "net_capture")
         assert clear(folder)[0] == 2
+
+    def test_any_damage_is_told_and_cleared(self, dcone: Dcone, folder: Path) -> None:
+        """A byte in deflated data, which zlib answers; the file of another; a folder; a name of nobody's."""
+        data = bytearray((folder / f"{CAPTURE}.fmu").read_bytes())
+        data[40] ^= 0xFF
+        (folder / f"{CAPTURE}.fmu").write_bytes(data)
+        shutil.copy(folder / f"{REMOVAL}.fmu", folder / "tethered_deorbit-0000000000000000-linux64.fmu")
+        (folder / "reel_control-0000000000000000-linux64.fmu" / "within").mkdir(parents=True)
+        (folder / "mine.fmu").touch()
+        code, out, _ = dcone("cache", "list")
+        told = dict(line.split("  ", 1) for line in out.splitlines()[:-1])
+        assert code == 0
+        for name, wrong in (
+            (CAPTURE, "damaged"), ("tethered_deorbit-0000000000000000-linux64", "another's"),
+            ("reel_control-0000000000000000-linux64", "no file"), ("mine", "gives to no FMU"),
+        ):  # fmt: skip
+            assert f"{wrong}" in told[f"{name}.fmu"]
+            assert "built when it is needed" in told[f"{name}.fmu"]
+        assert "reel locked" in told[f"{REMOVAL}.fmu"]
+        assert dcone("cache", "clear")[:2][0] == 0
+        assert not list(folder.glob("*.fmu"))
 
     @pytest.mark.parametrize(
         ("text", "seconds"), [("30d", 30 * DAY), ("12 h", 12 * 3600.0), ("2w", 14 * DAY), ("5min", 300.0)]
@@ -94,7 +121,7 @@ class TestCache:
     def test_what_is_no_age(self, dcone: Dcone, folder: Path, text: str) -> None:
         code, _, err = dcone("cache", "clear", "--older-than", text)
         assert (code, f"--older-than {text}: expected a number with" in err) == (2, True)
-        assert len(listing(folder)) == 2
+        assert len(listing(folder, build.fault)) == 2
 
 
 class TestWaiting:
@@ -108,8 +135,11 @@ class TestWaiting:
         for _ in range(9):
             times.keep(20.0)
         assert times.spoken() == "it took 20 s before"
-        (tmp_path / "build-times.json").write_text("{")
-        assert times.spoken() == "this may take a minute or two"
+        for damaged in ("{", "[]", '{"seconds": [NaN]}', '{"seconds": 3}', "\x00"):
+            (tmp_path / "build-times.json").write_text(damaged)
+            assert times.spoken() == "this may take a minute or two"
+            times.keep(7.0)
+            assert times.spoken() == "it took 7 s before"
         Times(tmp_path / "none").keep(1.0)
         assert not (tmp_path / "none").exists()
 
@@ -117,7 +147,7 @@ class TestWaiting:
         monkeypatch.setenv("DCONE_CACHE", str(tmp_path))
         Times(tmp_path).keep(48.0)
 
-        def build_all(interfaces, cache, announce, platforms):
+        def build_all(interfaces, cache, announce, platforms, workplace):
             announce("building reel_control with  (once; kept in there)")
             announce("linking reel_control for linux64")
             return [[tmp_path / "x.fmu"] for _ in interfaces]

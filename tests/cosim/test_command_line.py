@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim import cli, commands
+from dcone_cosim import cli, commands, drafts, interrupts
 from dcone_cosim.progress import Bar, Lines, Progress
 from dcone_cosim.scenes.scene import Scene
 from tests.cosim.conftest import Dcone
@@ -86,6 +86,42 @@ def test_a_folder_that_appears_meanwhile_is_not_touched(dcone: Dcone, stand_in: 
     assert "out came to be while the scene ran" in err
     assert [p.name for p in Path("out").iterdir()] == ["thesis.tex"]
     assert Path("out-2/summary.json").exists()
+
+
+@pytest.mark.parametrize(
+    "notes", ["notes.txt", "fmus/notes.txt", "mine.parquet", "mine.png", "deep/er/notes.txt", "empty/"]
+)
+def test_force_replaces_its_own_files_alone(dcone: Dcone, stand_in: type[NoArchives], notes: str) -> None:
+    assert dcone("run", "mock", "-o", "out", "--csv")[0] == 0
+    mine = Path("out", notes)
+    mine.parent.mkdir(parents=True, exist_ok=True)
+    if notes.endswith("/"):
+        mine.mkdir()
+    else:
+        mine.write_text("years of work")
+    before = {p: p.read_bytes() for p in Path("out").rglob("*") if p.is_file()}
+    code, _, err = dcone("run", "mock", "-o", "out", "--no-figures", "--force")
+    assert code == 2
+    assert f"out holds what no run wrote there: {notes.rstrip('/')}; --force replaces the files of a run alone" in err
+    assert {p: p.read_bytes() for p in Path("out").rglob("*") if p.is_file()} == before
+    mine.rename("moved")
+    for folder in sorted(Path("out").rglob("*"), reverse=True):
+        if folder.is_dir():
+            folder.rmdir()
+    Path("out/.DS_Store").touch()
+    assert dcone("run", "mock", "-o", "out", "--no-figures", "--force")[0] == 0
+    assert not [name for name in ("capture.csv", "tension.png", ".DS_Store") if Path("out", name).exists()]
+    assert sorted(p.name for p in Path().iterdir()) == ["moved", "out"]
+
+
+def test_notes_that_come_while_it_runs_stay(dcone: Dcone, stand_in: type[NoArchives]) -> None:
+    assert dcone("run", "mock", "-o", "out", "--no-figures")[0] == 0
+    stand_in.meanwhile = staticmethod(lambda: Path("out/notes.txt").write_text("years of work"))
+    code, out, err = dcone("run", "mock", "-o", "out", "--no-figures", "--force")
+    assert (code, "results in out-2" in out, "was not touched" in err) == (0, True, True)
+    assert Path("out/notes.txt").read_text() == "years of work"
+    assert Path("out/summary.json").exists()
+    assert sorted(p.name for p in Path().iterdir()) == ["out", "out-2"]
 
 
 def test_two_runs_within_a_second_keep_their_results(
@@ -206,6 +242,84 @@ def test_signals_leave_nothing(tmp_path: Path, number: int, code: int) -> None:
     assert len(err.decode().splitlines()) == 2  # what was being built, and the one line
     assert b"nothing was written" in err
     assert [p.name for p in tmp_path.iterdir()] == ["running"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+@pytest.mark.parametrize("more", ["", ', "--json"'])
+def test_a_full_disk_behind_stdout_is_told_truthfully(tmp_path: Path, more: str) -> None:
+    """The results stand, and so it is said."""
+    program = textwrap.dedent(PROGRAM).format(root=str(Path(__file__).parents[2]), act="None")
+    program = program.replace('"--no-figures"', '"--no-figures"' + more)
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-c", program], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 1
+    last = done.stderr.splitlines()[-1]
+    assert last == "dcone: No space left on device; written before that, and complete: deep/out"
+    assert "Traceback" not in done.stderr
+    assert "Exception" not in done.stderr
+    assert (tmp_path / "deep/out/summary.json").exists()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+def test_a_full_disk_behind_an_answer(tmp_path: Path) -> None:
+    program = "import sys; sys.argv = ['dcone', 'list']; from dcone_cosim import cli; cli.main()"
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-c", program], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert (done.returncode, done.stderr) == (2, "dcone: No space left on device; nothing was written\n")
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "told"),
+    [
+        (OSError(errno.EIO, os.strerror(errno.EIO)), 1, "dcone: Input/output error; "),
+        (KeyboardInterrupt(), 130, "dcone: interrupted; "),
+        (SystemExit(143), 143, "dcone: terminated; "),
+    ],
+)
+def test_after_the_rename_nobody_says_that_nothing_was_written(
+    dcone: Dcone,
+    stand_in: type[NoArchives],
+    monkeypatch: pytest.MonkeyPatch,
+    error: BaseException,
+    code: int,
+    told: str,
+) -> None:
+    to_disk = drafts._to_disk
+
+    def fails(path: Path) -> None:
+        if path.name != "deep":
+            return to_disk(path)
+        raise error
+
+    monkeypatch.setattr(drafts, "_to_disk", fails)
+    given, _, err = dcone("run", "mock", "-o", "deep/out", "--no-figures")
+    assert given == code
+    assert f"{told}written before that, and complete: deep/out" in err
+    assert Path("deep/out/summary.json").exists()
+    assert os.listdir("deep") == ["out"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_a_signal_in_the_rename_comes_after_it(
+    dcone: Dcone, stand_in: type[NoArchives], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take = drafts._take_name
+
+    def interrupted(*arguments: object) -> Path:
+        monkeypatch.setattr(interrupts, "_heeding", False)
+        interrupts._disarm()
+        os.kill(os.getpid(), signal.SIGINT)
+        return take(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(interrupts, "arm", lambda: None)
+    monkeypatch.setattr(drafts, "_take_name", interrupted)
+    code, _, err = dcone("run", "mock", "-o", "out", "--no-figures")
+    assert (code, "interrupted; written before that, and complete: out" in err) == (130, True)
+    assert Path("out/summary.json").exists()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="pipes of POSIX")

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim import commands, drafts
-from dcone_cosim.drafts import UNFINISHED, atomic_folder
+from dcone_cosim import commands, scratch
+from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.progress import Progress
 from tests.cosim.mock_components import MockCapture
 
@@ -65,13 +65,15 @@ def test_the_draft_of_a_living_run_stays(tmp_path: Path) -> None:
 
 def test_hidden_folders_of_others_stay(tmp_path: Path) -> None:
     (tmp_path / ".git").mkdir()
-    (tmp_path / ".run.abc").mkdir()
+    (tmp_path / ".dcone-mine").mkdir()
     (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / UNFINISHED).touch()
-    (tmp_path / ".link").symlink_to("mine")
+    (tmp_path / ".dcone-link.lock").symlink_to("mine")
+    (tmp_path / ".dcone-link").symlink_to("mine")
     with atomic_folder(tmp_path / "run") as draft:
         assert draft.removed == 0
-    assert sorted(p.name for p in tmp_path.iterdir()) == [".git", ".link", ".run.abc", "mine", "run"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        *(".dcone-link", ".dcone-link.lock", ".dcone-mine", ".git", "mine", "run")
+    ]
 
 
 def test_without_locks_nothing_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,7 +82,7 @@ def test_without_locks_nothing_is_removed(tmp_path: Path, monkeypatch: pytest.Mo
     def none(*_: object) -> None:
         raise OSError
 
-    monkeypatch.setattr(drafts.fcntl, "flock", none)
+    monkeypatch.setattr(scratch.fcntl, "flock", none)
     with atomic_folder(tmp_path / "run") as draft:
         assert not list(draft.path.iterdir())
         (draft.path / "x").touch()

@@ -123,18 +123,18 @@ def test_an_interrupt_while_swapping_brings_the_old_run_back(
     result: RunResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     put(result, tmp_path / "run")
-    (tmp_path / "run" / "mine.txt").write_text("old")
+    (tmp_path / "run" / "summary.json").write_text("old")
     rename = Path.rename
 
     def interrupted(self: Path, target: Path) -> Path:
-        if target == tmp_path / "run" and self.name != "old":
+        if target == tmp_path / "run" and self.suffix != ".old":
             raise KeyboardInterrupt
         return rename(self, target)
 
     monkeypatch.setattr(Path, "rename", interrupted)
     with pytest.raises(KeyboardInterrupt):
         put(result, tmp_path / "run", force=True)
-    assert (tmp_path / "run" / "mine.txt").read_text() == "old"
+    assert (tmp_path / "run" / "summary.json").read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["run"]
 
 

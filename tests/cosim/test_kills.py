@@ -1,0 +1,242 @@
+"""A process killed at any file event leaves nothing that the next does not clear, and no result is ever lost.
+
+A child runs with a hook that counts what changes files (opening for writing, making, renaming, removing) and kills it
+just before the n-th; n goes up until the child comes to its end.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from dcone_cosim import commands, scratch
+from dcone_cosim.drafts import contents
+from dcone_cosim.progress import Progress
+from dcone_cosim.run import as_json
+from dcone_cosim.scratch import Scratch, clear_left
+from fmu_src.catalogue import MODELS
+from fmu_src.packaging import archive, kept
+from tests.cosim.mock_components import MockCapture
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
+CHANGES = {"os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.chmod"}
+WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT
+ROOT = str(Path(__file__).parents[2])
+
+
+def kill_at(event: int) -> None:
+    """Let this process be killed at its n-th file event from now on."""
+    count = 0
+
+    def hook(name: str, arguments: Any) -> None:
+        nonlocal count
+        if name in CHANGES or (name == "open" and arguments[2] & WRITING):
+            count += 1
+            if count == event:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    sys.addaudithook(hook)
+
+
+def killed_everywhere(work: Callable[[], object]) -> Iterator[int]:
+    """Do the work in a child that is killed at its first file event, at its second, and so on."""
+    for event in range(1, 10_000):
+        child = os.fork()
+        if not child:
+            try:
+                kill_at(event)
+                work()
+            finally:
+                os._exit(0)
+        if os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0:
+            return
+        yield event
+
+
+class Unpacking:
+    """Stands in for the FMUs' archives, with something unpacked."""
+
+    def __init__(self, *_: object) -> None:
+        self.unpacked = Scratch.temporary()
+        (self.unpacked.path / "modelDescription.xml").write_text("<fmi/>")
+
+    def __enter__(self) -> Unpacking:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.unpacked.remove()
+
+    def instantiate(self, *_: object) -> MockCapture:
+        return MockCapture()
+
+    def facts(self) -> dict[str, object]:
+        return {}
+
+
+FILES = ["deep/b.parquet", "provenance.json", "scene.toml", "summary.json"]
+made = 0
+"""Number of the run; every file of its folder says it."""
+
+
+def fill(folder: Path, *_: object) -> None:
+    (folder / "deep").mkdir()
+    for name in FILES:
+        (folder / name).write_text(as_json({"run": made, "files": FILES}))
+
+
+def whole(folder: Path) -> bool:
+    return contents(folder) == FILES and len({(folder / name).read_text() for name in FILES}) == 1
+
+
+@pytest.fixture
+def place(tmp_path: Path, make_scene, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder to run in; another is the system's for what is temporary."""
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "runs").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+    monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture"))
+    monkeypatch.setattr(commands, "Archives", Unpacking)
+    monkeypatch.setattr(commands, "fill", fill)
+    monkeypatch.setattr(commands, "_load", lambda *_: None)
+    return tmp_path / "runs"
+
+
+def run(out: Path, force: bool = False) -> commands.Written:
+    global made
+    made += 1
+    return commands.run_and_write("mock", out, Progress(), with_figures=False, force=force)
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(p.name for p in folder.iterdir())
+
+
+def test_a_new_run(place: Path) -> None:
+    ends = set()
+    for event in killed_everywhere(lambda: run(place / "first")):
+        run(place / "next")
+        assert not names(place.parent / "tmp"), f"killed at event {event}"
+        assert names(place) in (["next"], ["first", "next"]), f"killed at event {event}"
+        ends.add(len(names(place)))
+        for name in names(place):
+            assert whole(place / name), f"killed at event {event}"
+            for path in sorted((place / name).rglob("*"), reverse=True):
+                path.rmdir() if path.is_dir() else path.unlink()
+            (place / name).rmdir()
+    assert ends == {1, 2}, "killed before it took its name, and after"
+    assert event > 15
+
+
+def test_a_run_that_replaces_another(place: Path) -> None:
+    """The one or the other is there in the end, whole."""
+    run(place / "run")
+    found = set()
+    for event in killed_everywhere(lambda: run(place / "run", force=True)):
+        clear_left(place)
+        assert names(place) == ["run"], f"killed at event {event}"
+        assert whole(place / "run"), f"killed at event {event}"
+        found.add((place / "run" / "summary.json").read_text() == as_json({"run": made, "files": FILES}))
+        assert [w.folder for w in [run(place / "run", force=True)]] == [place / "run"]
+        assert names(place) == ["run"]
+        assert not names(place.parent / "tmp"), f"killed at event {event}"
+    assert found == {True, False}
+    assert event > 20
+
+
+def test_without_a_replacement_finished_the_old_run_comes_back(place: Path) -> None:
+    """Killed between the two renames, with a draft that is gone."""
+    run(place / "run")
+    left = Scratch(place)
+    left.name_place("run")
+    (place / "run").rename(left.old)
+    left.path.rmdir()
+    assert left._lock is not None
+    left._lock.release()
+    assert clear_left(place) == 0
+    assert (names(place), whole(place / "run")) == (["run"], True)
+
+
+def test_a_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a compiler and a linker that only pretend; nothing half-built is ever in the cache under its name."""
+    monkeypatch.setattr(archive.compile, "emit", lambda name, terms, ir: ir.write_text("; no kernels"))
+    monkeypatch.setattr(archive.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
+    monkeypatch.setattr(archive.picture, "png", lambda interface: b"picture")
+    interface = MODELS["reel_control"].interface({})
+    cache = tmp_path / "cache"
+
+    def build() -> Path:
+        return archive.build(interface, cache, workplace=scratch.workplace)
+
+    for event in killed_everywhere(build):
+        for path in cache.glob("*.fmu"):
+            assert not kept.fault(path), f"killed at event {event}"
+            path.unlink()
+        path = build()
+        assert names(cache) == [path.name], f"killed at event {event}"
+        path.unlink()
+    assert event > 6
+
+
+def test_the_check_itself(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where nobody clears up, it finds what is left, in both places."""
+    for module in (commands, scratch):
+        monkeypatch.setattr(module, "clear_left", lambda _: 0)
+    left = 0
+    for _ in killed_everywhere(lambda: run(place / "first")):
+        left |= bool(names(place)) | 2 * bool(names(place.parent / "tmp"))
+    assert left == 3
+
+
+PROGRAM = """
+    import os, sys, tempfile
+    sys.path.insert(0, {root!r})
+    from dcone_cosim import cli, commands
+    import pyarrow.parquet, fmpy, dcone_cosim.fmu.component
+    from tests.cosim.conftest import scene_of
+    from tests.cosim.mock_components import MockCapture, MockRemoval
+    from tests.cosim.test_kills import Unpacking, kill_at
+    Unpacking.instantiate = lambda self, phase, name: MockCapture() if phase == "capture" else MockRemoval(tugs=[])
+    commands.Archives, commands.load = Unpacking, lambda *_: scene_of("capture", "removal")
+    sys.argv = ["dcone", "run", "mock", "-o", "runs/out", "--csv", *sys.argv[2:]]
+    kill_at(int({event}))
+    cli.main()
+"""
+
+
+@pytest.mark.evidence
+@pytest.mark.parametrize("more", [("--no-figures",), ("--no-figures", "--force"), ("--force",)])
+def test_the_whole_command(tmp_path: Path, more: tuple[str, ...]) -> None:
+    """`dcone run` with its own tables and figures, killed at each file event."""
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "runs").mkdir()
+
+    def command(event: int, *arguments: str) -> int:
+        program = textwrap.dedent(PROGRAM).format(root=ROOT, event=event)
+        done = subprocess.run(
+            [sys.executable, "-c", program, "-", *arguments],
+            cwd=tmp_path, env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode in (0, -signal.SIGKILL), done.stderr
+        return done.returncode
+
+    assert command(0) == 0
+    lasting = contents(tmp_path / "runs/out")
+    for event in range(1, 10_000):
+        ended = command(event, *more) if "--force" in more else command(event, *more, "-o", f"runs/{event}")
+        if ended == 0:
+            break
+        assert command(0, "--no-figures", "--force") == 0
+        assert names(tmp_path / "tmp") == [], f"killed at event {event}"
+        assert not [name for name in names(tmp_path / "runs") if name.startswith(".")], f"killed at event {event}"
+        assert contents(tmp_path / "runs/out") == [name for name in lasting if not name.endswith(".png")]
+    assert event > 15

@@ -1,0 +1,153 @@
+"""A cached FMU that is damaged or another's is never used: it is built again, and one line says so."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import time
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from fmu_src.catalogue import MODELS
+from fmu_src.packaging import archive, kept, platforms
+
+KEY = "0123456789abcdef" * 4
+LIBRARY = "binaries/linux64/net_capture.so"
+
+
+def content(key: str = KEY) -> dict[str, bytes]:
+    guid = f'guid="{kept.guid_of(key)}"'
+    return {"modelDescription.xml": f"<fmiModelDescription {guid}/>".encode(), LIBRARY: b"\x7fELF" + bytes(range(64))}
+
+
+def read(path: Path) -> dict[str, bytes]:
+    with zipfile.ZipFile(path) as file:
+        return {name: file.read(name) for name in file.namelist()}
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / kept.file_name("net_capture", KEY, platforms.LINUX64)
+    archive.pack(content(), path)
+    return path
+
+
+def test_what_was_written_is_whole(file: Path) -> None:
+    assert kept.fault(file) == ""
+
+
+def test_no_changed_byte_goes_unseen(file: Path) -> None:
+    """Every byte, two changes each: what counts as whole has the content that was written, to the last byte."""
+    whole, seen = file.read_bytes(), 0
+    for place in range(len(whole)):
+        for change in (0x01, 0xFF):
+            file.write_bytes(whole[:place] + bytes([whole[place] ^ change]) + whole[place + 1 :])
+            wrong = kept.fault(file)
+            assert wrong or read(file) == content(), f"byte {place}"
+            seen += bool(wrong)
+    assert seen > len(whole), "times and attributes of the entries are all that may change"
+
+
+@pytest.mark.evidence
+def test_no_damage_of_any_kind_goes_unseen(file: Path) -> None:
+    """Every bit, every length, and two thousand bursts."""
+    whole, dice = file.read_bytes(), random.Random(1)
+    damaged = [whole[:i] + bytes([whole[i] ^ 1 << n]) + whole[i + 1 :] for i in range(len(whole)) for n in range(8)]
+    damaged += [whole[:length] for length in range(len(whole))]
+    for _ in range(2000):
+        start, length = dice.randrange(len(whole)), dice.randrange(1, 64)
+        damaged.append(whole[:start] + dice.randbytes(length) + whole[start + length :])
+    for data in damaged:
+        file.write_bytes(data)
+        assert kept.fault(file) or read(file) == content()
+
+
+def test_what_is_not_what_its_name_says(file: Path) -> None:
+    archive.pack(content("fedcba9876543210" * 4), file)
+    assert "another's" in kept.fault(file)
+    archive.pack({name: data for name, data in content().items() if name != LIBRARY}, file)
+    assert "another's" in kept.fault(file)
+    archive.pack({LIBRARY: b""}, file)
+    assert "another's" in kept.fault(file)
+    archive.pack(content(), file.with_name("net_capture-0123456789abcdef-amiga.fmu"))
+    assert "name" in kept.fault(file.with_name("net_capture-0123456789abcdef-amiga.fmu"))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes of POSIX")
+def test_a_pipe_or_a_folder_is_no_fmu(file: Path) -> None:
+    file.unlink()
+    os.mkfifo(file)
+    began = time.monotonic()
+    assert kept.fault(file) == "no file"
+    assert time.monotonic() - began < 5.0
+    file.unlink()
+    file.mkdir()
+    assert kept.fault(file) == "no file"
+
+
+@pytest.fixture
+def build(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[], tuple[Path, list[str]]]:
+    """Build reel control for this machine with a compiler and a linker that only pretend; returns what it said."""
+    monkeypatch.setattr(archive.compile, "emit", lambda name, terms, ir: ir.write_text("; no kernels"))
+    monkeypatch.setattr(archive.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
+    monkeypatch.setattr(archive.picture, "png", lambda interface: b"picture")
+
+    def run() -> tuple[Path, list[str]]:
+        said: list[str] = []
+        model = MODELS["reel_control"]
+        return archive.build(model.interface({}), tmp_path / "cache", said.append), said
+
+    return run
+
+
+def cut(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-30])
+
+
+def flip_in_the_library(path: Path) -> None:
+    """The case that zlib answers, not zipfile."""
+    data = bytearray(path.read_bytes())
+    with zipfile.ZipFile(path) as file:
+        entry = file.getinfo("modelDescription.xml")
+    start = entry.header_offset + 30 + len(entry.filename)
+    data[start : start + 40] = b"\xff" * 40
+    path.write_bytes(data)
+
+
+def of_another(path: Path) -> None:
+    archive.pack(content(), path)
+
+
+def folder_there(path: Path) -> None:
+    path.unlink()
+    path.mkdir()
+    (path / "x").touch()
+
+
+@pytest.mark.parametrize("harm", [cut, flip_in_the_library, of_another, folder_there])
+def test_what_is_wrong_is_built_again_with_one_line(build, harm: Callable[[Path], None]) -> None:
+    path, said = build()
+    whole = path.read_bytes()
+    assert not [line for line in said if "again" in line]
+    assert build() == (path, [])
+    harm(path)
+    again, said = build()
+    told = [line for line in said if line.endswith("it is built again")]
+    assert (again, again.read_bytes(), len(told)) == (path, whole, 1)
+    assert told[0].startswith(f"{path} is ")
+    assert build() == (path, []), "and then it is kept"
+    assert [p.name for p in path.parent.iterdir()] == [path.name]
+
+
+def test_kernels_of_another_are_not_taken(build, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The IR of a damaged file for another platform is worked out anew."""
+    path, _ = build()
+    other = path.with_name(path.name.replace(platforms.host().name, "win64"))
+    shutil.copy(path, other)
+    path.unlink()
+    _, said = build()
+    assert [line for line in said if line.startswith("building")], "a library for linux is no win64's FMU"
