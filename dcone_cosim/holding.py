@@ -190,6 +190,10 @@ class Held:
         if self.tugs is not None:
             self.tugs.go_back(self._state.count, self._state.latest)
 
+    def release(self, key: str = "") -> None:
+        self.component.release(key)
+        self._kept.pop(key, None)
+
 
 class _Row:
     """A row of a component's reader with the extremes of all steps in it."""

@@ -203,6 +203,7 @@ class CaptureLoop:
             self.read()
             if searching and self.triggered():
                 at = self._locate(begin, end)
+                self.component.release()
                 result.located = at
                 last = min(plan.duration, at if plan.stop_there else at + plan.after_capture)
                 self._record(at, force=True)

@@ -23,7 +23,10 @@ from dcone_cosim.fmu.frames import NEXT_CALL, as_fields, receive, send
 from dcone_cosim.fmu.messages import listeners
 
 CALLS = frozenset(
-    {"set", "set_rates", "get", "enter_initialisation", "exit_initialisation", "save", "restore", "state_size"}
+    {
+        *("set", "set_rates", "get", "enter_initialisation", "exit_initialisation"),
+        *("save", "restore", "release", "state_size"),
+    }
 )
 """Calls that go straight to the component."""
 LOOK_FOR_PARENT = 0.5

@@ -36,7 +36,7 @@ START = 120.0
 """How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
-KEEPING = frozenset({"read", "reader", "get", "save"})
+KEEPING = frozenset({"read", "reader", "get", "save", "release"})
 """Calls after which what was read before still holds."""
 ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int}
 """What a call is answered with; all others with nothing."""
@@ -130,6 +130,11 @@ class IsolatedComponent:
         """Go back to the state kept last under this key."""
         self._ask("", "restore", key)
         self.time = self._times[key]
+
+    def release(self, key: str = "") -> None:
+        """Nobody goes back to what was kept under this key any more."""
+        if self._times.pop(key, None) is not None:
+            self._ask("", "release", key)
 
     def state_size(self) -> int:
         """Bytes of a serialised state."""
