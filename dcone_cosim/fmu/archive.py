@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import fmpy
 
 from dcone_cosim.errors import FmuError
+from dcone_cosim.files import regular
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import NO_UNIT, Unit, by_name, read_units
 from dcone_cosim.names import did_you_mean
@@ -34,6 +35,8 @@ EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
 LARGEST = 2 * 2**30
 """Bytes of an FMU, unpacked; also as it lies in an SSP package."""
+MOST = 20_000
+"""Entries of an FMU or of an SSP package: to unpack so many takes some seconds, and again in every run."""
 LOCAL_HEADER = b"PK\x03\x04"
 """What a zip file begins with."""
 
@@ -125,7 +128,10 @@ def _unpack(path: Path) -> Path:
     folder: Path | None = None
     try:
         with zipfile.ZipFile(path) as content:
-            for name in content.namelist():
+            names = content.namelist()
+            if len(names) > MOST:
+                raise FmuError(f"{path}: it has {len(names):,} entries; at most {MOST:,} are unpacked")
+            for name in names:
                 _check_name(path, name)
             size = sum(entry.file_size for entry in content.infolist())  # unpacking stops at what is declared here
             if size > LARGEST:
@@ -155,7 +161,7 @@ def _check_file(path: Path) -> None:
     if path.is_dir():
         raise FmuError(f"{path}: a folder; expected an FMU, a file that ends in .fmu")
     try:
-        with path.open("rb") as file:
+        with regular(path).open("rb") as file:
             head = file.read(4)
     except OSError as error:
         raise FmuError(f"{path}: cannot be read ({error.strerror})") from None

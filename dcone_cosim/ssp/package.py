@@ -14,7 +14,8 @@ from urllib.parse import unquote, urlsplit
 from lxml import etree
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.fmu.archive import LARGEST
+from dcone_cosim.files import regular
+from dcone_cosim.fmu.archive import LARGEST, MOST
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.ssp.markup import STRUCTURE
 
@@ -50,7 +51,7 @@ class Package:
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            self._archive = zipfile.ZipFile(path)
+            self._archive = zipfile.ZipFile(regular(path))
         except zipfile.BadZipFile as error:
             raise InputError(f"{path} is no SSP package: {error}; the file may be cut short") from error
         except OSError as error:
@@ -63,6 +64,9 @@ class Package:
 
     def _check_names(self) -> None:
         names = set()
+        count = len(self._archive.infolist())
+        if count > MOST:
+            raise InputError(f"{self.path}: it has {count:,} entries; at most {MOST:,} are read")
         for info in self._archive.infolist():
             name = info.filename
             if _leaves(name):
