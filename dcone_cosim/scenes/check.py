@@ -36,7 +36,7 @@ from dcone_cosim.scenes.keys import (
     table_in,
 )
 from dcone_cosim.scenes.mistakes import Mistake, Places, SceneError, unknown
-from dcone_cosim.scenes.parts import RESERVED, Part, of_fmu, of_model, read_part, reserved_of
+from dcone_cosim.scenes.parts import RESERVED, Part, follow, of_fmu, of_model, read_part, reserved_of
 from dcone_cosim.scenes.relations import (
     about_hand_over,
     about_line,
@@ -186,6 +186,7 @@ def _read_component(
     elif not _named_model(part, tables, mistakes):
         return read
     read.parameters = read_part(part, tables, orbit, mistakes)
+    follow(part, read.parameters)
     return read
 
 

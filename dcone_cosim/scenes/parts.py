@@ -36,6 +36,7 @@ class Part:
     slots        every scalar variable, for connections
     archive      of the FMU, closed again: its model description is read
     given        where the value of each variable was given
+    following    groups whose term follows from the values
     """
 
     path: Path
@@ -48,6 +49,7 @@ class Part:
     slots: dict[str, Slot] = field(default_factory=dict)
     archive: Archive | None = None
     given: dict[str, Path] = field(default_factory=dict)
+    following: list[str] = field(default_factory=list)
 
     @property
     def groups(self) -> Mapping[str, build.Group]:
@@ -83,6 +85,9 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
         names = [term for term in group.terms if term in group.terms]
         if names:
             part.terms[group_name] = names[0]
+        if group.follows is not None and isinstance(table, dict) and group.selector not in table:
+            part.following.append(group_name)
+            continue
         if not isinstance(table, dict):
             mistakes.append(Mistake(path, table, f"expected a table [{dotted(path)}]"))
             continue
@@ -97,15 +102,33 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
             mistakes.append(unknown(path, given, expected, given, names))
         else:
             mistakes.append(Mistake(path, given, expected))
-    interface = model.interface(part.terms)
-    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(interface)}
+    for group_name, needed in list(model.missing(part.terms)):
+        text = f"needs the table [{dotted((*part.path, needed))}], which this scene lacks"
+        mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
+        part.terms[needed] = next(iter(model.groups[needed].terms))
+    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(model.interface(part.terms))}
+    _offer_slots(part, model)
+    return part
+
+
+def follow(part: Part, values: Mapping[str, float]) -> None:
+    """Take the terms that follow from the values, of which the scene may leave some at their defaults."""
+    if part.model is None or not part.following:
+        return
+    for group_name in part.following:
+        follows = part.model.groups[group_name].follows
+        assert follows is not None
+        part.terms[group_name] = follows({**part.defaults(), **values})
+    _offer_slots(part, part.model)
+
+
+def _offer_slots(part: Part, model: build.Model) -> None:
     part.slots = {
         name: Slot(row.kind, by_name(row.unit), row.causality)
-        for row in interface.variables
+        for row in model.interface(part.terms).variables
         if row.at_interface
         for name in row.element_names()
     }
-    return part
 
 
 def of_fmu(part: Part, offer: Offer) -> Part:

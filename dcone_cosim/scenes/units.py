@@ -20,6 +20,32 @@ LARGEST_INTEGER = 2**31 - 1
 _QUANTITY = re.compile(r"\s*([+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|nan|inf))\s*([^\d\s].*)?", re.DOTALL)
 """A number, and a unit that does not begin with another number."""
 
+COMMON = (
+    *("m", "mm", "cm", "km", "um", "AU", "s", "ms", "min", "h", "d", "wk", "yr", "kg", "g", "t", "K", "deg_C"),
+    *("rad", "mrad", "deg", "arcmin", "arcsec", "m2", "cm2", "mm2", "m3", "l", "m/s", "mm/s", "cm/s", "km/s", "km/h"),
+    *(
+        "rad/s",
+        "deg/s",
+        "1/s",
+        "Hz",
+        "rad/s2",
+        "deg/s2",
+        "m/s2",
+        "N",
+        "mN",
+        "kN",
+        "MN",
+        "Pa",
+        "kPa",
+        "MPa",
+        "GPa",
+        "bar",
+    ),
+    *("N/m", "mN/m", "kN/m", "N s/m", "kg/s", "N s", "kg m/s", "N m", "N m s", "J", "mJ", "kJ", "MJ", "W", "mW", "kW"),
+    *("kg/m3", "g/cm3", "kg m2", "N/s", "A", "V", "ohm"),
+)
+"""Units that a message names as known, smallest words first."""
+
 
 class Unexpected(ValueError):
     """A value that does not fit; the text says what was expected."""
@@ -168,6 +194,13 @@ class Expected:
                     return f'"{text}"'
         return f'"{value!r} {spoken(self.unit)}"'
 
+    def _known_units(self) -> str:
+        """Units that would do, of those that are commonly written."""
+        known = [name for name in COMMON if u.Unit(name).is_equivalent(unit_of(self.unit), u.temperature())]
+        if not known:
+            return f"expected {self._wanted()}"
+        return f"known for {_article(dimension_of(unit_of(self.unit)))}: {', '.join(known)}"
+
     def _out_of_bounds(self, number: float, unit: str) -> str | None:
         """Why an SI value is out of bounds, told in the unit it was written with."""
         if not math.isfinite(number):
@@ -208,6 +241,9 @@ class Expected:
         written = match[2].strip()
         try:
             unit = u.Unit(written)
+        except (TypeError, ValueError, ArithmeticError):
+            raise Unexpected(f"has the unit {written!r}, which is not known; {self._known_units()}") from None
+        try:
             number = float(unit.to(unit_of(self.unit), float(match[1]), equivalencies=u.temperature()))
         except u.UnitConversionError:
             raise Unexpected(f"is {_article(dimension_of(unit))}; expected {self._wanted()}") from None
