@@ -21,6 +21,8 @@ from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 
 LOCATED_TO = 1e-6
 """How closely the instant of a hand-over is located by halving [s]."""
+SAME = 1e-6
+"""Relative difference up to which two steps are of one length: at t = 1e6 s a step of 1 ms has lost six digits."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,13 @@ def grid_steps(duration: float, macro_step: float) -> int:
     return max(1, math.ceil(duration / macro_step - 1e-9))
 
 
+def length_of(size: float, component: Steppable, macro_step: float) -> float:
+    """Length of a step [s]. The difference of two times may have lost its last bits, and an FMU that takes steps of one
+    length may compare them: it gets the macro step itself."""
+    same = not component.can_vary_step and math.isclose(size, macro_step, rel_tol=SAME)
+    return macro_step if same else size
+
+
 class CaptureLoop:
     """Steps a capture FMU until it has handed over, failed, or run out of time."""
 
@@ -171,7 +180,8 @@ class CaptureLoop:
     def _step(self, begin: float, end: float) -> None:
         """Between two times since the shot."""
         origin = self.plan.start
-        self.component.step(origin + begin, (origin + end) - (origin + begin))
+        size = (origin + end) - (origin + begin)
+        self.component.step(origin + begin, length_of(size, self.component, self.plan.macro_step))
 
     def _save(self) -> None:
         self._kept = restoring.save(self.component, self.read)
@@ -323,7 +333,7 @@ class RemovalLoop:
         for i in range(steps):
             end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
             begun = origin + (start + i * self.macro_step)
-            component.step(begun, (origin + end) - begun)
+            component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
             result.steps += 1
             self._record(end)
             self.progress.at(end)

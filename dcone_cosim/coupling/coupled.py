@@ -68,8 +68,8 @@ class Coupled:
         if coupling.control == "error":
             self._steps = ControlledSteps(self._exchange, coupling, self._statistics)
         else:
-            can_meet = self.can_save and self.can_vary_step
-            self._steps = FixedSteps(self._exchange, coupling, self._statistics, can_meet)
+            can_meet, even = self.can_save and self.can_vary_step, not self.can_vary_step
+            self._steps = FixedSteps(self._exchange, coupling, self._statistics, can_meet, even)
         self._one_length = [n for n, c in zip(names, self.components, strict=True) if not c.can_vary_step]
         self._length = coupling.step
         self._times: dict[str, float] = {}

@@ -60,13 +60,16 @@ class StepControl(Protocol):
 class FixedSteps:
     """Coupling steps of one length; the last one of a macro step may be shorter. Times come from integers.
 
+    even       a component takes steps of one length: all are the same to the last bit, and fill the macro step
     can_meet   all can go back, and take a shorter step to the time at which one of them has ended itself. Each coupling
                step is kept for that alone, and none before it: an FMU may throw away what lies before a step
     """
 
-    def __init__(self, exchange: Exchange, coupling: Coupling, statistics: Statistics, can_meet: bool) -> None:
+    def __init__(
+        self, exchange: Exchange, coupling: Coupling, statistics: Statistics, can_meet: bool, even: bool
+    ) -> None:
         self.exchange, self.size, self.statistics = exchange, coupling.step, statistics
-        self.can_meet = can_meet
+        self.can_meet, self.even = can_meet, even
 
     def advance(self, begin: float, end: float, macro_step: float) -> None:
         step = self.size or end - begin
@@ -75,6 +78,8 @@ class FixedSteps:
             time = begin + k * step
             # one step is the caller's own: the difference of two times may have lost its last bit
             size = macro_step if count == 1 else (end if k == count - 1 else begin + (k + 1) * step) - time
+            if self.even:
+                size = self.size or macro_step
             if self.can_meet:
                 self.exchange.keep(BEGIN)
             try:
