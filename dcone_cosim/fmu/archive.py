@@ -14,6 +14,7 @@ import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
+from collections.abc import Container
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -54,8 +55,8 @@ class Archive:
         try:
             if self.folder is None:
                 self.folder = _unpack(path)
-            self.description: Any = _description(path, self.folder)
-            self.variables = _variables(path, self.description)
+            self.description, root = _description(path, self.folder)
+            self.variables = _variables(path, self.description, _relative(root))
             _check_binary(path, self.folder, self.identifier)
         except BaseException:
             self.close()
@@ -179,8 +180,8 @@ def _check_name(path: Path, name: str) -> None:
         raise FmuError(f"{path}: not a readable FMU: its entry {name!r} has a backslash; FMI 2.0 asks for /")
 
 
-def _description(path: Path, folder: Path) -> Any:
-    """The model description, once it is known to be one of FMI 2.0 co-simulation."""
+def _description(path: Path, folder: Path) -> tuple[Any, ET.Element]:
+    """The model description, once it is known to be one of FMI 2.0 co-simulation, and its XML."""
     file = folder / XML
     if not file.is_file():
         found = sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.name.lower() == XML.lower())
@@ -207,10 +208,26 @@ def _description(path: Path, folder: Path) -> Any:
         raise FmuError(f"{path}: this is FMI 2.0 {kind}; {EXPECTED}")
     if not about.modelIdentifier or not description.guid:
         raise FmuError(f"{path}: its {XML} has no modelIdentifier or no guid")
-    return description
+    return description, root
 
 
-def _variables(path: Path, description: Any) -> dict[str, VariableInfo]:
+def _relative(root: ET.Element) -> frozenset[str]:
+    """Names of the variables whose values are differences, by themselves or by their declared type; fmpy 0.3 hands on
+    neither for certain."""
+    of_types = {
+        row.get("name", "")
+        for row in root.iterfind("TypeDefinitions/SimpleType")
+        if (real := row.find("Real")) is not None and _flag(real.get("relativeQuantity"))
+    }
+    return frozenset(
+        row.get("name", "")
+        for row in root.iterfind("ModelVariables/ScalarVariable")
+        if (real := row.find("Real")) is not None
+        and (_flag(own) if (own := real.get("relativeQuantity")) is not None else real.get("declaredType") in of_types)
+    )
+
+
+def _variables(path: Path, description: Any, relative: Container[str]) -> dict[str, VariableInfo]:
     """Its variables by name. Several may share a value reference; a name can be there only once."""
     units = read_units(description.unitDefinitions, str(path))
     found: dict[str, VariableInfo] = {}
@@ -220,13 +237,14 @@ def _variables(path: Path, description: Any) -> dict[str, VariableInfo]:
         kind = "Integer" if v.type == "Enumeration" else v.type
         name = (v.unit or (v.declaredType.unit if v.declaredType is not None else "") or "") if kind == "Real" else ""
         unit = units.get(name) or by_name(name)
-        if v.relativeQuantity:
-            unit = Unit(unit.name, unit.dimension, unit.factor)
+        label = unit.si_name if unit is not NO_UNIT else "1"
+        if v.name in relative:
+            unit = unit.of_differences()
         found[v.name] = VariableInfo(
             v.name,
             int(v.valueReference),
             kind,
-            unit.si_name if unit is not NO_UNIT else "1",
+            label,
             v.causality or "local",
             v.description or "",
             name,
@@ -237,6 +255,7 @@ def _variables(path: Path, description: Any) -> dict[str, VariableInfo]:
             v.initial or "",
             _number(path, v.name, "start", v.start, kind, unit),
             *_bounds(path, v, kind, unit),
+            unit.relative,
         )
     return found
 

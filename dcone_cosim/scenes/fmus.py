@@ -64,7 +64,8 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
             names.setdefault(match[1] if match else info.name, []).append(info.name)
     keys: dict[str, Key] = {}
     for name, elements in names.items():
-        if sorted(elements) == sorted(f"{name}[{i + 1}]" for i in range(len(elements))):
+        alike = len({variables[element].relative for element in elements}) == 1
+        if alike and sorted(elements) == sorted(f"{name}[{i + 1}]" for i in range(len(elements))):
             keys[name] = _key([f"{name}[{i + 1}]" for i in range(len(elements))], variables, len(elements))
         else:
             keys |= {element: _key([element], variables, 0, choices.get(element, ())) for element in elements}
@@ -94,5 +95,6 @@ def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, cho
         f"{start:g}" if first.kind == "Integer" else example_of(start, unit),
         max(info.minimum for info in infos),
         min(info.maximum for info in infos),
+        relative=first.relative,
     )
     return Key(tuple(names), expected, starts, first.description)

@@ -95,6 +95,7 @@ class Expected:
     choices    names of an Integer's values
     example    a value as a scene would write it
     minimum    least permitted SI value; `open_minimum` excludes the bound itself
+    relative   the value is a difference: 5 deg_C are 5 K
     refusal    why else an SI value is refused, or None
     display_unit  FMI unit in which a person would write it, "" for the unit itself
     """
@@ -109,6 +110,7 @@ class Expected:
     open_minimum: bool = False
     refusal: Callable[[float], str | None] = lambda value: None
     display_unit: str = ""
+    relative: bool = False
 
     def read(self, value: object) -> float | list[float]:
         """SI value, or `Unexpected`."""
@@ -194,6 +196,12 @@ class Expected:
                     return f'"{text}"'
         return f'"{value!r} {spoken(self.unit)}"'
 
+    def _converted(self, value: float, of: Any, to: Any) -> float:
+        """A value in another unit; a difference of so many degC is one of as many K."""
+        if self.relative:
+            of, to = (u.K if unit == u.deg_C else unit for unit in (of, to))
+        return float(of.to(to, value, equivalencies=u.temperature()))
+
     def _known_units(self) -> str:
         """Units that would do, of those that are commonly written."""
         known = [name for name in COMMON if u.Unit(name).is_equivalent(unit_of(self.unit), u.temperature())]
@@ -212,7 +220,7 @@ class Expected:
         else:
             return None
         if unit:
-            bound = unit_of(self.unit).to(u.Unit(unit), bound)
+            bound = self._converted(bound, unit_of(self.unit), u.Unit(unit))
         return f"must be {words} {bound:.10g}{unit and ' ' + unit}"
 
     def _bare(self, value: object) -> float:
@@ -244,7 +252,7 @@ class Expected:
         except (TypeError, ValueError, ArithmeticError):
             raise Unexpected(f"has the unit {written!r}, which is not known; {self._known_units()}") from None
         try:
-            number = float(unit.to(unit_of(self.unit), float(match[1]), equivalencies=u.temperature()))
+            number = self._converted(float(match[1]), unit, unit_of(self.unit))
         except u.UnitConversionError:
             raise Unexpected(f"is {_article(dimension_of(unit))}; expected {self._wanted()}") from None
         except (TypeError, ValueError, ArithmeticError):

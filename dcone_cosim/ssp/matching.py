@@ -37,7 +37,7 @@ class Part:
 
 def own_unit(info: VariableInfo) -> Unit:
     """The unit that an FMU counts a variable in."""
-    return Unit(info.declared_unit or "1", info.dimension, info.factor, info.offset)
+    return Unit(info.declared_unit or "1", info.dimension, info.factor, info.offset, info.relative)
 
 
 def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> None:
@@ -64,6 +64,8 @@ def _other_unit(port: PortRow, own: Unit, units: Mapping[str, Unit]) -> bool:
     if not port.unit or own.dimension is None or port.unit == own.name:
         return False
     told = units.get(port.unit)
+    if told is not None and own.relative:
+        told = told.of_differences()
     return told is None or (told.dimension, told.factor, told.offset) != (own.dimension, own.factor, own.offset)
 
 
@@ -122,6 +124,8 @@ def _in_si(given: Given, info: VariableInfo) -> float:
     """The SI value of a variable: first the unit is converted, then the mapping's transformation applied."""
     value, unit, own = given.value, given.unit, own_unit(info)
     linear = (given.factor, given.offset) != (1.0, 0.0)
+    if unit is not None and own.relative:
+        unit = unit.of_differences()
     convert = unit is not None and own.dimension is not None and not given.suppress and unit.name != own.name
     if convert and unit is not None:
         value = value if unit.is_si else unit.factor * value + unit.offset

@@ -76,7 +76,9 @@ def settings_of(
                 known = [n for n, v in parts[owner].variables.items() if v.causality in ("parameter", "input")]
                 raise Unexpected(f"is no parameter or input of its FMU{did_you_mean(variable, known)}")
             example = example_of(info.start or 0.0, info.unit)
-            expected = Expected(info.unit, info.kind, 0, (), example, info.minimum, info.maximum)
+            expected = Expected(
+                info.unit, info.kind, 0, (), example, info.minimum, info.maximum, relative=info.relative
+            )
             values.setdefault(owner, {})[variable] = cast(float, expected.read(given))
         except Unexpected as error:
             link = " " if str(error).startswith(("is ", "must ")) else ": "
