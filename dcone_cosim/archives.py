@@ -31,7 +31,9 @@ class Archives:
             for phase, component in components:
                 key = (phase, component.name)
                 self._of[key] = (
-                    Archive(component.fmu) if component.fmu is not None else self._ours(paths[key], component)
+                    Archive(component.fmu, tolerance=component.tolerance)
+                    if component.fmu is not None
+                    else self._ours(paths[key], component)
                 )
         except BaseException:
             self.close()
@@ -85,7 +87,14 @@ class Archives:
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]
-        return archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
+        made = archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
+        try:
+            if component.texts:
+                made.set_texts(component.texts)
+        except BaseException:
+            made.close()
+            raise
+        return made
 
     def _set(self, phase: PhaseScene, component: ComponentScene, instance: Steppable) -> None:
         try:
@@ -138,7 +147,8 @@ class Archives:
             "ours": component.fmu is None,
             "isolated": component.isolate,
             "timeout": {"value": component.timeout, "unit": "s"} if component.isolate else None,
-            "texts": texts,
+            "texts": {**texts, **component.texts},
+            "tolerance": archive.tolerance,
         }
 
     def __enter__(self) -> Archives:

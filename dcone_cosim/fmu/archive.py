@@ -45,10 +45,11 @@ LOCAL_HEADER = b"PK\x03\x04"
 class Archive:
     """An FMU file, unpacked to a temporary folder that `close` removes.
 
-    folder    an FMU that is unpacked already, which `close` leaves alone
+    folder       an FMU that is unpacked already, which `close` leaves alone
+    tolerance    that the FMU's own solver is told, None for none; that of its default experiment if not given
     """
 
-    def __init__(self, path: Path, folder: Path | None = None) -> None:
+    def __init__(self, path: Path, folder: Path | None = None, tolerance: float | None = None) -> None:
         self.path = path
         self._owned = folder is None
         self.folder: Path | None = folder
@@ -58,9 +59,18 @@ class Archive:
             self.description, root = _description(path, self.folder)
             self.variables = _variables(path, self.description, _relative(root))
             _check_binary(path, self.folder, self.identifier)
+            self.tolerance = self._default_tolerance() if tolerance is None else tolerance
         except BaseException:
             self.close()
             raise
+
+    def _default_tolerance(self) -> float | None:
+        experiment = self.description.defaultExperiment
+        try:
+            told = float(experiment.tolerance) if experiment is not None and experiment.tolerance is not None else 0.0
+        except ValueError:
+            return None
+        return told if 0.0 < told < math.inf else None
 
     @cached_property
     def sha256(self) -> str:

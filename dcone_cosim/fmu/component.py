@@ -124,6 +124,15 @@ class Component:
             if chosen:
                 self._call(f"set{kind}", [r for r, _ in chosen], [number for _, number in chosen])
 
+    def set_texts(self, texts: Mapping[str, str]) -> None:
+        """Set variables of kind String by name."""
+        infos = [self.reference(name) for name in texts]
+        for info in infos:
+            if info.kind != "String":
+                raise FmuError(f"{self.name}: {info.name} is a {info.kind}; a text was given")
+        if infos:
+            self._call("setString", [info.reference for info in infos], list(texts.values()))
+
     def _fitting(self, info: VariableInfo, value: float) -> float | int:
         """An SI value as the FMU counts it; one that its kind cannot hold is an error."""
         if info.kind == "Real":
@@ -158,7 +167,7 @@ class Component:
     def enter_initialisation(self, start: float, stop: float | None = None) -> None:
         """Take the parameters as set and prepare to begin at `start` [s]."""
         self.time = start
-        self._call("setupExperiment", startTime=start, stopTime=stop)
+        self._call("setupExperiment", self.archive.tolerance, start, stop)
         self._call("enterInitializationMode")
 
     def exit_initialisation(self) -> None:

@@ -24,7 +24,7 @@ from dcone_cosim.fmu.messages import listeners
 
 CALLS = frozenset(
     {
-        *("set", "set_rates", "get", "enter_initialisation", "exit_initialisation"),
+        *("set", "set_texts", "set_rates", "get", "enter_initialisation", "exit_initialisation"),
         *("save", "restore", "release", "state_size"),
     }
 )
@@ -45,8 +45,8 @@ class Server:
         if call == "hello":
             return None
         if call == "instantiate":
-            path, folder, name = arguments
-            self.component = Archive(Path(path), Path(folder)).instantiate(name)
+            path, folder, name, tolerance = arguments
+            self.component = Archive(Path(path), Path(folder), tolerance).instantiate(name)
             return None
         assert self.component is not None
         if call == "step":

@@ -72,7 +72,8 @@ class IsolatedComponent:
         threading.Thread(target=self._guard, daemon=True).start()
         try:
             self._ask(" could not be started", "hello")
-            self._ask(" could not be instantiated", "instantiate", str(archive.path), str(archive.folder), name)
+            about = str(archive.path), str(archive.folder), name, archive.tolerance
+            self._ask(" could not be instantiated", "instantiate", *about)
         except BaseException:
             self.close()
             raise
@@ -80,6 +81,10 @@ class IsolatedComponent:
     def set(self, values: Mapping[str, float]) -> None:
         """Set variables by name."""
         self._ask("", "set", {name: float(value) for name, value in values.items()})
+
+    def set_texts(self, texts: Mapping[str, str]) -> None:
+        """Set variables of kind String by name."""
+        self._ask("", "set_texts", dict(texts))
 
     def set_rates(self, rates: Mapping[str, float]) -> None:
         """Let inputs move at these rates [SI/s] over the next step."""

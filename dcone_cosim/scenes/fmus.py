@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
 from dcone_cosim.scenes.keys import Key, Slot
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of, is_unit
+from dcone_cosim.scenes.units import TEXT, Expected, Unexpected, example_of, is_unit
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
     from dcone_cosim.fmu.steppable import VariableInfo
 
-KINDS = ("Real", "Integer", "Boolean")
+KINDS = ("Real", "Integer", "Boolean", TEXT)
 ADDRESS = re.compile(r"[a-zA-Z][a-zA-Z0-9+.-]+://")
 _ELEMENT = re.compile(r"(.*)\[(\d+)\]")
 
@@ -85,6 +85,8 @@ def _unit(info: VariableInfo) -> str:
 def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, choices: tuple[str, ...] = ()) -> Key:
     infos = [variables[name] for name in names]
     first, unit = infos[0], _unit(infos[0])
+    if first.kind == TEXT:
+        return Key(tuple(names), Expected(unit, TEXT, size), (), first.description)
     starts = tuple(info.start or 0.0 for info in infos)
     start = next((s for s in starts if s), 0.0)
     expected = Expected(

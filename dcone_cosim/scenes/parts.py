@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 from dcone_cosim import build
 from dcone_cosim.fmu.units import by_name
 from dcone_cosim.scenes.fmus import Offer
-from dcone_cosim.scenes.keys import PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
 from dcone_cosim.scenes.mistakes import Mistake, unknown
 from dcone_cosim.scenes.toml_lines import Path, dotted
-from dcone_cosim.scenes.units import LARGEST_INTEGER
+from dcone_cosim.scenes.units import LARGEST_INTEGER, TEXT
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
@@ -37,6 +37,7 @@ class Part:
     archive      of the FMU, closed again: its model description is read
     given        where the value of each variable was given
     following    groups whose term follows from the values
+    texts        that the scene gives to Strings, by variable
     """
 
     path: Path
@@ -50,6 +51,7 @@ class Part:
     archive: Archive | None = None
     given: dict[str, Path] = field(default_factory=dict)
     following: list[str] = field(default_factory=list)
+    texts: dict[str, str] = field(default_factory=dict)
 
     @property
     def groups(self) -> Mapping[str, build.Group]:
@@ -64,7 +66,8 @@ class Part:
         return any(name.startswith(table + ".") for name in self.keys)
 
     def defaults(self) -> dict[str, float]:
-        return {n: s for key in self.keys.values() for n, s in zip(key.names, key.starts, strict=True)}
+        numbers = [key for key in self.keys.values() if key.expected.kind != TEXT]
+        return {n: s for key in numbers for n, s in zip(key.names, key.starts, strict=True)}
 
     def choices(self) -> dict[str, tuple[str, ...]]:
         return {key.names[0]: key.expected.choices for key in self.keys.values() if key.expected.choices}
@@ -229,7 +232,10 @@ def _take(part: Part, name: str, value: Any, path: Path, found: dict[str, float]
             mistakes.append(Mistake(path, value, f"is given twice: also as {dotted(earlier)}"))
             return
         part.given[variable] = path
-        found[variable] = number
+        if key.expected.kind == TEXT:
+            part.texts[variable] = number
+        else:
+            found[variable] = number
 
 
 def _no_variable(part: Part, name: str, path: Path, value: object) -> Mistake:
@@ -272,9 +278,9 @@ def reserved_of(phase: str) -> frozenset[str]:
     """Keys of a phase's table that are no parameters of its component."""
     own = {"snapshots"} if phase == "capture" else set()
     return frozenset(
-        {*PHASE_KEYS[phase], *own, "fmu", "isolate", "timeout", "components", "connections", "coupling", "parameters"}
+        {*PHASE_KEYS[phase], *own, *COMPONENT_KEYS, "fmu", "components", "connections", "coupling", "parameters"}
     )
 
 
-RESERVED = frozenset({"fmu", "model", "isolate", "timeout", "parameters"})
+RESERVED = frozenset({*COMPONENT_KEYS, "fmu", "model", "parameters"})
 """Keys of a further component's table that are no parameters."""

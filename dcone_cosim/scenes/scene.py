@@ -45,6 +45,8 @@ class ComponentScene:
     parameters   FMI name: value, SI, of what the scene says; inputs may be among them
     defaults     FMI name: start value, SI, of every parameter and input there is
     choices      FMI name: names of the values of an Integer choice
+    tolerance    that the FMU's own solver is told; None for that of its default experiment
+    texts        FMI name: value of each String that the scene gives
     """
 
     name: str
@@ -56,6 +58,8 @@ class ComponentScene:
     parameters: Mapping[str, float] = field(default_factory=dict)
     defaults: Mapping[str, float] = field(default_factory=dict)
     choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    tolerance: float | None = None
+    texts: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

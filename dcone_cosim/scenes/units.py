@@ -45,6 +45,8 @@ COMMON = (
     *("kg/m3", "g/cm3", "kg m2", "N/s", "A", "V", "ohm"),
 )
 """Units that a message names as known, smallest words first."""
+TEXT = "String"
+"""Kind of a variable whose values are texts."""
 
 
 class Unexpected(ValueError):
@@ -113,7 +115,7 @@ class Expected:
     relative: bool = False
 
     def read(self, value: object) -> float | list[float]:
-        """SI value, or `Unexpected`."""
+        """SI value, or text, or `Unexpected`."""
         if not self.size:
             return self._scalar(value)
         if not isinstance(value, list) or len(value) != self.size:
@@ -132,6 +134,8 @@ class Expected:
         return numbers
 
     def _wanted(self) -> str:
+        if self.kind == TEXT:
+            return "a text"
         if self.choices:
             return f"one of {', '.join(self.choices)}"
         if self.kind == "Boolean":
@@ -143,6 +147,12 @@ class Expected:
         return f'{_article(dimension_of(unit_of(self.unit)))} with its unit, such as "{self.example}"'
 
     def _scalar(self, value: object) -> float:
+        if self.kind == TEXT:
+            if not isinstance(value, str):
+                raise Unexpected(f"expected {self._wanted()}, in quotes")
+            if "\0" in value:
+                raise Unexpected("is no text: it holds a NUL")
+            return value  # type: ignore[return-value]  # who asks for a String knows it
         if self.choices:
             if value not in self.choices:
                 raise Unexpected(f"expected {self._wanted()}")

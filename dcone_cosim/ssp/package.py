@@ -25,15 +25,20 @@ LARGEST_XML = 64 * 2**20
 
 @dataclass
 class Mistakes:
-    """What is wrong with a package, told all at once."""
+    """What is wrong with a package, told all at once, and what of it is ignored."""
 
     source: str
     rows: list[tuple[str, int, str]] = field(default_factory=list)
+    ignored: list[str] = field(default_factory=list)
 
     def add(self, file: str, line: int | None, text: str) -> None:
         row = (file, line or 0, text)
         if row not in self.rows:
             self.rows.append(row)
+
+    def ignore(self, file: str, line: int, text: str) -> None:
+        """Note what is no mistake, by the rules of SSP, and has no effect."""
+        self.ignored.append(f"{file}{f' line {line}' if line else ''}: {text}; it is ignored")
 
     def check(self) -> None:
         """Raise an `InputError` with every mistake found so far."""

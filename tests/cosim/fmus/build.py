@@ -22,6 +22,20 @@ SHIM = {
     "REFUSES_WITHOUT_A_WORD": [("if (!callbacks || !name) return", "if (callbacks) return")],  # it is not instantiated
     # told that somebody may go back, it begins anew: as one does that takes that for the news that somebody has
     "REWINDS": [("    (void)no_going_back;\n", "    if (!no_going_back) i->m.start = time;\n")],
+    # its String `label` is told by its length, in the place of the target's mass; so is the tolerance it is told, or -1
+    "TEXTS": [
+        (
+            '    (void)r, (void)values;\n    return n ? refuse(c, "there are no Strings") : fmi2OK;\n}\n\n/* ----',
+            "    for (size_t k = 0; k < n; k++) ((instance *)c)->m.values[r[k]] = (double)strlen(values[k]);\n"
+            "    return fmi2OK;\n}\n\n/* ----",
+        ),
+    ],
+    "TOLERANCE": [
+        (
+            "    (void)tolerance_given, (void)tolerance, (void)stop_given, (void)stop;\n",
+            "    (void)stop_given, (void)stop;\n    i->m.values[1] = tolerance_given ? tolerance : -1.0;\n",
+        ),
+    ],
     # told that nobody goes back to before a step, it throws that away, and refuses to go there
     "FLUSHES": [
         ("    (void)no_going_back;\n", "    if (no_going_back && time > flushed) flushed = time;\n"),
