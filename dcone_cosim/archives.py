@@ -9,6 +9,7 @@ from dcone_cosim import build
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Steppable
+from dcone_cosim.fmu.leaving import guard_exit
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.mistakes import places_named
 from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
@@ -87,6 +88,8 @@ class Archives:
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]
+        if not component.isolate and component.fmu is not None:
+            guard_exit()
         made = archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
         try:
             if component.texts:

@@ -218,6 +218,8 @@ def _description(path: Path, folder: Path) -> tuple[Any, ET.Element]:
         raise FmuError(f"{path}: this is FMI 2.0 {kind}; {EXPECTED}")
     if not about.modelIdentifier or not description.guid:
         raise FmuError(f"{path}: its {XML} has no modelIdentifier or no guid")
+    if re.search(r"[/\\:\0]", about.modelIdentifier) or about.modelIdentifier in (".", ".."):
+        raise FmuError(f"{path}: refused: its modelIdentifier {about.modelIdentifier!r} is a path; expected a name")
     return description, root
 
 
