@@ -8,8 +8,10 @@ since what it holds is saved and restored with the state.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Protocol, runtime_checkable
+
+import numpy as np
 
 from dcone_cosim.contract import EXTREMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
@@ -20,6 +22,8 @@ PIECE = "held piece"
 """Key under which the begin of a step is kept, to be taken in pieces."""
 SHORTEST = 1e-9
 """Shortest step that is halved [s]: tugs that still overflow the ring in it are lost, and counted as missed."""
+APART = 16
+"""So many steps between two saved states: one costs as much as a short step."""
 COUNT, TAUT = "tether.tug_count", "tether.taut"
 
 
@@ -47,23 +51,27 @@ def holding(component: Steppable) -> Holding:
 class _State:
     """What is saved with the state of the component.
 
-    so_far     extremes over the steps of the row, by name; those of the component itself before the first step
+    so_far     extremes over the steps of the row, in the order of `Held.extremes`; empty before the first step
     recorded   the row is complete: the next step begins another
     taut       the line was, after the last step
+    count, newest   number of tugs, and the last of them: time [s], peak [N], speed [m/s]
     """
 
-    so_far: Mapping[str, float] = field(default_factory=dict)
+    so_far: Sequence[float] = ()
     recorded: bool = True
     taut: bool = False
     count: int = 0
-    latest: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+    newest: tuple[float, float, float] | None = None
 
 
 class Held:
     """A component, and what it has told since the last row.
 
-    A step in which more tugs fall than its ring holds is taken back and taken again in halves, with the same inputs; a
-    component that cannot do that loses the older ones, and its log says how many.
+    What a step tells is taken in as late as can be, before the next or with the row itself, which reads it anyway. A
+    step in which more tugs fall than the ring holds is then taken back and taken again in halves, with the same inputs;
+    a component that cannot do that loses the older ones, and its log says how many.
+
+    extremes   names of its outputs that are extremes of a step
 
     Checked  tests/cosim/test_holding.py
     """
@@ -74,25 +82,39 @@ class Held:
         self.variables: Mapping[str, VariableInfo] = component.variables
         self.can_save, self.can_vary_step = component.can_save, component.can_vary_step
         self.can_interpolate = component.can_interpolate
-        self._state = _State()
-        self._kept: dict[str, _State] = {}
-        self._rates: dict[str, float] = {}
-        self._extremes = [name for name in EXTREMES if name in self.variables]
+        self.extremes = [name for name in EXTREMES if name in self.variables]
+        self._choose = [EXTREMES[name].choose for name in self.extremes]
         ring = 0
         while all(f"{TUG_PREFIX}{ring + 1}].{field}" in self.variables for field in TUG_FIELDS):
             ring += 1
-        self.tugs = TugLog(ring) if ring and COUNT in self.variables else None
-        watched = list(self._extremes)
-        if self.tugs is not None:
-            watched += [name for name in (COUNT, TAUT) if name in self.variables]
+        self._log = TugLog(ring) if ring and COUNT in self.variables else None
+        self.watched = list(self.extremes)
+        if self._log is not None:
+            self.watched += [name for name in (COUNT, TAUT) if name in self.variables]
             names = [f"{TUG_PREFIX}{i}].{field}" for i in range(1, ring + 1) for field in TUG_FIELDS]
-            self._read_ring = component.reader(names)
-        self._read = component.reader(watched) if watched else None
+            self._read_ring, self._read_newest = component.reader(names), component.reader(names[: len(TUG_FIELDS)])
+        self._read = component.reader(self.watched) if self.watched else None
+        self._state = _State()
+        self._kept: dict[str, _State] = {}
+        self._pending = False
+        self._rates: dict[str, float] = {}
+        self._moving: Mapping[str, float] = {}
+        self._steps: list[tuple[float, float]] = []
+        self._checkpoint = False
+
+    @property
+    def tugs(self) -> TugLog | None:
+        self.settle()
+        return self._log
 
     def set(self, values: Mapping[str, float]) -> None:
+        self.settle()
+        self._checkpoint = False
         self.component.set(values)
 
     def set_rates(self, rates: Mapping[str, float]) -> None:
+        self.settle()
+        self._checkpoint = False
         self._rates |= rates
         self.component.set_rates(rates)
 
@@ -112,83 +134,134 @@ class Held:
         self.component.close()
 
     def begin_row(self) -> None:
-        if self._state.recorded:  # the very first row: the line may be taut already
-            self._gather(self._told())
+        self.settle()
+        if self._state.recorded and self._log is not None:  # no step yet: the line may be taut already
+            self._gather(self._log, self._told())
         self._state.recorded = True
 
     def row(self, names: Sequence[str]) -> Readable:
         reader = self.component.reader(names)
-        place = {name: i for i, name in enumerate(reader.names)}
-        columns = [(place[name], name, place.get(EXTREMES[name].of)) for name in self._extremes if name in place]
-        return _Row(self, reader, columns) if columns else reader
+        return _Row(self, reader) if self.watched else reader
 
     @property
-    def so_far(self) -> Mapping[str, float]:
+    def so_far(self) -> Sequence[float]:
         """Extremes over the steps of the row."""
         return self._state.so_far
 
-    def step(self, time: float, size: float) -> None:
-        rates, self._rates = self._rates, {}
-        if self.tugs is None or not (self.can_save and self.can_vary_step):
-            self._advance(time, size)
-        else:
-            self._in_pieces(time, size, self.tugs, rates)
+    @property
+    def pending(self) -> bool:
+        """Whether what the last step tells is not taken in yet."""
+        return self._pending
 
-    def _in_pieces(self, time: float, size: float, tugs: TugLog, rates: Mapping[str, float]) -> None:
-        before = tugs.count
-        self.save(PIECE)
-        self._advance(time, size)
-        if tugs.count - before <= tugs.ring or size <= SHORTEST:
-            return
-        self.restore(PIECE)
-        found = int(self._told()[COUNT])
-        if found != before:
+    def step(self, time: float, size: float) -> None:
+        self.settle()
+        if self._log is not None and self.can_save and self.can_vary_step:
+            self._keep()
+            self._steps.append((time, size))
+        self.component.step(time, size)
+        self._pending = bool(self.watched)
+
+    def _keep(self) -> None:
+        """Save the state now and then, and whenever inputs have changed: from there all steps can be taken again."""
+        if not self._checkpoint or len(self._steps) >= APART:
+            self.component.save(PIECE)
+            self._checkpoint = True
+            self._steps = []
+            self._moving, self._rates = self._rates, {}
+
+    def settle(self) -> None:
+        """Take in what the last step tells, unless that has been done."""
+        if self._pending:
+            self.take_in(self._told())
+
+    def take_in(self, told: Sequence[float]) -> bool:
+        """The same, with the values of `watched` as read; true when the step was taken again in pieces."""
+        self._pending = False
+        if self._overflows(told) and self._checkpoint:
+            self._again()
+            return True
+        self._fold(told)
+        return False
+
+    def _overflows(self, told: Sequence[float]) -> bool:
+        log = self._log
+        return log is not None and told[len(self.extremes)] - log.count > log.ring
+
+    def _fold(self, told: Sequence[float]) -> None:
+        state = self._state
+        if state.recorded:
+            state.so_far, state.recorded = told[: len(self.extremes)], False
+        else:
+            pairs = zip(self._choose, state.so_far, told, strict=False)
+            state.so_far = [choose(before, now) for choose, before, now in pairs]
+        if self._log is not None:
+            self._gather(self._log, told)
+
+    def _again(self) -> None:
+        """Go back to where the state was saved, take the steps up to the last again, and that one in pieces."""
+        assert self._log is not None
+        steps, rates = self._steps, self._moving
+        self.component.restore(PIECE)
+        for time, size in steps[:-1]:
+            if rates:
+                self.component.set_rates(rates)
+            self.component.step(time, size)
+            rates = {}
+        time, size = steps[-1]
+        found = int(self._told()[len(self.extremes)])
+        if found != self._log.count:
             raise FmuError(
-                f"{self.name}: its state does not restore: {COUNT} was {before} at t = {time:.9g} s, and is "
+                f"{self.name}: its state does not restore: {COUNT} was {self._log.count} at t = {time:.9g} s, and is "
                 f"{found} after going back there\n"
                 "  (an FMU that cannot go back must say canGetAndSetFMUstate = false)"
             )
+        self._halve(time, size, rates)
+        self._checkpoint = False
+
+    def _halve(self, time: float, size: float, rates: Mapping[str, float]) -> None:
         middle, end = time + 0.5 * size, time + size
         for begin, until in ((time, middle), (middle, end)):
+            self.component.save(PIECE)
             if rates:
                 self.component.set_rates(rates)
-            self._in_pieces(begin, until - begin, tugs, rates)
+            self.component.step(begin, until - begin)
+            told = self._told()
+            if self._overflows(told) and until - begin > SHORTEST:
+                self.component.restore(PIECE)
+                self._halve(begin, until - begin, rates)
+            else:
+                self._fold(told)
 
-    def _advance(self, time: float, size: float) -> None:
-        """One step of the component, and what it tells of it."""
-        state = self._state
-        begins, state.recorded = state.recorded, False
-        self.component.step(time, size)
-        told = self._told()
-        state.so_far = {
-            name: told[name] if begins else EXTREMES[name].choose(state.so_far[name], told[name])
-            for name in self._extremes
-        }
-        self._gather(told)
+    def _told(self) -> list[float]:
+        """The values of `watched`."""
+        if self._read is None:
+            return []
+        values: list[float] = self._read().tolist()
+        return [values[self._read.names.index(name)] for name in self.watched]
 
-    def _told(self) -> Mapping[str, float]:
-        return {} if self._read is None else dict(zip(self._read.names, self._read().tolist(), strict=True))
-
-    def _gather(self, told: Mapping[str, float]) -> None:
+    def _gather(self, log: TugLog, told: Sequence[float]) -> None:
         """Put down the tugs in the ring, where one is new or may have grown."""
-        if self.tugs is None:
-            return
-        count, taut = int(told[COUNT]), bool(told.get(TAUT, True))
-        if count and (count != self.tugs.count or taut or self._state.taut):
-            self.tugs.update(count, self._read_ring().reshape(self.tugs.ring, len(TUG_FIELDS)))
+        count = int(told[len(self.extremes)])
+        taut = len(told) == len(self.extremes) + 1 or bool(told[-1])
+        if count and (count != log.count or taut or self._state.taut):
+            read = self._read_newest if count == log.count else self._read_ring
+            log.update(count, read().reshape(-1, len(TUG_FIELDS)))
         self._state.taut = taut
 
     def save(self, key: str = "") -> None:
+        self.settle()
         self.component.save(key)
-        tugs = self.tugs
-        kept = (0, {}) if tugs is None else (tugs.count, tugs.latest())
-        self._kept[key] = replace(self._state, count=kept[0], latest=kept[1])
+        kept = self._kept[key] = replace(self._state)
+        if self._log is not None:
+            kept.count, kept.newest = self._log.count, self._log.newest
 
     def restore(self, key: str = "") -> None:
         self.component.restore(key)
+        self._pending = self._checkpoint = False
+        self._rates = {}
         self._state = replace(self._kept[key])
-        if self.tugs is not None:
-            self.tugs.go_back(self._state.count, self._state.latest)
+        if self._log is not None:
+            self._log.go_back(self._state.count, self._state.newest)
 
     def release(self, key: str = "") -> None:
         self.component.release(key)
@@ -198,15 +271,27 @@ class Held:
 class _Row:
     """A row of a component's reader with the extremes of all steps in it."""
 
-    def __init__(self, held: Held, reader: Readable, columns: Sequence[tuple[int, str, int | None]]) -> None:
-        """columns: place and name of an extreme, and the place of what it is the extreme of"""
-        self._held, self._reader, self._columns = held, reader, columns
+    def __init__(self, held: Held, reader: Readable) -> None:
+        self._held, self._reader = held, reader
         self.names, self.values = reader.names, reader.values
+        place = {name: i for i, name in enumerate(reader.names)}
+        all_there = set(held.watched) <= set(place)
+        self._watched = np.array([place[name] for name in held.watched]) if all_there else None
+        self._columns = [
+            (place[name], i, EXTREMES[name].choose, place.get(EXTREMES[name].of, place[name]))
+            for i, name in enumerate(held.extremes)
+            if name in place
+        ]
 
     def __call__(self) -> Row:
-        values, so_far = self._reader(), self._held.so_far
-        for place, name, now in self._columns:
-            values[place] = so_far.get(name, values[place])
-            if now is not None:
-                values[place] = EXTREMES[name].choose(values[place], values[now])
+        held = self._held
+        if self._watched is None:
+            held.settle()
+        values = self._reader()
+        if self._watched is not None and held.pending and held.take_in(values[self._watched].tolist()):
+            values = self._reader()
+        so_far = held.so_far
+        if so_far:
+            for place, i, choose, now in self._columns:
+                values[place] = choose(so_far[i], values.item(now))
         return values

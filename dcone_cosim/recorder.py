@@ -137,22 +137,28 @@ class TugLog:
         self.rows: dict[int, tuple[float, float, float]] = {}
 
     def update(self, count: int, latest: Row) -> None:
-        """latest: time [s], peak [N], speed [m/s] of each tug in the ring, newest first, shape (ring, 3)"""
+        """Take in those that are new, and the one before them, which may have grown.
+
+        latest   time [s], peak [N], speed [m/s] of each tug in the ring, newest first, shape (ring, 3); of the newest
+                 alone when the count has not changed
+        """
+        changed = min(count - self.count + 1, count, self.ring)
         self.count = count
-        for place in range(min(count, self.ring)):
-            time, peak, speed = latest[place].tolist()
+        for place, (time, peak, speed) in enumerate(latest[:changed].tolist()):
             self.rows[count - place] = (time, peak, speed)
 
-    def latest(self) -> dict[int, tuple[float, float, float]]:
-        """The tugs that may still change, by number."""
-        return {n: self.rows[n] for n in range(max(1, self.count - self.ring + 1), self.count + 1) if n in self.rows}
+    @property
+    def newest(self) -> tuple[float, float, float] | None:
+        """The tug that may still grow."""
+        return self.rows.get(self.count)
 
-    def go_back(self, count: int, latest: Mapping[int, tuple[float, float, float]]) -> None:
-        """Forget all after this count; `latest` are those that have changed since."""
+    def go_back(self, count: int, newest: tuple[float, float, float] | None) -> None:
+        """Forget all after this count, and how the newest of then has grown since."""
         for number in range(count + 1, self.count + 1):
             self.rows.pop(number, None)
         self.count = count
-        self.rows |= latest
+        if newest is not None:
+            self.rows[count] = newest
 
     @property
     def missed(self) -> int:

@@ -261,6 +261,9 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         "scene_sha256": run.scene.sha256,
         "settings": [override.argument for override in run.scene.places.overrides],
         "handoff": dict(run.scene.handoff),
+        "handed_over_at": None
+        if run.handoff is None
+        else {"value": run.handoff.time, "unit": "s", "clock": "since the shot"},
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,

@@ -238,8 +238,8 @@ def _cautions(scene: Scene) -> dict[str, None]:
             found += build.cautions(phase.name, {**main.defaults, **main.parameters}, main.parameters, main.terms)
     if len(scene.phases) == len(PHASES) and scene.phases[0].main.terms.get("gravity") == "none":
         found.append(
-            'capture.gravity: with law = "none" the orbital frame stands still in the capture and turns in the '
-            "removal, which takes the velocities handed over as seen in it (n r: 12 mm/s at 12 m in low orbit); "
+            'capture.gravity: law = "none" lets the orbital frame stand still in the capture; it turns in the removal, '
+            "which takes the velocities handed over as seen in it (n r: 12 mm/s at 12 m in low orbit). "
             'law = "hill" turns it in both'
         )
     return dict.fromkeys(found)

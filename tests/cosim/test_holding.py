@@ -201,8 +201,9 @@ def test_moving_inputs_go_on_moving_in_the_pieces() -> None:
     held.exit_initialisation()
     held.set_rates({"reel.tension": 0.5})
     held.step(0.0, 10.0)
-    assert component.values["reel.tension"] == 5.0
     assert len(held.tugs.rows) == 9
+    assert len(component.calls) > 9
+    assert component.values["reel.tension"] == 5.0
 
 
 @pytest.mark.slow
@@ -225,3 +226,49 @@ def test_peaks_of_a_removal_beside_its_controller(coupling: dict[str, object]) -
         assert parts(ends, axis=0) == pytest.approx(long[name][1:], rel=1e-12)
     assert (long["tether.tension_peak"][1:] >= long["tether.tension"][:-1] * (1.0 - 1e-9)).all()
     assert (long["tether.tension_peak"][1:] > short["tether.tension_peak"][6::6]).any()
+
+
+def test_tugs_of_steps_that_were_rolled_back_are_forgotten() -> None:
+    """Also how one of them had grown, and though the tugs after going back are others."""
+    component = MockRemoval(tugs=[(1.0, 6.0, 0.01), (4.0, 5.0, 0.02)], grows=2.0)
+    held = Held(component)
+    held.enter_initialisation(0.0)
+    held.exit_initialisation()
+    held.step(0.0, 2.0)
+    assert held.tugs.rows == {1: (1.0, 3.0, 0.01)}
+    held.save("then")
+    held.step(2.0, 4.0)
+    assert held.tugs.rows == {1: (1.0, 6.0, 0.01), 2: (4.0, 5.0, 0.02)}
+    held.restore("then")
+    assert (held.tugs.count, held.tugs.rows) == (1, {1: (1.0, 3.0, 0.01)})
+    component.tugs[1] = (3.0, 4.0, 0.03)
+    held.step(2.0, 4.0)
+    assert held.tugs.rows == {1: (1.0, 6.0, 0.01), 2: (3.0, 4.0, 0.03)}
+
+
+def test_steps_before_the_one_that_overflows_are_taken_again_as_they_were() -> None:
+    component = MockRemoval(tugs=TUGS)
+    held = Held(component)
+    held.enter_initialisation(0.0)
+    held.exit_initialisation()
+    for begin, size in ((0.0, 0.5), (0.5, 0.5), (1.0, 9.0)):
+        held.step(begin, size)
+    held.settle()
+    assert component.calls[3:5] == [(0.0, 0.5), (0.5, 0.5)]
+    assert held.tugs.rows == dict(enumerate(TUGS[:9], start=1))
+
+
+def test_a_step_that_overflows_after_going_back() -> None:
+    """What was rolled back is not taken again."""
+    component = MockRemoval(tugs=TUGS)
+    held = Held(component)
+    held.enter_initialisation(0.0)
+    held.exit_initialisation()
+    held.step(0.0, 0.5)
+    held.save("then")
+    held.step(0.5, 0.5)
+    held.restore("then")
+    held.step(0.5, 9.5)
+    held.settle()
+    assert held.tugs.rows == dict(enumerate(TUGS[:9], start=1))
+    assert component.calls.count((0.5, 0.5)) == 1

@@ -135,7 +135,9 @@ def test_a_mission_with_its_hand_over(dcone: Dcone, tmp_path: Path) -> None:
     assert {name: removal["handed_over"][name] for name in handed} == handed
     assert {"start.condition", "orbit.true_anomaly"} <= removal["handed_over"].keys()
     assert "thrust.level" not in removal["handed_over"]
-    assert removal["start"]["value"] == pytest.approx(8.14, abs=0.1)
+    at = json.loads((first / "ledger.json").read_text())["time"]
+    assert told(first)["handed_over_at"] == at
+    assert at["value"] == pytest.approx(8.14, abs=0.1)
     assert told(first)["phases"]["capture"]["options"]["hand_over"] == "captured"
 
 

@@ -45,6 +45,7 @@ def test_table_2_is_the_papers() -> None:
         "tether.youngs_modulus": 60e9,
         "tether.damping_ratio": 0.05,
         "thrust.level": -0.01,
+        "thrust.specific_impulse": 3000.0,
     }
     assert phase.main.terms == {"reel": "locked", "thrust": "along_track"}
     assert (phase.macro_step, phase.duration) == (60.0, 86400.0)

@@ -276,7 +276,7 @@ def test_a_mission_in_two_packages_has_the_bits_of_the_mission(tmp_path: Path) -
     capture, removal = export_scene("mission", tmp_path / "out", Progress(), from_run=tmp_path / "run").paths
     assert same(whole, run(capture), "capture")
     handed_over = run(removal)
-    assert handed_over.phases["removal"].start == whole.handoff.time
+    assert handed_over.phases["removal"].origin == whole.handoff.time
     assert same(whole, handed_over)
     shutil.rmtree(tmp_path / "run")
 

@@ -50,7 +50,7 @@ def test_before_a_run(scene: str, setting: str, twin: str, said: str) -> None:
 def test_a_frame_that_stands_still_in_the_capture_alone(tmp_path: Path) -> None:
     text = Path(shipped()["mission"]).read_text()
     (tmp_path / "still.toml").write_text(text.replace('law = "hill"', 'law = "none"'))
-    assert 'capture.gravity: with law = "none" the orbital frame stands still' in cautions(str(tmp_path / "still.toml"))
+    assert 'capture.gravity: law = "none" lets the orbital frame stand still' in cautions(str(tmp_path / "still.toml"))
     assert "gravity" not in cautions("mission") + cautions("table1-capture")
 
 

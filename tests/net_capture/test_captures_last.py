@@ -42,15 +42,29 @@ def test_a_count_carries_its_interval():
     assert (1.0 - told["interval"][1]) ** 150 == pytest.approx(0.025, rel=2e-2)
 
 
+def judge(summary):
+    """Nothing comes out in the half minute in which a hand-over happens, and next to nothing that holds is refused."""
+    assert summary["taken_back_within_30_s"]["count"] <= 0.01 * summary["captured"]
+    assert summary["hold_but_refused"] <= 0.05 * summary["hold_to_the_end"]
+
+
+def test_the_stored_captures_hold_for_half_a_minute():
+    judge(stored()["summary"])
+
+
+@pytest.mark.xfail(
+    strict=True,
+    reason="the cord ties four bullets and leaves four slack loops longer than the girth: some come out through them",
+)
+def test_the_stored_captures_hold_for_a_minute():
+    """What is asked, and open: no judgement of the mouth closes its loops."""
+    summary = stored()["summary"]
+    assert summary["taken_back_within_60_s"]["count"] <= 0.01 * summary["captured"]
+
+
 @pytest.mark.evidence
 def test_captures_last():
-    """Every shot again; the stored result follows.
-
-    Nothing comes out in the half minute in which a hand-over happens. Within a minute some do, between two bullets: the
-    sides of the net there are slack loops longer than the target's girth, which no judgement of the mouth can close.
-    """
+    """Every shot again; the stored result follows."""
     summary = main()["summary"]
     assert summary["shots"] == 200
-    assert summary["taken_back_within_30_s"]["count"] <= 0.01 * summary["captured"]
-    assert summary["taken_back_within_60_s"]["count"] <= 0.05 * summary["captured"]
-    assert summary["hold_but_refused"] <= 0.05 * summary["hold_to_the_end"]
+    judge(summary)
