@@ -9,6 +9,7 @@ from dcone_cosim import build
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Steppable
+from dcone_cosim.fmu.leaving import guard_exit
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.mistakes import places_named
 from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
@@ -31,7 +32,9 @@ class Archives:
             for phase, component in components:
                 key = (phase, component.name)
                 self._of[key] = (
-                    Archive(component.fmu) if component.fmu is not None else self._ours(paths[key], component)
+                    Archive(component.fmu, tolerance=component.tolerance)
+                    if component.fmu is not None
+                    else self._ours(paths[key], component)
                 )
         except BaseException:
             self.close()
@@ -85,7 +88,16 @@ class Archives:
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]
-        return archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
+        if not component.isolate and component.fmu is not None:
+            guard_exit()
+        made = archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
+        try:
+            if component.texts:
+                made.set_texts(component.texts)
+        except BaseException:
+            made.close()
+            raise
+        return made
 
     def _set(self, phase: PhaseScene, component: ComponentScene, instance: Steppable) -> None:
         try:
@@ -138,7 +150,8 @@ class Archives:
             "ours": component.fmu is None,
             "isolated": component.isolate,
             "timeout": {"value": component.timeout, "unit": "s"} if component.isolate else None,
-            "texts": texts,
+            "texts": {**texts, **component.texts},
+            "tolerance": archive.tolerance,
         }
 
     def __enter__(self) -> Archives:

@@ -66,6 +66,7 @@ def run_and_write(
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
+        notes += nothing_recorded(result)
         if Path(name) == Path(scene.source).parent:
             notes += unlike(Path(name), facts)
 
@@ -81,6 +82,15 @@ def run_and_write(
     if out is not None and draft.folder != folder:
         notes.append(f"{folder} came to be while the scene ran and was not touched; the results are in {draft.folder}")
     return Written(result, draft.folder, notes)
+
+
+def nothing_recorded(result: RunResult) -> list[str]:
+    """Which phases leave nothing but their times."""
+    return [
+        f"nothing is recorded of the {name}: its FMU has no outputs that are numbers"
+        for name, phase in result.phases.items()
+        if len(phase.recorder.names) == 1
+    ]
 
 
 def _load(with_figures: bool) -> None:

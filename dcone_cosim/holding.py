@@ -263,6 +263,10 @@ class Held:
         if self._log is not None:
             self._log.go_back(self._state.count, self._state.newest)
 
+    def release(self, key: str = "") -> None:
+        self.component.release(key)
+        self._kept.pop(key, None)
+
 
 class _Row:
     """A row of a component's reader with the extremes of all steps in it."""

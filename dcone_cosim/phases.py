@@ -22,6 +22,8 @@ from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 
 LOCATED_TO = 1e-6
 """How closely the instant of a hand-over is located by halving [s]."""
+SAME = 1e-6
+"""Relative difference up to which two steps are of one length: at t = 1e6 s a step of 1 ms has lost six digits."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,13 @@ def grid_steps(duration: float, macro_step: float) -> int:
     return max(1, math.ceil(duration / macro_step - 1e-9))
 
 
+def length_of(size: float, component: Steppable, macro_step: float) -> float:
+    """Length of a step [s]. The difference of two times may have lost its last bits, and an FMU that takes steps of one
+    length may compare them: it gets the macro step itself."""
+    same = not component.can_vary_step and math.isclose(size, macro_step, rel_tol=SAME)
+    return macro_step if same else size
+
+
 class CaptureLoop:
     """Steps a capture FMU until it has handed over, failed, or run out of time."""
 
@@ -172,7 +181,8 @@ class CaptureLoop:
     def _step(self, begin: float, end: float) -> None:
         """Between two times since the shot."""
         origin = self.plan.start
-        self.component.step(origin + begin, (origin + end) - (origin + begin))
+        size = (origin + end) - (origin + begin)
+        self.component.step(origin + begin, length_of(size, self.component, self.plan.macro_step))
 
     def _save(self) -> None:
         self._kept = restoring.save(self.component, self.read)
@@ -206,6 +216,7 @@ class CaptureLoop:
             self.read()
             if searching and self.triggered():
                 at = self._locate(begin, end)
+                self.component.release()
                 result.located = at
                 last = min(plan.duration, at if plan.stop_there else at + plan.after_capture)
                 self._record(at, force=True)
@@ -330,7 +341,7 @@ class RemovalLoop:
             interrupts.check(result.name, start + i * self.macro_step)
             end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
             begun = origin + (start + i * self.macro_step)
-            component.step(begun, (origin + end) - begun)
+            component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
             result.steps += 1
             self._record(end)
             self.progress.at(end)

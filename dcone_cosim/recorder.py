@@ -16,8 +16,22 @@ FIRST_ROWS, MOST_ROWS = 256, 65536
 """Rows of a recorder's first block, and of the largest."""
 
 
+TIME = "time"
+"""Name of the first column."""
+
+
+def _beside_time(names: Sequence[str]) -> dict[str, str]:
+    """The column of each output: its name, or `output.time` for one that is called as the first column is."""
+    shown = f"output.{TIME}"
+    while shown in names:
+        shown = f"output.{shown}"
+    return {shown if name == TIME else name: name for name in names}
+
+
 class Recorder:
     """Rows of numbers under fixed names, each with its unit and kind; the first column is the time [s].
+
+    names    of the columns: those of the outputs, but for one that bears the name of the first column
 
     Kept in blocks of columns. Each block is as long as all before it, so that memory follows the rows there are, not
     the rows there might be, and no row is copied while the phase runs.
@@ -25,9 +39,10 @@ class Recorder:
 
     def __init__(self, names: Sequence[str], variables: Mapping[str, VariableInfo], expected_rows: int = 1) -> None:
         """expected_rows: rows that are likely, a hint for the first block"""
-        self.names = ("time", *names)
-        self.units = {"time": "s"} | {name: variables[name].unit for name in names}
-        self.kinds = {"time": "Real"} | {name: variables[name].kind for name in names}
+        columns = _beside_time(names)
+        self.names = (TIME, *columns)
+        self.units = {TIME: "s"} | {column: variables[name].unit for column, name in columns.items()}
+        self.kinds = {TIME: "Real"} | {column: variables[name].kind for column, name in columns.items()}
         self._place = {name: i for i, name in enumerate(self.names)}
         self._blocks: list[Row] = []
         self._rows = self._full = 0

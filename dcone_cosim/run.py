@@ -4,7 +4,8 @@
     capture.parquet  nodes.parquet  removal.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
     *.png
 
-Columns carry their unit in the field metadata of the Parquet file; in a CSV the unit stands in the header.
+Columns carry their unit in the field metadata of the Parquet file, and in `df.attrs["units"]` where pandas reads it; in
+a CSV the unit stands in the header. An output called `time` is in the column `output.time`, beside that of our own.
 """
 
 from __future__ import annotations
@@ -110,7 +111,11 @@ def _table(columns: Sequence[tuple[str, str, Any]], **about: Mapping[str, str]) 
         pa.field(name, array.type, metadata={"unit": unit, **about.get(name, {})})
         for (name, unit, _), array in zip(columns, arrays, strict=True)
     ]
-    return pa.Table.from_arrays(arrays, schema=pa.schema(fields))
+    attributes = {"units": {name: unit for name, unit, _ in columns}} | {
+        name: dict(more) for name, more in about.items()
+    }
+    # pandas takes `DataFrame.attrs` from here
+    return pa.Table.from_arrays(arrays, schema=pa.schema(fields, {"PANDAS_ATTRS": json.dumps(attributes)}))
 
 
 def _arrow(values: npt.NDArray[Any]) -> Any:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -133,10 +133,14 @@ class Fault:
 
 @dataclass(frozen=True)
 class Term:
-    """One physics term a scene may name: its variables, and a sentence on what it adds."""
+    """One physics term a scene may name: its variables, and a sentence on what it adds.
+
+    needs    groups without a term of which it has nothing to act on
+    """
 
     summary: str
     variables: tuple[Variable, ...] = ()
+    needs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -144,11 +148,13 @@ class Group:
     """Terms of which a scene names at most one, by the key `selector` of its table.
 
     optional     the scene may leave the group out; then nothing of it is in the FMU
+    follows      the term that follows from the values, SI by FMI name, where the scene has the table and names none
     """
 
     terms: Mapping[str, Term]
     selector: str = "law"
     optional: bool = False
+    follows: Callable[[Mapping[str, float]], str] | None = None
 
 
 HEAD = (
@@ -194,6 +200,13 @@ class Model:
     stop_time: float
     macro_step: float
 
+    def missing(self, terms: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+        """Each group whose term needs another group that is not there, and that group."""
+        for group, term in terms.items():
+            for needed in self.groups[group].terms[term].needs:
+                if needed not in terms:
+                    yield group, needed
+
     def interface(self, terms: Mapping[str, str]) -> Interface:
         """The interface of this model built with the given terms, `{group: term}`."""
         for group, term in terms.items():
@@ -204,6 +217,8 @@ class Model:
         for name, group_ in self.groups.items():
             if not group_.optional and name not in terms:
                 raise ValueError(f"{self.name} needs a choice of {name}: {', '.join(group_.terms)}")
+        for group, needed in self.missing(terms):
+            raise ValueError(f"{self.name}: {group} = {terms[group]!r} needs a choice of {needed}")
         ordered = {name: terms[name] for name in self.groups if name in terms}
         variables = list(HEAD + self.base)
         for name, term in ordered.items():
@@ -211,6 +226,16 @@ class Model:
         inputs = {v.name for v in variables if v.causality == "input"}
         variables = [replace(v, partials=tuple(p for p in v.partials if p[0] in inputs)) for v in variables]
         return Interface(self, ordered, tuple(variables))
+
+
+def check_implemented(model: Model, implemented: Mapping[str, Container[str]], terms: Mapping[str, str]) -> None:
+    """Refuse a term that is declared, but that the kernels do not know: they would take it for another, or for none.
+
+    implemented   terms by group, as the kernels have them
+    """
+    for group, term in terms.items():
+        if term not in implemented.get(group, ()):
+            raise ValueError(f"{model.name}: no kernel implements {group} = {term!r}")
 
 
 @dataclass(frozen=True)

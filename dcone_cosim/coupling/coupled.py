@@ -13,13 +13,11 @@ from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.coupling.step_control import ControlledSteps, FixedSteps, Statistics, StepControl
 from dcone_cosim.coupling.wiring import order_of, wire
 from dcone_cosim.errors import FmuError, InputError
-from dcone_cosim.fmu.component import Readable, Row, Steppable, Terminated, VariableInfo
+from dcone_cosim.fmu.component import Readable, Row, Steppable, VariableInfo
 from dcone_cosim.holding import Held
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.recorder import TugLog
 
-BEGIN = "coupling begin"
-"""Key under which the begin of a macro step is kept, for an FMU that ends itself within it."""
 KEPT = "coupling kept "
 """Before the keys of those who save and restore the whole."""
 
@@ -66,8 +64,12 @@ class Coupled:
         self._exchange = Exchange(
             self._held, links, order, coupling.method == "gauss_seidel", coupling.extrapolation == "linear"
         )
-        control = ControlledSteps if coupling.control == "error" else FixedSteps
-        self._steps: StepControl = control(self._exchange, coupling, self._statistics)
+        self._steps: StepControl
+        if coupling.control == "error":
+            self._steps = ControlledSteps(self._exchange, coupling, self._statistics)
+        else:
+            can_meet, even = self.can_save and self.can_vary_step, not self.can_vary_step
+            self._steps = FixedSteps(self._exchange, coupling, self._statistics, can_meet, even)
         self._one_length = [n for n, c in zip(names, self.components, strict=True) if not c.can_vary_step]
         self._length = coupling.step
         self._times: dict[str, float] = {}
@@ -192,30 +194,8 @@ class Coupled:
             self._stale = False
         if self._one_length:
             self._need_whole_steps(time, size)
-        if self.can_save and self.coupling.control == "fixed":
-            self._steps.keep(BEGIN)
-        try:
-            self._steps.advance(time, time + size, size)
-            self._time = time + size
-        except Terminated as end:
-            self._meet(time, end)
-            raise
-
-    def _meet(self, begin: float, end: Terminated) -> None:
-        """Bring all components to the time at which one of them has ended itself.
-
-        With controlled steps they stand together already, within `smallest_step` before it.
-        """
-        if self.coupling.control == "error" or not self.can_save or not self.can_vary_step:
-            return
-        self._steps.go_back(BEGIN, begin)
-        if end.time <= begin:
-            return
-        try:
-            self._steps.advance(begin, end.time, end.time - begin)
-        except Terminated as again:
-            self._steps.go_back(BEGIN, begin)
-            end.reached = again.reached = begin
+        self._steps.advance(time, time + size, size)
+        self._time = time + size
 
     def save(self, key: str = "") -> None:
         """Keep the present state of all and of what is between them under this key."""
@@ -226,6 +206,10 @@ class Coupled:
         """Go back to what was kept last under this key."""
         self._time = self._times[key]
         self._steps.go_back(KEPT + key, self._time)
+
+    def release(self, key: str = "") -> None:
+        """Nobody goes back to what was kept under this key any more."""
+        self._steps.release(KEPT + key)
 
     def close(self) -> None:
         """Close every component; the first failure is raised once all have been."""

@@ -193,12 +193,19 @@ class Exchange:
                     restoring.restore(component, read, kept, time, COUPLED_FIXED)
                 raise
             restoring.replay(component, read, kept, time, end, COUPLED_FIXED)
+            component.release()
 
     def keep(self, key: str) -> None:
         """Save every component and what stands between them under a key."""
         for component in self.components:
             component.save(key)
         self._kept[key] = (list(self.out), list(self._held), list(self._rate))
+
+    def release(self, key: str) -> None:
+        """Nobody goes back to what was kept under the key any more."""
+        for component in self.components:
+            component.release(key)
+        self._kept.pop(key, None)
 
     def go_back(self, key: str, time: float) -> None:
         """Go back to what was kept under the key, and see that the connected outputs are those of then."""

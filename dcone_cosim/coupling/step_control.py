@@ -9,8 +9,10 @@ from typing import Protocol
 from dcone_cosim.coupling.exchange import Exchange
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu.component import CallError
+from dcone_cosim.fmu.component import CallError, Terminated
 
+BEGIN = "coupling begin"
+"""Key under which the begin of a fixed step is kept, for an FMU that ends itself within it."""
 TRIAL = "coupling trial"
 """Key under which the begin of a controlled step is kept."""
 SAFETY, MOST_SHRINK, LEAST_SHRINK, MOST_GROWTH = 0.9, 0.1, 0.8, 5.0
@@ -52,13 +54,22 @@ class StepControl(Protocol):
     def advance(self, begin: float, end: float, macro_step: float) -> None: ...
     def keep(self, key: str) -> None: ...
     def go_back(self, key: str, time: float) -> None: ...
+    def release(self, key: str) -> None: ...
 
 
 class FixedSteps:
-    """Coupling steps of one length; the last one of a macro step may be shorter. Times come from integers."""
+    """Coupling steps of one length; the last one of a macro step may be shorter. Times come from integers.
 
-    def __init__(self, exchange: Exchange, coupling: Coupling, statistics: Statistics) -> None:
+    even       a component takes steps of one length: all are the same to the last bit, and fill the macro step
+    can_meet   all can go back, and take a shorter step to the time at which one of them has ended itself. Each coupling
+               step is kept for that alone, and none before it: an FMU may throw away what lies before a step
+    """
+
+    def __init__(
+        self, exchange: Exchange, coupling: Coupling, statistics: Statistics, can_meet: bool, even: bool
+    ) -> None:
         self.exchange, self.size, self.statistics = exchange, coupling.step, statistics
+        self.can_meet, self.even = can_meet, even
 
     def advance(self, begin: float, end: float, macro_step: float) -> None:
         step = self.size or end - begin
@@ -67,14 +78,38 @@ class FixedSteps:
             time = begin + k * step
             # one step is the caller's own: the difference of two times may have lost its last bit
             size = macro_step if count == 1 else (end if k == count - 1 else begin + (k + 1) * step) - time
-            self.exchange.take(time, size)
+            if self.even:
+                size = self.size or macro_step
+            if self.can_meet:
+                self.exchange.keep(BEGIN)
+            try:
+                self.exchange.take(time, size)
+            except Terminated as end_of_one:
+                if self.can_meet:
+                    self._meet(time, end_of_one)
+                raise
             self.statistics.count(size)
+
+    def _meet(self, begin: float, end: Terminated) -> None:
+        """Bring all components to the time at which one of them has ended itself, in a step from `begin` [s]."""
+        self.exchange.go_back(BEGIN, begin)
+        if end.time <= begin:
+            return
+        try:
+            self.exchange.take(begin, end.time - begin)
+            self.statistics.count(end.time - begin)
+        except Terminated as again:
+            self.exchange.go_back(BEGIN, begin)
+            end.reached = again.reached = begin
 
     def keep(self, key: str) -> None:
         self.exchange.keep(key)
 
     def go_back(self, key: str, time: float) -> None:
         self.exchange.go_back(key, time)
+
+    def release(self, key: str) -> None:
+        self.exchange.release(key)
 
 
 class ControlledSteps:
@@ -86,7 +121,8 @@ class ControlledSteps:
     size of that output so far, the very first trial included, since an output may begin at zero. The last factor makes
     the tolerance that of a macro step: the error reached goes with the tolerance, not with a power of it. A step with
     an error above 1 is rolled back and tried shorter, as is one that an FMU discards. Before the first, every FMU
-    has to show that it goes back to where it was.
+    has to show that it goes back to where it was. With these steps all components stand together where one of them ends
+    itself, within `smallest_step` before it.
 
     A jump of an output in the second half is seen by neither, for the inputs of both were set before it. So it is asked
     as well that what comes as a surprise, over the time it was unknown, stays within the tolerance of a macro step:
@@ -207,3 +243,7 @@ class ControlledSteps:
         self.exchange.go_back(key, time)
         self._next, largest, self._forced = self._kept[key]
         self._largest = list(largest)
+
+    def release(self, key: str) -> None:
+        self.exchange.release(key)
+        self._kept.pop(key, None)

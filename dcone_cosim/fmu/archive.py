@@ -12,6 +12,7 @@ import re
 import xml.etree.ElementTree as ET
 import zipfile
 import zlib
+from collections.abc import Container
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -20,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import fmpy
 
 from dcone_cosim.errors import FmuError
+from dcone_cosim.files import regular
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import NO_UNIT, Unit, by_name, read_units
 from dcone_cosim.names import did_you_mean
@@ -33,6 +35,8 @@ EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
 LARGEST = 2 * 2**30
 """Bytes of an FMU, unpacked; also as it lies in an SSP package."""
+MOST = 20_000
+"""Entries of an FMU or of an SSP package: to unpack so many takes some seconds, and again in every run."""
 LOCAL_HEADER = b"PK\x03\x04"
 """What a zip file begins with."""
 
@@ -40,10 +44,11 @@ LOCAL_HEADER = b"PK\x03\x04"
 class Archive:
     """An FMU file, unpacked to a temporary folder that `close` removes.
 
-    folder    an FMU that is unpacked already, which `close` leaves alone
+    folder       an FMU that is unpacked already, which `close` leaves alone
+    tolerance    that the FMU's own solver is told, None for none; that of its default experiment if not given
     """
 
-    def __init__(self, path: Path, folder: Path | None = None) -> None:
+    def __init__(self, path: Path, folder: Path | None = None, tolerance: float | None = None) -> None:
         self.path = path
         self._unpacked: Scratch | None = None
         self.folder: Path | None = folder
@@ -51,12 +56,21 @@ class Archive:
             if self.folder is None:
                 self._unpacked = _unpack(path)
                 self.folder = self._unpacked.path
-            self.description: Any = _description(path, self.folder)
-            self.variables = _variables(path, self.description)
+            self.description, root = _description(path, self.folder)
+            self.variables = _variables(path, self.description, _relative(root))
             _check_binary(path, self.folder, self.identifier)
+            self.tolerance = self._default_tolerance() if tolerance is None else tolerance
         except BaseException:
             self.close()
             raise
+
+    def _default_tolerance(self) -> float | None:
+        experiment = self.description.defaultExperiment
+        try:
+            told = float(experiment.tolerance) if experiment is not None and experiment.tolerance is not None else 0.0
+        except ValueError:
+            return None
+        return told if 0.0 < told < math.inf else None
 
     @cached_property
     def sha256(self) -> str:
@@ -125,7 +139,10 @@ def _unpack(path: Path) -> Scratch:
     folder: Scratch | None = None
     try:
         with zipfile.ZipFile(path) as content:
-            for name in content.namelist():
+            names = content.namelist()
+            if len(names) > MOST:
+                raise FmuError(f"{path}: it has {len(names):,} entries; at most {MOST:,} are unpacked")
+            for name in names:
                 _check_name(path, name)
             size = sum(entry.file_size for entry in content.infolist())  # unpacking stops at what is declared here
             if size > LARGEST:
@@ -155,7 +172,7 @@ def _check_file(path: Path) -> None:
     if path.is_dir():
         raise FmuError(f"{path}: a folder; expected an FMU, a file that ends in .fmu")
     try:
-        with path.open("rb") as file:
+        with regular(path).open("rb") as file:
             head = file.read(4)
     except OSError as error:
         raise FmuError(f"{path}: cannot be read ({error.strerror})") from None
@@ -173,8 +190,8 @@ def _check_name(path: Path, name: str) -> None:
         raise FmuError(f"{path}: not a readable FMU: its entry {name!r} has a backslash; FMI 2.0 asks for /")
 
 
-def _description(path: Path, folder: Path) -> Any:
-    """The model description, once it is known to be one of FMI 2.0 co-simulation."""
+def _description(path: Path, folder: Path) -> tuple[Any, ET.Element]:
+    """The model description, once it is known to be one of FMI 2.0 co-simulation, and its XML."""
     file = folder / XML
     if not file.is_file():
         found = sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.name.lower() == XML.lower())
@@ -201,10 +218,28 @@ def _description(path: Path, folder: Path) -> Any:
         raise FmuError(f"{path}: this is FMI 2.0 {kind}; {EXPECTED}")
     if not about.modelIdentifier or not description.guid:
         raise FmuError(f"{path}: its {XML} has no modelIdentifier or no guid")
-    return description
+    if re.search(r"[/\\:\0]", about.modelIdentifier) or about.modelIdentifier in (".", ".."):
+        raise FmuError(f"{path}: refused: its modelIdentifier {about.modelIdentifier!r} is a path; expected a name")
+    return description, root
 
 
-def _variables(path: Path, description: Any) -> dict[str, VariableInfo]:
+def _relative(root: ET.Element) -> frozenset[str]:
+    """Names of the variables whose values are differences, by themselves or by their declared type; fmpy 0.3 hands on
+    neither for certain."""
+    of_types = {
+        row.get("name", "")
+        for row in root.iterfind("TypeDefinitions/SimpleType")
+        if (real := row.find("Real")) is not None and _flag(real.get("relativeQuantity"))
+    }
+    return frozenset(
+        row.get("name", "")
+        for row in root.iterfind("ModelVariables/ScalarVariable")
+        if (real := row.find("Real")) is not None
+        and (_flag(own) if (own := real.get("relativeQuantity")) is not None else real.get("declaredType") in of_types)
+    )
+
+
+def _variables(path: Path, description: Any, relative: Container[str]) -> dict[str, VariableInfo]:
     """Its variables by name. Several may share a value reference; a name can be there only once."""
     units = read_units(description.unitDefinitions, str(path))
     found: dict[str, VariableInfo] = {}
@@ -214,13 +249,14 @@ def _variables(path: Path, description: Any) -> dict[str, VariableInfo]:
         kind = "Integer" if v.type == "Enumeration" else v.type
         name = (v.unit or (v.declaredType.unit if v.declaredType is not None else "") or "") if kind == "Real" else ""
         unit = units.get(name) or by_name(name)
-        if v.relativeQuantity:
-            unit = Unit(unit.name, unit.dimension, unit.factor)
+        label = unit.si_name if unit is not NO_UNIT else "1"
+        if v.name in relative:
+            unit = unit.of_differences()
         found[v.name] = VariableInfo(
             v.name,
             int(v.valueReference),
             kind,
-            unit.si_name if unit is not NO_UNIT else "1",
+            label,
             v.causality or "local",
             v.description or "",
             name,
@@ -231,6 +267,7 @@ def _variables(path: Path, description: Any) -> dict[str, VariableInfo]:
             v.initial or "",
             _number(path, v.name, "start", v.start, kind, unit),
             *_bounds(path, v, kind, unit),
+            unit.relative,
         )
     return found
 

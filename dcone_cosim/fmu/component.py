@@ -70,6 +70,8 @@ class Component:
         self.time = 0.0
         self._states: dict[str, Any] = {}
         self._times: dict[str, float] = {}
+        self._steps = 0
+        self._steps_of: dict[str, int] = {}
         self._stepping = False
         self._dead = ""
         self._messages = Messages()
@@ -122,6 +124,15 @@ class Component:
             if chosen:
                 self._call(f"set{kind}", [r for r, _ in chosen], [number for _, number in chosen])
 
+    def set_texts(self, texts: Mapping[str, str]) -> None:
+        """Set variables of kind String by name."""
+        infos = [self.reference(name) for name in texts]
+        for info in infos:
+            if info.kind != "String":
+                raise FmuError(f"{self.name}: {info.name} is a {info.kind}; a text was given")
+        if infos:
+            self._call("setString", [info.reference for info in infos], list(texts.values()))
+
     def _fitting(self, info: VariableInfo, value: float) -> float | int:
         """An SI value as the FMU counts it; one that its kind cannot hold is an error."""
         if info.kind == "Real":
@@ -156,7 +167,7 @@ class Component:
     def enter_initialisation(self, start: float, stop: float | None = None) -> None:
         """Take the parameters as set and prepare to begin at `start` [s]."""
         self.time = start
-        self._call("setupExperiment", startTime=start, stopTime=stop)
+        self._call("setupExperiment", self.archive.tolerance, start, stop)
         self._call("enterInitializationMode")
 
     def exit_initialisation(self) -> None:
@@ -167,16 +178,21 @@ class Component:
     def step(self, time: float, size: float) -> None:
         """Advance from `time` by `size` [s]; a step refused is an error with the FMU's own words, never tried again.
 
+        The FMU is told that nobody goes back to before `time`, unless a state of an earlier step is kept: it may throw
+        its past away, and some take the word that somebody may go back for the news that somebody has.
+
         Raises `Terminated` when the FMU says that this is its end.
         """
         self._alive()
+        no_return = all(steps >= self._steps for steps in self._steps_of.values())
         try:
-            self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2False)
+            self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2True if no_return else fmi2.fmi2False)
         except fmpy.fmi1.FMICallException as error:
             raise self._refused(error, time, size) from None
         if self._messages.late:
             raise self._asynchronous("it called stepFinished", time, size)
         self.time = time + size
+        self._steps += 1
 
     def save(self, key: str = "") -> None:
         """Keep the present state, replacing the one kept before under this key."""
@@ -187,18 +203,26 @@ class Component:
             self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(state))
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
-        self._times[key] = self.time
+        self._times[key], self._steps_of[key] = self.time, self._steps
 
     def restore(self, key: str = "") -> None:
         """Go back to the state kept last under this key."""
         self._call("setFMUstate", self._states[key])
-        self.time = self._times[key]
+        self.time, self._steps = self._times[key], self._steps_of[key]
+
+    def release(self, key: str = "") -> None:
+        """Nobody goes back to what was kept under this key any more."""
+        state = self._states.pop(key, None)
+        if state is not None:
+            del self._times[key], self._steps_of[key]
+            self._call("freeFMUstate", state)
 
     def state_size(self) -> int:
         """Bytes of a serialised state: what an instance holds."""
         self.save()
         size = ctypes.c_size_t()
         self._fmu.fmi2SerializedFMUstateSize(self._fmu.component, self._states[""], ctypes.byref(size))
+        self.release()
         return size.value
 
     def close(self) -> None:

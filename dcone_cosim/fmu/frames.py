@@ -10,7 +10,7 @@ from __future__ import annotations
 import base64
 import json
 import struct
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Protocol
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.steppable import CallError, Terminated
@@ -24,6 +24,12 @@ _HEAD = struct.Struct("<4sI")
 _BYTES = "base64"
 
 
+class Readable(Protocol):
+    """A stream that frames are read from."""
+
+    def read(self, size: int, /) -> bytes: ...
+
+
 class Garbled(Exception):
     """What came is no frame, or no answer to what was asked."""
 
@@ -34,7 +40,7 @@ def send(stream: BinaryIO, content: object) -> None:
     stream.flush()
 
 
-def receive(stream: BinaryIO) -> Any:
+def receive(stream: Readable) -> Any:
     """Content of the next frame; tuples come as lists. EOFError when the other side is gone, else `Garbled`."""
     mark, size = _HEAD.unpack(_exactly(stream, _HEAD.size))
     if mark != MARK or size > LARGEST:
@@ -75,7 +81,7 @@ def _from_table(table: dict[str, Any]) -> Any:
     return base64.b64decode(table[_BYTES], validate=True) if table.keys() == {_BYTES} else table
 
 
-def _exactly(stream: BinaryIO, size: int) -> bytes:
+def _exactly(stream: Readable, size: int) -> bytes:
     data = stream.read(size)
     while len(data) < size:
         more = stream.read(size - len(data))

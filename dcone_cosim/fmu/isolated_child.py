@@ -23,7 +23,10 @@ from dcone_cosim.fmu.frames import NEXT_CALL, as_fields, receive, send
 from dcone_cosim.fmu.messages import listeners
 
 CALLS = frozenset(
-    {"set", "set_rates", "get", "enter_initialisation", "exit_initialisation", "save", "restore", "state_size"}
+    {
+        *("set", "set_texts", "set_rates", "get", "enter_initialisation", "exit_initialisation"),
+        *("save", "restore", "release", "state_size"),
+    }
 )
 """Calls that go straight to the component."""
 LOOK_FOR_PARENT = 0.5
@@ -42,8 +45,8 @@ class Server:
         if call == "hello":
             return None
         if call == "instantiate":
-            path, folder, name = arguments
-            self.component = Archive(Path(path), Path(folder)).instantiate(name)
+            path, folder, name, tolerance = arguments
+            self.component = Archive(Path(path), Path(folder), tolerance).instantiate(name)
             return None
         assert self.component is not None
         if call == "step":

@@ -12,12 +12,13 @@ from __future__ import annotations
 
 import math
 import os
+import select
 import signal
 import subprocess
 import sys
 import threading
 import time as clock
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -37,7 +38,9 @@ START = 120.0
 """How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
-KEEPING = frozenset({"read", "reader", "get", "save"})
+LOOK = 0.1
+"""How often to see whether a child that does not answer is still there [s]."""
+KEEPING = frozenset({"read", "reader", "get", "save", "release"})
 """Calls after which what was read before still holds."""
 ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int}
 """What a call is answered with; all others with nothing."""
@@ -68,12 +71,14 @@ class IsolatedComponent:
         self._noise = b""
         self._over = threading.Event()
         self._child = _start_child()
+        self._answers = _Answers(self._child, lambda: self._late)
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
         threading.Thread(target=self._guard, daemon=True).start()
         try:
             self._ask(" could not be started", "hello")
-            self._ask(" could not be instantiated", "instantiate", str(archive.path), str(archive.folder), name)
+            about = str(archive.path), str(archive.folder), name, archive.tolerance
+            self._ask(" could not be instantiated", "instantiate", *about)
         except BaseException:
             self.close()
             raise
@@ -81,6 +86,10 @@ class IsolatedComponent:
     def set(self, values: Mapping[str, float]) -> None:
         """Set variables by name."""
         self._ask("", "set", {name: float(value) for name, value in values.items()})
+
+    def set_texts(self, texts: Mapping[str, str]) -> None:
+        """Set variables of kind String by name."""
+        self._ask("", "set_texts", dict(texts))
 
     def set_rates(self, rates: Mapping[str, float]) -> None:
         """Let inputs move at these rates [SI/s] over the next step."""
@@ -132,6 +141,11 @@ class IsolatedComponent:
         self._ask("", "restore", key)
         self.time = self._times[key]
 
+    def release(self, key: str = "") -> None:
+        """Nobody goes back to what was kept under this key any more."""
+        if self._times.pop(key, None) is not None:
+            self._ask("", "release", key)
+
     def state_size(self) -> int:
         """Bytes of a serialised state."""
         return int(self._ask("", "state_size"))
@@ -166,7 +180,7 @@ class IsolatedComponent:
         self._deadline = clock.monotonic() + (START if call[0] == "hello" else self.timeout)
         try:
             send(self._child.stdin, call)  # type: ignore[arg-type]
-            error, answer = _checked(str(call[0]), receive(self._child.stdout))  # type: ignore[arg-type]
+            error, answer = _checked(str(call[0]), receive(self._answers))
         except (OSError, EOFError, Garbled) as reason:
             self._gone = self._died(where, isinstance(reason, Garbled))
             raise self._gone from None
@@ -227,6 +241,34 @@ class IsolatedComponent:
                 self._late = True
                 _kill(self._child)
                 return
+
+
+class _Answers:
+    """What the child answers. It is over with the child: somebody that the FMU has left behind may still hold the other
+    end of the stream, which then never ends."""
+
+    def __init__(self, child: subprocess.Popen[bytes], is_late: Callable[[], bool]) -> None:
+        assert child.stdout is not None
+        self._child, self._stream, self._is_late = child, child.stdout, is_late
+        self._data = b""
+
+    def read(self, size: int) -> bytes:
+        """Up to `size` bytes, at least one; none at the end."""
+        if not self._data and self._wait():
+            self._data = os.read(self._stream.fileno(), 1 << 16)
+        found, self._data = self._data[:size], self._data[size:]
+        return found
+
+    def _wait(self) -> bool:
+        """Wait for something to read; false when the child is gone and has left nothing."""
+        if os.name == "nt":
+            return True
+        while True:
+            gone = self._is_late() or self._child.poll() is not None
+            if select.select([self._stream], [], [], 0.0 if gone else LOOK)[0]:
+                return True
+            if gone:
+                return False
 
 
 class IsolatedReader:

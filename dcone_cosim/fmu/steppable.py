@@ -28,6 +28,7 @@ class VariableInfo:
     factor, offset  SI value = factor * FMU's value + offset
     initial         exact, approx or calculated
     start           None when none is declared
+    relative        its values are differences (relativeQuantity)
     """
 
     name: str
@@ -45,6 +46,7 @@ class VariableInfo:
     start: float | None = None
     minimum: float = -math.inf
     maximum: float = math.inf
+    relative: bool = False
 
     @property
     def is_si(self) -> bool:
@@ -54,7 +56,7 @@ class VariableInfo:
     @property
     def own(self) -> Unit:
         """The unit the FMU itself counts in."""
-        return Unit(self.declared_unit or self.unit, self.dimension, self.factor, self.offset)
+        return Unit(self.declared_unit or self.unit, self.dimension, self.factor, self.offset, self.relative)
 
 
 class Readable(Protocol):
@@ -89,6 +91,9 @@ class Steppable(Protocol):
     def step(self, time: float, size: float) -> None: ...
     def save(self, key: str = "") -> None: ...
     def restore(self, key: str = "") -> None: ...
+    def release(self, key: str = "") -> None:
+        """Nobody goes back to what was kept under this key any more; nothing may be kept."""
+
     def close(self) -> None: ...
 
 

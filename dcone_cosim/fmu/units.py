@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -22,6 +22,8 @@ Dimension = tuple[int, ...]
 """Exponent of every unit of `BASE`."""
 
 PURE: Dimension = (0,) * len(BASE)
+
+TEMPERATURE: Dimension = tuple(int(name == "K") for name in BASE)
 
 _NAMED: Mapping[Dimension, str] = {
     PURE: "1",
@@ -51,12 +53,18 @@ class Unit:
 
     dimension    None when nothing is known of it; then its values are taken as they are
     factor       SI value = factor * value + offset
+    relative     its values are differences (relativeQuantity), to which no offset is added
     """
 
     name: str
     dimension: Dimension | None = None
     factor: float = 1.0
     offset: float = 0.0
+    relative: bool = False
+
+    def of_differences(self) -> Unit:
+        """The same unit for differences: 10 degC are 10 K then, and not 283.15 K."""
+        return replace(self, offset=0.0, relative=True)
 
     @property
     def is_si(self) -> bool:
@@ -105,6 +113,8 @@ def misfit(one: Unit, other: Unit) -> str:
     """
     if not same_dimension(one.dimension, other.dimension):
         return "different dimensions"
+    if TEMPERATURE == one.dimension == other.dimension and one.relative != other.relative:
+        return "a difference of temperature (relativeQuantity) is no temperature"
     for turns, angle in ((one, other), (other, one)):
         if turns.counts_turns and angle.dimension is not None and angle.dimension[-1] != 0:
             return (

@@ -22,7 +22,18 @@ def draw_all(run: RunResult, folder: Path) -> list[str]:
     style.load()
     figures = list(_figures(run))
     # The capture in space takes as long as the others together.
-    return side_by_side.halves(partial(_draw, folder), figures[:1], figures[1:])
+    return [*_without_data(run), *side_by_side.halves(partial(_draw, folder), figures[:1], figures[1:])]
+
+
+def _without_data(run: RunResult) -> Iterator[str]:
+    """Why there is no picture of the net in space, where a capture was run."""
+    capture = run.phases.get("capture")
+    if capture is None or capture.snapshots.times:
+        return
+    why = "the capture's FMU has no outputs for the nodes of a net"
+    if next(phase for phase in run.scene.phases if phase.name == "capture").main.fmu is None:
+        why = "the scene has no table [capture.nodes], which brings their positions into the FMU"
+    yield f"no picture of the net in space: {why}"
 
 
 def _draw(folder: Path, figures: Iterable[Figure]) -> list[str]:
@@ -70,7 +81,7 @@ def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
     time, last = recorder["time"], recorder.last()
     figure = style.new_figure(8.5, 6.5)
     above, below = figure.subplots(2, 1, sharex=True)
-    style.margins(figure, 0.2)
+    style.margins(figure, 0.2 + 2 * style.LEGEND_ROW)
     above.plot(time, recorder["mouth.area"], color=style.NET, label="mouth area")
     if "mouth.area_ratio" in recorder and recorder["mouth.area_ratio"].max() > 0:
         widest = int(np.argmax(recorder["mouth.area_ratio"]))
@@ -99,8 +110,8 @@ def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
                 label, (last[name], 0.5), xycoords=("data", "axes fraction"), rotation=90, fontsize=8,
                 ha="center", va="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
             )  # fmt: skip
-    above.legend(loc="upper left")
-    below.legend(loc="upper left", ncols=2)
+    style.legend(above)
+    style.legend(below)
     style.head(figure, title)
     style.save(figure, path)
 
@@ -124,7 +135,7 @@ def _orbit(run: RunResult, result: PhaseResult, title: str, path: Path) -> None:
         above.plot(time, axis, "--", color=style.MUTED, linewidth=1.0, label="semi-major axis of the pair")
     above.set_ylabel("orbital radius [km]")
     above.ticklabel_format(useOffset=False)
-    above.legend()
+    style.legend(above)
     below.plot(time, recorder["chaser.radius"] - recorder["target.radius"], color=style.ACCENT, linewidth=1.0)
     below.set_ylabel("chaser over target [m]")
     below.set_xlabel(f"{_since(run)} [{unit}]")
@@ -160,8 +171,7 @@ def _tension(run: RunResult, result: PhaseResult, title: str, path: Path) -> Non
     above.set_xlim(0.0, since[-1] / divisor)
     above.set_ylabel("tether tension [N]")
     above.set_xlabel(f"{_since(run)} [{unit}]")
-    if above.get_legend_handles_labels()[1]:
-        above.legend(loc="upper right")
+    style.legend(above)
     if below is not None:
         last = max(float(rows[:, 0].max()) for _, rows, _, _ in sets)
         zoom, zoom_unit = style.time_axis(1.05 * last)

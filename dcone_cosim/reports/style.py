@@ -53,12 +53,24 @@ def new_figure(width: float, height: float) -> Any:
     return figure
 
 
+LEGEND_ROW = 0.25
+"""Height of a row of a legend over its axes [inch]."""
+
+
 def margins(figure: Any, between: float) -> None:
-    """Room for the labels of two axes, one above the other, with `between` for what stands between them [inch]."""
+    """Room for the labels of two axes, one above the other, and for one row of a legend over the upper ones, with
+    `between` for what stands between them [inch]."""
     width, height = figure.get_size_inches()
-    figure.subplots_adjust(left=0.85 / width, right=1.0 - 0.15 / width, bottom=0.55 / height, top=1.0 - 0.45 / height)
-    figure.subplots_adjust(hspace=between / (0.5 * (height - between - 1.0)))
+    top = 0.45 + LEGEND_ROW
+    figure.subplots_adjust(left=0.85 / width, right=1.0 - 0.15 / width, bottom=0.55 / height, top=1.0 - top / height)
+    figure.subplots_adjust(hspace=between / (0.5 * (height - between - top - 0.55)))
     figure.align_ylabels()
+
+
+def legend(axes: Any, columns: int = 3) -> None:
+    """A legend over the axes, where it covers no curve, whatever the curves do."""
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=8, borderaxespad=0.1)
 
 
 def head(figure: Any, title: str) -> None:

@@ -36,7 +36,7 @@ from dcone_cosim.scenes.keys import (
     table_in,
 )
 from dcone_cosim.scenes.mistakes import Mistake, Places, SceneError, unknown
-from dcone_cosim.scenes.parts import RESERVED, Part, of_fmu, of_model, read_part, reserved_of
+from dcone_cosim.scenes.parts import RESERVED, Part, follow, of_fmu, of_model, read_part, reserved_of
 from dcone_cosim.scenes.relations import (
     about_hand_over,
     about_line,
@@ -68,6 +68,8 @@ class _Component:
             self.parameters,
             self.part.defaults(),
             self.part.choices(),
+            self.options.get("solver_tolerance"),
+            self.part.texts,
         )
 
 
@@ -178,6 +180,9 @@ def _read_component(
     if "timeout" in tables and not read.options.get("isolate"):
         text = "only calls to an isolated FMU have a limit; add isolate = true"
         mistakes.append(Mistake((*part.path, "timeout"), tables["timeout"], text))
+    if "solver_tolerance" in tables and "fmu" not in tables:
+        text = "a model of ours has tolerances of its own, in [solver]; only an FMU is told one"
+        mistakes.append(Mistake((*part.path, "solver_tolerance"), tables["solver_tolerance"], text))
     if "fmu" in tables:
         if not _foreign(part, tables, folder, mistakes):
             return read
@@ -186,6 +191,7 @@ def _read_component(
     elif not _named_model(part, tables, mistakes):
         return read
     read.parameters = read_part(part, tables, orbit, mistakes)
+    follow(part, read.parameters)
     return read
 
 

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
 from dcone_cosim.scenes.keys import Key, Slot
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of, is_unit
+from dcone_cosim.scenes.units import TEXT, Expected, Unexpected, example_of, is_unit
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
     from dcone_cosim.fmu.steppable import VariableInfo
 
-KINDS = ("Real", "Integer", "Boolean")
+KINDS = ("Real", "Integer", "Boolean", TEXT)
 ADDRESS = re.compile(r"[a-zA-Z][a-zA-Z0-9+.-]+://")
 _ELEMENT = re.compile(r"(.*)\[(\d+)\]")
 
@@ -64,7 +64,8 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
             names.setdefault(match[1] if match else info.name, []).append(info.name)
     keys: dict[str, Key] = {}
     for name, elements in names.items():
-        if sorted(elements) == sorted(f"{name}[{i + 1}]" for i in range(len(elements))):
+        alike = len({variables[element].relative for element in elements}) == 1
+        if alike and sorted(elements) == sorted(f"{name}[{i + 1}]" for i in range(len(elements))):
             keys[name] = _key([f"{name}[{i + 1}]" for i in range(len(elements))], variables, len(elements))
         else:
             keys |= {element: _key([element], variables, 0, choices.get(element, ())) for element in elements}
@@ -84,6 +85,8 @@ def _unit(info: VariableInfo) -> str:
 def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, choices: tuple[str, ...] = ()) -> Key:
     infos = [variables[name] for name in names]
     first, unit = infos[0], _unit(infos[0])
+    if first.kind == TEXT:
+        return Key(tuple(names), Expected(unit, TEXT, size), (), first.description)
     starts = tuple(info.start or 0.0 for info in infos)
     start = next((s for s in starts if s), 0.0)
     expected = Expected(
@@ -94,5 +97,6 @@ def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, cho
         f"{start:g}" if first.kind == "Integer" else example_of(start, unit),
         max(info.minimum for info in infos),
         min(info.maximum for info in infos),
+        relative=first.relative,
     )
     return Key(tuple(names), expected, starts, first.description)

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim.errors import InputError
+from dcone_cosim.files import regular
 from dcone_cosim.scenes.text import moved
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def _identities(phases: Mapping[str, Any]) -> dict[str, str]:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(regular(path).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read: {error}") from error
     if not isinstance(content, dict):

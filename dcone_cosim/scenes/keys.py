@@ -60,6 +60,7 @@ HANDOFF_KEYS: Mapping[str, Expected] = {
 COMPONENT_KEYS: Mapping[str, Expected] = {
     "isolate": FLAG,
     "timeout": _positive("s", "60 s"),
+    "solver_tolerance": _positive("1", "1e-6"),
 }
 """Keys of every component, main or other; `fmu` and `model` say what it is and are read first."""
 COUPLING_KEYS: Mapping[str, Expected] = {
@@ -85,6 +86,7 @@ MEANING: Mapping[str, str] = {
     "model": "a model of ours, built on demand",
     "isolate": "run the FMU in a child process: its crash or hang is then an error, and ends nothing else",
     "timeout": "the longest that one call to an isolated FMU may take",
+    "solver_tolerance": "that the FMU's own solver is told; that of the file's default experiment if not given",
     "parameters": "start values by variable name, for names that are no table.key",
     "connections": "outputs that set inputs, each as \"INSTANCE.VARIABLE -> INSTANCE.VARIABLE\"",
     "components": "further FMUs of the phase, a table each",

@@ -78,7 +78,9 @@ def _somewhere(document: Mapping[str, Any], name: str) -> bool:
 
 def _terms(model: build.Model, tables: Mapping[str, Any]) -> dict[str, str]:
     return {
-        name: term_named(tables[name].get(group.selector)) for name, group in model.groups.items() if name in tables
+        name: term_named(tables[name].get(group.selector))
+        for name, group in model.groups.items()
+        if name in tables and (group.follows is None or group.selector in tables[name])
     }
 
 
@@ -130,7 +132,7 @@ def _component(
             yield _selection(model.groups[section], terms[section])
         yield from _table(given or {}, keys)
     for name, group in model.groups.items():
-        if name not in terms:
+        if name not in terms and name not in tables:
             yield from ("", *_left_out(above, name, group))
 
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 from dcone_cosim import build
 from dcone_cosim.fmu.units import by_name
 from dcone_cosim.scenes.fmus import Offer
-from dcone_cosim.scenes.keys import PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
 from dcone_cosim.scenes.mistakes import Mistake, unknown
 from dcone_cosim.scenes.toml_lines import Path, dotted
-from dcone_cosim.scenes.units import LARGEST_INTEGER
+from dcone_cosim.scenes.units import LARGEST_INTEGER, TEXT
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
@@ -36,6 +36,8 @@ class Part:
     slots        every scalar variable, for connections
     archive      of the FMU, closed again: its model description is read
     given        where the value of each variable was given
+    following    groups whose term follows from the values
+    texts        that the scene gives to Strings, by variable
     """
 
     path: Path
@@ -48,6 +50,8 @@ class Part:
     slots: dict[str, Slot] = field(default_factory=dict)
     archive: Archive | None = None
     given: dict[str, Path] = field(default_factory=dict)
+    following: list[str] = field(default_factory=list)
+    texts: dict[str, str] = field(default_factory=dict)
 
     @property
     def groups(self) -> Mapping[str, build.Group]:
@@ -62,7 +66,8 @@ class Part:
         return any(name.startswith(table + ".") for name in self.keys)
 
     def defaults(self) -> dict[str, float]:
-        return {n: s for key in self.keys.values() for n, s in zip(key.names, key.starts, strict=True)}
+        numbers = [key for key in self.keys.values() if key.expected.kind != TEXT]
+        return {n: s for key in numbers for n, s in zip(key.names, key.starts, strict=True)}
 
     def choices(self) -> dict[str, tuple[str, ...]]:
         return {key.names[0]: key.expected.choices for key in self.keys.values() if key.expected.choices}
@@ -83,6 +88,9 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
         names = [term for term in group.terms if term in group.terms]
         if names:
             part.terms[group_name] = names[0]
+        if group.follows is not None and isinstance(table, dict) and group.selector not in table:
+            part.following.append(group_name)
+            continue
         if not isinstance(table, dict):
             mistakes.append(Mistake(path, table, f"expected a table [{dotted(path)}]"))
             continue
@@ -97,15 +105,33 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
             mistakes.append(unknown(path, given, expected, given, names))
         else:
             mistakes.append(Mistake(path, given, expected))
-    interface = model.interface(part.terms)
-    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(interface)}
+    for group_name, needed in list(model.missing(part.terms)):
+        text = f"needs the table [{dotted((*part.path, needed))}], which this scene lacks"
+        mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
+        part.terms[needed] = next(iter(model.groups[needed].terms))
+    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(model.interface(part.terms))}
+    _offer_slots(part, model)
+    return part
+
+
+def follow(part: Part, values: Mapping[str, float]) -> None:
+    """Take the terms that follow from the values, of which the scene may leave some at their defaults."""
+    if part.model is None or not part.following:
+        return
+    for group_name in part.following:
+        follows = part.model.groups[group_name].follows
+        assert follows is not None
+        part.terms[group_name] = follows({**part.defaults(), **values})
+    _offer_slots(part, part.model)
+
+
+def _offer_slots(part: Part, model: build.Model) -> None:
     part.slots = {
         name: Slot(row.kind, by_name(row.unit), row.causality)
-        for row in interface.variables
+        for row in model.interface(part.terms).variables
         if row.at_interface
         for name in row.element_names()
     }
-    return part
 
 
 def of_fmu(part: Part, offer: Offer) -> Part:
@@ -206,7 +232,10 @@ def _take(part: Part, name: str, value: Any, path: Path, found: dict[str, float]
             mistakes.append(Mistake(path, value, f"is given twice: also as {dotted(earlier)}"))
             return
         part.given[variable] = path
-        found[variable] = number
+        if key.expected.kind == TEXT:
+            part.texts[variable] = number
+        else:
+            found[variable] = number
 
 
 def _no_variable(part: Part, name: str, path: Path, value: object) -> Mistake:
@@ -249,9 +278,9 @@ def reserved_of(phase: str) -> frozenset[str]:
     """Keys of a phase's table that are no parameters of its component."""
     own = {"snapshots"} if phase == "capture" else set()
     return frozenset(
-        {*PHASE_KEYS[phase], *own, "fmu", "isolate", "timeout", "components", "connections", "coupling", "parameters"}
+        {*PHASE_KEYS[phase], *own, *COMPONENT_KEYS, "fmu", "components", "connections", "coupling", "parameters"}
     )
 
 
-RESERVED = frozenset({"fmu", "model", "isolate", "timeout", "parameters"})
+RESERVED = frozenset({*COMPONENT_KEYS, "fmu", "model", "parameters"})
 """Keys of a further component's table that are no parameters."""

@@ -21,8 +21,10 @@ from typing import Any
 
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
+from dcone_cosim.files import no_file, regular
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scenes.mistakes import Places
+from dcone_cosim.scenes.toml_lines import DEEPEST, deep_key
 
 SHIPPED = Path(__file__).parent
 PHASES = ("capture", "removal")
@@ -43,6 +45,8 @@ class ComponentScene:
     parameters   FMI name: value, SI, of what the scene says; inputs may be among them
     defaults     FMI name: start value, SI, of every parameter and input there is
     choices      FMI name: names of the values of an Integer choice
+    tolerance    that the FMU's own solver is told; None for that of its default experiment
+    texts        FMI name: value of each String that the scene gives
     """
 
     name: str
@@ -54,6 +58,8 @@ class ComponentScene:
     parameters: Mapping[str, float] = field(default_factory=dict)
     defaults: Mapping[str, float] = field(default_factory=dict)
     choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    tolerance: float | None = None
+    texts: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -126,7 +132,7 @@ def find(name: str) -> Path:
         return known[name]
     path = Path(name)
     try:
-        is_file, is_folder = path.is_file(), path.is_dir()
+        is_file, is_folder, other = path.is_file(), path.is_dir(), no_file(path)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{name[:60]} cannot be looked for: {reason}") from error
@@ -134,6 +140,8 @@ def find(name: str) -> Path:
         return path
     if is_folder:
         raise InputError(f"{name} is a folder; expected a scene: a .toml file, or one of {', '.join(known)}")
+    if other:
+        raise InputError(f"{name} is {other}; expected a file")
     if path.suffix == ".toml" or len(path.parts) > 1:
         beside = [str(p) for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
         raise InputError(f"scene file {name} does not exist{did_you_mean(name, beside or known)}")
@@ -162,7 +170,7 @@ def load(name: str, settings: Sequence[str] = ()) -> Scene:
 def read_text(path: Path) -> str:
     """Text of a scene file, in UTF-8 with or without a byte order mark."""
     try:
-        content = path.read_bytes()
+        content = regular(path).read_bytes()
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
     try:
@@ -181,6 +189,9 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
     """
     if not text.strip():
         raise InputError(f"{source} is empty; expected a scene with at least [capture] or [removal]")
+    line = deep_key(text)
+    if line is not None:
+        raise InputError(f"{source} line {line}: a key of more than {DEEPEST} parts; no scene has one")
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -134,7 +134,8 @@ def _tables(model: build.Model) -> dict[str, Schema]:
     for name, properties in tables.items():
         described: Schema = {"type": "object", "properties": properties}
         if name in model.groups:
-            described["required"] = [model.groups[name].selector]
+            if model.groups[name].follows is None:
+                described["required"] = [model.groups[name].selector]
             described["description"] = "; ".join(f"{term}: {text}" for term, text in _terms(model.groups[name]))
         found[name] = described
     return found

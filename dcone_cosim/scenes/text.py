@@ -13,7 +13,7 @@ from typing import Any
 
 from dcone_cosim.errors import InputError
 from dcone_cosim.scenes.mistakes import Override, shown
-from dcone_cosim.scenes.toml_lines import Path, dotted, given_at
+from dcone_cosim.scenes.toml_lines import DEEPEST, Path, deep_key, dotted, given_at
 
 FORM = 'expected KEY.KEY=VALUE, such as capture.bullets.speed="4 m/s"'
 
@@ -39,6 +39,8 @@ def _split(setting: str) -> tuple[tuple[str, ...], Any]:
     key, sign, text = setting.partition("=")
     if not sign or not key.strip() or not text.strip():
         raise InputError(f"--set {setting}: {FORM}")
+    if deep_key(key) is not None:
+        raise InputError(f"--set {setting[:60]}...: a key of more than {DEEPEST} parts; {FORM}")
     try:
         nested: Any = tomllib.loads(f"{key}=0")
     except tomllib.TOMLDecodeError:

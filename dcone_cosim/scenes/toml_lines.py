@@ -24,6 +24,11 @@ _STRING = re.compile(
 )
 _OTHER = re.compile(r"[^,\]}\n#]+")
 
+DEEPEST = 64
+"""Parts of the longest key that is read. The time a parser takes for a key goes with the square of its parts."""
+_PART = r"""(?:[A-Za-z0-9_-]++|"(?:\\.|[^"\\\n])*+"|'[^'\n]*+')"""
+_DEEP = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST}}}")
+
 
 class _Lost(Exception):
     """The text is not what a valid one would be."""
@@ -139,6 +144,12 @@ class _Walk:
             self.at += 1
             return False
         return True
+
+
+def deep_key(text: str) -> int | None:
+    """Line of the first key with more than `DEEPEST` parts, None when there is none."""
+    match = _DEEP.search(text)
+    return None if match is None else text.count("\n", 0, match.start()) + 1
 
 
 def key_lines(text: str) -> Lines:

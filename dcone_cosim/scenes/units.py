@@ -20,6 +20,34 @@ LARGEST_INTEGER = 2**31 - 1
 _QUANTITY = re.compile(r"\s*([+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|nan|inf))\s*([^\d\s].*)?", re.DOTALL)
 """A number, and a unit that does not begin with another number."""
 
+COMMON = (
+    *("m", "mm", "cm", "km", "um", "AU", "s", "ms", "min", "h", "d", "wk", "yr", "kg", "g", "t", "K", "deg_C"),
+    *("rad", "mrad", "deg", "arcmin", "arcsec", "m2", "cm2", "mm2", "m3", "l", "m/s", "mm/s", "cm/s", "km/s", "km/h"),
+    *(
+        "rad/s",
+        "deg/s",
+        "1/s",
+        "Hz",
+        "rad/s2",
+        "deg/s2",
+        "m/s2",
+        "N",
+        "mN",
+        "kN",
+        "MN",
+        "Pa",
+        "kPa",
+        "MPa",
+        "GPa",
+        "bar",
+    ),
+    *("N/m", "mN/m", "kN/m", "N s/m", "kg/s", "N s", "kg m/s", "N m", "N m s", "J", "mJ", "kJ", "MJ", "W", "mW", "kW"),
+    *("kg/m3", "g/cm3", "kg m2", "N/s", "A", "V", "ohm"),
+)
+"""Units that a message names as known, smallest words first."""
+TEXT = "String"
+"""Kind of a variable whose values are texts."""
+
 
 class Unexpected(ValueError):
     """A value that does not fit; the text says what was expected."""
@@ -69,6 +97,7 @@ class Expected:
     choices    names of an Integer's values
     example    a value as a scene would write it
     minimum    least permitted SI value; `open_minimum` excludes the bound itself
+    relative   the value is a difference: 5 deg_C are 5 K
     refusal    why else an SI value is refused, or None
     display_unit  FMI unit in which a person would write it, "" for the unit itself
     """
@@ -83,9 +112,10 @@ class Expected:
     open_minimum: bool = False
     refusal: Callable[[float], str | None] = lambda value: None
     display_unit: str = ""
+    relative: bool = False
 
     def read(self, value: object) -> float | list[float]:
-        """SI value, or `Unexpected`."""
+        """SI value, or text, or `Unexpected`."""
         if not self.size:
             return self._scalar(value)
         if not isinstance(value, list) or len(value) != self.size:
@@ -104,6 +134,8 @@ class Expected:
         return numbers
 
     def _wanted(self) -> str:
+        if self.kind == TEXT:
+            return "a text"
         if self.choices:
             return f"one of {', '.join(self.choices)}"
         if self.kind == "Boolean":
@@ -115,6 +147,12 @@ class Expected:
         return f'{_article(dimension_of(unit_of(self.unit)))} with its unit, such as "{self.example}"'
 
     def _scalar(self, value: object) -> float:
+        if self.kind == TEXT:
+            if not isinstance(value, str):
+                raise Unexpected(f"expected {self._wanted()}, in quotes")
+            if "\0" in value:
+                raise Unexpected("is no text: it holds a NUL")
+            return value  # type: ignore[return-value]  # who asks for a String knows it
         if self.choices:
             if value not in self.choices:
                 raise Unexpected(f"expected {self._wanted()}")
@@ -168,6 +206,19 @@ class Expected:
                     return f'"{text}"'
         return f'"{value!r} {spoken(self.unit)}"'
 
+    def _converted(self, value: float, of: Any, to: Any) -> float:
+        """A value in another unit; a difference of so many degC is one of as many K."""
+        if self.relative:
+            of, to = (u.K if unit == u.deg_C else unit for unit in (of, to))
+        return float(of.to(to, value, equivalencies=u.temperature()))
+
+    def _known_units(self) -> str:
+        """Units that would do, of those that are commonly written."""
+        known = [name for name in COMMON if u.Unit(name).is_equivalent(unit_of(self.unit), u.temperature())]
+        if not known:
+            return f"expected {self._wanted()}"
+        return f"known for {_article(dimension_of(unit_of(self.unit)))}: {', '.join(known)}"
+
     def _out_of_bounds(self, number: float, unit: str) -> str | None:
         """Why an SI value is out of bounds, told in the unit it was written with."""
         if not math.isfinite(number):
@@ -179,7 +230,7 @@ class Expected:
         else:
             return None
         if unit:
-            bound = unit_of(self.unit).to(u.Unit(unit), bound)
+            bound = self._converted(bound, unit_of(self.unit), u.Unit(unit))
         return f"must be {words} {bound:.10g}{unit and ' ' + unit}"
 
     def _bare(self, value: object) -> float:
@@ -208,7 +259,10 @@ class Expected:
         written = match[2].strip()
         try:
             unit = u.Unit(written)
-            number = float(unit.to(unit_of(self.unit), float(match[1]), equivalencies=u.temperature()))
+        except (TypeError, ValueError, ArithmeticError):
+            raise Unexpected(f"has the unit {written!r}, which is not known; {self._known_units()}") from None
+        try:
+            number = self._converted(float(match[1]), unit, unit_of(self.unit))
         except u.UnitConversionError:
             raise Unexpected(f"is {_article(dimension_of(unit))}; expected {self._wanted()}") from None
         except (TypeError, ValueError, ArithmeticError):

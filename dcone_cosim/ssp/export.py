@@ -21,6 +21,7 @@ from dcone_cosim import build, placed
 from dcone_cosim.coupling.options import Connection
 from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import InputError
+from dcone_cosim.files import regular
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import read_units
@@ -142,7 +143,7 @@ def _handed_over(scene: Scene, removal: PhaseScene, folder: Path) -> PhaseScene:
 
 def _json(folder: Path, name: str) -> dict[str, Any]:
     try:
-        content: dict[str, Any] = json.loads((folder / name).read_text(encoding="utf-8"))
+        content: dict[str, Any] = json.loads(regular(folder / name).read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"--from-run {folder}: {name}: {error.strerror}; expected the folder of a run") from error
     except ValueError as error:

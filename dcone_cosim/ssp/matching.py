@@ -11,7 +11,7 @@ from dcone_cosim.coupling.options import Connection
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import Unit, misfit, same_dimension
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.ssp.markup import KINDS, STRUCTURE
+from dcone_cosim.ssp.markup import KINDS, STRUCTURE, TEXT
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import ComponentRow, ConnectionRow, PortRow
 from dcone_cosim.ssp.values import Given
@@ -37,7 +37,7 @@ class Part:
 
 def own_unit(info: VariableInfo) -> Unit:
     """The unit that an FMU counts a variable in."""
-    return Unit(info.declared_unit or "1", info.dimension, info.factor, info.offset)
+    return Unit(info.declared_unit or "1", info.dimension, info.factor, info.offset, info.relative)
 
 
 def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> None:
@@ -64,31 +64,39 @@ def _other_unit(port: PortRow, own: Unit, units: Mapping[str, Unit]) -> bool:
     if not port.unit or own.dimension is None or port.unit == own.name:
         return False
     told = units.get(port.unit)
+    if told is not None and own.relative:
+        told = told.of_differences()
     return told is None or (told.dimension, told.factor, told.offset) != (own.dimension, own.factor, own.offset)
 
 
-def parameters(values: Iterable[Given], parts: Mapping[str, Part], mistakes: Mistakes) -> dict[str, dict[str, float]]:
-    """Values by component and variable, SI; a later one replaces an earlier one."""
-    found: dict[str, dict[str, float]] = {name: {} for name in parts}
+def parameters(
+    values: Iterable[Given], parts: Mapping[str, Part], mistakes: Mistakes
+) -> dict[str, dict[str, float | str]]:
+    """Values by component and variable, SI, and texts; a later one replaces an earlier one."""
+    found: dict[str, dict[str, float | str]] = {name: {} for name in parts}
     for given in values:
         owner, name = (given.owner, given.name) if given.owner else owner_of(given.name, parts)
         if owner not in parts:
             hint = did_you_mean(given.name.partition(".")[0], parts)
             text = f"parameter {given.name!r} of the system: expected COMPONENT.NAME{hint}"
-            mistakes.add(given.file, given.line, text)
+            _not_found(given, text, mistakes)
             continue
         info = parts[owner].variables.get(name)
         if info is None:
             hint = did_you_mean(name, parts[owner].variables)
-            text = f"parameter {name!r} of {owner!r} is no variable of its FMU{hint}"
-            mistakes.add(given.file, given.line, text)
+            _not_found(given, f"parameter {name!r} of {owner!r} is no variable of its FMU{hint}", mistakes)
             continue
         problem = _problem(given, info)
         if problem:
             mistakes.add(given.file, given.line, f"parameter {name!r} of {owner!r} {problem}")
         else:
-            found[owner][name] = _in_si(given, info)
+            found[owner][name] = given.text if info.kind == TEXT else _in_si(given, info)
     return found
+
+
+def _not_found(given: Given, text: str, mistakes: Mistakes) -> None:
+    """A name that is not there: by SSP 1.0.1 a parameter set may hold more than is taken; a mapping names what is."""
+    (mistakes.add if given.mapped else mistakes.ignore)(given.file, given.line, text)
 
 
 def owner_of(name: str, parts: Mapping[str, Part]) -> tuple[str, str]:
@@ -101,8 +109,6 @@ def owner_of(name: str, parts: Mapping[str, Part]) -> tuple[str, str]:
 
 def _problem(given: Given, info: VariableInfo) -> str:
     """Why a variable cannot take a value, or ""."""
-    if info.kind not in KINDS:
-        return f"is of the type {info.kind} in its FMU; expected {', '.join(KINDS)}"
     if info.kind != given.type and (info.kind, given.type) != ("Real", "Integer"):
         return f"is given as {given.type}; the FMU has it as {info.kind}"
     if info.variability == "constant":
@@ -122,6 +128,8 @@ def _in_si(given: Given, info: VariableInfo) -> float:
     """The SI value of a variable: first the unit is converted, then the mapping's transformation applied."""
     value, unit, own = given.value, given.unit, own_unit(info)
     linear = (given.factor, given.offset) != (1.0, 0.0)
+    if unit is not None and own.relative:
+        unit = unit.of_differences()
     convert = unit is not None and own.dimension is not None and not given.suppress and unit.name != own.name
     if convert and unit is not None:
         value = value if unit.is_si else unit.factor * value + unit.offset

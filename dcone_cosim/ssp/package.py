@@ -13,7 +13,8 @@ from urllib.parse import unquote, urlsplit
 from lxml import etree
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.fmu.archive import LARGEST
+from dcone_cosim.files import regular
+from dcone_cosim.fmu.archive import LARGEST, MOST
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import STRUCTURE
@@ -24,15 +25,20 @@ LARGEST_XML = 64 * 2**20
 
 @dataclass
 class Mistakes:
-    """What is wrong with a package, told all at once."""
+    """What is wrong with a package, told all at once, and what of it is ignored."""
 
     source: str
     rows: list[tuple[str, int, str]] = field(default_factory=list)
+    ignored: list[str] = field(default_factory=list)
 
     def add(self, file: str, line: int | None, text: str) -> None:
         row = (file, line or 0, text)
         if row not in self.rows:
             self.rows.append(row)
+
+    def ignore(self, file: str, line: int, text: str) -> None:
+        """Note what is no mistake, by the rules of SSP, and has no effect."""
+        self.ignored.append(f"{file}{f' line {line}' if line else ''}: {text}; it is ignored")
 
     def check(self) -> None:
         """Raise an `InputError` with every mistake found so far."""
@@ -50,7 +56,7 @@ class Package:
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            self._archive = zipfile.ZipFile(path)
+            self._archive = zipfile.ZipFile(regular(path))
         except zipfile.BadZipFile as error:
             raise InputError(f"{path} is no SSP package: {error}; the file may be cut short") from error
         except OSError as error:
@@ -63,6 +69,9 @@ class Package:
 
     def _check_names(self) -> None:
         names = set()
+        count = len(self._archive.infolist())
+        if count > MOST:
+            raise InputError(f"{self.path}: it has {count:,} entries; at most {MOST:,} are read")
         for info in self._archive.infolist():
             name = info.filename
             if _leaves(name):

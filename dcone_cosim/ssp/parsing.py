@@ -11,7 +11,7 @@ import fmpy.ssp
 from lxml import etree
 
 from dcone_cosim.fmu.units import BASE, Unit
-from dcone_cosim.ssp.markup import FMU_TYPE, KINDS, OMS_TYPE, OSP_TYPE, OUR_TYPE, READ, VERSION, plain, tag
+from dcone_cosim.ssp.markup import FMU_TYPE, KINDS, OMS_TYPE, OSP_TYPE, OUR_TYPE, READ, TEXT, VERSION, plain, tag
 from dcone_cosim.ssp.package import Mistakes
 
 SCHEMA = Path(fmpy.ssp.__file__).parent / "schema"
@@ -167,8 +167,8 @@ def _refuse_beyond(root: etree._Element, file: str, mistakes: Mistakes) -> None:
         if component.get("implementation") == "ModelExchange":
             refuse(component, "implementation = 'ModelExchange'; expected co-simulation")
         for port in component.iterfind("ssd:Connectors/ssd:Connector", READ):
-            kind, kinds = _port_type(port), " or ".join((", ".join(KINDS[:-1]), KINDS[-1]))
-            if kind and kind not in KINDS:
+            kind, kinds = _port_type(port), " or ".join((", ".join(KINDS), TEXT))
+            if kind and kind not in (*KINDS, TEXT):
                 refuse(port, f"of {component.get('name')!r} is of the type {kind}; expected {kinds}")
             if port.get("kind") not in PORT_KINDS:
                 refuse(

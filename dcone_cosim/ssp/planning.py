@@ -30,6 +30,7 @@ SETTINGS: Mapping[str, Expected] = {
     "duration": Expected("s", example="30 s", minimum=0.0, open_minimum=True),
     "after_capture": Expected("s", example="1 s", minimum=0.0),
     "hand_over": Expected("1", choices=HAND_OVER),
+    "solver_tolerance": Expected("1", example="1e-6", minimum=0.0, open_minimum=True),
 }
 """What the command line may say of the phase, beside the values of its components."""
 CHOICES = {"method": ("gauss_seidel", "jacobi"), "control": ("fixed", "error"), "extrapolation": ("constant", "linear")}
@@ -52,14 +53,14 @@ def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, st
 
 def settings_of(
     document: Mapping[str, Any], arguments: Sequence[Override], phase: str, parts: Mapping[str, Part]
-) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """What `--set` says of the phase, and the values it gives by component, SI.
+) -> tuple[dict[str, float], dict[str, dict[str, float | str]]]:
+    """What `--set` says of the phase, and the values it gives by component, SI, and texts.
 
     document     values of `PHASE.macro_step`, `COMPONENT.VARIABLE`
     arguments    where they are in it
     """
     told: dict[str, float] = {}
-    values: dict[str, dict[str, float]] = {}
+    values: dict[str, dict[str, float | str]] = {}
     for argument in arguments:
         given = given_at(document, argument.path)
         name = ".".join(map(str, argument.path))
@@ -76,8 +77,10 @@ def settings_of(
                 known = [n for n, v in parts[owner].variables.items() if v.causality in ("parameter", "input")]
                 raise Unexpected(f"is no parameter or input of its FMU{did_you_mean(variable, known)}")
             example = example_of(info.start or 0.0, info.unit)
-            expected = Expected(info.unit, info.kind, 0, (), example, info.minimum, info.maximum)
-            values.setdefault(owner, {})[variable] = cast(float, expected.read(given))
+            expected = Expected(
+                info.unit, info.kind, 0, (), example, info.minimum, info.maximum, relative=info.relative
+            )
+            values.setdefault(owner, {})[variable] = cast(float | str, expected.read(given))
         except Unexpected as error:
             link = " " if str(error).startswith(("is ", "must ")) else ": "
             raise InputError(f"--set {argument.argument}: {name}{link}{error}") from None
@@ -87,8 +90,12 @@ def settings_of(
 def times(
     content: Document, parts: Mapping[str, Part], told: Mapping[str, float], mistakes: Mistakes
 ) -> tuple[float, float]:
-    """Start and duration [s]: of the system, or of the longest experiment that an FMU of it has by default."""
-    start, stop = content.start or 0.0, content.stop
+    """Start and duration [s]: of the system, or of the experiments that its FMUs have by default, from the first start
+    to the last stop."""
+    start, stop = content.start, content.stop
+    if start is None:
+        starts = [_of_experiment(part.experiment, "startTime") for part in parts.values()]
+        start = min((s for s in starts if s is not None), default=0.0)
     if "duration" in told:
         return start, told["duration"]
     if stop is None:

@@ -56,9 +56,15 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
     start, duration = planning.times(content, parts, told, mistakes)
     if name == PHASES[0] and start != 0.0:
         mistakes.add(STRUCTURE, None, f"startTime = {start!r}: a capture begins at 0")
+    given = {part: parameters[part] | more.get(part, {}) for part in parts}
     components = {
         part: ComponentScene(
-            part, fmu=row.fmu, parameters=parameters[part] | more.get(part, {}), defaults=row.defaults()
+            part,
+            fmu=row.fmu,
+            parameters={name: value for name, value in given[part].items() if not isinstance(value, str)},
+            texts={name: value for name, value in given[part].items() if isinstance(value, str)},
+            defaults=row.defaults(),
+            tolerance=told.get("solver_tolerance"),
         )
         for part, row in parts.items()
     }
@@ -80,7 +86,7 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
     rows = {change.path: setting(change.path, given_at(changes, change.path)) for change in overrides}
     title = titled(content.description, list(rows.values()))
     places = Places(str(path), "", tuple(overrides))
-    return Scene(shown_name or path.stem, title, shown, (phase,), {}, str(path), places)
+    return Scene(shown_name or path.stem, title, shown, (phase,), {}, str(path), places, tuple(mistakes.ignored))
 
 
 def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, Part]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lxml import etree
 
 from dcone_cosim.fmu.units import Unit
-from dcone_cosim.ssp.markup import KINDS, MAPPING_TYPE, READ, STRUCTURE, VALUES_TYPE, plain
+from dcone_cosim.ssp.markup import KINDS, MAPPING_TYPE, READ, STRUCTURE, TEXT, VALUES_TYPE, plain
 from dcone_cosim.ssp.package import Mistakes, Package, entry_of, parsed
 from dcone_cosim.ssp.parsing import BindingRow, check_file, units
 
@@ -19,9 +19,11 @@ class Given:
     """A value as a package gives it: target = factor * value + offset, after units are converted.
 
     owner       component that is meant, "" when the name begins with it
-    type        Real, Integer or Boolean, as the parameter set has it
+    type        Real, Integer, Boolean or String, as the parameter set has it
+    text        of a String, whose value says nothing
     unit        of the value; None when it is that of the variable; without a dimension when the file defines none
     suppress    take the number as it is, whatever the units
+    mapped      the name is the target of a mapping, which has to be there; any other that is not is ignored
     """
 
     owner: str
@@ -34,6 +36,8 @@ class Given:
     factor: float = 1.0
     offset: float = 0.0
     suppress: bool = False
+    mapped: bool = False
+    text: str = ""
 
 
 def given_values(bindings: Iterator[BindingRow], package: Package, mistakes: Mistakes) -> Iterator[Given]:
@@ -92,8 +96,11 @@ def _values(binding: BindingRow, root: etree._Element, file: str, mistakes: Mist
     for row in root.iterfind("ssv:Parameters/ssv:Parameter", READ):
         name, typed, line = binding.prefix + row.get("name", ""), row[0], int(row.sourceline or 0)
         kind = plain(str(typed.tag)).partition(":")[2]
-        if kind not in KINDS:
-            mistakes.add(file, line, f"parameter {name!r} is of the type {kind}; expected {', '.join(KINDS)}")
+        if kind not in (*KINDS, TEXT):
+            mistakes.add(file, line, f"parameter {name!r} is of the type {kind}; expected {', '.join((*KINDS, TEXT))}")
+            continue
+        if kind == TEXT:
+            yield Given(binding.owner, name, kind, 0.0, None, file, line, text=typed.get("value", ""))
             continue
         value = _number(kind, typed.get("value", ""))
         if not math.isfinite(value):
@@ -116,7 +123,7 @@ def _number(kind: str, text: str) -> float:
 def _mapped(
     values: Mapping[str, Given], mapping: etree._Element, package: Package, mistakes: Mistakes
 ) -> Iterator[Given]:
-    """The values under the names they are mapped to; those that no entry names are not used, as SSP says."""
+    """The values under the names they are mapped to; those that no entry names are ignored, as SSP 1.0.1 says."""
     kind, line = mapping.get("type", MAPPING_TYPE), int(mapping.sourceline or 0)
     if kind != MAPPING_TYPE:
         mistakes.add(STRUCTURE, line, f"<ssd:ParameterMapping> type = {kind!r}; expected {MAPPING_TYPE!r}")
@@ -127,6 +134,7 @@ def _mapped(
         return
     file, root = found
     targets: dict[str, int] = {}
+    used: set[str] = set()
     for row in root.iterfind("ssm:MappingEntry", READ):
         source, target, line = row.get("source", ""), row.get("target", ""), int(row.sourceline or 0)
         if target in targets:
@@ -143,10 +151,16 @@ def _mapped(
             factor = float(transformation.get("factor", 1.0))
             offset = float(transformation.get("offset", 0.0))
         if source not in values:
+            mistakes.ignore(file, line, f"entry {source!r} of the mapping has no parameter")
             continue
         value = values[source]
         suppress = row.get("suppressUnitConversion") in ("true", "1")
         if transformation is not None and value.type != "Real":
             mistakes.add(file, line, f"{source!r} is {value.type}: a linear transformation is for Real")
             continue
-        yield Given(value.owner, target, value.type, value.value, value.unit, file, line, factor, offset, suppress)
+        used.add(source)
+        yield replace(
+            value, name=target, file=file, line=line, factor=factor, offset=offset, suppress=suppress, mapped=True
+        )
+    for name in values.keys() - used:
+        mistakes.ignore(values[name].file, values[name].line, f"parameter {name!r} has no entry in its mapping")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fmu_src.interface import Fault, Group, Model, Variable
+from fmu_src.net_capture.reach import nodes_of
 from fmu_src.net_capture.terms import (
     CLOSING,
     CONTACT,
@@ -224,7 +225,7 @@ MODEL = Model(
         "closing": Group(CLOSING, selector="drive", optional=True),
         "tether": Group(TETHER, selector="state", optional=True),
         "settling": Group(SETTLING, selector="by", optional=True),
-        "nodes": Group(NodeTerms(), selector="capacity", optional=True),
+        "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=nodes_of),
     },
     faults=FAULTS,
     module="fmu_src.net_capture.model",

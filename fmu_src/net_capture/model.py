@@ -19,7 +19,7 @@ import math
 import numpy as np
 from numba import from_dtype, njit, types
 
-from fmu_src.interface import INITIALISE, SIZE, STEP
+from fmu_src.interface import INITIALISE, SIZE, STEP, check_implemented
 from fmu_src.net_capture import (
     closure,
     contact,
@@ -35,6 +35,7 @@ from fmu_src.net_capture import (
     threads,
     topology,
 )
+from fmu_src.net_capture.terms import NodeTerms
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
 from orbital.vectors import dot
@@ -47,9 +48,22 @@ ON_GRID = 1e-3
 """Share of a substep by which a communication point may miss the grid and still count as on it: masters add up
 times."""
 
+IMPLEMENTED = {
+    "net": ("square",),
+    "gravity": ("none", "hill"),
+    "target": ("box",),
+    "contact": ("inelastic",),
+    "closing": ("winches",),
+    "tether": ("slack",),
+    "settling": ("speed",),
+    "nodes": NodeTerms(),
+}
+"""Terms that are composed here."""
+
 
 def make_entry(terms):
     """Entry of the model built with these terms, `entry(command, record, work, time, step) -> status`."""
+    check_implemented(interface.MODEL, IMPLEMENTED, terms)
     model_interface = interface.MODEL.interface(terms)
     has_target = "target" in terms
     has_contact = "contact" in terms

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from fmu_src.net_capture.terms import LARGEST_MESH
+from fmu_src.net_capture.terms import LARGEST_MESH, MOST_NODES
 
 FALLEN_BACK = 2.0
 """A net flies on about as far again as it took to open while it falls back: at Table 1's shot the mouth, full at 21.5
@@ -55,6 +55,14 @@ def node_count(meshes: int, segments: int) -> int:
     """Nodes of a square net: its knots, and the inner nodes of every thread cut into segments."""
     knots = meshes + 1
     return knots * knots + 2 * (segments - 1) * knots * meshes
+
+
+def nodes_of(parameters: Parameters) -> str:
+    """The capacity that a net's mesh asks for, "1" where there is no such net."""
+    meshes = float(parameters["net.side"]) / float(parameters["net.mesh"])
+    if not 2.0 - WHOLE <= meshes <= LARGEST_MESH:
+        return "1"
+    return str(min(node_count(round(meshes), int(parameters["net.segments"])), MOST_NODES))
 
 
 def refusals(parameters: Parameters, duration: float = math.inf, capacity: int | None = None) -> list[Refusal]:

@@ -200,6 +200,7 @@ CONTACT = {
             state("envelope_radius", "m", "of the sphere around the target"),
             peak("contact.loss", "J", "kinetic energy lost in contact so far"),
         ),
+        needs=("target",),
     )
 }
 

@@ -9,10 +9,13 @@ from typing import Any
 import numba
 from numba import njit
 
-from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP
+from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP, check_implemented
 from fmu_src.reel_control.interface import BAD_PARAMETER, MODEL, NO_COMMAND, NOT_FINITE
 from orbital.kernel import OPTIONS, kernel
 from orbital.vectors import Array
+
+IMPLEMENTED = {"motor": ("lag",)}
+"""Terms that are composed here."""
 
 
 def make_entry(terms: Mapping[str, str]) -> Any:
@@ -27,6 +30,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     Source   fmu_src/reel_control/README.md, What is computed
     Checked  tests/reel_control/test_law.py
     """
+    check_implemented(MODEL, IMPLEMENTED, terms)
     interface = MODEL.interface(terms)
     has_lag = "motor" in terms
     names = ("reel.length", "gain.proportional", "gain.derivative", "feed_forward", "motor.time_constant")

@@ -10,7 +10,7 @@ import numba
 from numba import njit
 
 from fmu_src.integrators import make_dop853
-from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP
+from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP, check_implemented
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.environment import add_gravity
@@ -19,10 +19,10 @@ from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
-from fmu_src.tethered_deorbit.reel import make_reel
+from fmu_src.tethered_deorbit.reel import LAWS, make_reel
 from fmu_src.tethered_deorbit.start import start_state
 from fmu_src.tethered_deorbit.tether import add_tension, length_rate, line_length
-from fmu_src.tethered_deorbit.thrust import make_no_thrust, make_thrust
+from fmu_src.tethered_deorbit.thrust import DIRECTIONS, make_no_thrust, make_thrust
 from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_measure, make_trajectory
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
@@ -35,6 +35,9 @@ EVENT_LIMIT = 1_000_000
 TIME_DRIFT = 1.0e-9
 """By how much, relative, a communication point may miss the end of the last macro step: masters accumulate t += h."""
 
+IMPLEMENTED = {"reel": tuple(LAWS), "thrust": tuple(DIRECTIONS)}
+"""Terms that are composed here."""
+
 
 def make_entry(terms: Mapping[str, str]) -> Any:
     """The compiled entry `(command, record, work, time, step) -> status` of the model with the given terms.
@@ -43,6 +46,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
+    check_implemented(MODEL, IMPLEMENTED, terms)
     reel = make_reel(terms["reel"])
     references = MODEL.interface(terms).references
     command_slot = references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]

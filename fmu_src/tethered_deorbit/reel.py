@@ -6,9 +6,9 @@ from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.locked import make_locked
 from fmu_src.tethered_deorbit.working import make_commanded, make_linear
 
+LAWS = {"locked": make_locked, "linear": make_linear, "commanded": make_commanded}
+
 
 def make_reel(law: str) -> Reel:
     """The kernels of a law by its name, `locked`, `linear` or `commanded`."""
-    if law == "locked":
-        return make_locked()
-    return make_linear() if law == "linear" else make_commanded()
+    return LAWS[law]()

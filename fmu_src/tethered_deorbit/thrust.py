@@ -117,6 +117,9 @@ def _add_along_tether(record: Any, state: Array, rate: Array, since: float) -> N
     _add_along(record, rate, since, state[6], state[7], state[8])
 
 
+DIRECTIONS = {"along_track": _add_along_track, "velocity": _add_along_velocity, "tether": _add_along_tether}
+
+
 def make_thrust(direction: str, reel: str = "locked") -> Thrust:
     """A thruster on the chaser.
 
@@ -134,8 +137,7 @@ def make_thrust(direction: str, reel: str = "locked") -> Thrust:
     Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, tests/tethered_deorbit/test_ramps.py
     """
-    add = {"along_track": _add_along_track, "velocity": _add_along_velocity, "tether": _add_along_tether}[direction]
-
+    add = DIRECTIONS[direction]
     groups = REELS.terms[reel].variables, THRUST
     level_slot, offset_slot = own_slot("thrust.level", *groups), own_slot("thrust.offset", *groups)
     impulse_slot = own_slot("thrust.specific_impulse", *groups)

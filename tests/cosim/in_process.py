@@ -73,6 +73,9 @@ class KernelComponent:
         self.instance.record[:], self.instance.work[:], self.instance.time = self._kept[key]
         self._stale = False
 
+    def release(self, key: str = "") -> None:
+        self._kept.pop(key, None)
+
     def close(self) -> None:
         pass
 

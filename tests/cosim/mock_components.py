@@ -76,6 +76,9 @@ class MockComponent:
         time, values = self._kept[key]
         self.time, self.values = time, copy.copy(values)
 
+    def release(self, key: str = "") -> None:
+        self._kept.pop(key, None)
+
     def close(self) -> None:
         self.closed = True
 

@@ -132,6 +132,15 @@ def test_an_entry_that_escapes(tmp_path: Path, description: str, name: str) -> N
     assert not list(tmp_path.parent.rglob("evil*"))
 
 
+@pytest.mark.parametrize("name", ["../../evil", "/tmp/evil", "a/b", "..", "a\\b", "C:evil"])
+def test_an_identifier_that_is_a_path(tmp_path: Path, description: str, name: str) -> None:
+    """It would name a library elsewhere to be loaded."""
+    changed = description.replace('modelIdentifier="my_removal"', f'modelIdentifier="{name}"')
+    assert changed != description
+    told = refused(tmp_path, {XML: changed, BINARY: ""})
+    assert f"refused: its modelIdentifier {name!r} is a path; expected a name" in told
+
+
 def test_two_of_a_name_are_refused_and_aliases_are_not(tmp_path: Path, description: str) -> None:
     twice = description.replace('name="target.mass"', 'name="chaser.mass"')
     assert "two variables named 'chaser.mass'" in refused(tmp_path, {XML: twice, BINARY: ""})

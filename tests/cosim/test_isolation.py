@@ -251,6 +251,19 @@ def test_it_dies_with_its_parent(fmu: Fmu, rest: str) -> None:
         assert gone_within(child, 5.0)
 
 
+@pytest.mark.parametrize(
+    ("how", "said"), [("HANG", "did not answer within 2 s and was killed"), ("EXIT=0", "ended itself with exit code 0")]
+)
+def test_somebody_left_behind_keeps_nobody_waiting(fmu: Fmu, how: str, said: str) -> None:
+    """The FMU starts a process that outlives it by 20 s and holds its streams open: they never end."""
+    with fmu("LEAVES", how).isolate("tow", timeout=2.0) as component:
+        component.initialise(0.0)
+        begin = time.monotonic()
+        with pytest.raises(CallError, match=said):
+            component.step(45.0, 10.0)
+        assert time.monotonic() - begin < 10.0
+
+
 def test_ctrl_c_ends_a_step_that_hangs(fmu: Fmu) -> None:
     rest = """
         try:

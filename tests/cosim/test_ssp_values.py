@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -58,8 +59,10 @@ def test_a_binding_of_the_system_counts_more_than_one_of_the_component(good: Pat
     assert level(of_system(good, tmp_path / "x.ssp", inline(one("removal.thrust.level", -0.03)))) == -0.03
     prefixed = inline(one("thrust.level", -0.04), attributes=' prefix="removal."')
     assert level(of_system(good, tmp_path / "y.ssp", prefixed)) == -0.04
-    with pytest.raises(InputError, match=r"expected COMPONENT\.NAME"):
-        system.load(of_system(good, tmp_path / "z.ssp", inline(one("thrust.level", -0.03))))
+    scene = system.load(of_system(good, tmp_path / "z.ssp", inline(one("thrust.level", -0.03))))
+    assert scene.phases[0].main.parameters["thrust.level"] == -0.01
+    (note,) = scene.notes
+    assert "expected COMPONENT.NAME" in note
 
 
 def test_a_value_in_another_unit_is_converted(good: Path, tmp_path: Path) -> None:
@@ -74,14 +77,21 @@ def test_an_ssv_file_is_read(good: Path, tmp_path: Path) -> None:
     files["resources/more .ssv"] = content.replace("<ssv:ParameterSet ", f"<ssv:ParameterSet {NAMESPACES} ", 1).encode()
     assert level(packed(tmp_path / "y.ssp", files)) == -0.05
     files["resources/more .ssv"] = files["resources/more .ssv"].replace(b"thrust.level", b"thrust.levle")
-    with pytest.raises(InputError, match=r"resources/more \.ssv line 1: .*did you mean 'thrust.level'"):
-        system.load(packed(tmp_path / "z.ssp", files))
+    scene = system.load(packed(tmp_path / "z.ssp", files))
+    assert scene.phases[0].main.parameters["thrust.level"] == -0.01
+    (note,) = scene.notes
+    assert re.fullmatch(r"resources/more \.ssv line 1: .*did you mean 'thrust.level'\?; it is ignored", note)
 
 
 def test_a_mapping_renames_and_transforms_and_drops_the_rest(good: Path, tmp_path: Path) -> None:
     mapping = MAPPING.format(namespaces=NAMESPACES, entries=ENTRY.format(how='factor="2" offset="0.001"'))
     values = one("push", -0.01) + one("not.known", 1.0)
     assert level(of_component(good, tmp_path / "x.ssp", inline(values, mapping=mapping))) == 2 * -0.01 + 0.001
+    (note,) = system.load(tmp_path / "x.ssp").notes
+    assert note.endswith("parameter 'not.known' has no entry in its mapping; it is ignored")
+    nowhere = mapping.replace("thrust.level", "thrust.levle")
+    with pytest.raises(InputError, match=r"did you mean 'thrust\.level'"):
+        system.load(of_component(good, tmp_path / "w.ssp", inline(values, mapping=nowhere)))
     twice = MAPPING.format(namespaces=NAMESPACES, entries=2 * ENTRY.format(how='factor="2"'))
     with pytest.raises(InputError, match="mapped to in line"):
         system.load(of_component(good, tmp_path / "y.ssp", inline(values, mapping=twice)))

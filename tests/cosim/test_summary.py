@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import sleep
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, TugLog
-from dcone_cosim.reports import net_view, side_by_side, style, summary
+from dcone_cosim.reports import figures, net_view, side_by_side, style, summary
 from dcone_cosim.reports.figures import draw_all
 from dcone_cosim.run import as_json
 from dcone_cosim.scenes.scene import Scene
@@ -214,6 +215,35 @@ class TestFigures:
         rows, columns = net_view.grid(panels)
         assert rows * columns >= panels > (rows - 1) * columns
         assert columns <= 4
+
+    def test_no_legend_covers_a_curve(
+        self, towed: RunResult, make_scene: MakeScene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Curves that fill their axes from corner to corner: no place within is free for a legend."""
+        times = list(np.linspace(0.0, 2.0, 9))
+        up = list(np.arange(9.0))
+        energies = ("energy.total", "energy.kinetic", "energy.elastic", "target.energy", "contact.loss", "closing.work")
+        shot = removal_run(
+            make_scene("removal"), {"mouth.area": up[::-1], **dict.fromkeys(energies, up)}, times, TugLog(1)
+        )
+        shot.phases["capture"] = shot.phases.pop("removal")
+        assert shot.phases["capture"].recorder["mouth.area"][0] == 8.0
+        seen = []
+
+        def save(figure: Any, _: Path) -> None:
+            figure.canvas.draw()
+            legends = [axes.get_legend() for axes in figure.axes if axes.get_legend() is not None]
+            boxes = [(legend.get_window_extent(), axes) for legend in legends for axes in figure.axes]
+            assert not any(box.padded(-1.0).overlaps(axes.bbox) for box, axes in boxes)
+            head = figure._suptitle.get_window_extent()
+            assert not any(box.overlaps(head) or box.x1 > figure.bbox.x1 for box, _ in boxes)
+            seen.append(len(legends))
+
+        monkeypatch.setattr(style, "save", save)
+        for draw in (figures._orbit, figures._tension):
+            draw(towed, towed.phases["removal"], "", tmp_path / "x.png")
+        figures._mouth_and_energy(shot.phases["capture"], "", tmp_path / "x.png")
+        assert seen == [1, 1, 2]
 
     def test_long_titles_stay_within_the_figure(self) -> None:
         figure = style.new_figure(8.5, 6.5)

@@ -16,9 +16,32 @@ from dcone_cosim.interface_kit import write_template
 
 SOURCE = Path(__file__).with_name("misbehaving.c")
 HEADERS = Path(fmpy.__file__).parent / "c-code"
+FLUSHED = '    if (s->start + s->time < flushed - 1e-9) return refuse(i, "that state has been thrown away");\n'
 SHIM = {
-    "IGNORES_STATE": ("    memcpy(i->m.values, s + 1, block());\n", ""),  # it restores nothing
-    "REFUSES_WITHOUT_A_WORD": ("if (!callbacks || !name) return", "if (callbacks) return"),  # it cannot be instantiated
+    "IGNORES_STATE": [("    memcpy(i->m.values, s + 1, block());\n", "")],  # it restores nothing
+    "REFUSES_WITHOUT_A_WORD": [("if (!callbacks || !name) return", "if (callbacks) return")],  # it is not instantiated
+    # told that somebody may go back, it begins anew: as one does that takes that for the news that somebody has
+    "REWINDS": [("    (void)no_going_back;\n", "    if (!no_going_back) i->m.start = time;\n")],
+    # its String `label` is told by its length, in the place of the target's mass; so is the tolerance it is told, or -1
+    "TEXTS": [
+        (
+            '    (void)r, (void)values;\n    return n ? refuse(c, "there are no Strings") : fmi2OK;\n}\n\n/* ----',
+            "    for (size_t k = 0; k < n; k++) ((instance *)c)->m.values[r[k]] = (double)strlen(values[k]);\n"
+            "    return fmi2OK;\n}\n\n/* ----",
+        ),
+    ],
+    "TOLERANCE": [
+        (
+            "    (void)tolerance_given, (void)tolerance, (void)stop_given, (void)stop;\n",
+            "    (void)stop_given, (void)stop;\n    i->m.values[1] = tolerance_given ? tolerance : -1.0;\n",
+        ),
+    ],
+    # told that nobody goes back to before a step, it throws that away, and refuses to go there
+    "FLUSHES": [
+        ("    (void)no_going_back;\n", "    if (no_going_back && time > flushed) flushed = time;\n"),
+        ("    i->m.start = s->start;\n", FLUSHED + "    i->m.start = s->start;\n"),
+        ("static size_t block(void)", "static double flushed = -1e300;\nstatic size_t block(void)"),
+    ],
 }
 """What some switches change in the template's fmu.c."""
 
@@ -52,11 +75,11 @@ def _compiled(phase: str, switches: tuple[str, ...]) -> tuple[str, bytes]:
     with tempfile.TemporaryDirectory() as place:
         source = Path(place) / "source"
         write_template(phase, "c", source)
-        for switch, (old, new) in SHIM.items():
-            if switch in switches:
-                shim = (source / "fmu.c").read_text()
-                assert old in shim
-                (source / "fmu.c").write_text(shim.replace(old, new))
+        shim = (source / "fmu.c").read_text()
+        for old, new in [change for switch in switches for change in SHIM.get(switch, [])]:
+            assert shim.count(old) == 1
+            shim = shim.replace(old, new)
+        (source / "fmu.c").write_text(shim)
         binary = source / "it.so"
         subprocess.run(
             [
