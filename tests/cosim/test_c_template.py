@@ -37,7 +37,7 @@ def take(component: Component, state: bytes) -> None:
     data = (ctypes.c_char * len(state)).from_buffer_copy(state)
     component._call("fmi2DeSerializeFMUstate", component._fmu.component, data, len(state), ctypes.byref(found))
     component._states["taken"] = found
-    component._times["taken"] = 0.0
+    component._times["taken"], component._steps_of["taken"] = 0.0, 0
     component.restore("taken")
 
 
