@@ -48,7 +48,6 @@ def test_units_are_converted(unit: str, text: str, value: float) -> None:
         ("nan m", "finite"),
         ("1e999 m", "finite"),
         ("twelve m", "no number with a unit"),
-        ("1 furlongs", "no number with a unit"),
         ("", "no number with a unit"),
         (True, "expected a length"),
         (["1 m"], "expected a length"),
@@ -59,6 +58,11 @@ def test_what_does_not_fit_is_refused(value: object, reason: str) -> None:
         LENGTH.read(value)
     assert "expected a length" in str(error.value)
     assert '"24 m"' in str(error.value)
+
+
+def test_a_unit_that_is_not_known_is_answered_with_those_that_are() -> None:
+    with pytest.raises(Unexpected, match="has the unit 'furlongs', which is not known; known for a length: m, mm, cm"):
+        LENGTH.read("1 furlongs")
 
 
 @pytest.mark.parametrize(
