@@ -40,6 +40,7 @@ def _long_steps(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
 def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen: Seen) -> Iterator[Caution]:
     """From what came out."""
     yield from _unbalanced(values, seen)
+    yield from _taken_back(seen)
     thread, cord = seen("thread.tension_max"), seen("cord.tension_max")
     if (
         thread is not None
@@ -71,4 +72,13 @@ def _unbalanced(values: Values, seen: Seen) -> Iterator[Caution]:
             "energy.remainder",
             f"the book leaves {size:.2g} J over of the {entered:.3g} J that came in, {100.0 * size / entered:.2g} %: "
             "the scheme's own error, which falls with the square of solver.step_ratio",
+        )
+
+
+def _taken_back(seen: Seen) -> Iterator[Caution]:
+    """A capture that did not last."""
+    captured, lost = seen("t_capture"), seen("t_lost")
+    if captured is not None and lost is not None and lost.last >= 0.0:
+        yield Caution(
+            "t_lost", f"the target, captured at {captured.last:.4g} s, was out of the net at {lost.last:.4g} s"
         )

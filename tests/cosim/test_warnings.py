@@ -127,6 +127,18 @@ def test_threads_and_cord(make_scene: MakeScene) -> None:
     assert "para-aramid (nylon 66: 20 %) breaks at 3.5 %" in warnings(capture_run(scene, columns, cord))[0]
 
 
+def test_a_capture_that_did_not_last(make_scene: MakeScene) -> None:
+    """And a book that leaves over more than a hundredth of what came in: 0.3 J of 9 J and of 12 J of the winches."""
+    scene = make_scene("capture")
+    (told,) = warnings(capture_run(scene, {"t_capture": [-1.0, 15.2], "t_lost": [-1.0, 28.4]}, {}))
+    assert told == "capture.t_lost: the target, captured at 15.2 s, was out of the net at 28.4 s"
+    assert not warnings(capture_run(scene, {"t_capture": [-1.0, 15.2], "t_lost": [-1.0, -1.0]}, {}))
+    book = {"energy.kinetic": [9.0, 8.0], "closing.work": [0.0, 12.0], "energy.remainder": [0.0, -0.3]}
+    (told,) = warnings(capture_run(scene, book, {}))
+    assert told.startswith("capture.energy.remainder: the book leaves 0.3 J over of the 21 J that came in, 1.4 %")
+    assert not warnings(capture_run(scene, book | {"energy.remainder": [0.0, -0.2]}, {}))
+
+
 def test_a_pair_that_came_down_into_the_air(make_scene: MakeScene) -> None:
     assert "the pair came down: 119 km is below 120 km" in after(make_scene, {"altitude": [200e3, 140e3, 119e3]})
     assert after(make_scene, {"altitude": [200e3, 140e3, 121e3]}) == ""
