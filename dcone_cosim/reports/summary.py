@@ -11,11 +11,12 @@ import numpy as np
 
 from dcone_cosim.handoff import spin_energy
 from dcone_cosim.line import OFFSET, SLACK
-from dcone_cosim.master import HandoffRecord, RunResult
+from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.reports import chaos
 from dcone_cosim.reports.tension import last_orbit, orbital_period
 from dcone_cosim.reports.warnings import approach, warnings
+from dcone_cosim.transaction import HandoffRecord
 
 if TYPE_CHECKING:
     from rich.console import Console

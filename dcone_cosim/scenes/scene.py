@@ -86,6 +86,10 @@ class PhaseScene:
     def components(self) -> tuple[ComponentScene, ...]:
         return (self.main, *self.others)
 
+    def setting(self, name: str) -> float | None:
+        """What a parameter of the main component is, here or by default; None when it has none of that name."""
+        return self.main.parameters.get(name, self.main.defaults.get(name))
+
     def choice(self, name: str, label: str) -> float:
         """Value of an Integer choice of the main component by its name."""
         return float(self.main.choices[name].index(label))
