@@ -21,12 +21,13 @@ from numba import from_dtype, njit, types
 
 from fmu_src.interface import INITIALISE, SIZE, STEP, check_implemented
 from fmu_src.net_capture import (
+    book,
     closure,
     contact,
     enclosure,
     environment,
     folding,
-    formulas,
+    grid,
     interface,
     outcome,
     quality,
@@ -38,12 +39,7 @@ from fmu_src.net_capture import (
 from fmu_src.net_capture.terms import NodeTerms
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
-from orbital.vectors import dot
 
-MEASURE_INTERVAL = 0.01
-"""Seconds between two looks at mouth and capture: a whole number of substeps fits."""
-SMALLEST_SUBSTEP = 1e-9
-"""Seconds: below, no run would end."""
 ON_GRID = 1e-3
 """Share of a substep by which a communication point may miss the grid and still count as on it: masters add up
 times."""
@@ -74,6 +70,8 @@ def make_entry(terms):
     is_hill = terms["gravity"] == "hill"
     kick_body = environment.hill_kick_body if is_hill else environment.no_kick_body
     kick_nodes = environment.hill_kick_nodes if is_hill else environment.no_kick_nodes
+    choose_substep = grid.make_choose_substep(terms)
+    energy_balance = book.make_balance(terms)
     weigh_nodes = environment.hill_weigh_nodes if is_hill else environment.no_weigh_nodes
     share_inside = enclosure.make_share(target.sample, target.SAMPLES)
     judge = outcome.make_judge(terms, tether.towards_chaser, share_inside)
@@ -103,34 +101,6 @@ def make_entry(terms):
                 p.fault_value = p.net_nodes
                 return interface.TOO_MANY_NODES
         p.work_size = topology.work_size(p.knots, p.net_segments)
-        return 0
-
-    @kernel
-    def choose_substep(p):
-        """Rest length, stiffness and damping of a segment, the stability bound, and a substep that divides the grid."""
-        total = formulas.square_net_length(p.net_side, p.net_mesh)
-        area = formulas.thread_area(p.net_mass, p.net_density, total)
-        knot = 2.0 * p.net_mass * p.net_mesh / total
-        stiffness = formulas.axial_stiffness(p.net_youngs_modulus, area, p.net_mesh)
-        damping = formulas.thread_dashpot(p.net_damping_ratio, stiffness, knot)
-        p.thread_length = p.net_mesh / p.net_segments
-        p.thread_stiffness = stiffness * p.net_segments
-        p.thread_damping = damping * p.net_segments
-        cord = 0.0
-        dashpot = 0.0
-        if has_closing:
-            cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
-            dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.bullets_mass)
-        node = knot / p.net_segments
-        bound, step = formulas.substep_limits(p.thread_stiffness, p.thread_damping, node, cord, dashpot, p.bullets_mass)
-        if p.solver_step_ratio > 0.0:
-            step = p.solver_step_ratio * bound
-        p.solver_stability_bound = bound
-        if not step > SMALLEST_SUBSTEP:
-            p.fault_value = step
-            return interface.STEP_TOO_SMALL
-        p.measure_every = math.ceil(MEASURE_INTERVAL / step - 1e-9)
-        p.solver_substep = MEASURE_INTERVAL / p.measure_every
         return 0
 
     @kernel
@@ -224,7 +194,7 @@ def make_entry(terms):
     def look(p, work):
         """Every measure interval: mouth, trigger, capture and outcome; fault code 1 if the net has blown up."""
         time = now(p)
-        quality.watch_mouth(p, work, time, MEASURE_INTERVAL)
+        quality.watch_mouth(p, work, time, grid.MEASURE_INTERVAL)
         if not math.isfinite(p.mouth_area_max) or not math.isfinite(quality.mouth_area(p, work)):
             return interface.NOT_FINITE
         if has_closing:
@@ -291,29 +261,6 @@ def make_entry(terms):
         kick_body(p, p.chaser_place, p.chaser_velocity, p.pull, 0.5 * p.solver_substep)
         if has_target:
             kick_body(p, p.target_place, p.target_velocity, p.rest, 0.5 * p.solver_substep)
-
-    @kernel
-    def energy_balance(p, work):
-        """Energy of all bodies now [J], with what contact and dashpots took and without what the winches gave."""
-        energy = p.energy_total + p.thread_dissipated
-        energy += 0.5 * p.chaser_mass * dot(p.chaser_velocity, p.chaser_velocity)
-        if has_target:
-            energy += p.target_energy
-        if has_contact:
-            energy += p.contact_loss
-        if has_closing:
-            energy += p.cord_dissipated - p.closing_work
-        if has_tether:
-            energy -= p.tether_work
-        if is_hill:
-            potential = environment.potential_of_nodes(p, work)
-            potential += p.chaser_mass * environment.hill_potential(p, p.chaser_place)
-            if has_target:
-                potential += p.target_mass * environment.hill_potential(p, p.target_place)
-                potential -= p.mean_motion * p.target_spin[2]
-            p.energy_potential = potential
-            energy += potential
-        return energy
 
     @kernel
     def write_nodes(p, work, ahead):

@@ -57,6 +57,17 @@ def test_no_node_enters_the_target(shoot, speed, mass):
     assert worst < 1e-3 * max(1.0, reach)
 
 
+@pytest.mark.parametrize("axis", [1, 3])
+def test_none_enters_along_another_axis(shoot, axis):
+    """The way counts along each axis of the box."""
+    wall = WALL | {"target.size[2]": 8.0, f"target.size[{axis}]": 2.0}
+    there = {"chaser.start_position[2]": 0.0, f"chaser.start_position[{axis}]": -5.0, "bullets.speed": 3000.0}
+    net = shoot(LIGHT | wall | there, CAPTURE)
+    reach = 3000.0 * net["solver.substep"]
+    assert fly(net, 3000.0) < 1e-3 * max(1.0, reach)
+    assert net["contact.impulse"] > 0.0
+
+
 def test_a_turning_target_sweeps_up_nodes(shoot):
     """The surface comes to the net: 20 rad/s at 4 m."""
     turning = {"target.start_rate[3]": 20.0, "bullets.speed": 1.0, "target.mass": 1e3}
