@@ -59,7 +59,7 @@ def test_no_node_enters_the_target(shoot, speed, mass):
 
 @pytest.mark.parametrize("axis", [1, 3])
 def test_none_enters_along_another_axis(shoot, axis):
-    """The way counts along each axis of the box; from 5.15 m its middle is outside in the substep that meets the face."""
+    """The way counts along each axis of the box: from 5.15 m, its middle is outside when its end is inside."""
     wall = WALL | {"target.size[2]": 8.0, f"target.size[{axis}]": 2.0}
     there = {"chaser.start_position[2]": 0.0, f"chaser.start_position[{axis}]": -5.15, "bullets.speed": 3000.0}
     net = shoot(LIGHT | wall | there, CAPTURE)
