@@ -19,8 +19,25 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
         yield Caution("orbit.altitude", sentence)
     yield from heavily_damped("net.damping_ratio", values.get("net.damping_ratio"), "a thread's going taut")
     yield from heavily_damped("closing.damping_ratio", values.get("closing.damping_ratio"), "the cord's going taut")
+    if "closing" in terms and "target" in terms:
+        yield from _open_loops(values)
     if values.get("solver.step_ratio", 0.0) > 0.0:
         yield from _long_steps(values, terms)
+
+
+def _open_loops(values: Values) -> Iterator[Caution]:
+    """A mouth that stays open beside its cord: wider there than the target is round."""
+    from fmu_src.net_capture.implied import open_loop  # and with it numba
+
+    size = [values[f"target.size[{i}]"] for i in (1, 2, 3)]
+    girth, side, rings = 2.0 * (sum(size) - max(size)), values["net.side"], values["closing.rings"]
+    if open_loop(values) > girth:
+        needed = math.ceil((side + values["closing.lock_length"]) / girth) - 1
+        yield Caution(
+            "closing.rings",
+            f"with {rings:.0f} the closed mouth keeps loops of {open_loop(values):.3g} m, and {girth:.3g} m let this "
+            f"target pass: a capture may come to nothing within a minute; {needed} would hold it",
+        )
 
 
 def _long_steps(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:

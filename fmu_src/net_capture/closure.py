@@ -16,7 +16,7 @@ The book of the cord, T_e = EA (s - L)/L the elastic part of its tension T:
 
 import math
 
-from fmu_src.net_capture.formulas import cord_damping, cord_stiffness
+from fmu_src.net_capture.formulas import cord_damping, cord_stiffness, ring_radius
 from fmu_src.net_capture.topology import FX, P, X, bullet_node, node_plane
 from orbital.kernel import kernel
 
@@ -43,20 +43,69 @@ def start_closing(p):
 
 
 @kernel
-def bullets_apart(p, work, i):
-    """Distance between bullet i and the next [m], and its rate by the predicted velocities [m/s]."""
+def stops(p):
+    """Stretches of one pair's cord: from bullet to ring to bullet."""
+    return p.closing_rings + 1
+
+
+@kernel
+def cord_stop(p, i, stop):
+    """Knot at which a stretch of the i-th pair's cord begins: stop 0 is bullet i, the last is the next bullet."""
     a = bullet_node(p.knots, i)
     b = bullet_node(p.knots, (i + 1) % 4)
-    squared = 0.0
-    product = 0.0
-    for axis in range(3):
-        position = node_plane(p, work, X + axis)
-        velocity = node_plane(p, work, P + axis)
-        d = position[b] - position[a]
-        squared += d * d
-        product += d * (velocity[b] - velocity[a])
-    distance = math.sqrt(squared)
-    return distance, product / distance if distance > 0.0 else 0.0
+    meshes = p.knots - 1
+    return a + (b - a) // meshes * ((2 * stop * meshes + stops(p)) // (2 * stops(p)))
+
+
+@kernel
+def along_cord(p, work, i):
+    """Way of the i-th pair's cord from bullet through the rings to bullet [m], and its rate by the predicted velocities
+    [m/s].
+
+        s = sum over the stretches of sqrt(d^2 + b^2)
+
+    d  between two stops, b  how near to a ring's middle it passes: a stretch pulls with T d / sqrt(d^2 + b^2), so its
+    direction does not jump where a ring meets the next.
+    """
+    radius = ring_radius(p.closing_lock_length, p.closing_rings)
+    way = 0.0
+    change = 0.0
+    for stop in range(stops(p)):
+        a = cord_stop(p, i, stop)
+        b = cord_stop(p, i, stop + 1)
+        squared = radius * radius
+        product = 0.0
+        for axis in range(3):
+            position = node_plane(p, work, X + axis)
+            velocity = node_plane(p, work, P + axis)
+            d = position[b] - position[a]
+            squared += d * d
+            product += d * (velocity[b] - velocity[a])
+        root = math.sqrt(squared)
+        way += root
+        change += product / root if root > 0.0 else 0.0
+    return way, change
+
+
+@kernel
+def pull_along_cord(p, work, i, tension):
+    """The same tension in every stretch: rings have no friction."""
+    radius = ring_radius(p.closing_lock_length, p.closing_rings)
+    for stop in range(stops(p)):
+        a = cord_stop(p, i, stop)
+        b = cord_stop(p, i, stop + 1)
+        squared = radius * radius
+        for axis in range(3):
+            position = node_plane(p, work, X + axis)
+            d = position[b] - position[a]
+            squared += d * d
+        share = tension / math.sqrt(squared)
+        for axis in range(3):
+            position = node_plane(p, work, X + axis)
+            force = node_plane(p, work, FX + axis)
+            pull = share * (position[b] - position[a])
+            force[a] += pull
+            force[b] -= pull
 
 
 @kernel
@@ -75,7 +124,7 @@ def pull_trigger(p, work, now, first_contact, beyond):
     if p.closing_t_start < 0.0 and p.trigger_time >= 0.0 and now >= p.trigger_time + p.closing_delay:
         p.closing_t_start = now
         for i in range(4):
-            distance, rate = bullets_apart(p, work, i)
+            distance, rate = along_cord(p, work, i)
             p.cord_length[i] = max(distance, p.closing_lock_length)
             _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i])
 
@@ -117,7 +166,7 @@ def pull_of_cord(p, distance, rate, length):
     tension = 0.0
     if distance > length:
         stiffness = cord_stiffness(p.closing_axial_stiffness, length)
-        damping = cord_damping(p.closing_damping_ratio, stiffness, p.bullets_mass)
+        damping = cord_damping(p.closing_damping_ratio, stiffness, p.cord_mass)
         tension = cord_tension(stiffness, damping, distance - length, rate, speed, p.closing_stall_force)
     turning = speed * (1.0 - tension / p.closing_stall_force)
     return tension, -turning if turning > 0.0 else 0.0
@@ -139,7 +188,7 @@ def pull_mouth(p, work):
     if p.closing_t_start < 0.0:
         return
     for i in range(4):
-        distance, rate = bullets_apart(p, work, i)
+        distance, rate = along_cord(p, work, i)
         length = p.cord_length[i]
         tension, winding = pull_of_cord(p, distance, rate, length)
         p.cord_force[i] = winch_force(p, distance, rate, length)
@@ -148,14 +197,7 @@ def pull_mouth(p, work):
         if distance > length:
             elastic = cord_stiffness(p.closing_axial_stiffness, length) * (distance - length)
             p.cord_power += (tension - elastic) * (rate - winding)
-            a = bullet_node(p.knots, i)
-            b = bullet_node(p.knots, (i + 1) % 4)
-            for axis in range(3):
-                position = node_plane(p, work, X + axis)
-                force = node_plane(p, work, FX + axis)
-                share = tension / distance * (position[b] - position[a])
-                force[a] += share
-                force[b] -= share
+            pull_along_cord(p, work, i, tension)
 
 
 @kernel
@@ -176,7 +218,7 @@ def wound(p, distance, rate, length, winding, h):
         slope = 1.0
         if distance > shorter and then < 0.0:
             stiffness = cord_stiffness(p.closing_axial_stiffness, shorter)
-            damping = cord_damping(p.closing_damping_ratio, stiffness, p.bullets_mass)
+            damping = cord_damping(p.closing_damping_ratio, stiffness, p.cord_mass)
             yielding = p.closing_speed / (p.closing_stall_force + damping * p.closing_speed)
             slope += 0.5 * h * yielding * stiffness * distance / shorter
         shorter -= (shorter - known - 0.5 * h * then) / slope
@@ -194,7 +236,7 @@ def wind_cord(p, work, h):
     total = 0.0
     for i in range(4):
         if p.cord_length[i] > p.closing_lock_length:
-            distance, rate = bullets_apart(p, work, i)
+            distance, rate = along_cord(p, work, i)
             length = p.cord_length[i]
             shorter, p.cord_rate[i] = wound(p, distance, rate, length, p.cord_rate[i], h)
             against = 0.5 * (p.cord_force[i] + winch_force(p, distance, rate, shorter))
@@ -214,6 +256,6 @@ def stored_in_cord(p, work):
         return 0.0
     energy = 0.0
     for i in range(4):
-        distance, _ = bullets_apart(p, work, i)
+        distance, _ = along_cord(p, work, i)
         energy += cord_energy(p, distance, p.cord_length[i])
     return energy

@@ -197,7 +197,7 @@ def touch(p, work, node, frame_rate, h):
         change = impulse * inverse * normal[axis]
         node_plane(p, work, X + axis)[node] += h * change
         node_plane(p, work, U + axis)[node] += change
-        node_plane(p, work, P + axis)[node] += change
+        node_plane(p, work, P + axis)[node] += change - 0.5 * kicked * normal[axis]
     cross(lever, arm, normal)
     for i in range(3):
         p.target_drift[i] -= impulse / p.target_mass * normal[i]

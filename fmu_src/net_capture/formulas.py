@@ -8,6 +8,11 @@ import math
 from orbital.kernel import kernel
 from orbital.oscillators import explicit_step_limit
 
+BREAKING_STRAIN = 0.2
+"""Of nylon 66, the cord's default: beyond, no cord is."""
+RINGS_SHARE = 0.2
+"""Share of a locked cord that lies in its rings."""
+
 
 @kernel
 def square_net_length(side: float, mesh: float) -> float:
@@ -75,14 +80,32 @@ def cord_stiffness(axial_stiffness: float, length: float) -> float:
 
 
 @kernel
-def cord_damping(ratio: float, stiffness: float, bullet_mass: float) -> float:
-    """Dashpot of the closing cord between two bullets [N s/m]: d = 2 xi sqrt(k m/2), m/2 their reduced mass.
+def cord_mass(bullet_mass: float, edge_mass: float, rings: int) -> float:
+    """Mass that a cord between two bullets moves as it lengthens [kg]: 1 / (2/m + 4 n/q), at the sharpest bends.
+
+    bullet_mass   m      of each                                 [kg]
+    edge_mass     q      of a knot on the net's edge             [kg]
+    rings         n      on such knots, which it runs through    [1]
+    """
+    return 1.0 / (2.0 / bullet_mass + 4.0 * rings / edge_mass)
+
+
+@kernel
+def cord_damping(ratio: float, stiffness: float, mass: float) -> float:
+    """Dashpot of the closing cord between two bullets [N s/m]: d = 2 xi sqrt(k m).
 
     ratio         xi     damping ratio                           [1]
     stiffness     k      of the cord between them                [N/m]
-    bullet_mass   m      of each                                 [kg]
+    mass          m      that it moves, see `cord_mass`          [kg]
     """
-    return 2.0 * ratio * math.sqrt(0.5 * stiffness * bullet_mass)
+    return 2.0 * ratio * math.sqrt(stiffness * mass)
+
+
+@kernel
+def ring_radius(lock_length: float, rings: int) -> float:
+    """How near to the middle of a ring the closing cord passes [m]: a fifth of its length when locked, shared among its
+    stretches, so that it always has the length to go through them all."""
+    return RINGS_SHARE * lock_length / (rings + 1) if rings > 0 else 0.0
 
 
 @kernel
@@ -122,22 +145,37 @@ def accurate_step(stiffness_rate: float, damping_rate: float) -> float:
 
 @kernel
 def substep_limits(
-    thread: float, dashpot: float, node_mass: float, cord: float, cord_dashpot: float, bullet_mass: float
+    thread: float, dashpot: float, node_mass: float, cord: float, cord_dashpot: float, bullet_mass: float, rings: int
 ) -> tuple[float, float]:
-    """Stability bound of a net and the step that is accurate [s], the least of an inner node's and a bullet's.
+    """Stability bound of a net and the step that is accurate [s], the least of an inner node's, a bullet's and a
+    ring's.
 
     thread, dashpot      of one piece of thread                                  [N/m], [N s/m]
     node_mass            of an inner node, two pieces' worth                     [kg]
     cord, cord_dashpot   of a closing cord at its lock length; 0 without one     [N/m], [N s/m]
     bullet_mass          of each, without the thread that hangs on it            [kg]
+    rings                that each pair's cord runs through                      [1]
+
+    A cord of way s pulls its knots along ds/dx, of length 1 at a bullet and up to 2 at a ring, so through n rings a row
+    of its matrix sums to 2 (n + 1) k at a bullet and twice that at a ring; half of it counts here. A stretch that is no
+    longer than a ring's radius b turns, which adds T/b = k L/b times the strain, and BREAKING_STRAIN bounds that; of a
+    single ring's two stretches only one can be so short.
 
     Checked  tests/net_capture/test_formulas.py
     """
     stiffness_rate, damping_rate = 4.0 * thread / node_mass, 4.0 * dashpot / node_mass
     bound, accurate = longest_step(stiffness_rate, damping_rate), accurate_step(stiffness_rate, damping_rate)
     corner = bullet_mass + 0.5 * node_mass
-    stiffness_rate, damping_rate = 2.0 * (thread + cord) / corner, 2.0 * (dashpot + cord_dashpot) / corner
-    return (
-        min(bound, longest_step(stiffness_rate, damping_rate)),
-        min(accurate, accurate_step(stiffness_rate, damping_rate)),
-    )
+    held = (rings + 1) * cord
+    turning = held * BREAKING_STRAIN / RINGS_SHARE if rings > 0 else 0.0
+    damped = (rings + 1) * cord_dashpot
+    stiffness_rate, damping_rate = 2.0 * (thread + held + turning) / corner, 2.0 * (dashpot + damped) / corner
+    bound = min(bound, longest_step(stiffness_rate, damping_rate))
+    accurate = min(accurate, accurate_step(stiffness_rate, damping_rate))
+    if rings > 0 and cord > 0.0:
+        edge = 0.75 * node_mass
+        stiffness_rate = (3.0 * thread + 2.0 * held + min(rings, 2) * turning) / edge
+        damping_rate = (3.0 * dashpot + 2.0 * damped) / edge
+        bound = min(bound, longest_step(stiffness_rate, damping_rate))
+        accurate = min(accurate, accurate_step(stiffness_rate, damping_rate))
+    return bound, accurate

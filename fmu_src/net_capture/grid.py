@@ -31,11 +31,16 @@ def make_choose_substep(terms):
         p.thread_damping = damping * p.net_segments
         cord = 0.0
         dashpot = 0.0
-        if has_closing:
-            cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
-            dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.bullets_mass)
+        rings = 0
         node = knot / p.net_segments
-        bound, step = formulas.substep_limits(p.thread_stiffness, p.thread_damping, node, cord, dashpot, p.bullets_mass)
+        if has_closing:
+            rings = p.closing_rings
+            p.cord_mass = formulas.cord_mass(p.bullets_mass, 0.75 * node, rings)
+            cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
+            dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.cord_mass)
+        bound, step = formulas.substep_limits(
+            p.thread_stiffness, p.thread_damping, node, cord, dashpot, p.bullets_mass, rings
+        )
         if p.solver_step_ratio > 0.0:
             step = p.solver_step_ratio * bound
         p.solver_stability_bound = bound

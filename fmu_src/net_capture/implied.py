@@ -26,6 +26,22 @@ def thread_mass(values: Values) -> float:
     return values["net.mass"] * values["net.mesh"] / length
 
 
+def edge_mass(values: Values) -> float:
+    """Mass [kg] of a knot on the net's edge: half of the three pieces of thread that meet there."""
+    return 1.5 * thread_mass(values) / values["net.segments"]
+
+
+def cord_mass(values: Values) -> float:
+    """Mass [kg] that a cord between two bullets moves as it lengthens."""
+    return formula(formulas.cord_mass)(values["bullets.mass"], edge_mass(values), int(values["closing.rings"]))
+
+
+def open_loop(values: Values) -> float:
+    """Way [m] round the loop that a locked cord leaves open between two knots that it holds: the net's edge between
+    them, and the cord's share."""
+    return (values["net.side"] + values["closing.lock_length"]) / (values["closing.rings"] + 1)
+
+
 def catch_mass(values: Values) -> float:
     """Mass [kg] of net, bullets and vertex."""
     return values["net.mass"] + 4.0 * values["bullets.mass"] + values["vertex.mass"]
@@ -40,11 +56,13 @@ def substeps(values: Values, terms: Mapping[str, str]) -> tuple[float, float]:
     knot = 2.0 * thread_mass(values)
     dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, knot)
     cord = cord_dashpot = 0.0
+    rings = 0
     if "closing" in terms:
+        rings = int(values["closing.rings"])
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
-        cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, values["bullets.mass"])
+        cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, cord_mass(values))
     return formulas.substep_limits(
-        pieces * stiffness, pieces * dashpot, knot / pieces, cord, cord_dashpot, values["bullets.mass"]
+        pieces * stiffness, pieces * dashpot, knot / pieces, cord, cord_dashpot, values["bullets.mass"], rings
     )
 
 
@@ -79,7 +97,7 @@ def _of_nodes(values: Values) -> Iterator[Implied]:
     corner."""
     piece = thread_mass(values) / values["net.segments"]
     yield Implied("knot.mass", "mass of a knot inside the net", 2.0 * piece, "kg")
-    yield Implied("edge.mass", "mass of a knot on its edge", 1.5 * piece, "kg")
+    yield Implied("edge.mass", "mass of a knot on its edge", edge_mass(values), "kg")
     yield Implied("corner.mass", "mass of a corner, with its bullet", piece + values["bullets.mass"], "kg")
     if values["net.segments"] > 1:
         yield Implied("thread_node.mass", "mass of a node within a thread", piece, "kg")
@@ -100,7 +118,7 @@ def _of_shot(values: Values) -> Iterator[Implied]:
 
 
 def _of_cord(values: Values) -> Iterator[Implied]:
-    """Of the cord between two bullets, which swing against each other with half a bullet's mass."""
+    """Of the cord between two bullets, which swing against each other with half a bullet's mass; and what it closes."""
     for key, label, length in (
         ("cord_open", "the cord between two bullets, net flat", values["net.side"]),
         ("cord_locked", "the cord between two bullets, locked", values["closing.lock_length"]),
@@ -109,3 +127,6 @@ def _of_cord(values: Values) -> Iterator[Implied]:
         frequency = formula(oscillators.natural_frequency)(stiffness, 0.5 * values["bullets.mass"])
         yield Implied(f"{key}.stiffness", f"stiffness of {label}", stiffness, "N/m")
         yield Implied(f"{key}.period", "its period, undamped", 2.0 * math.pi / frequency, "s")
+    yield Implied(
+        "cord.open_loop", "way round the largest loop of the mouth that a locked cord leaves", open_loop(values), "m"
+    )

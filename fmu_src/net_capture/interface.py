@@ -40,7 +40,8 @@ OUTCOMES = ("flying", "captured", "settled", "missed", "slipped_off", "not_close
     NO_INERTIA,
     INSIDE_TARGET,
     STEP_TOO_SMALL,
-) = range(1, 11)
+    TOO_MANY_RINGS,
+) = range(1, 12)
 
 BASE = (
     positive("bullets.mass", "kg", "mass of each of the four bullets", 0.5),
@@ -187,6 +188,7 @@ BLAMED = {
     NO_INERTIA: "target.principal_inertia[1]",
     INSIDE_TARGET: "chaser.start_position[1]",
     STEP_TOO_SMALL: "net.youngs_modulus",
+    TOO_MANY_RINGS: "closing.rings",
 }
 """The variable a fault names, or its first component."""
 
@@ -211,6 +213,7 @@ FAULTS = (
         "the net is too stiff for its mass: the substep [s] it needs is below a nanosecond",
         True,
     ),
+    Fault(TOO_MANY_RINGS, "error", "closing.rings: a side of the mouth has fewer knots between its bullets", True),
 )
 
 MODEL = Model(

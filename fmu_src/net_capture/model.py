@@ -90,6 +90,10 @@ def make_entry(terms):
         if p.net_fold_side >= p.net_side:
             p.fault_value = p.net_fold_side
             return interface.FOLD_TOO_LARGE
+        if has_closing:
+            if p.closing_rings >= meshes:
+                p.fault_value = p.closing_rings
+                return interface.TOO_MANY_RINGS
         p.knots = int(meshes) + 1
         p.net_nodes = p.knots * p.knots + 2 * (p.net_segments - 1) * p.knots * (p.knots - 1)
         p.net_threads = 2 * p.net_segments * p.knots * (p.knots - 1)
@@ -350,7 +354,7 @@ def make_entry(terms):
 
     slots = model_interface.references
     # slot of the variable that each fault names, by its code
-    blamed = tuple(slots.get(interface.BLAMED.get(code, ""), 0) for code in range(interface.STEP_TOO_SMALL + 1))
+    blamed = tuple(slots.get(interface.BLAMED.get(code, ""), 0) for code in range(max(interface.BLAMED) + 1))
 
     @kernel
     def explain(p, fault, time):

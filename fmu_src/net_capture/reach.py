@@ -99,6 +99,9 @@ def _about_net(parameters: Parameters, capacity: int | None) -> Iterator[Refusal
     elif capacity is not None and node_count(whole, segments) > capacity:
         expected = f"must be at least {node_count(whole, segments)}, the nodes of this net"
         yield Refusal("nodes.capacity", str(capacity), expected)
+    elif parameters.get("closing.rings", 0) >= whole:
+        expected = f"must be at most {whole - 1}: a side of this net has so many knots between its bullets"
+        yield Refusal("closing.rings", f"{int(parameters['closing.rings'])}", expected)
 
 
 def _about_target(parameters: Parameters) -> Iterator[Refusal]:

@@ -22,6 +22,7 @@ DRAWN = {
     "closing.time": 0.0,
     "closing.speed": SPEED,
     "closing.stall_force": STALL,
+    "closing.rings": 0,
 }
 """A net that weighs nothing between four bullets at rest, 9.9 m apart; the winches start at the first look."""
 FIRST = 0.01
@@ -105,11 +106,13 @@ def test_four_bullets_come_to_the_speed_of_the_winches(shoot):
     assert net["closing.work"] - net["cord.dissipated"] == pytest.approx(12.5 * grown, rel=3e-3)
 
 
-def test_the_books_remainder_falls_with_the_square_of_the_substep(shoot):
+@pytest.mark.parametrize("rings", [0, 1])
+def test_the_books_remainder_falls_with_the_square_of_the_substep(shoot, rings):
     """Between two instants at which every cord is taut and winding."""
     counts, left = (20, 40, 80), []
     for count in counts:
         own = {"net.youngs_modulus": 1e6, "closing.axial_stiffness": 90.0, "closing.damping_ratio": 0.05}
+        own |= {"closing.rings": rings, "net.mass": 1.0}
         probe = shoot(DRAWN | own, TERMS)
         ratio = FIRST / count / probe["solver.stability_bound"] * (1.0 + 1e-6)
         net = shoot(DRAWN | own | {"solver.step_ratio": ratio}, TERMS)
@@ -121,9 +124,62 @@ def test_the_books_remainder_falls_with_the_square_of_the_substep(shoot):
     assert -np.polyfit(np.log(counts), np.log(left), 1)[0] == pytest.approx(2.0, abs=0.1)
 
 
+RING = 0.03
+"""Mass [kg] of the knots in the middle of the sides, through which the cord runs, in the test below."""
+
+
+def ringed_square(stiffness, ratio, until):
+    """Half a side, half the way between opposite rings, cord per side and work, at `until`.
+
+    Bullets at (+-a, +-a), rings at (0, +-b) and (+-b, 0), all in a plane: of the cord s = 2 sqrt(a^2 + (a - b)^2).
+    Its tension moves them as -T ds/dx does: m a'' = -T (2a - b) / l, q b'' = 2 T (a - b) / l, l half of s.
+    """
+
+    def motion(y):
+        a, va, b, vb, length = y[:5]
+        half = math.sqrt(a * a + (a - b) ** 2)
+        rate = 2.0 * (a * va + (a - b) * (va - vb)) / half
+        k, mass = stiffness / length, 1.0 / (2.0 / BULLET + 4.0 / RING)
+        d, stretch = 2.0 * ratio * math.sqrt(k * mass), 2.0 * half - length
+        tension = 0.0
+        if stretch > 0.0:
+            tension = (k * stretch + d * (rate + SPEED)) / (1.0 + d * SPEED / STALL)
+            tension = max(tension if tension < STALL else k * stretch + d * rate, 0.0)
+        return half, stretch, tension, -SPEED * max(1.0 - tension / STALL, 0.0)
+
+    def rates(_, y):
+        a, va, b, vb, length, _ = y
+        half, stretch, tension, winding = motion(y)
+        elastic = max(stiffness * stretch / length, 0.0)
+        push = tension / half
+        work = 4.0 * (tension + elastic**2 / (2.0 * stiffness)) * -winding
+        return [va, -push * (2.0 * a - b) / (BULLET + RING / 1.5), vb, 2.0 * push * (a - b) / RING, winding, work]
+
+    start = [4.95, 0.0, 4.95, 0.0, 9.9, 0.0]
+    return solve_ivp(rates, (FIRST, until), start, "RK45", rtol=1e-9, atol=1e-12, max_step=1e-3).y[:, -1]
+
+
+@pytest.mark.parametrize(("stiffness", "ratio"), [(903.0, 0.106), (903.0, 0.0), (90.0, 0.5)])
+def test_a_ring_is_drawn_after_the_bullets(shoot, stiffness, ratio):
+    """A cord through one heavy ring on each side, against an integration of its own: threads stay slack."""
+    own = {"net.mass": 12.0 * RING / 1.5, "closing.axial_stiffness": stiffness, "closing.damping_ratio": ratio}
+    net = shoot(DRAWN | own | {"closing.rings": 1}, TERMS)
+    net.step(0.6)
+    assert net["thread.tension_max"] == 0.0
+    a, _, b, _, length, work = ringed_square(stiffness, ratio, 0.6)
+    first, second = net.array("bullet_position")[:2]
+    assert 0.5 * np.linalg.norm(second - first) == pytest.approx(a, rel=2e-4)
+    rings = [net.work[axis * 9 : axis * 9 + 9][[1, 7]] for axis in range(3)]
+    assert 0.5 * math.hypot(*(two[1] - two[0] for two in rings)) == pytest.approx(b, rel=2e-4)
+    assert net["mouth.cord_length"] == pytest.approx(4.0 * length, rel=2e-4)
+    assert net["closing.work"] == pytest.approx(work, rel=2e-3)
+    assert abs(net["energy.remainder"]) < 2e-3 * work
+
+
 @pytest.mark.parametrize("fold", [0.05, 0.5, 5.0])
 @pytest.mark.parametrize("ratio", [0.0, 0.106])
-def test_closing_at_the_first_instant_makes_no_energy(shoot, fold, ratio):
+@pytest.mark.parametrize("rings", [0, 1, 3])
+def test_closing_at_the_first_instant_makes_no_energy(shoot, fold, ratio, rings):
     """A folded net whose bullets stand closer than the lock length, or not; nothing damps."""
     change = {
         "net.side": 24.0,
@@ -132,6 +188,8 @@ def test_closing_at_the_first_instant_makes_no_energy(shoot, fold, ratio):
         "net.fold_side": fold,
         "closing.time": 0.0,
         "closing.damping_ratio": ratio,
+        "closing.stall_force": STALL,
+        "closing.rings": rings,
     }
     net = shoot(change, TERMS)
     start = net["energy.total"]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from fmu_src.instance import ModelFault
 from fmu_src.net_capture.interface import OUTCOMES
@@ -36,12 +37,20 @@ def bodies(net):
     return net["energy.total"] + net["target.energy"] + chaser - net["closing.work"] + net["contact.loss"]
 
 
-def test_capture_of_table_1_keeps_momenta_and_loses_energy(shoot):
-    net = shoot({"closing.time": 11.2, "closing.speed": 5.0} | TUMBLE, CAPTURE)
+PEAKS = {0: (8.0, 22.0, 80.0, 280.0), 1: (30.0, 200.0, 50.0, 300.0)}
+"""By rings: bounds of the largest tension of a thread and of the cord [N], one sample each. Without rings an ensemble
+of another code has 12 to 15 N and 125 to 185 N; with them the closed net stops the bullets, and eight seeds had 45 to
+125 N and 98 to 173 N."""
+
+
+@pytest.mark.parametrize("rings", PEAKS)
+def test_capture_of_table_1_keeps_momenta_and_loses_energy(shoot, rings):
+    own = {"closing.time": 11.2, "closing.speed": 5.0, "closing.stall_force": 10.0 if rings == 0 else 5.0}
+    net = shoot(own | {"closing.rings": rings} | TUMBLE, CAPTURE)
     spin = net.array("angular_momentum").copy()
     scale = np.abs(spin).max()
     previous = bodies(net)
-    while net.time < 18.0 - 1e-9:
+    while net.time < 20.0 - 1e-9:
         net.step(0.05)
         assert np.abs(net.array("momentum")).max() < 1e-9 * 4.6
         assert net.array("angular_momentum") == pytest.approx(spin, abs=1e-8 * scale)
@@ -52,11 +61,37 @@ def test_capture_of_table_1_keeps_momenta_and_loses_energy(shoot):
     assert 14.5 <= net["t_capture"] <= 16.0
     assert net["mouth.cord_length"] < net["mouth.girth"] == 16.0
     assert net["closed"] == 1
-    assert 0.0 < net["contact.loss"] < 9.0
     assert 9.5 < net["contact.first_time"] < 11.5
-    # "thread peak 12 to 15 N, cord peak 125 to 185 N when it locks": an ensemble figure, within a factor of 1.5
-    assert 8.0 < net["thread.tension_max"] < 22.0
-    assert 80.0 < net["cord.tension_max"] < 280.0
+    assert 0.0 < net["contact.loss"] < 9.0 + net["closing.work"]
+    least_thread, most_thread, least_cord, most_cord = PEAKS[rings]
+    assert least_thread < net["thread.tension_max"] < most_thread
+    assert least_cord < net["cord.tension_max"] < most_cord
+    # the scheme's own error, of what came in
+    assert abs(net["energy.remainder"]) < 0.01 * (9.0 + net["closing.work"])
+
+
+def test_a_knot_held_by_the_surface_has_no_speed_into_it(shoot):
+    """What threads press on the target stands still: a dashpot that saw the half kick its thread gives it, which the
+    surface takes back, would pull at a speed that is not there (in version 0.3.0 metres per second, and 2 % of the
+    energy)."""
+    net = shoot({"closing.time": 11.2} | TUMBLE, CAPTURE)
+    net.step(16.5)
+    held = 0
+    for _ in range(40):
+        net.step(net["solver.substep"])
+        nodes = net.work[: 14 * 625].reshape(14, 625)
+        half = 0.5 * net.array("target_size")
+        w, x, y, z = net.array("target_pose")
+        turn = Rotation.from_quat([x, y, z, w]).as_matrix()
+        body = (nodes[:3].T - net.array("target_place")) @ turn
+        predicted = (nodes[3:6].T - net.array("target_drift")) @ turn
+        for node in np.flatnonzero((np.abs(body) < half + 1e-9).all(axis=1)):
+            faces = np.flatnonzero(np.abs(np.abs(body[node]) - half) < 1e-9)
+            if len(faces) == 1:
+                held += 1
+                # turning moves the face by less than 0.3 m/s; a half kick of 20 N would be 1 m/s
+                assert abs(predicted[node, faces[0]]) < 0.3
+    assert held > 100
 
 
 def test_a_lost_reaction_would_break_the_momentum(shoot):

@@ -44,7 +44,7 @@ MISSION_VALUES: Mapping[str, Value] = {
     "net.mass": 0.84,
     "net.fold_side": 0.4,
     "bullets.mass": 1.27,
-    "closing.stall_force": 25.0,
+    "closing.stall_force": 6.0,
     "tether.length": 100.0,  # long enough never to come taut
     "target.size[1]": 2.5,
     "target.size[2]": 3.9,
