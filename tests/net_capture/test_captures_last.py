@@ -7,20 +7,23 @@ import pytest
 from tests.net_capture.evidence import shots
 from tests.net_capture.evidence.shots import RESULT, draw, follow, main, summarise
 
-SHOTS = (1, 30, 32, 70)
-"""Poorly aimed: two that come out within seconds, and two that stay."""
+SHOTS = (60, 105)
+"""Poorly aimed, 13 and 10 degrees."""
+WITHOUT_RINGS = {"closing.rings": 0, "closing.stall_force": 10.0}
+"""The closing of version 0.3.0."""
 
 
 def stored():
     return json.loads(RESULT.read_text())
 
 
-def test_what_the_centre_alone_took_and_lost_is_not_taken():
-    """The twin is the rule of version 0.2.0 on the same shots: it takes what does not last."""
-    rows = [follow(number, end=45.0) for number in SHOTS]
-    assert [row for row in rows if row["centre_only"]["lost"] is not None]
-    assert not [row for row in rows if row["lost"] is not None]
-    assert [row for row in rows if row["captured"] is not None]
+def test_a_cord_through_rings_holds_what_a_cord_around_four_bullets_loses():
+    """The twins: that cord, and with it the rule of version 0.2.0, take what does not last."""
+    held = [follow(number, end=30.0) for number in SHOTS]
+    assert all(row["captured"] is not None and row["lost"] is None for row in held)
+    twins = [follow(number, end=30.0, changes=WITHOUT_RINGS) for number in SHOTS]
+    assert [row for row in twins if row["captured"] is None or row["lost"] is not None]
+    assert [row for row in twins if row["centre_only"]["lost"] is not None]
 
 
 def test_the_stored_result_is_of_these_shots_and_adds_up():
@@ -43,24 +46,14 @@ def test_a_count_carries_its_interval():
 
 
 def judge(summary):
-    """Fewer come out than by the rule of version 0.2.0, and next to nothing that holds is refused."""
-    for what in ("taken_back_within_30_s", "taken_back_within_60_s"):
-        assert summary[what]["count"] < summary["centre_only_rule"][what]["count"]
-    assert summary["hold_but_refused"] <= 0.05 * summary["hold_to_the_end"]
-
-
-def test_the_stored_captures_hold_better_than_they_did():
-    judge(stored()["summary"])
-
-
-@pytest.mark.xfail(
-    strict=True,
-    reason="the cord ties four bullets and leaves four slack loops longer than the girth: some come out through them",
-)
-def test_the_stored_captures_hold_for_a_minute():
-    """What is asked, and open: no judgement of the mouth closes its loops."""
-    summary = stored()["summary"]
+    """At most one in a hundred is taken back within a minute; few that hold are refused, and no shot is for nothing."""
     assert summary["taken_back_within_60_s"]["count"] <= 0.01 * summary["captured"]
+    assert summary["hold_but_refused"] <= 0.05 * summary["hold_to_the_end"]
+    assert summary["captured"] >= 0.75 * summary["shots"]
+
+
+def test_the_stored_captures_hold_for_a_minute():
+    judge(stored()["summary"])
 
 
 @pytest.mark.evidence
