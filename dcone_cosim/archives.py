@@ -88,9 +88,10 @@ class Archives:
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]
-        if not component.isolate and component.fmu is not None:
+        apart = isolated(component, archive)
+        if not apart and component.fmu is not None:
             guard_exit()
-        made = archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
+        made = archive.isolate(name, component.timeout) if apart else archive.instantiate(name)
         try:
             if component.texts:
                 made.set_texts(component.texts)
@@ -137,8 +138,13 @@ class Archives:
             }
         return facts
 
+    def remarks(self) -> list[str]:
+        """What its user should know of what the FMUs did."""
+        return list(dict.fromkeys(remark for archive in self._of.values() for remark in archive.remarks))
+
     def _identity(self, phase: PhaseScene, component: ComponentScene) -> dict[str, Any]:
         archive = self._of[phase.name, component.name]
+        apart = isolated(component, archive)
         rows = archive.description.modelVariables
         texts = {row.name: row.start for row in rows if row.type == "String" and row.causality == "parameter"}
         return {
@@ -148,8 +154,8 @@ class Archives:
             "model": archive.description.modelName,
             "generation_tool": archive.description.generationTool,
             "ours": component.fmu is None,
-            "isolated": component.isolate,
-            "timeout": {"value": component.timeout, "unit": "s"} if component.isolate else None,
+            "isolated": apart,
+            "timeout": {"value": component.timeout, "unit": "s"} if apart else None,
             "texts": {**texts, **component.texts},
             "tolerance": archive.tolerance,
         }
@@ -163,3 +169,10 @@ class Archives:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def isolated(component: ComponentScene, archive: Archive) -> bool:
+    """Whether a component is run in a process of its own: as it is told, otherwise unless it was built here."""
+    if component.isolate is not None:
+        return component.isolate
+    return component.fmu is not None and not build.is_ours(archive.library)

@@ -188,6 +188,14 @@ def fault(path: Path) -> str:
     return fault(path)
 
 
+def is_ours(library: Path) -> bool:
+    """Whether the binary of an FMU's file was built by this program: it is alone in its folder, and the cache, where
+    nobody else puts anything, has the same. What the file says of itself proves nothing: anybody can write that."""
+    from fmu_src.packaging.kept import holds
+
+    return list(library.parent.iterdir()) == [library] and holds(cache_folder(), library)
+
+
 def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], platforms: Sequence[Any] = ()) -> Any:
     """Paths of the FMUs of each interface, one per platform, this machine's alone if none is named.
 

@@ -23,7 +23,7 @@ from dcone_cosim.scratch import Scratch, clear_left
 
 LEFT_BEHIND = (
     "an earlier run in this place ended without a word, and what it had left was removed; "
-    "if an FMU crashed it, `isolate = true` makes the crash an error that keeps the results"
+    "if an FMU that is not isolated crashed it, --isolate makes the crash an error that keeps the results"
 )
 
 
@@ -51,10 +51,11 @@ def run_and_write(
     with_figures: bool = True,
     force: bool = False,
     settings: Sequence[str] = (),
+    isolate: bool | None = None,
 ) -> Written:
     """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing."""
     started = datetime.now(UTC)
-    scene = named(name, settings)
+    scene = named(name, settings).isolating(isolate)
     folder = out if out is not None else default_folder(scene.name)
     left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
@@ -66,6 +67,7 @@ def run_and_write(
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
+            notes += archives.remarks()
         notes += nothing_recorded(result)
         if Path(name) == Path(scene.source).parent:
             notes += unlike(Path(name), facts)

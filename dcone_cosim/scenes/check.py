@@ -28,6 +28,7 @@ from dcone_cosim.scenes.keys import (
     REQUIRED,
     SHARED,
     TOP,
+    isolation,
     orbit_keys,
     read_snapshots,
     read_table,
@@ -63,7 +64,7 @@ class _Component:
             self.part.model.name if self.part.model is not None and self.part.fmu is None else "",
             dict(self.part.terms) if self.part.fmu is None else {},
             self.part.fmu,
-            bool(self.options.get("isolate", False)),
+            isolation(self.options),
             self.options.get("timeout", ComponentScene.timeout),
             self.parameters,
             self.part.defaults(),
@@ -177,7 +178,7 @@ def _read_component(
     for key, expected in COMPONENT_KEYS.items():
         if key in tables:
             read.options[key] = read_value(tables[key], expected.read, (*part.path, key), mistakes)
-    if "timeout" in tables and not read.options.get("isolate"):
+    if "timeout" in tables and not read.options.get("isolate", "fmu" in tables):
         text = "only calls to an isolated FMU have a limit; add isolate = true"
         mistakes.append(Mistake((*part.path, "timeout"), tables["timeout"], text))
     if "solver_tolerance" in tables and "fmu" not in tables:
