@@ -120,11 +120,11 @@ class IsolatedComponent:
     def exit_initialisation(self) -> None:
         """Begin, with what was set meanwhile."""
         self._ask(" at the end of its initialisation", "exit_initialisation")
-        self._stepping = True
 
     def step(self, time: float, size: float) -> None:
         """Advance from `time` by `size` [s]."""
         wanted, self._wanted = tuple(self._wanted), set()
+        self._stepping = True
         try:
             fresh = self._ask(
                 f" at t = {time:.9g} s in a step of {size:.6g} s", "step", float(time), float(size), wanted
