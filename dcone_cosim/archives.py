@@ -7,6 +7,7 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.fmu import isolation
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Steppable
 from dcone_cosim.fmu.leaving import guard_exit
@@ -25,10 +26,11 @@ class Archives:
         self._coupled: dict[str, Any] = {}
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
-        with progress.working("building"):
-            built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
-        paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
         try:
+            isolation.make_ready(sum(c.isolate or (c.isolate is None and c.fmu is not None) for _, c in components))
+            with progress.working("building"):
+                built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
+            paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
             for phase, component in components:
                 key = (phase, component.name)
                 self._of[key] = (
@@ -164,6 +166,7 @@ class Archives:
         return self
 
     def close(self) -> None:
+        isolation.dismiss()
         for archive in self._of.values():
             archive.close()
 

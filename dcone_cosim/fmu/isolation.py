@@ -72,7 +72,7 @@ class IsolatedComponent:
         self._deadline = math.inf
         self._noise = b""
         self._over = threading.Event()
-        self._child = _start_child()
+        self._child = _next_child()
         assert self._child.stdout is not None
         self._answers = Incoming(self._child.stdout.fileno(), self._is_over)
         self._listener = threading.Thread(target=self._listen, daemon=True)
@@ -327,6 +327,32 @@ def _start_child() -> subprocess.Popen[bytes]:
         env=os.environ | {"PYTHONPATH": path},
         start_new_session=True,
     )
+
+
+_ready: list[subprocess.Popen[bytes]] = []
+
+
+def make_ready(count: int) -> None:
+    """Start children ahead: to import what they need takes each 0.2 s, in which something else can be done."""
+    _ready.extend(_start_child() for _ in range(count))
+
+
+def dismiss() -> None:
+    """End the children that nobody has needed."""
+    while _ready:
+        child = _ready.pop()
+        _kill(child)
+        child.communicate()
+
+
+def _next_child() -> subprocess.Popen[bytes]:
+    """One that was made ready, or a new one."""
+    while _ready:
+        child = _ready.pop(0)
+        if child.poll() is None:
+            return child
+        child.communicate()
+    return _start_child()
 
 
 def _kill(child: subprocess.Popen[bytes]) -> None:

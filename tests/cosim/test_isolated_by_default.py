@@ -15,9 +15,12 @@ import pyarrow.parquet
 import pytest
 
 from dcone_cosim import build as models
-from dcone_cosim.archives import isolated
+from dcone_cosim.archives import Archives, isolated
 from dcone_cosim.errors import FMU_FAILED
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.master import run_scene
+from dcone_cosim.progress import Progress
+from dcone_cosim.run import phase_table
 from dcone_cosim.scenes.scene import ComponentScene, load
 from fmu_src.packaging.archive import pack
 from tests.cosim.conftest import Dcone
@@ -125,6 +128,41 @@ def test_it_can_be_switched_off_and_changes_no_bit(dcone: Dcone, tmp_path: Path,
     count = len(apart[0])
     assert count == 1 + (kind == "component")
     assert apart == [[True] * count, [False] * count, [True] * count, [True] * (count - 1) + [False]]
+
+
+COUPLINGS = [
+    (method, control, extrapolation)
+    for method in ("jacobi", "gauss_seidel")
+    for control in ("fixed", "error")
+    for extrapolation in ("constant", "linear")
+]
+
+
+def same_bits_coupled(method: str, control: str, extrapolation: str, duration: str) -> None:
+    """Ours, which can do all of it: their states are kept and gone back to, and their inputs move."""
+    told = {"duration": duration, "coupling.method": method, "coupling.control": control}
+    told |= {"coupling.extrapolation": extrapolation} | ({"coupling.tolerance": "1e-3"} if control == "error" else {})
+    scene = load("reel-control", [f"removal.{key}={value}" for key, value in told.items()])
+    tables, statistics = [], []
+    for isolate in (False, True):
+        with Archives(scene.isolating(isolate), Progress()) as archives:
+            run = run_scene(scene, archives.instantiate, Progress())
+        assert run.exit_code == 0, run.message
+        tables.append(phase_table(run.phases["removal"], ""))
+        statistics.append(run.phases["removal"].coupling)
+    assert statistics[0] == statistics[1]
+    assert (statistics[0]["rejected"] > 0) == (control == "error")
+    assert tables[0].equals(tables[1])
+
+
+def test_coupled_they_give_the_same_bits() -> None:
+    same_bits_coupled("gauss_seidel", "error", "linear", "10 min")
+
+
+@pytest.mark.evidence
+@pytest.mark.parametrize(("method", "control", "extrapolation"), COUPLINGS)
+def test_every_coupling_gives_the_same_bits(method: str, control: str, extrapolation: str) -> None:
+    same_bits_coupled(method, control, extrapolation, "1 h")
 
 
 def test_only_what_was_built_here_is_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -219,6 +219,48 @@ def test_a_closed_one_leaves_no_process(fmu: Fmu) -> None:
         component.step(0.0, 1.0)
 
 
+def test_children_made_ready_are_taken_or_ended(fmu: Fmu) -> None:
+    """One that has died meanwhile is not taken."""
+    isolation.make_ready(3)
+    first, second, third = isolation._ready
+    first.kill()
+    first.wait()
+    with fmu().isolate("tow") as component:
+        assert component._child is second
+        component.initialise(0.0)
+    isolation.dismiss()
+    assert not isolation._ready
+    assert not any(is_alive(child.pid) for child in (first, second, third))
+
+
+def test_what_has_no_answer_goes_along_with_the_next_step(fmu: Fmu, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Inputs, a state kept, a step and a reading are one exchange; and one that is refused is told there."""
+    asked: list[list[str]] = []
+    monkeypatch.setattr(
+        isolation, "send", lambda pipe, calls: asked.append([c[0] for c in calls]) or frames.send(pipe, calls)
+    )
+    with fmu().isolate("tow") as component:
+        component.set({"start.relative_velocity[1]": 1.0, "start.relative_position[1]": 5.0})
+        component.initialise(0.0)
+        read = component.reader(["separation"])
+        read()
+        component.step(0.0, 1.0)
+        read()
+        asked.clear()
+        for i in range(1, 4):
+            component.save()
+            component.step(float(i), 1.0)
+            read()
+        component.restore()
+        assert read()[0] == 8.0
+        assert asked == [["save", "step"]] * 3 + [["restore", "read"]]
+        component.set({"target.mass": 10.0})  # a parameter, which cannot be set any more
+        with pytest.raises(CallError, match="no such Real can be set now"):
+            component.step(3.0, 1.0)
+        assert component.time == 3.0
+        component.step(3.0, 1.0)
+
+
 def parent(archive: Archive, rest: str) -> subprocess.Popen[str]:
     """A process that isolates the FMU, prints its child's id, and does the rest."""
     program = f"""
