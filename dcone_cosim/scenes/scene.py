@@ -222,7 +222,8 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
     overrides = override(document, settings)
     name_changes(text, document, overrides)
     places = Places(source, text, tuple(overrides))
-    return check(document, as_run(text, document, overrides, folder), name, places, folder)
+    scene = check(document, name, places, folder)
+    return replace(scene, text=as_run(text, document, overrides, folder))
 
 
 def title_of(path: Path) -> str:

@@ -97,7 +97,7 @@ def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes
     """Every component with its FMU, unpacked and opened once to see what it offers."""
     parts = {}
     for number, row in enumerate(content.components):
-        entry, reason = entry_of(row.source, package.names)
+        entry, reason = entry_of(row.source, package.names, mistakes)
         if reason:
             mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {reason}")
             continue
