@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -140,10 +141,6 @@ class Archives:
             }
         return facts
 
-    def remarks(self) -> list[str]:
-        """What its user should know of what the FMUs did."""
-        return list(dict.fromkeys(remark for archive in self._of.values() for remark in archive.remarks))
-
     def _identity(self, phase: PhaseScene, component: ComponentScene) -> dict[str, Any]:
         archive = self._of[phase.name, component.name]
         apart = isolated(component, archive)
@@ -160,6 +157,7 @@ class Archives:
             "timeout": {"value": component.timeout, "unit": "s"} if apart else None,
             "texts": {**texts, **component.texts},
             "tolerance": archive.tolerance,
+            "remarks": list(archive.remarks),
         }
 
     def __enter__(self) -> Archives:
@@ -172,6 +170,14 @@ class Archives:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def remarks(facts: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """What its user should know of what the FMUs did, from their facts; each sentence once."""
+    phases = facts.values()
+    fmus = [phase.get("fmu", {}) for phase in phases]
+    fmus += [other["fmu"] for phase in phases for other in phase.get("components", {}).values()]
+    return list(dict.fromkeys(remark for fmu in fmus for remark in fmu.get("remarks", ())))
 
 
 def isolated(component: ComponentScene, archive: Archive) -> bool:

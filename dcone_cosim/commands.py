@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from dcone_cosim import build, interrupts, placed
-from dcone_cosim.archives import Archives
+from dcone_cosim.archives import Archives, remarks
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
@@ -67,8 +67,7 @@ def run_and_write(
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
-            notes += archives.remarks()
-        notes += nothing_recorded(result)
+        notes += [*nothing_recorded(result), *remarks(facts)]
         if Path(name) == Path(scene.source).parent:
             notes += unlike(Path(name), facts)
 
