@@ -16,7 +16,7 @@ from typing import Any
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scratch import workplace
+from dcone_cosim.scratch import clear_left, workplace
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.implied import Implied
@@ -205,6 +205,7 @@ def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], pla
     from fmu_src.packaging.platforms import host
     from fmu_src.packaging.tools import BuildError
 
+    clear_left(cache_folder())  # nothing else looks there when all is built already
     announced: list[str] = []
     began, times = clock.perf_counter(), Times(cache_folder())
 

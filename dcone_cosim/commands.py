@@ -131,20 +131,13 @@ def write_fmus(
         with Scratch(out) as draft:
             with progress.working("building"):
                 drafts = build.write_fmus(ours, chosen, draft, progress.say)
-            paths = [_into_place(path, out / path.name) for path in drafts]
+            paths = [placed.put(path, out / path.name) for path in drafts]
     except BaseException:
         for folder in made:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
     return paths
-
-
-def _into_place(draft: Path, path: Path) -> Path:
-    with interrupts.postponed():
-        draft.replace(path)
-        placed.note(path)
-    return path
 
 
 def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
@@ -175,9 +168,10 @@ def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
 def _write_new(path: Path, text: str) -> None:
     """Write a file that must not be there yet."""
     try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-        placed.note(path)
+        with Scratch(path.absolute().parent) as folder:
+            draft = folder / path.name
+            draft.write_text(text, encoding="utf-8")
+            placed.put_new(draft, path)
     except FileExistsError:
         raise InputError(f"{path} is there already and was not touched; choose another name") from None
     except OSError as error:
@@ -205,7 +199,7 @@ def write_schema(out: Path | None) -> str:
         with Scratch(out.absolute().parent) as folder:
             draft = folder / "schema"
             draft.write_text(text + "\n", encoding="utf-8")
-            _into_place(draft, out)
+            placed.put(draft, out)
     except OSError as error:
         raise InputError(f"{out} cannot be written: {error.strerror or error}") from None
     return text
