@@ -4,8 +4,9 @@ A frame is a mark, a length and a text. It holds names, numbers, lists and table
 reading one runs nothing and makes nothing else. Numbers keep every bit: JSON has them as the shortest text that reads
 back as the same double, with NaN and Infinity as words.
 
-They go through pipes. What takes time there is not to carry them but to be woken up, some 40 us: so whoever waits
-looks for a moment again and again first. Through shared memory an exchange would take 3 us less, of some 25.
+They go through pipes. What takes time there is not to carry them but to be woken up, some 50 us for a call and its
+answer: whoever waits looks again and again for a moment first, which leaves 3.5 us. Shared memory would leave 0.3 us of
+an exchange that takes some 30 in all: it does not pay. tests/benchmarks/test_isolation_cost.py measures all of them.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ NEXT_CALL = b"\x1e\n"
 """Between an FMU's messages during one call and those during the next, on the stream of what it writes."""
 MOMENT = 1e-4
 """How long to look again and again for what comes before sleeping until it is there [s]."""
+LONGEST_PAUSE = 63
+"""Looks that are left out at most after one in vain."""
 LOOK = 0.1
 """How often to see meanwhile whether the other side is still there [s]."""
 _HEAD = struct.Struct("<4sI")
@@ -55,8 +58,11 @@ class Incoming:
     def __init__(self, descriptor: int, is_over: Callable[[], bool] = lambda: False) -> None:
         self._descriptor, self._is_over = descriptor, is_over
         self._data = b""
+        self._pause = self._left_out = 0
         if os.name != "nt":
-            os.set_blocking(descriptor, False)
+            poll = select.poll()
+            poll.register(descriptor, select.POLLIN)
+            self._poll = poll.poll
 
     def read(self, size: int) -> bytes:
         """Up to `size` bytes, at least one; none at the end."""
@@ -67,17 +73,31 @@ class Incoming:
 
     def _next(self) -> bytes:
         """What has come, at least a byte; none at the end."""
-        awake = clock.perf_counter() + MOMENT
-        while True:
-            try:
-                return os.read(self._descriptor, 1 << 20)
-            except BlockingIOError:
-                if clock.perf_counter() < awake:
-                    os.sched_yield()
-                    continue
-            over = self._is_over()
-            if not select.select([self._descriptor], [], [], 0.0 if over else LOOK)[0] and over:
-                return b""
+        if os.name != "nt" and not self._look():
+            over = False
+            while not select.select([self._descriptor], [], [], 0.0 if over else LOOK)[0]:
+                if over:
+                    return b""
+                over = self._is_over()
+        return os.read(self._descriptor, 1 << 20)
+
+    def _look(self) -> bool:
+        """Look again and again for a moment; false when nothing has come.
+
+        After a look in vain the next ones are left out, ever more of them: it is for answers that come at once, and
+        takes the processor from whoever else needs it, be it the other side.
+        """
+        if self._left_out > 0:
+            self._left_out -= 1
+            return False
+        until = clock.perf_counter() + MOMENT
+        while not self._poll(0):
+            if clock.perf_counter() > until:
+                self._pause = min(2 * self._pause + 1, LONGEST_PAUSE)
+                self._left_out = self._pause
+                return False
+        self._pause = 0
+        return True
 
 
 def send(stream: BinaryIO, content: object) -> None:

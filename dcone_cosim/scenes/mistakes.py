@@ -114,6 +114,11 @@ class SceneError(InputError):
         self.mistakes, self.places = tuple(found), places
         super().__init__(message(self.mistakes, places))
 
+    @property
+    def more(self) -> int:
+        """How many mistakes are not told."""
+        return max(0, len(self.mistakes) - TOLD)
+
     def rows(self) -> list[dict[str, Any]]:
         """The mistakes that are told, as plain data."""
         return [

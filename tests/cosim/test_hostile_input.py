@@ -16,6 +16,7 @@ from dcone_cosim import names
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.scenes.kept import kept_in, unlike
+from dcone_cosim.scenes.mistakes import SceneError
 from dcone_cosim.scenes.scene import find, load, parse, read_text
 from dcone_cosim.scenes.toml_lines import deep_key
 from dcone_cosim.ssp import system
@@ -180,7 +181,9 @@ def is_bounded(text: str, folder: Path, looked_for: list[str]) -> None:
     assert lines[21].startswith("  and ")
     assert lines[21].endswith(" more")
     assert len(str(told.value)) < 12_000
-    assert len(told.value.rows()) == 20  # type: ignore[attr-defined]
+    error = told.value
+    assert isinstance(error, SceneError)
+    assert (len(error.rows()), f"  and {error.more} more") == (20, lines[21])
     assert len(looked_for) <= 80
     assert time.monotonic() - began < 60.0
 
