@@ -341,8 +341,11 @@ def dismiss() -> None:
     """End the children that nobody has needed."""
     while _ready:
         child = _ready.pop()
-        _kill(child)
-        child.communicate()
+        try:
+            child.communicate(timeout=FAREWELL)  # it ends with the stream of its calls
+        except subprocess.TimeoutExpired:
+            _kill(child)
+            child.communicate()
 
 
 def _next_child() -> subprocess.Popen[bytes]:
