@@ -40,9 +40,9 @@ START = 120.0
 """How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
-KEEPING = frozenset({"read", "reader", "get", "save", "release"})
+KEEPING = frozenset({"read", "reader", "get", "save", "release", "cpu"})
 """Calls after which what was read before still holds."""
-ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int}
+ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int, "cpu": float}
 """What a call is answered with; all others with nothing."""
 
 
@@ -63,6 +63,7 @@ class IsolatedComponent:
         self.time = 0.0
         self._times: dict[str, float] = {}
         self._readers = 0
+        self._cpu = 0.0
         self._gone: FmuError | None = None
         self._closed = self._late = False
         self._fresh: dict[int, bytes] = {}
@@ -153,6 +154,12 @@ class IsolatedComponent:
     def state_size(self) -> int:
         """Bytes of a serialised state."""
         return int(self._ask("", "state_size"))
+
+    def cpu_apart(self) -> float:
+        """CPU time of its process [s]; what was known last when that is gone."""
+        with suppress(FmuError):
+            self._cpu = self._ask("", "cpu")
+        return self._cpu
 
     def close(self) -> None:
         """Free the FMU and end its process; one that does not end by itself is killed."""

@@ -17,10 +17,14 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build as models
+from dcone_cosim.coupling.coupled import Coupled
+from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import frames, isolation
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, output_names
+from dcone_cosim.phases import RemovalLoop
+from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.scene import load
 from tests.cosim.fmus.build import build
 
@@ -258,6 +262,18 @@ def test_what_has_no_answer_goes_along_with_the_next_step(fmu: Fmu, monkeypatch:
         with pytest.raises(CallError, match="no such Real can be set now"):
             component.step(3.0, 1.0)
         assert component.time == 3.0
+
+
+def test_its_time_counts(fmu: Fmu) -> None:
+    """The CPU time that a run tells holds that of the other process, alone and coupled."""
+    with fmu().isolate("tow") as component:
+        before, own = component.cpu_apart(), time.process_time()
+        assert before > 0.0
+        component.initialise(0.0)
+        result = RemovalLoop(Coupled("all", [component], [], Coupling()), 1.0, 0.0, 2000.0, Progress()).run()
+        used, own = component.cpu_apart() - before, time.process_time() - own
+        assert own + 0.5 * used < result.cpu < own + 1.1 * used
+    assert component.cpu_apart() >= before + 0.9 * used, "and is known when it is gone"
 
 
 def parent(archive: Archive, rest: str) -> subprocess.Popen[str]:

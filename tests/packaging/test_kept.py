@@ -91,7 +91,7 @@ def test_a_pipe_or_a_folder_is_no_fmu(file: Path) -> None:
 
 
 def of_the_same_checksum(data: bytes) -> bytes:
-    """Other bytes, as many and with the same CRC-32: it is affine, so bits of the last four mend what the first does."""
+    """Other bytes, as many, with the same CRC-32: it is affine, so bits of the last four mend what the first does."""
     other = bytes([data[0] ^ 0xFF]) + data[1:]
     wanted, place = zlib.crc32(data) ^ zlib.crc32(other), len(other) - 4
     rows = []
