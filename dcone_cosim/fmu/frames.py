@@ -4,9 +4,10 @@ A frame is a mark, a length and a text. It holds names, numbers, lists and table
 reading one runs nothing and makes nothing else. Numbers keep every bit: JSON has them as the shortest text that reads
 back as the same double, with NaN and Infinity as words.
 
-They go through pipes. What takes time there is not to carry them but to be woken up, some 50 us for a call and its
-answer: whoever waits looks again and again for a moment first, which leaves 3.5 us. Shared memory would leave 0.3 us of
-an exchange that takes some 30 in all: it does not pay. tests/benchmarks/test_isolation_cost.py measures all of them.
+They go through pipes. What takes time there is not to carry them but to be woken up, on two quiet cores some 50 us for
+a call and its answer: whoever waits looks again and again for a moment first, which leaves 3.5 us, and where cores are
+busy gains nothing. Shared memory would leave 0.3 us, of an exchange whose texts alone take 10: it does not pay.
+tests/benchmarks/test_isolation_cost.py measures all of them.
 """
 
 from __future__ import annotations
