@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.fmu import isolation
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Steppable
 from dcone_cosim.fmu.leaving import guard_exit
@@ -25,10 +27,11 @@ class Archives:
         self._coupled: dict[str, Any] = {}
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
-        with progress.working("building"):
-            built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
-        paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
         try:
+            isolation.make_ready(sum(c.isolate or (c.isolate is None and c.fmu is not None) for _, c in components))
+            with progress.working("building"):
+                built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
+            paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
             for phase, component in components:
                 key = (phase, component.name)
                 self._of[key] = (
@@ -88,9 +91,10 @@ class Archives:
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]
-        if not component.isolate and component.fmu is not None:
+        apart = isolated(component, archive)
+        if not apart and component.fmu is not None:
             guard_exit()
-        made = archive.isolate(name, component.timeout) if component.isolate else archive.instantiate(name)
+        made = archive.isolate(name, component.timeout) if apart else archive.instantiate(name)
         try:
             if component.texts:
                 made.set_texts(component.texts)
@@ -139,6 +143,7 @@ class Archives:
 
     def _identity(self, phase: PhaseScene, component: ComponentScene) -> dict[str, Any]:
         archive = self._of[phase.name, component.name]
+        apart = isolated(component, archive)
         rows = archive.description.modelVariables
         texts = {row.name: row.start for row in rows if row.type == "String" and row.causality == "parameter"}
         return {
@@ -148,18 +153,35 @@ class Archives:
             "model": archive.description.modelName,
             "generation_tool": archive.description.generationTool,
             "ours": component.fmu is None,
-            "isolated": component.isolate,
-            "timeout": {"value": component.timeout, "unit": "s"} if component.isolate else None,
+            "isolated": apart,
+            "timeout": {"value": component.timeout, "unit": "s"} if apart else None,
             "texts": {**texts, **component.texts},
             "tolerance": archive.tolerance,
+            "remarks": list(archive.remarks),
         }
 
     def __enter__(self) -> Archives:
         return self
 
     def close(self) -> None:
+        isolation.dismiss()
         for archive in self._of.values():
             archive.close()
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def remarks(facts: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """What its user should know of what the FMUs did, from their facts; each sentence once."""
+    phases = facts.values()
+    fmus = [phase.get("fmu", {}) for phase in phases]
+    fmus += [other["fmu"] for phase in phases for other in phase.get("components", {}).values()]
+    return list(dict.fromkeys(remark for fmu in fmus for remark in fmu.get("remarks", ())))
+
+
+def isolated(component: ComponentScene, archive: Archive) -> bool:
+    """Whether a component is run in a process of its own: as it is told, otherwise unless it was built here."""
+    if component.isolate is not None:
+        return component.isolate
+    return component.fmu is not None and not build.is_ours(archive.library)

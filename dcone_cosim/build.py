@@ -16,7 +16,7 @@ from typing import Any
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scratch import workplace
+from dcone_cosim.scratch import clear_left, workplace
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.implied import Implied
@@ -188,6 +188,14 @@ def fault(path: Path) -> str:
     return fault(path)
 
 
+def is_ours(library: Path) -> bool:
+    """Whether the binary of an FMU's file was built by this program: it is alone in its folder, and the cache, where
+    nobody else puts anything, has the same. What the file says of itself proves nothing: anybody can write that."""
+    from fmu_src.packaging.kept import holds
+
+    return list(library.parent.iterdir()) == [library] and holds(cache_folder(), library)
+
+
 def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], platforms: Sequence[Any] = ()) -> Any:
     """Paths of the FMUs of each interface, one per platform, this machine's alone if none is named.
 
@@ -197,6 +205,7 @@ def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], pla
     from fmu_src.packaging.platforms import host
     from fmu_src.packaging.tools import BuildError
 
+    clear_left(cache_folder())  # nothing else looks there when all is built already
     announced: list[str] = []
     began, times = clock.perf_counter(), Times(cache_folder())
 

@@ -75,6 +75,14 @@ def run(
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
     force: Annotated[bool, typer.Option("--force", help="Replace the results in the folder.")] = False,
+    isolate: Annotated[
+        bool | None,
+        typer.Option(
+            "--isolate/--no-isolate",
+            help="Run every FMU in a process of its own, or none; those that were not built here if not given.",
+            show_default=False,
+        ),
+    ] = None,
     offline: Offline = False,
 ) -> None:
     """Run a scene and write its results.
@@ -89,9 +97,7 @@ def run(
     progress = _progress()
     try:
         with exits.noise_apart():
-            written = run_and_write(
-                scene, out, progress, with_csv=csv, with_figures=figures, force=force, settings=settings or ()
-            )
+            written = run_and_write(scene, out, progress, csv, figures, force, settings or (), isolate)
     finally:
         progress.close()
     result = written.result

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from dcone_cosim import build, interrupts, placed
-from dcone_cosim.archives import Archives
+from dcone_cosim.archives import Archives, remarks
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
@@ -23,7 +23,7 @@ from dcone_cosim.scratch import Scratch, clear_left
 
 LEFT_BEHIND = (
     "an earlier run in this place ended without a word, and what it had left was removed; "
-    "if an FMU crashed it, `isolate = true` makes the crash an error that keeps the results"
+    "if an FMU that is not isolated crashed it, --isolate makes the crash an error that keeps the results"
 )
 
 
@@ -51,10 +51,11 @@ def run_and_write(
     with_figures: bool = True,
     force: bool = False,
     settings: Sequence[str] = (),
+    isolate: bool | None = None,
 ) -> Written:
     """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing."""
     started = datetime.now(UTC)
-    scene = named(name, settings)
+    scene = named(name, settings).isolating(isolate)
     folder = out if out is not None else default_folder(scene.name)
     left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
@@ -66,7 +67,7 @@ def run_and_write(
         with Archives(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
-        notes += nothing_recorded(result)
+        notes += [*nothing_recorded(result), *remarks(facts)]
         if Path(name) == Path(scene.source).parent:
             notes += unlike(Path(name), facts)
 
@@ -130,20 +131,13 @@ def write_fmus(
         with Scratch(out) as draft:
             with progress.working("building"):
                 drafts = build.write_fmus(ours, chosen, draft, progress.say)
-            paths = [_into_place(path, out / path.name) for path in drafts]
+            paths = [placed.put(path, out / path.name) for path in drafts]
     except BaseException:
         for folder in made:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
     return paths
-
-
-def _into_place(draft: Path, path: Path) -> Path:
-    with interrupts.postponed():
-        draft.replace(path)
-        placed.note(path)
-    return path
 
 
 def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
@@ -174,9 +168,10 @@ def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
 def _write_new(path: Path, text: str) -> None:
     """Write a file that must not be there yet."""
     try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-        placed.note(path)
+        with Scratch(path.absolute().parent) as folder:
+            draft = folder / path.name
+            draft.write_text(text, encoding="utf-8")
+            placed.put_new(draft, path)
     except FileExistsError:
         raise InputError(f"{path} is there already and was not touched; choose another name") from None
     except OSError as error:
@@ -204,7 +199,7 @@ def write_schema(out: Path | None) -> str:
         with Scratch(out.absolute().parent) as folder:
             draft = folder / "schema"
             draft.write_text(text + "\n", encoding="utf-8")
-            _into_place(draft, out)
+            placed.put(draft, out)
     except OSError as error:
         raise InputError(f"{out} cannot be written: {error.strerror or error}") from None
     return text

@@ -72,9 +72,9 @@ def complain(text: str) -> None:
 
 
 def details(error: DconeError) -> dict[str, Any]:
-    """What a machine may want beside the message: the mistakes of a scene one by one."""
+    """What a machine may want beside the message: the first mistakes of a scene one by one, and how many more."""
     rows = getattr(error, "rows", None)
-    return {"mistakes": rows()} if rows is not None else {}
+    return {"mistakes": rows(), "more": getattr(error, "more", 0)} if rows is not None else {}
 
 
 def _fail(text: str, exit_code: int, **more: Any) -> NoReturn:

@@ -15,7 +15,7 @@ import numpy as np
 
 from dcone_cosim.contract import EXTREMES, TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu.steppable import Readable, Row, Steppable, VariableInfo
+from dcone_cosim.fmu.steppable import Readable, Row, Steppable, VariableInfo, cpu_apart
 from dcone_cosim.recorder import TugLog
 
 PIECE = "held piece"
@@ -132,6 +132,9 @@ class Held:
 
     def close(self) -> None:
         self.component.close()
+
+    def cpu_apart(self) -> float:
+        return cpu_apart(self.component)
 
     def begin_row(self) -> None:
         self.settle()

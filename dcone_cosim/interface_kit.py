@@ -7,18 +7,19 @@ Python template is a script for PythonFMU. Both are working examples that a scen
 from __future__ import annotations
 
 import re
-import shutil
 import uuid
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dcone_cosim import placed
 from dcone_cosim.contract import NEEDS, Asked, asked
+from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.units import BASE, by_name
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scratch import Scratch, clear_left
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -82,22 +83,24 @@ def write_template(phase: str, kind: str, folder: Path) -> list[Path]:
     """Write an empty FMU of a phase into a folder that is new or empty; returns the files."""
     _known("phase", phase, PHASES)
     _known("template", kind, KINDS)
+    for left in (folder.absolute().parent, folder):
+        clear_left(left)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"{folder} already exists; a template is written to a new or an empty folder")
     rows = [r for r in asked(phase) if r.need != "optional" or r.name.startswith(_TEMPLATE_HAS)]
     content = _c_files(phase, rows) if kind == "c" else _python_files(phase, rows)
-    made = not folder.exists()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, text in content.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        for name in content:
-            placed.note(folder / name)
-    except BaseException:
-        if made:
-            shutil.rmtree(folder, ignore_errors=True)
-        raise
-    return [folder / name for name in content]
+    if folder.exists():  # somebody may be in it: it stays, and the files come into it
+        with Scratch(folder) as draft:
+            _fill(draft, content)
+            return [placed.put(draft / name, folder / name) for name in content]
+    with atomic_folder(folder) as whole:
+        _fill(whole.path, content)
+    return [whole.folder / name for name in content]
+
+
+def _fill(folder: Path, content: Mapping[str, str]) -> None:
+    for name, text in content.items():
+        (folder / name).write_text(text, encoding="utf-8")
 
 
 def _known(what: str, given: str, known: Sequence[str]) -> None:

@@ -7,9 +7,14 @@ from collections.abc import Iterable
 
 from dcone_cosim.errors import InputError
 
+LONGEST = 200
+"""Characters of a name for which others like it are looked for: no name that is known has so many."""
+
 
 def nearest(given: str, known: Iterable[str]) -> str | None:
     """The known name closest to the given one, or None when none resembles it."""
+    if len(given) > LONGEST:
+        return None
     names = list(known)
     found = difflib.get_close_matches(given, names, n=1, cutoff=0.5)
     if found:

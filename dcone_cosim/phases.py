@@ -16,6 +16,7 @@ from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUT
 from dcone_cosim.errors import DconeError, FmuError, Interrupted
 from dcone_cosim.fmu import restoring
 from dcone_cosim.fmu.component import KINDS, Readable, Row, Steppable, Terminated, output_names
+from dcone_cosim.fmu.steppable import cpu_apart
 from dcone_cosim.holding import holding
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
@@ -54,6 +55,7 @@ class PhaseResult:
     origin       what these are counted from, in the time of its FMU [s]
     outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
     located      instant of the hand-over [s] and how it was found, None when there was none
+    cpu          time of the processors [s], that of FMUs in processes of their own included
     error        the failure, or the interrupt, that ended the phase early
     ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
     coupling     steps of several coupled FMUs: how many, rejected, forced, smallest and largest [s]
@@ -92,14 +94,17 @@ def coupling_of(component: Steppable) -> dict[str, float]:
 
 
 class _Stopwatch:
-    def __init__(self, result: PhaseResult) -> None:
-        self.result = result
+    def __init__(self, result: PhaseResult, component: Steppable) -> None:
+        self.result, self.component = result, component
+
+    def _cpu(self) -> float:
+        return clock.process_time() + cpu_apart(self.component)
 
     def __enter__(self) -> None:
-        self.cpu, self.wall = clock.process_time(), clock.perf_counter()
+        self.cpu, self.wall = self._cpu(), clock.perf_counter()
 
     def __exit__(self, *_: object) -> None:
-        self.result.cpu = clock.process_time() - self.cpu
+        self.result.cpu = self._cpu() - self.cpu
         self.result.wall = clock.perf_counter() - self.wall
 
 
@@ -168,7 +173,7 @@ class CaptureLoop:
 
     def run(self) -> PhaseResult:
         result = self.result
-        with _Stopwatch(result):
+        with _Stopwatch(result, self.component):
             try:
                 self._run()
             except Terminated as end:
@@ -315,7 +320,7 @@ class RemovalLoop:
 
     def run(self) -> PhaseResult:
         result = self.result
-        with _Stopwatch(result):
+        with _Stopwatch(result, self.component):
             try:
                 self._run()
                 result.outcome = "towed"

@@ -14,6 +14,7 @@ from dcone_cosim.coupling.step_control import ControlledSteps, FixedSteps, Stati
 from dcone_cosim.coupling.wiring import order_of, wire
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.component import Readable, Row, Steppable, VariableInfo
+from dcone_cosim.fmu.steppable import cpu_apart
 from dcone_cosim.holding import Held
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.recorder import TugLog
@@ -210,6 +211,10 @@ class Coupled:
     def release(self, key: str = "") -> None:
         """Nobody goes back to what was kept under this key any more."""
         self._steps.release(KEPT + key)
+
+    def cpu_apart(self) -> float:
+        """CPU time of those in processes of their own [s]."""
+        return sum(cpu_apart(component) for component in self._held)
 
     def close(self) -> None:
         """Close every component; the first failure is raised once all have been."""

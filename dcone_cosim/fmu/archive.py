@@ -6,12 +6,12 @@ since that runs its code.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import math
 import re
 import xml.etree.ElementTree as ET
 import zipfile
-import zlib
 from collections.abc import Container
 from functools import cached_property
 from pathlib import Path
@@ -46,10 +46,12 @@ class Archive:
 
     folder       an FMU that is unpacked already, which `close` leaves alone
     tolerance    that the FMU's own solver is told, None for none; that of its default experiment if not given
+    remarks      what its user should know of what its instances did, each sentence once
     """
 
     def __init__(self, path: Path, folder: Path | None = None, tolerance: float | None = None) -> None:
         self.path = path
+        self.remarks: dict[str, None] = {}
         self._unpacked: Scratch | None = None
         self.folder: Path | None = folder
         try:
@@ -58,7 +60,7 @@ class Archive:
                 self.folder = self._unpacked.path
             self.description, root = _description(path, self.folder)
             self.variables = _variables(path, self.description, _relative(root))
-            _check_binary(path, self.folder, self.identifier)
+            _check_binary(path, self.folder, self.library)
             self.tolerance = self._default_tolerance() if tolerance is None else tolerance
         except BaseException:
             self.close()
@@ -85,6 +87,12 @@ class Archive:
         return str(self.description.coSimulation.modelIdentifier)
 
     @property
+    def library(self) -> Path:
+        """Its binary for this platform."""
+        assert self.folder is not None
+        return self.folder / "binaries" / str(fmpy.platform) / f"{self.identifier}{fmpy.sharedLibraryExtension}"
+
+    @property
     def can_save(self) -> bool:
         return _flag(self.description.coSimulation.canGetAndSetFMUstate)
 
@@ -104,6 +112,9 @@ class Archive:
         except KeyError:
             hint = did_you_mean(name, self.variables)
             raise FmuError(f"{instance}: {self.path.name} has no variable {name!r}{hint}") from None
+
+    def remark(self, sentence: str) -> None:
+        self.remarks[sentence] = None
 
     def instantiate(self, name: str) -> Component:
         """An instance in this process."""
@@ -152,12 +163,14 @@ def _unpack(path: Path) -> Scratch:
     except BaseException as error:
         if folder is not None:
             folder.remove()
-        if isinstance(error, zipfile.BadZipFile | zlib.error | EOFError):
+        if isinstance(error, RuntimeError):  # encrypted, or packed by a method that is not known
+            raise FmuError(f"{path}: not a readable FMU ({error})") from None
+        # zipfile answers damage with a dozen kinds of error, a seek to nowhere among them
+        of_system = isinstance(error, OSError) and error.errno not in (None, errno.EINVAL)
+        if isinstance(error, Exception) and not (of_system or isinstance(error, FmuError)):
             raise FmuError(
                 f"{path}: a damaged FMU; the file is cut short or was changed on its way ({error})"
             ) from None
-        if isinstance(error, RuntimeError):  # encrypted, or packed by a method that is not known
-            raise FmuError(f"{path}: not a readable FMU ({error})") from None
         raise
     return folder
 
@@ -292,12 +305,11 @@ def _bounds(path: Path, v: Any, kind: str, unit: Unit) -> tuple[float, float]:
     return (min(bounds), max(bounds)) if unit.factor < 0.0 else bounds
 
 
-def _check_binary(path: Path, folder: Path, identifier: str) -> None:
+def _check_binary(path: Path, folder: Path, library: Path) -> None:
     """There is a binary for this platform, under the name the model description says."""
-    here = folder / "binaries" / fmpy.platform
-    wanted = identifier + fmpy.sharedLibraryExtension
-    if (here / wanted).is_file():
+    if library.is_file():
         return
+    here, wanted = library.parent, library.name
     if here.is_dir():
         there = sorted(p.name for p in here.iterdir())
         listed = ", ".join(there) or "nothing"

@@ -5,7 +5,8 @@ then `step` with `read`, `set` of inputs and `save`/`restore` in between, at las
 that counts in other units is converted by its own unit definitions, one that counts in SI is passed through untouched.
 
 An FMU's misbehaviour is a `CallError` with its own words, the instance and the time: a refused call, an output that is
-no finite number, an answer promised for later. After a fatal error no further call is made, not even to free it.
+no finite number, an answer promised for later. After a fatal error no further call is made, not even to free it. A call
+that changes how this thread computes (see `floating`) is remarked on, and the change is taken back.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ import numpy.typing as npt
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import XML, Archive
+from dcone_cosim.fmu.floating import Control
 from dcone_cosim.fmu.messages import STATUS, Messages
 from dcone_cosim.fmu.steppable import (
     KINDS,
@@ -76,6 +78,7 @@ class Component:
         self._dead = ""
         self._messages = Messages()
         self._fmu: Any = None
+        self._control = Control()
         place = os.getcwd()
         try:
             self._fmu = fmi2.FMU2Slave(
@@ -84,10 +87,13 @@ class Component:
                 modelIdentifier=archive.identifier,
                 instanceName=name,
             )
+            self._watch("being loaded")
             self._fmu.instantiate(callbacks=self._messages.callbacks(), loggingOn=True)
         except Exception as error:
             os.chdir(place)  # fmpy stays in the binary's folder when that does not load
             raise self._not_instantiated(error) from None
+        finally:
+            self._watch("fmi2Instantiate")
 
     def _not_instantiated(self, error: Exception) -> FmuError:
         """Why there is no instance: the loader's words, or the FMU's own."""
@@ -102,10 +108,8 @@ class Component:
 
     def _strange_guid(self) -> str:
         """A word on the commonest reason for no instance: description and binary are of two builds."""
-        folder, guid = self.archive.folder, self.archive.guid
-        assert folder is not None
-        binary = folder / "binaries" / fmpy.platform / (self.archive.identifier + fmpy.sharedLibraryExtension)
-        if guid.encode() in binary.read_bytes():
+        guid = self.archive.guid
+        if guid.encode() in self.archive.library.read_bytes():
             return ""
         return f"; the guid {guid!r} of its {XML} is not in its binary, which may be of another build"
 
@@ -189,6 +193,8 @@ class Component:
             self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2True if no_return else fmi2.fmi2False)
         except fmpy.fmi1.FMICallException as error:
             raise self._refused(error, time, size) from None
+        finally:
+            self._watch("fmi2DoStep")
         if self._messages.late:
             raise self._asynchronous("it called stepFinished", time, size)
         self.time = time + size
@@ -203,6 +209,8 @@ class Component:
             self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(state))
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
+        finally:
+            self._watch("fmi2GetFMUstate")
         self._times[key], self._steps_of[key] = self.time, self._steps
 
     def restore(self, key: str = "") -> None:
@@ -237,6 +245,7 @@ class Component:
                 if self._stepping:
                     fmu.terminate()
             fmu.freeInstance()
+            self._watch("fmi2FreeInstance")
         self._messages.close()
 
     def __enter__(self) -> Component:
@@ -260,6 +269,17 @@ class Component:
             return getattr(self._fmu, function)(*arguments, **named)
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
+        finally:
+            self._watch(f"fmi2{function[0].upper()}{function[1:]}")
+
+    def _watch(self, call: str) -> None:
+        """After a call: take back what it changed in how this thread computes, and remark on it."""
+        changed = self._control.changed()
+        if changed:
+            self.archive.remark(
+                f"{self.name}: {self.archive.path.name} changed {changed} in {call}; this was taken back, so that "
+                "what is computed elsewhere keeps its bits"
+            )
 
     def _error(self, error: Any, where: str = "", reached: float | None = None, end: bool = False) -> CallError:
         """What a refused call becomes. `where`: what was asked; without it, the time stands there."""
@@ -348,6 +368,7 @@ class Reader:
                 )
             )
             begin += count
+        self._calls = " or ".join(f"fmi2Get{kind}" for kind in dict.fromkeys(info.kind for info in self._infos))
 
     def __call__(self) -> Row:
         component = self._component
@@ -360,6 +381,8 @@ class Reader:
                 self.values[part] = view
         except fmpy.fmi1.FMICallException as error:
             raise component._error(error) from None
+        finally:
+            component._watch(self._calls)
         reals = self._reals
         # the product is no finite number if an element is none: one pass, where a look at each would take three
         if not math.isfinite(reals.dot(reals)):

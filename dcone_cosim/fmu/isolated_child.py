@@ -13,13 +13,14 @@ import signal
 import threading
 import time
 import traceback
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import Archive, Component, Reader
-from dcone_cosim.fmu.frames import NEXT_CALL, as_fields, receive, send
+from dcone_cosim.fmu.frames import NEXT_CALL, Incoming, as_fields, receive, send
 from dcone_cosim.fmu.messages import listeners
 
 CALLS = frozenset(
@@ -34,12 +35,16 @@ LOOK_FOR_PARENT = 0.5
 
 
 class Server:
-    """Answers calls, each with a pair: the fields of an error or None, and the result."""
+    """Makes the calls of a frame one after the other, until one fails.
+
+    The answer to them: the fields of an error or None, the result of the last call, and remarks that are new.
+    """
 
     def __init__(self) -> None:
         self.component: Component | None = None
         self.readers: list[Reader] = []
         self._said = False
+        self._remarked = 0
 
     def answer(self, call: str, *arguments: Any) -> Any:
         if call == "hello":
@@ -58,6 +63,8 @@ class Server:
         if call == "reader":
             self.readers.append(self.component.reader(arguments[0]))
             return self.readers[-1].names
+        if call == "cpu":
+            return time.process_time()
         if call not in CALLS:
             raise FmuError(f"an isolated FMU has no call {call!r}")
         return getattr(self.component, call)(*arguments)
@@ -81,30 +88,44 @@ class Server:
             with suppress(OSError):
                 os.write(2, NEXT_CALL)
 
-    def serve(self, calls: BinaryIO, answers: BinaryIO) -> None:
+    def remarks(self) -> list[str]:
+        """What has been remarked on since this was asked last."""
+        if self.component is None:
+            return []
+        found = list(self.component.archive.remarks)[self._remarked :]
+        self._remarked += len(found)
+        return found
+
+    def answers(self, asked: Sequence[Any]) -> tuple[Any, Any, list[str]]:
+        result = None
+        for call in asked:
+            self.separate()
+            try:
+                result = self.answer(*call)
+            except FmuError as error:
+                return as_fields(error), None, self.remarks()
+            except Exception:
+                text = f"{call[0]} failed in the child process:\n{traceback.format_exc()}"
+                return as_fields(FmuError(text)), None, self.remarks()
+        return None, result, self.remarks()
+
+    def serve(self, calls: Incoming, answers: BinaryIO) -> None:
         while True:
             try:
-                call = receive(calls)
+                asked = receive(calls)
             except EOFError:
                 return
-            self.separate()
-            if call[0] == "close":
+            if asked == [["close"]]:
+                self.separate()
                 if self.component is not None:
                     self.component.close()
                 return
-            try:
-                answer: tuple[Any, Any] = (None, self.answer(*call))
-            except FmuError as error:
-                answer = (as_fields(error), None)
-            except Exception:
-                text = f"{call[0]} failed in the child process:\n{traceback.format_exc()}"
-                answer = (as_fields(FmuError(text)), None)
-            send(answers, answer)
+            send(answers, self.answers(asked))
 
 
-def _own_streams() -> tuple[BinaryIO, BinaryIO]:
+def _own_streams() -> tuple[Incoming, BinaryIO]:
     """Take the streams of calls and answers out of the FMU's reach; what it prints goes to the third stream."""
-    calls, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    calls, answers = Incoming(os.dup(0)), os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)

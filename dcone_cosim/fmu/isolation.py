@@ -4,21 +4,23 @@
 a fresh interpreter. Both sides send `frames` over the child's first two streams, each a call or an answer.
 What the FMU writes goes to the third stream, of which the last words are kept; nothing of it reaches our own streams.
 
-The numbers are the same to the last bit. A step with the reading after it costs some 0.1 ms more than in this process,
-a start 0.3 s more (measured on two quiet cores by tests/benchmarks/test_isolation_cost.py).
+A communication step is one exchange: once the FMU steps, what has no answer (inputs, a state to be kept or gone back
+to) waits for the next call that has one, and what was read after one step comes along with the next. A state never
+leaves the child. The numbers are the same to the last bit.
+
+Cost     tests/benchmarks/test_isolation_cost.py
 """
 
 from __future__ import annotations
 
 import math
 import os
-import select
 import signal
 import subprocess
 import sys
 import threading
 import time as clock
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -29,7 +31,7 @@ import numpy as np
 from dcone_cosim import interrupts
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.frames import NEXT_CALL, Garbled, from_fields, receive, send
+from dcone_cosim.fmu.frames import NEXT_CALL, Garbled, Incoming, from_fields, receive, send
 from dcone_cosim.fmu.steppable import CallError, Row, Terminated, VariableInfo
 
 LAST_WORDS = 600
@@ -38,11 +40,9 @@ START = 120.0
 """How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
-LOOK = 0.1
-"""How often to see whether a child that does not answer is still there [s]."""
-KEEPING = frozenset({"read", "reader", "get", "save", "release"})
+KEEPING = frozenset({"read", "reader", "get", "save", "release", "cpu"})
 """Calls after which what was read before still holds."""
-ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int}
+ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int, "cpu": float}
 """What a call is answered with; all others with nothing."""
 
 
@@ -63,15 +63,19 @@ class IsolatedComponent:
         self.time = 0.0
         self._times: dict[str, float] = {}
         self._readers = 0
+        self._cpu = 0.0
         self._gone: FmuError | None = None
         self._closed = self._late = False
         self._fresh: dict[int, bytes] = {}
         self._wanted: set[int] = set()
+        self._waiting: list[tuple[object, ...]] = []
+        self._stepping = False
         self._deadline = math.inf
         self._noise = b""
         self._over = threading.Event()
-        self._child = _start_child()
-        self._answers = _Answers(self._child, lambda: self._late)
+        self._child = _next_child()
+        assert self._child.stdout is not None
+        self._answers = Incoming(self._child.stdout.fileno(), self._is_over)
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
         threading.Thread(target=self._guard, daemon=True).start()
@@ -85,7 +89,7 @@ class IsolatedComponent:
 
     def set(self, values: Mapping[str, float]) -> None:
         """Set variables by name."""
-        self._ask("", "set", {name: float(value) for name, value in values.items()})
+        self._tell("set", {name: float(value) for name, value in values.items()})
 
     def set_texts(self, texts: Mapping[str, str]) -> None:
         """Set variables of kind String by name."""
@@ -93,7 +97,7 @@ class IsolatedComponent:
 
     def set_rates(self, rates: Mapping[str, float]) -> None:
         """Let inputs move at these rates [SI/s] over the next step."""
-        self._ask("", "set_rates", {name: float(rate) for name, rate in rates.items()})
+        self._tell("set_rates", {name: float(rate) for name, rate in rates.items()})
 
     def get(self, names: Sequence[str]) -> dict[str, float]:
         found: dict[str, float] = self._ask("", "get", list(names))
@@ -121,6 +125,7 @@ class IsolatedComponent:
     def step(self, time: float, size: float) -> None:
         """Advance from `time` by `size` [s]."""
         wanted, self._wanted = tuple(self._wanted), set()
+        self._stepping = True
         try:
             fresh = self._ask(
                 f" at t = {time:.9g} s in a step of {size:.6g} s", "step", float(time), float(size), wanted
@@ -133,22 +138,28 @@ class IsolatedComponent:
 
     def save(self, key: str = "") -> None:
         """Keep the present state, replacing the one kept before under this key; it stays in the child."""
-        self._ask("", "save", key)
+        self._tell("save", key)
         self._times[key] = self.time
 
     def restore(self, key: str = "") -> None:
         """Go back to the state kept last under this key."""
-        self._ask("", "restore", key)
+        self._tell("restore", key)
         self.time = self._times[key]
 
     def release(self, key: str = "") -> None:
         """Nobody goes back to what was kept under this key any more."""
         if self._times.pop(key, None) is not None:
-            self._ask("", "release", key)
+            self._tell("release", key)
 
     def state_size(self) -> int:
         """Bytes of a serialised state."""
         return int(self._ask("", "state_size"))
+
+    def cpu_apart(self) -> float:
+        """CPU time of its process [s]; what was known last when that is gone."""
+        with suppress(FmuError):
+            self._cpu = self._ask("", "cpu")
+        return self._cpu
 
     def close(self) -> None:
         """Free the FMU and end its process; one that does not end by itself is killed."""
@@ -159,7 +170,7 @@ class IsolatedComponent:
             return
         if self._deadline == math.inf:  # otherwise a call was interrupted and may still be going on
             with suppress(OSError, subprocess.TimeoutExpired):
-                send(self._child.stdin, ("close",))  # type: ignore[arg-type]
+                send(self._child.stdin, [("close",)])  # type: ignore[arg-type]
                 self._child.wait(min(FAREWELL, self.timeout))
         self._end()
 
@@ -169,28 +180,52 @@ class IsolatedComponent:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
 
-    def _ask(self, where: str, *call: object) -> Any:
-        """Send one call and wait for its answer; `where` tells the time of a call that is not answered."""
+    def _tell(self, *call: object) -> None:
+        """A call without an answer: made at once before the first step, which is what others expect of a refusal; later
+        with the next that has one, and its refusal is then told there."""
+        if not self._stepping:
+            self._ask("", *call)
+            return
+        self._alive()
+        if call[0] not in KEEPING:
+            self._fresh.clear()
+        self._waiting.append(call)
+
+    def _alive(self) -> None:
         if self._gone is not None:
             raise self._gone
         if self._closed:
             raise FmuError(f"{self.name}: the instance is closed")
+
+    def _ask(self, where: str, *call: object) -> Any:
+        """Send what waits and this call; returns its answer. `where` tells the time of one that is not answered."""
+        self._alive()
         if call[0] not in KEEPING:
             self._fresh.clear()
+        calls, self._waiting = [*self._waiting, call], []
         self._deadline = clock.monotonic() + (START if call[0] == "hello" else self.timeout)
         try:
-            send(self._child.stdin, call)  # type: ignore[arg-type]
-            error, answer = _checked(str(call[0]), receive(self._answers))
+            send(self._child.stdin, calls)  # type: ignore[arg-type]
+            error, answer, remarks = _checked(str(call[0]), receive(self._answers))
         except (OSError, EOFError, Garbled) as reason:
-            self._gone = self._died(where, isinstance(reason, Garbled))
+            self._gone = self._died(where, isinstance(reason, Garbled), [str(name) for name, *_ in calls[:-1]])
             raise self._gone from None
         self._deadline = math.inf
+        for remark in remarks:
+            self.archive.remark(remark)
         if error is not None:
             raise error
         return answer
 
-    def _died(self, where: str, garbled: bool) -> CallError:
-        """Why there is no answer: killed since it was late or wrote nonsense, ended by a signal, or by its own exit."""
+    def _is_over(self) -> bool:
+        """Whether the child is gone, or as good as."""
+        return self._late or self._child.poll() is not None
+
+    def _died(self, where: str, garbled: bool, before: Sequence[str]) -> CallError:
+        """Why there is no answer: killed since it was late or wrote nonsense, ended by a signal, or by its own exit.
+
+        before     names of the calls that went along, of which it may have been one
+        """
         alive = True
         if not (self._late or garbled):
             with suppress(subprocess.TimeoutExpired):
@@ -200,7 +235,7 @@ class IsolatedComponent:
         code = self._child.returncode
         if self._late:
             limit = interrupts.PATIENCE if interrupts.noted() else self.timeout
-            said = f"it did not answer within {limit:g} s and was killed"
+            said = f"it did not answer within {limit:g} s and was killed (its key timeout says how long it may take)"
         elif garbled:
             said = "its process wrote into the stream of our answers, which cannot be read any more, and was killed"
         elif alive:
@@ -214,6 +249,8 @@ class IsolatedComponent:
         if lines:
             said += f"; its last words: {'; '.join(lines[-3:])[-LAST_WORDS:]}"
         detail = f"{self.archive.path.name}, run in a process of its own"
+        if before:
+            detail += f"; with it went {', '.join(dict.fromkeys(before))}"
         return CallError(self.name, where or f" at t = {self.time:.9g} s", said, detail, "Dead")
 
     def _end(self) -> None:
@@ -243,34 +280,6 @@ class IsolatedComponent:
                 return
 
 
-class _Answers:
-    """What the child answers. It is over with the child: somebody that the FMU has left behind may still hold the other
-    end of the stream, which then never ends."""
-
-    def __init__(self, child: subprocess.Popen[bytes], is_late: Callable[[], bool]) -> None:
-        assert child.stdout is not None
-        self._child, self._stream, self._is_late = child, child.stdout, is_late
-        self._data = b""
-
-    def read(self, size: int) -> bytes:
-        """Up to `size` bytes, at least one; none at the end."""
-        if not self._data and self._wait():
-            self._data = os.read(self._stream.fileno(), 1 << 16)
-        found, self._data = self._data[:size], self._data[size:]
-        return found
-
-    def _wait(self) -> bool:
-        """Wait for something to read; false when the child is gone and has left nothing."""
-        if os.name == "nt":
-            return True
-        while True:
-            gone = self._is_late() or self._child.poll() is not None
-            if select.select([self._stream], [], [], 0.0 if gone else LOOK)[0]:
-                return True
-            if gone:
-                return False
-
-
 class IsolatedReader:
     """Reads a fixed set of variables of an isolated FMU into one row.
 
@@ -294,13 +303,13 @@ class IsolatedReader:
         return self.values
 
 
-def _checked(call: str, frame: Any) -> tuple[FmuError | None, Any]:
-    """The error or None, and the answer; `Garbled` when it is no answer to this call."""
+def _checked(call: str, frame: Any) -> tuple[FmuError | None, Any, list[str]]:
+    """The error or None, the answer, and remarks; `Garbled` when it is no answer to this call."""
     match frame:
-        case [None, answer] if isinstance(answer, ANSWERS.get(call, type(None))):
-            return None, answer
-        case [list(fields), None]:
-            return from_fields(fields), None
+        case [None, answer, list(remarks)] if isinstance(answer, ANSWERS.get(call, type(None))):
+            return None, answer, [str(remark) for remark in remarks]
+        case [list(fields), None, list(remarks)]:
+            return from_fields(fields), None, [str(remark) for remark in remarks]
     raise Garbled
 
 
@@ -325,6 +334,35 @@ def _start_child() -> subprocess.Popen[bytes]:
         env=os.environ | {"PYTHONPATH": path},
         start_new_session=True,
     )
+
+
+_ready: list[subprocess.Popen[bytes]] = []
+
+
+def make_ready(count: int) -> None:
+    """Start children ahead: to import what they need takes each 0.2 s, in which something else can be done."""
+    _ready.extend(_start_child() for _ in range(count))
+
+
+def dismiss() -> None:
+    """End the children that nobody has needed."""
+    while _ready:
+        child = _ready.pop()
+        try:
+            child.communicate(timeout=FAREWELL)  # it ends with the stream of its calls
+        except subprocess.TimeoutExpired:
+            _kill(child)
+            child.communicate()
+
+
+def _next_child() -> subprocess.Popen[bytes]:
+    """One that was made ready, or a new one."""
+    while _ready:
+        child = _ready.pop(0)
+        if child.poll() is None:
+            return child
+        child.communicate()
+    return _start_child()
 
 
 def _kill(child: subprocess.Popen[bytes]) -> None:

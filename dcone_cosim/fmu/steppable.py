@@ -97,6 +97,12 @@ class Steppable(Protocol):
     def close(self) -> None: ...
 
 
+def cpu_apart(component: Steppable) -> float:
+    """CPU time that a component has used in processes of its own [s]."""
+    told = getattr(component, "cpu_apart", None)
+    return float(told()) if told is not None else 0.0
+
+
 class CallError(FmuError):
     """A call that an FMU refused, or did not survive.
 

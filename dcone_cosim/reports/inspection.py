@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
+from dcone_cosim.archives import isolated
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.master import cannot_begin
@@ -26,6 +27,7 @@ class About:
     terms      what is in the FMU and what is left out: "in" or "left out", the term, what it adds
     facts      label and text
     implied    what the scene's values come to
+    isolated   whether it is run in a process of its own
     """
 
     title: str
@@ -35,6 +37,7 @@ class About:
     terms: list[tuple[str, str, str]] = field(default_factory=list)
     facts: list[tuple[str, str]] = field(default_factory=list)
     implied: list[build.Implied] = field(default_factory=list)
+    isolated: bool = False
 
 
 def show(scene: Scene, console: Console, progress: Progress) -> None:
@@ -71,7 +74,7 @@ def as_dict(scene: Scene, progress: Progress) -> dict[str, Any]:
 def _about(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: Progress) -> About:
     of = _ours(scene, phase, component, progress) if component.fmu is None else _other(phase, component)
     which = "" if component is phase.main else f", {component.name}"
-    of.title = f"{scene.name}, {phase.name}{which}: {of.model}{', isolated' if component.isolate else ''}"
+    of.title = f"{scene.name}, {phase.name}{which}: {of.model}{', isolated' if of.isolated else ''}"
     return of
 
 
@@ -79,6 +82,7 @@ def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: 
     with progress.working("building"):
         (path,) = build.ensure([(component.model, component.terms)], progress.say)
     about = About("", phase.name, component.name, component.model, list(_terms(component)))
+    about.isolated = bool(component.isolate)
     values = {**component.defaults, **component.parameters}
     if phase.name == PHASES[1] and component is phase.main and phase is not scene.phases[0]:
         values |= _handed_over(scene.phases[0].main)
@@ -112,11 +116,11 @@ def _other(phase: PhaseScene, component: ComponentScene) -> About:
             ("variables", _counted(archive)),
             ("FMU", f"{component.fmu.stat().st_size:,} bytes"),
         ]
-        name = about.modelName
+        name, apart = about.modelName, isolated(component, archive)
     given = [f"{name} = {value:g}" for name, value in component.parameters.items()]
     if given:
         rows.insert(4, ("set by the scene, SI", ", ".join(given)))
-    return About("", phase.name, component.name, name, [], rows)
+    return About("", phase.name, component.name, name, [], rows, isolated=apart)
 
 
 def _show(about: About, console: Console) -> None:

@@ -28,6 +28,7 @@ from dcone_cosim.scenes.keys import (
     REQUIRED,
     SHARED,
     TOP,
+    isolation,
     orbit_keys,
     read_snapshots,
     read_table,
@@ -35,7 +36,7 @@ from dcone_cosim.scenes.keys import (
     read_value,
     table_in,
 )
-from dcone_cosim.scenes.mistakes import Mistake, Places, SceneError, unknown
+from dcone_cosim.scenes.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
 from dcone_cosim.scenes.parts import RESERVED, Part, follow, of_fmu, of_model, read_part, reserved_of
 from dcone_cosim.scenes.relations import (
     about_hand_over,
@@ -63,7 +64,7 @@ class _Component:
             self.part.model.name if self.part.model is not None and self.part.fmu is None else "",
             dict(self.part.terms) if self.part.fmu is None else {},
             self.part.fmu,
-            bool(self.options.get("isolate", False)),
+            isolation(self.options),
             self.options.get("timeout", ComponentScene.timeout),
             self.parameters,
             self.part.defaults(),
@@ -84,13 +85,20 @@ class _Phase:
     coupling: Coupling = field(default_factory=Coupling)
 
 
-def check(document: dict[str, Any], text: str, name: str, places: Places, folder: File) -> Scene:
-    """The scene, or a `SceneError` that lists all mistakes with their lines.
+def check(document: dict[str, Any], name: str, places: Places, folder: File) -> Scene:
+    """The scene, without its text, or a `SceneError` that lists the mistakes with their lines.
 
-    text      kept with the scene
     folder    paths in the scene are relative to it
     """
-    mistakes = [
+    mistakes = Mistakes()
+    try:
+        return _checked(document, name, places, folder, mistakes)
+    except Enough:
+        raise SceneError(mistakes, places) from None
+
+
+def _checked(document: dict[str, Any], name: str, places: Places, folder: File, mistakes: list[Mistake]) -> Scene:
+    mistakes += [
         Mistake((phase,), document[phase], f"expected a table [{phase}]")
         for phase in PHASES
         if phase in document and not isinstance(document[phase], dict)
@@ -116,7 +124,7 @@ def check(document: dict[str, Any], text: str, name: str, places: Places, folder
             _share_line(made)
         handoff = {key: bool(value) if HANDOFF_KEYS[key] is FLAG else value for key, value in handoff.items()}
         notes = tuple(_close_calls(phases, chosen))
-        scene = Scene(name, title, text, tuple(made), handoff, places.source, places, notes)
+        scene = Scene(name, title, "", tuple(made), handoff, places.source, places, notes)
         mistakes = [*about_steps(scene, document), *about_values(scene, document), *about_line(scene, document)]
         if not mistakes:
             return replace(scene, cautions=tuple(_cautions(scene)))
@@ -177,7 +185,7 @@ def _read_component(
     for key, expected in COMPONENT_KEYS.items():
         if key in tables:
             read.options[key] = read_value(tables[key], expected.read, (*part.path, key), mistakes)
-    if "timeout" in tables and not read.options.get("isolate"):
+    if "timeout" in tables and not read.options.get("isolate", "fmu" in tables):
         text = "only calls to an isolated FMU have a limit; add isolate = true"
         mistakes.append(Mistake((*part.path, "timeout"), tables["timeout"], text))
     if "solver_tolerance" in tables and "fmu" not in tables:

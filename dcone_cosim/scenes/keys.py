@@ -84,7 +84,8 @@ MEANING: Mapping[str, str] = {
     "compare_without_recoil": "run the removal once more without the shot's recoil",
     "fmu": "an FMI 2.0 co-simulation FMU that takes the place of our model; relative to the scene's file",
     "model": "a model of ours, built on demand",
-    "isolate": "run the FMU in a child process: its crash or hang is then an error, and ends nothing else",
+    "isolate": "run the FMU in a child process: its crash or hang is then an error, and ends nothing else; "
+    "if not given, every FMU that was not built here is",
     "timeout": "the longest that one call to an isolated FMU may take",
     "solver_tolerance": "that the FMU's own solver is told; that of the file's default experiment if not given",
     "parameters": "start values by variable name, for names that are no table.key",
@@ -100,6 +101,13 @@ MEANING: Mapping[str, str] = {
     "order": "in which gauss_seidel steps the components; as in the scene if not given",
 }  # fmt: skip
 """One sentence for every key that no model's table explains."""
+
+
+def isolation(options: Mapping[str, Any]) -> bool | None:
+    """Whether a component is run in a child process by its `isolate`, or since calls to it have a `timeout`; None when
+    neither is told."""
+    told = options.get("isolate")
+    return bool(told) if told is not None else ("timeout" in options or None)
 
 
 @dataclass(frozen=True)

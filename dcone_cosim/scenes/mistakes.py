@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,26 +12,54 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.names import did_you_mean, nearest
 from dcone_cosim.scenes.toml_lines import Lines, Path, dotted, key_lines, line_of
 
+MOST = 1000
+"""Mistakes after which nobody reads on."""
+TOLD = 20
+"""How many of them are told: the first."""
+
 
 @dataclass(frozen=True)
 class Mistake:
-    """One thing wrong: where, what was given (None when something is missing), and what was expected.
+    """One thing wrong: where, what was given (None when something is missing), and what is said of it.
 
     default    value that counts when nothing is given
-    nearest    the known name that was probably meant
+    name       one that is not known, and those that are, among which a likely one is looked for when it is told
     """
 
     path: Path
     given: object
-    expected: str
+    said: str
     default: str = ""
-    nearest: str | None = None
+    name: str = ""
+    known: Collection[str] = ()
+
+    @property
+    def expected(self) -> str:
+        """What is said of it, with the known name that was probably meant."""
+        return self.said + did_you_mean(self.name, self.known)
+
+    @property
+    def nearest(self) -> str | None:
+        return nearest(self.name, self.known)
 
 
 def unknown(path: Path, given: object, what: str, name: str, known: Iterable[str]) -> Mistake:
-    """A name that is not known, with the nearest that is."""
-    names = list(known)
-    return Mistake(path, given, f"{what}{did_you_mean(name, names)}", nearest=nearest(name, names))
+    """A name that is not known, among those that are."""
+    names = known if isinstance(known, Collection) else list(known)
+    return Mistake(path, given, what, name=name, known=names)
+
+
+class Enough(Exception):
+    """There are so many mistakes that no more are looked for."""
+
+
+class Mistakes(list[Mistake]):
+    """The mistakes found so far; `Enough` is raised with the last one that is taken."""
+
+    def append(self, mistake: Mistake) -> None:
+        super().append(mistake)
+        if len(self) >= MOST:
+            raise Enough
 
 
 @dataclass(frozen=True)
@@ -79,15 +107,20 @@ class Places:
 
 
 class SceneError(InputError):
-    """A scene with mistakes, each of which can be looked at: by an editor, or a machine."""
+    """A scene with mistakes, of which the first can be looked at each: by an editor, or a machine."""
 
     def __init__(self, mistakes: Sequence[Mistake], places: Places) -> None:
         found = sorted(_unlike(mistakes), key=lambda m: places.line(m.path) or 0)
         self.mistakes, self.places = tuple(found), places
         super().__init__(message(self.mistakes, places))
 
+    @property
+    def more(self) -> int:
+        """How many mistakes are not told."""
+        return max(0, len(self.mistakes) - TOLD)
+
     def rows(self) -> list[dict[str, Any]]:
-        """The mistakes as plain data."""
+        """The mistakes that are told, as plain data."""
         return [
             {
                 "place": self.places.of(mistake.path),
@@ -97,7 +130,7 @@ class SceneError(InputError):
                 "expected": mistake.expected,
                 "nearest": mistake.nearest,
             }
-            for mistake in self.mistakes
+            for mistake in self.mistakes[:TOLD]
         ]
 
 
@@ -105,19 +138,23 @@ def _unlike(mistakes: Sequence[Mistake]) -> list[Mistake]:
     """Without those that say the same of the same key; values need not be hashable."""
     kept: dict[tuple[Path, str], Mistake] = {}
     for mistake in mistakes:
-        kept.setdefault((mistake.path, mistake.expected), mistake)
+        kept.setdefault((mistake.path, mistake.said), mistake)
     return list(kept.values())
 
 
 def message(mistakes: Sequence[Mistake], places: Places) -> str:
-    """One text for all mistakes in a scene."""
-    rows = [f"{places.source}: {len(mistakes)} mistake{'s' if len(mistakes) > 1 else ''}"]
-    for mistake in mistakes:
+    """One text for the mistakes in a scene, of which the first are told."""
+    count = f"{len(mistakes)} mistake{'s' if len(mistakes) > 1 else ''}"
+    rows = [f"{places.source}: {count}{' and perhaps more' if len(mistakes) >= MOST else ''}"]
+    for mistake in mistakes[:TOLD]:
         place = places.of(mistake.path)
         value = f"= {shown(mistake.given)}" if mistake.given is not None else "missing"
         if mistake.given is None and mistake.default:
             value = f"left at {mistake.default}"
-        rows.append(f"  {place}{place and ': '}{dotted(mistake.path)} {value}: {mistake.expected}")
+        key, said = shortened(dotted(mistake.path), 120), shortened(mistake.expected, 1000)
+        rows.append(f"  {place}{place and ': '}{key} {value}: {said}")
+    if len(mistakes) > TOLD:
+        rows.append(f"  and {len(mistakes) - TOLD} more")
     return "\n".join(rows)
 
 
@@ -152,4 +189,8 @@ def shown(value: object) -> str:
         return "a table"
     else:
         text = str(value).replace("'", '"')
-    return text if len(text) <= 60 else text[:57] + "..."
+    return shortened(text, 60)
+
+
+def shortened(text: str, length: int) -> str:
+    return text if len(text) <= length else text[: length - 3] + "..."

@@ -15,7 +15,7 @@ from __future__ import annotations
 import hashlib
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +40,7 @@ class ComponentScene:
     model        name of a model of ours, "" when `fmu` is given
     terms        of a model of ours: group and the term of it that the scene names
     fmu          path of an FMU file, None for a model of ours
-    isolate      run it in a child process
+    isolate      run it in a child process; None: unless it was built here
     timeout      longest time one call to an isolated FMU may take [s]
     parameters   FMI name: value, SI, of what the scene says; inputs may be among them
     defaults     FMI name: start value, SI, of every parameter and input there is
@@ -53,7 +53,7 @@ class ComponentScene:
     model: str = ""
     terms: Mapping[str, str] = field(default_factory=dict)
     fmu: Path | None = None
-    isolate: bool = False
+    isolate: bool | None = None
     timeout: float = 60.0
     parameters: Mapping[str, float] = field(default_factory=dict)
     defaults: Mapping[str, float] = field(default_factory=dict)
@@ -117,6 +117,16 @@ class Scene:
     places: Places = field(default_factory=lambda: Places("", ""))
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
+
+    def isolating(self, isolate: bool | None) -> Scene:
+        """The same with every FMU run in a child process, or none; as it is for None."""
+        if isolate is None:
+            return self
+        phases = []
+        for phase in self.phases:
+            main, *others = (replace(component, isolate=isolate) for component in phase.components)
+            phases.append(replace(phase, main=main, others=tuple(others)))
+        return replace(self, phases=tuple(phases))
 
     @property
     def sha256(self) -> str:
@@ -212,7 +222,8 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
     overrides = override(document, settings)
     name_changes(text, document, overrides)
     places = Places(source, text, tuple(overrides))
-    return check(document, as_run(text, document, overrides, folder), name, places, folder)
+    scene = check(document, name, places, folder)
+    return replace(scene, text=as_run(text, document, overrides, folder))
 
 
 def title_of(path: Path) -> str:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -81,9 +80,7 @@ def export_scene(
         with Scratch(out) as draft:
             drafts = [_zip(draft / f"{scene.name}-{phase}.ssp", content) for phase, content in contents]
             for path in drafts:
-                os.replace(path, out / path.name)
-                placed.note(out / path.name)
-                done.paths.append(out / path.name)
+                done.paths.append(placed.put(path, out / path.name))
     except BaseException:
         for folder in made:
             with suppress(OSError):

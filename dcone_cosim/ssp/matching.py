@@ -10,7 +10,6 @@ from typing import Any
 from dcone_cosim.coupling.options import Connection
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import Unit, misfit, same_dimension
-from dcone_cosim.names import did_you_mean
 from dcone_cosim.ssp.markup import KINDS, STRUCTURE, TEXT
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import ComponentRow, ConnectionRow, PortRow
@@ -46,7 +45,7 @@ def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> No
         what = f"connector {port.name!r} of {part.row.name!r}"
         info = part.variables.get(port.name)
         if info is None:
-            hint = did_you_mean(port.name, part.variables)
+            hint = mistakes.near(port.name, part.variables)
             mistakes.add(STRUCTURE, port.line, f"{what}: its FMU has no such variable{hint}")
             continue
         if port.type and port.type != info.kind:
@@ -77,13 +76,13 @@ def parameters(
     for given in values:
         owner, name = (given.owner, given.name) if given.owner else owner_of(given.name, parts)
         if owner not in parts:
-            hint = did_you_mean(given.name.partition(".")[0], parts)
+            hint = mistakes.near(given.name.partition(".")[0], parts)
             text = f"parameter {given.name!r} of the system: expected COMPONENT.NAME{hint}"
             _not_found(given, text, mistakes)
             continue
         info = parts[owner].variables.get(name)
         if info is None:
-            hint = did_you_mean(name, parts[owner].variables)
+            hint = mistakes.near(name, parts[owner].variables)
             _not_found(given, f"parameter {name!r} of {owner!r} is no variable of its FMU{hint}", mistakes)
             continue
         problem = _problem(given, info)
@@ -173,11 +172,11 @@ def connections(rows: Iterable[ConnectionRow], parts: Mapping[str, Part], mistak
 def _end(end: tuple[str, str], line: int, parts: Mapping[str, Part], mistakes: Mistakes) -> tuple[Part, PortRow] | None:
     element, connector = end
     if element not in parts:
-        mistakes.add(STRUCTURE, line, f"connection: no component {element!r}{did_you_mean(element, parts)}")
+        mistakes.add(STRUCTURE, line, f"connection: no component {element!r}{mistakes.near(element, parts)}")
         return None
     part = parts[element]
     if connector not in part.row.ports:
-        hint = did_you_mean(connector, part.row.ports)
+        hint = mistakes.near(connector, part.row.ports)
         mistakes.add(STRUCTURE, line, f"connection: no connector {connector!r} of {element!r}{hint}")
         return None
     return part, part.row.ports[connector]

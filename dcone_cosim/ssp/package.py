@@ -5,7 +5,6 @@ from __future__ import annotations
 import stat
 import zipfile
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from types import TracebackType
 from urllib.parse import unquote, urlsplit
@@ -16,37 +15,53 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.files import regular
 from dcone_cosim.fmu.archive import LARGEST, MOST
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scenes.mistakes import TOLD, shortened
 from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import STRUCTURE
 
+LONGEST = 1000
+"""Characters of what is told of one mistake."""
 LARGEST_XML = 64 * 2**20
 """Bytes of a structure or a parameter file, unpacked."""
 
 
-@dataclass
 class Mistakes:
-    """What is wrong with a package, told all at once, and what of it is ignored."""
+    """What is wrong with a package, told all at once, and what of it is ignored; of very many the first are told."""
 
-    source: str
-    rows: list[tuple[str, int, str]] = field(default_factory=list)
-    ignored: list[str] = field(default_factory=list)
+    def __init__(self, source: str) -> None:
+        self.source = source
+        self.rows: dict[tuple[str, int, str], None] = {}
+        self._ignored: list[str] = []
+        self._looked_for = 0
 
     def add(self, file: str, line: int | None, text: str) -> None:
-        row = (file, line or 0, text)
-        if row not in self.rows:
-            self.rows.append(row)
+        self.rows[file, line or 0, text] = None
 
     def ignore(self, file: str, line: int, text: str) -> None:
         """Note what is no mistake, by the rules of SSP, and has no effect."""
-        self.ignored.append(f"{file}{f' line {line}' if line else ''}: {text}; it is ignored")
+        self._ignored.append(f"{file}{f' line {line}' if line else ''}: {shortened(text, LONGEST)}; it is ignored")
+
+    def near(self, name: str, known: Iterable[str]) -> str:
+        """`; did you mean 'x'?`, for as many names as are told: to look for one takes its time."""
+        self._looked_for += 1
+        return did_you_mean(name, known) if self._looked_for <= TOLD else ""
+
+    @property
+    def ignored(self) -> list[str]:
+        """Notes of what is ignored."""
+        more = len(self._ignored) - TOLD
+        return [*self._ignored[:TOLD], *([f"{self.source}: {more} more are ignored like these"] if more > 0 else [])]
 
     def check(self) -> None:
-        """Raise an `InputError` with every mistake found so far."""
+        """Raise an `InputError` with the mistakes found so far."""
         if not self.rows:
             return
-        lines = [f"{self.source}: {len(self.rows)} mistake{'s' if len(self.rows) > 1 else ''}"]
-        for file, line, text in sorted(self.rows, key=lambda row: (row[0] != STRUCTURE, row[0], row[1])):
-            lines.append(f"  {file}{f' line {line}' if line else ''}: {text}")
+        count = len(self.rows)
+        lines = [f"{self.source}: {count} mistake{'s' if count > 1 else ''}"]
+        for file, line, text in sorted(self.rows, key=lambda row: (row[0] != STRUCTURE, row[0], row[1]))[:TOLD]:
+            lines.append(f"  {file}{f' line {line}' if line else ''}: {shortened(text, LONGEST)}")
+        if count > TOLD:
+            lines.append(f"  and {count - TOLD} more")
         raise InputError("\n".join(lines))
 
 
@@ -121,7 +136,7 @@ def _leaves(name: str) -> bool:
     return name.startswith("/") or "\\" in name or "\0" in name or ":" in name or ".." in PurePosixPath(name).parts
 
 
-def entry_of(source: str, names: Iterable[str]) -> tuple[str, str]:
+def entry_of(source: str, names: Iterable[str], mistakes: Mistakes) -> tuple[str, str]:
     """Entry that a relative URI names, and "" or why it names none."""
     parts = urlsplit(source)
     path = str(PurePosixPath(unquote(parts.path)))
@@ -129,7 +144,7 @@ def entry_of(source: str, names: Iterable[str]) -> tuple[str, str]:
         return "", f"source {source!r} is not a file in the package; expected a path such as 'resources/x.fmu'"
     known = list(names)
     if path not in known:
-        return "", f"source {source!r} is not in the package{did_you_mean(path, known)}"
+        return "", f"source {source!r} is not in the package{mistakes.near(path, known)}"
     return path, ""
 
 

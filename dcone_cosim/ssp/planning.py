@@ -11,7 +11,7 @@ from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scenes.keys import MOST_STEPS
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, MOST_STEPS, isolation
 from dcone_cosim.scenes.mistakes import Override
 from dcone_cosim.scenes.scene import PHASES
 from dcone_cosim.scenes.toml_lines import given_at
@@ -33,6 +33,8 @@ SETTINGS: Mapping[str, Expected] = {
     "solver_tolerance": Expected("1", example="1e-6", minimum=0.0, open_minimum=True),
 }
 """What the command line may say of the phase, beside the values of its components."""
+OF_COMPONENT = {key: COMPONENT_KEYS[key] for key in ("isolate", "timeout")}
+"""What it may say of how a component is run, unless its FMU has a variable of that name."""
 CHOICES = {"method": ("gauss_seidel", "jacobi"), "control": ("fixed", "error"), "extrapolation": ("constant", "linear")}
 """Words of our annotation on the coupling; the first counts when there is none."""
 
@@ -53,13 +55,14 @@ def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, st
 
 def settings_of(
     document: Mapping[str, Any], arguments: Sequence[Override], phase: str, parts: Mapping[str, Part]
-) -> tuple[dict[str, float], dict[str, dict[str, float | str]]]:
-    """What `--set` says of the phase, and the values it gives by component, SI, and texts.
+) -> tuple[dict[str, float], dict[str, dict[str, float]], dict[str, dict[str, float | str]]]:
+    """What `--set` says of the phase, of how its components are run, and the values it gives them, SI, and texts.
 
-    document     values of `PHASE.macro_step`, `COMPONENT.VARIABLE`
+    document     values of `PHASE.macro_step`, `COMPONENT.isolate`, `COMPONENT.VARIABLE`
     arguments    where they are in it
     """
     told: dict[str, float] = {}
+    run: dict[str, dict[str, float]] = {}
     values: dict[str, dict[str, float | str]] = {}
     for argument in arguments:
         given = given_at(document, argument.path)
@@ -73,6 +76,9 @@ def settings_of(
             if not owner:
                 raise Unexpected(f"is no variable of a component{did_you_mean(head, [phase, *parts])}")
             info = parts[owner].variables.get(variable)
+            if info is None and variable in OF_COMPONENT:
+                run.setdefault(owner, {})[variable] = cast(float, OF_COMPONENT[variable].read(given))
+                continue
             if info is None or info.causality not in ("parameter", "input"):
                 known = [n for n, v in parts[owner].variables.items() if v.causality in ("parameter", "input")]
                 raise Unexpected(f"is no parameter or input of its FMU{did_you_mean(variable, known)}")
@@ -84,7 +90,10 @@ def settings_of(
         except Unexpected as error:
             link = " " if str(error).startswith(("is ", "must ")) else ": "
             raise InputError(f"--set {argument.argument}: {name}{link}{error}") from None
-    return told, values
+    for owner, options in run.items():
+        if "timeout" in options and not isolation(options):
+            raise InputError(f"--set {owner}.timeout: only calls to an isolated FMU have a limit; it is not isolated")
+    return told, run, values
 
 
 def times(

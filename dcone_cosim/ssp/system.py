@@ -12,6 +12,7 @@ from typing import Any
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.scenes.keys import isolation
 from dcone_cosim.scenes.mistakes import Places
 from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
 from dcone_cosim.scenes.text import override, setting, titled
@@ -28,7 +29,8 @@ from dcone_cosim.ssp.values import given_values
 def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scene:
     """The scene that a package holds, checked; an `InputError` lists every mistake found.
 
-    settings    `PHASE.macro_step=0.1 s`, `COMPONENT.VARIABLE=VALUE`, each in the place of what the package says
+    settings    `PHASE.macro_step=0.1 s`, `COMPONENT.isolate=true`, `COMPONENT.VARIABLE=VALUE`, each in the place of
+                what the package says
     shown_name  of the scene; that of the file if not given
 
     Checked  tests/cosim/test_ssp_bad.py, tests/cosim/test_ssp_export.py
@@ -52,7 +54,7 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
     name, main = planning.name_and_main(content, parts)
     changes: dict[str, Any] = {}
     overrides = override(changes, settings)
-    told, more = planning.settings_of(changes, overrides, name, parts)
+    told, run, more = planning.settings_of(changes, overrides, name, parts)
     start, duration = planning.times(content, parts, told, mistakes)
     if name == PHASES[0] and start != 0.0:
         mistakes.add(STRUCTURE, None, f"startTime = {start!r}: a capture begins at 0")
@@ -61,6 +63,8 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
         part: ComponentScene(
             part,
             fmu=row.fmu,
+            isolate=isolation(run.get(part, {})),
+            timeout=run.get(part, {}).get("timeout", ComponentScene.timeout),
             parameters={name: value for name, value in given[part].items() if not isinstance(value, str)},
             texts={name: value for name, value in given[part].items() if isinstance(value, str)},
             defaults=row.defaults(),
@@ -93,7 +97,7 @@ def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes
     """Every component with its FMU, unpacked and opened once to see what it offers."""
     parts = {}
     for number, row in enumerate(content.components):
-        entry, reason = entry_of(row.source, package.names)
+        entry, reason = entry_of(row.source, package.names, mistakes)
         if reason:
             mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {reason}")
             continue

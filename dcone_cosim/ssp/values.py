@@ -83,7 +83,7 @@ def _content(
             STRUCTURE, line, f"<{what}> sourceBase = {row.get('sourceBase')!r}; expected a file of the package"
         )
         return None
-    entry, reason = entry_of(source, package.names)
+    entry, reason = entry_of(source, package.names, mistakes)
     if reason:
         mistakes.add(STRUCTURE, line, f"<{what}> {reason}")
         return None

@@ -37,7 +37,7 @@ def read(folder: Path, text: str) -> Scene:
 def test_one_is_itself_and_two_are_coupled(folder: Path) -> None:
     with Archives(read(folder, ALONE), Progress()) as archives:
         alone = archives.instantiate("removal", "first")
-        assert (type(alone).__name__, alone.name) == ("Component", "first")
+        assert (type(alone).__name__, alone.name) == ("IsolatedComponent", "first")
         alone.close()
         assert set(archives.facts()["removal"]) == {"fmu"}
     with Archives(read(folder, ALONE + OTHER.format("my_capture.fmu")), Progress()) as archives:
@@ -51,11 +51,12 @@ def test_one_is_itself_and_two_are_coupled(folder: Path) -> None:
         assert facts["coupling"]["step"] == {"value": 10.0, "unit": "s"}
 
 
-def test_isolated_where_the_scene_says_so(folder: Path) -> None:
-    text = ALONE.replace("macro_step", "isolate = true\nmacro_step")
+@pytest.mark.parametrize(("isolate", "kind"), [("true", "IsolatedComponent"), ("false", "Component")])
+def test_isolated_where_the_scene_says_so(folder: Path, isolate: str, kind: str) -> None:
+    text = ALONE.replace("macro_step", f"isolate = {isolate}\nmacro_step")
     with Archives(read(folder, text), Progress()) as archives:
         component = archives.instantiate("removal", "first")
-        assert type(component).__name__ == "IsolatedComponent"
+        assert type(component).__name__ == kind
         component.close()
 
 

@@ -17,10 +17,14 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build as models
+from dcone_cosim.coupling.coupled import Coupled
+from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import frames, isolation
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, output_names
+from dcone_cosim.phases import RemovalLoop
+from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.scene import load
 from tests.cosim.fmus.build import build
 
@@ -217,6 +221,59 @@ def test_a_closed_one_leaves_no_process(fmu: Fmu) -> None:
     assert not is_alive(process)
     with pytest.raises(FmuError, match="closed"):
         component.step(0.0, 1.0)
+
+
+def test_children_made_ready_are_taken_or_ended(fmu: Fmu) -> None:
+    """One that has died meanwhile is not taken."""
+    isolation.make_ready(3)
+    first, second, third = isolation._ready
+    first.kill()
+    first.wait()
+    with fmu().isolate("tow") as component:
+        assert component._child is second
+        component.initialise(0.0)
+    isolation.dismiss()
+    assert not isolation._ready
+    assert not any(is_alive(child.pid) for child in (first, second, third))
+
+
+def test_what_has_no_answer_goes_along_with_the_next_step(fmu: Fmu, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Inputs, a state kept, a step and a reading are one exchange; and one that is refused is told there."""
+    asked: list[list[str]] = []
+    monkeypatch.setattr(
+        isolation, "send", lambda pipe, calls: asked.append([c[0] for c in calls]) or frames.send(pipe, calls)
+    )
+    with fmu().isolate("tow") as component:
+        component.set({"start.relative_velocity[1]": 1.0, "start.relative_position[1]": 5.0})
+        component.initialise(0.0)
+        read = component.reader(["separation"])
+        read()
+        component.step(0.0, 1.0)
+        read()
+        asked.clear()
+        for i in range(1, 4):
+            component.save()
+            component.step(float(i), 1.0)
+            read()
+        component.restore()
+        assert read()[0] == 8.0
+        assert asked == [["save", "step"]] * 3 + [["restore", "read"]]
+        component.set({"target.mass": 10.0})  # a parameter, which cannot be set any more
+        with pytest.raises(CallError, match="no such Real can be set now"):
+            component.step(3.0, 1.0)
+        assert component.time == 3.0
+
+
+def test_its_time_counts(fmu: Fmu) -> None:
+    """The CPU time that a run tells holds that of the other process, alone and coupled."""
+    with fmu().isolate("tow") as component:
+        before, own = component.cpu_apart(), time.process_time()
+        assert before > 0.0
+        component.initialise(0.0)
+        result = RemovalLoop(Coupled("all", [component], [], Coupling()), 1.0, 0.0, 2000.0, Progress()).run()
+        used, own = component.cpu_apart() - before, time.process_time() - own
+        assert own + 0.5 * used < result.cpu < own + 1.1 * used
+    assert component.cpu_apart() >= before + 0.9 * used, "and is known when it is gone"
 
 
 def parent(archive: Archive, rest: str) -> subprocess.Popen[str]:

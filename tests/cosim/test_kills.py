@@ -7,12 +7,14 @@ just before the n-th; n goes up until the child comes to its end.
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import textwrap
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,15 +22,17 @@ import pytest
 
 from dcone_cosim import commands, scratch
 from dcone_cosim.drafts import contents
+from dcone_cosim.interface_kit import write_template
 from dcone_cosim.progress import Progress
 from dcone_cosim.run import as_json
-from dcone_cosim.scratch import Scratch, clear_left
+from dcone_cosim.scratch import PREFIX, Scratch, clear_left
+from dcone_cosim.ssp.export import export_scene
 from fmu_src.catalogue import MODELS
 from fmu_src.packaging import archive, kept
 from tests.cosim.mock_components import MockCapture
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
-CHANGES = {"os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.chmod"}
+CHANGES = {"os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.chmod", "os.link", "os.truncate"}
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT
 ROOT = str(Path(__file__).parents[2])
 
@@ -165,11 +169,99 @@ def test_without_a_replacement_finished_the_old_run_comes_back(place: Path) -> N
     assert (names(place), whole(place / "run")) == (["run"], True)
 
 
-def test_a_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a compiler and a linker that only pretend; nothing half-built is ever in the cache under its name."""
+@pytest.fixture
+def pretended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A compiler and a linker that only pretend, and a cache and a folder for what is temporary of their own."""
     monkeypatch.setattr(archive.compile, "emit", lambda name, terms, ir: ir.write_text("; no kernels"))
     monkeypatch.setattr(archive.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
     monkeypatch.setattr(archive.picture, "png", lambda interface: b"picture")
+    monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+
+
+def build_files(folder: Path) -> None:
+    commands.write_fmus("reel-control", folder / "out", Progress())
+
+
+def export(folder: Path) -> None:
+    export_scene("reel-control", folder / "out", Progress())
+
+
+def template(folder: Path) -> None:
+    write_template("removal", "c", folder / "out")
+
+
+def template_in_a_folder(folder: Path) -> None:
+    (folder / "out").mkdir(exist_ok=True)
+    write_template("capture", "pythonfmu", folder / "out")
+
+
+WRITERS: dict[str, Callable[[Path], None]] = {
+    "schema": lambda folder: commands.write_schema(folder / "out.json") and None,
+    "new": lambda folder: commands.write_scene(str(folder / "out.toml"), "table2-deorbit") and None,
+    "template": template,
+    "template in a folder": template_in_a_folder,
+    "build": build_files,
+    "export-ssp": export,
+}
+
+
+def files_in(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+REPLACING = ("schema", "build", "export-ssp")
+CASES = [(what, again) for what in WRITERS for again in (False, True) if what in REPLACING or not again]
+LONG = (("build", False), ("export-ssp", False), ("export-ssp", True))
+
+
+@pytest.mark.usefixtures("pretended")
+@pytest.mark.parametrize(
+    ("what", "again"),
+    [pytest.param(*case, marks=[pytest.mark.evidence] if case in LONG else []) for case in CASES],
+)
+def test_what_is_written_is_whole_or_not_there(tmp_path: Path, what: str, again: bool) -> None:
+    """A file under its own name is what it should be; the next command in that place clears the rest, and succeeds.
+
+    again     over what is there already
+    """
+    write, place, cache = WRITERS[what], tmp_path / "place", tmp_path / "cache"
+
+    def clear() -> None:
+        """What a user sees there goes; what the dead have left is for the next command."""
+        for path in sorted(place.rglob("*"), reverse=True):
+            if PREFIX not in str(path):
+                with suppress(OSError):  # a folder with such in it
+                    path.unlink() if path.is_file() else path.rmdir()
+
+    place.mkdir()
+    write(place)
+    whole, found = files_in(place), set()
+    if not again:
+        clear()
+        shutil.rmtree(cache, ignore_errors=True)
+    for event in killed_everywhere(lambda: write(place)):
+        clear_left(place)  # with which the next one begins; what had only to take its name does so
+        there = {name: data for name, data in files_in(place).items() if PREFIX not in name}
+        assert there.items() <= whole.items(), f"killed at event {event}"
+        found.add(len(there))
+        if what not in REPLACING:
+            clear()
+        write(place)
+        assert files_in(place) == whole, f"killed at event {event}"
+        assert not names(tmp_path / "tmp"), f"killed at event {event}"
+        assert not cache.exists() or not [name for name in names(cache) if name.startswith(PREFIX)]
+        if not again:
+            clear()
+            shutil.rmtree(cache, ignore_errors=True)
+    assert found == {len(whole)} if again else found >= {0, len(whole)}
+    assert event > 3
+
+
+@pytest.mark.usefixtures("pretended")
+def test_a_build(tmp_path: Path) -> None:
+    """Nothing half-built is ever in the cache under its name."""
     interface = MODELS["reel_control"].interface({})
     cache = tmp_path / "cache"
 
@@ -213,9 +305,9 @@ PROGRAM = """
 
 
 @pytest.mark.evidence
-@pytest.mark.parametrize("more", [("--no-figures",), ("--no-figures", "--force")])
+@pytest.mark.parametrize("more", [("--no-figures",), ("--no-figures", "--force"), (), ("--force",)])
 def test_the_whole_command(tmp_path: Path, more: tuple[str, ...]) -> None:
-    """`dcone run` with its own tables, killed at each file event."""
+    """`dcone run` with its own tables and figures, killed at each file event."""
     (tmp_path / "tmp").mkdir()
     (tmp_path / "runs").mkdir()
 
@@ -229,7 +321,7 @@ def test_the_whole_command(tmp_path: Path, more: tuple[str, ...]) -> None:
         assert done.returncode in (0, -signal.SIGKILL), done.stderr
         return done.returncode
 
-    assert command(0, "--no-figures") == 0
+    assert command(0, *(word for word in more if word == "--no-figures")) == 0
     lasting = contents(tmp_path / "runs/out")
     for event in range(1, 10_000):
         ended = command(event, *more) if "--force" in more else command(event, *more, "-o", f"runs/{event}")

@@ -14,7 +14,7 @@ import pytest
 from tests.cosim.fmus.build import build
 
 ROOT = Path(__file__).parents[2]
-SCENE = '[removal]\nfmu = "my_removal.fmu"\nmacro_step = "10 s"\nduration = "100 s"\n'
+SCENE = '[removal]\nfmu = "my_removal.fmu"\nisolate = false\nmacro_step = "10 s"\nduration = "100 s"\n'
 PROGRAM = """
     from dcone_cosim.archives import Archives
     from dcone_cosim.progress import Progress

@@ -90,7 +90,11 @@ def test_the_text_kept_says_where_the_fmu_was(folder: Path, tmp_path: Path) -> N
         ('"my_removal.fmu"', '"mine.toml"', "not a readable FMU: an FMU is a zip file"),
         ('"my_removal.fmu"', '"https://example.org/x.fmu"', "is an address: nothing is fetched"),
         ('"my_removal.fmu"', "3", 'expected the path of an FMU, such as "my.fmu"'),
-        ("isolate = true\n", "", 'timeout = "30 s": only calls to an isolated FMU have a limit; add isolate = true'),
+        (
+            "isolate = true\n",
+            "isolate = false\n",
+            'timeout = "30 s": only calls to an isolated FMU have a limit; add isolate = true',
+        ),
         (
             "rest_length =",
             "rest_lenght =",
@@ -196,7 +200,7 @@ def test_it_runs_alone_here_and_isolated_with_the_same_bits(dcone: Dcone, folder
     here = ("--set", "removal.isolate=false")
     code, _, err = dcone("run", str(folder / "mine.toml"), "-o", "here", "--no-figures", *here)
     assert (code, "add isolate = true" in err) == (2, True)
-    (folder / "here.toml").write_text(SCENE.replace('isolate = true\ntimeout = "30 s"\n', ""))
+    (folder / "here.toml").write_text(SCENE.replace('isolate = true\ntimeout = "30 s"\n', "isolate = false\n"))
     code, _, err = dcone("run", str(folder / "here.toml"), "-o", "here", "--no-figures")
     assert code == 0, err
     same = [(tmp_path / name / "removal.parquet").read_bytes() for name in ("isolated", "here")]

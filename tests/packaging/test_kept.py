@@ -7,6 +7,7 @@ import random
 import shutil
 import time
 import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -87,6 +88,39 @@ def test_a_pipe_or_a_folder_is_no_fmu(file: Path) -> None:
     file.unlink()
     file.mkdir()
     assert kept.fault(file) == "no file"
+
+
+def of_the_same_checksum(data: bytes) -> bytes:
+    """Other bytes, as many, with the same CRC-32: it is affine, so bits of the last four mend what the first does."""
+    other = bytes([data[0] ^ 0xFF]) + data[1:]
+    wanted, place = zlib.crc32(data) ^ zlib.crc32(other), len(other) - 4
+    rows = []
+    for bit in range(32):
+        mended = other[:place] + bytes(b ^ (1 << bit >> 8 * i & 0xFF) for i, b in enumerate(other[place:]))
+        rows.append((zlib.crc32(mended) ^ zlib.crc32(other), 1 << bit))
+    mend = 0
+    for digit in reversed(range(32)):
+        effect, bits = next(row for row in rows if row[0] >> digit == 1)
+        rows = [(e ^ effect, b ^ bits) if e >> digit & 1 else (e, b) for e, b in rows if (e, b) != (effect, bits)]
+        if wanted >> digit & 1:
+            wanted, mend = wanted ^ effect, mend ^ bits
+    return other[:place] + bytes(b ^ (mend >> 8 * i & 0xFF) for i, b in enumerate(other[place:]))
+
+
+def test_a_binary_is_known_by_its_bytes(file: Path, tmp_path: Path) -> None:
+    """Checksums can be had by anybody, and so can the names and the identity in the file around it."""
+    library = tmp_path / "any_name.so"
+    own = content()[LIBRARY]
+    library.write_bytes(own)
+    assert kept.holds(tmp_path, library)
+    forged = of_the_same_checksum(own)
+    assert (forged != own, len(forged), zlib.crc32(forged)) == (True, len(own), zlib.crc32(own))
+    library.write_bytes(forged)
+    assert not kept.holds(tmp_path, library)
+    library.write_bytes(own)
+    (tmp_path / "another.fmu").write_bytes(b"PK damaged")
+    assert kept.holds(tmp_path, library)
+    assert not kept.holds(tmp_path / "nowhere", library)
 
 
 @pytest.fixture

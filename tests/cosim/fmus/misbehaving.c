@@ -17,8 +17,20 @@
 #include <unistd.h>
 #endif
 
+#ifdef ROUNDS
+#include <fenv.h>
+#endif
+#if defined(FLUSHES_TINY) || defined(FLUSHES_TINY_WHEN_LOADED) || defined(TRAPS)
+#include <xmmintrin.h>
+#endif
+
 #ifndef WHEN
 #define WHEN 45.0
+#endif
+
+#ifdef FLUSHES_TINY_WHEN_LOADED
+/* as a library does that was linked with -ffast-math */
+__attribute__((constructor)) static void at_load(void) { _mm_setcsr(_mm_getcsr() | 0x8040); }
 #endif
 
 #ifdef LIES
@@ -66,6 +78,23 @@ static fmi2Status go_wrong(model *m, double step) {
         int stream;
         for (stream = 3; stream < 32; stream++) close(stream);
         for (;;) sleep(1);
+    }
+#endif
+#ifdef ROUNDS
+    fesetround(ROUNDS);
+#endif
+#ifdef FLUSHES_TINY
+    _mm_setcsr(_mm_getcsr() | 0x8040);
+#endif
+#ifdef TRAPS
+    _mm_setcsr(_mm_getcsr() & ~0x200u);
+#endif
+#ifdef PRECISION
+    {
+        unsigned short word;
+        __asm__ volatile("fnstcw %0" : "=m"(word));
+        word &= 0xfcff;
+        __asm__ volatile("fldcw %0" : : "m"(word));
     }
 #endif
 #ifdef SIGNAL
