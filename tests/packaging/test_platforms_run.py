@@ -160,6 +160,6 @@ def test_state_crosses_platforms(saved, cache, tmp_path):
     run_tow(*arm, tmp_path / "saving", f"@{tmp_path / 'state'}")
     here, there = path.read_bytes(), (tmp_path / "state").read_bytes()
     assert len(here) == len(there)
-    assert here[:8] == there[:8]  # what kind of state
-    assert here[16:64] == there[16:64]  # of which GUID; between them stands the check word of all that follows
+    assert here[:16] == there[:16]  # what kind of state
+    assert here[24:72] == there[24:72]  # of which library; between them stands the check word of all that follows
     assert difference(run_tow(*arm, tmp_path / "loading", f"+{path}"), rows) < SPREAD
