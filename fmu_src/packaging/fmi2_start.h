@@ -45,7 +45,7 @@ static int genuine(instance *i, const char *path, const unsigned char *bytes, lo
         say(i, fmi2Error, "%.700s has version %lld, expected %d", path, (long long)word_at(bytes + AT_VERSION),
             START_VERSION);
     else if (strncmp(library, DCONE_LIBRARY, KEY_LENGTH))
-        say(i, fmi2Error, "%.700s belongs to the library %.47s, not to %s", path, library, DCONE_LIBRARY);
+        say(i, fmi2Error, "%.700s belongs to another library than this one, %s", path, DCONE_LIBRARY);
     else if (size != START_SIZE || word_at(bytes + AT_COUNT) != DCONE_SLOTS)
         say(i, fmi2Error, "%.700s is cut short or too long: it must have %ld bytes", path, (long)START_SIZE);
     else if (word_at(bytes + AT_CHECK) != check_word(bytes + AT_LIBRARY, START_SIZE - AT_LIBRARY))

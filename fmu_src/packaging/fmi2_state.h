@@ -49,7 +49,7 @@ static fmi2Status usable(instance *i, const saved *s, size_t size) {
     if (s->version != STATE_VERSION)
         return say(i, fmi2Error, "the saved state has version %lld, expected %d", (long long)s->version, STATE_VERSION);
     if (strncmp(s->library, DCONE_LIBRARY, sizeof s->library))
-        return say(i, fmi2Error, "the saved state belongs to the library %.47s, not to %s", s->library, DCONE_LIBRARY);
+        return say(i, fmi2Error, "the saved state belongs to another library than this one, %s", DCONE_LIBRARY);
     if (work < 0 || work > INT64_C(1) << 40 || (size != SIZE_MAX && size != state_size(work)))
         return say(i, fmi2Error, "the saved state is damaged: its size does not fit its %lld numbers of memory",
                    (long long)work);

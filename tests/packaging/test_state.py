@@ -136,4 +136,4 @@ def test_a_state_of_another_library_is_refused_by_its_key(fmu):
     net, tug = (Driven(*fmu(name), {}) for name in MIDDLES)
     with pytest.raises(FMICallException):
         tug.slave.deSerializeFMUstate(net.slave.serializeFMUstate(net.slave.getFMUstate()))
-    assert any("belongs to the library" in text for text in tug.messages)
+    assert any("belongs to another library" in text for text in tug.messages)

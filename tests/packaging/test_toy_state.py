@@ -43,7 +43,7 @@ def test_a_damaged_state_is_refused_wherever_it_is_damaged(make):
     for at, words in (
         (0, "no saved state"),
         (8, "no saved state"),
-        (24, "belongs to the library"),
+        (24, "belongs to another library"),
         (72, "version"),
         (80, "phase"),
         (128, "size"),
@@ -63,7 +63,7 @@ def test_a_state_in_memory_is_checked_too(make):
     for at, words in (
         (0, "no saved state"),
         (8, "no saved state"),
-        (24, "belongs to the library"),
+        (24, "belongs to another library"),
         (72, "version"),
         (80, "phase"),
         (128, "memory"),

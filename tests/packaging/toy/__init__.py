@@ -63,17 +63,17 @@ class Toy:
     guid: str = GUID
 
 
-def build(folder: Path) -> Toy:
+def build(folder: Path, key: str = KEY) -> Toy:
     """Compile and link the toy as if it were a model's, in the folder of its FMU, unpacked."""
     place = folder / "binaries" / platforms.host().folder
     place.mkdir(parents=True)
-    furnish(folder)
+    furnish(folder, key=key)
     slot, lines = 0, []
     for v in INTERFACE.variables:
         lines.append(f"#define {v.name.partition('[')[0].upper()} {slot}")
         slot += v.size
     (folder / "slots.h").write_text("\n".join(lines) + "\n")
-    (folder / "model.h").write_text(c_header.header(INTERFACE, "toy", KEY))
+    (folder / "model.h").write_text(c_header.header(INTERFACE, "toy", key))
     ir = folder / "model.ll"
     flags = ["-O1", "-S", "-emit-llvm", "-ffp-contract=off", "-I", folder]
     tools.run("clang", [*COMPILER, *map(str, flags), str(Path(__file__).parent / "kernel.c"), "-o", str(ir)])
