@@ -66,6 +66,7 @@ static int read_start_values(instance *i, fmi2String location, fmi2String guid) 
     }
     unsigned char *bytes = malloc(START_SIZE + 1);
     i->start = malloc(DCONE_SLOTS * sizeof(slot));
+    if (!bytes || !i->start) say(i, fmi2Error, "no memory for the start values");
     long size = bytes && i->start ? load(i, path, bytes) : -1;
     int good = size >= 0 && genuine(i, path, bytes, size, guid);
     for (int s = 0; good && s < DCONE_SLOTS; s++) i->start[s].bits = word_at(bytes + AT_VALUES + 8 * s);

@@ -179,9 +179,9 @@ def places(tmp_path_factory):
 
 def located(program, launcher, environment, locations):
     """What the program says of each location: whether it is one, what the file there holds, and its path."""
-    done = subprocess.run(
-        [*launcher, str(program), *locations], capture_output=True, encoding="utf-8", env=environment, check=True
-    )
+    given = "".join(f"{location}\n" for location in locations)
+    command = [*launcher, str(program)]
+    done = subprocess.run(command, input=given, capture_output=True, encoding="utf-8", env=environment, check=True)
     return [tuple(line.split(" ", 2)) for line in done.stdout.splitlines()]
 
 
