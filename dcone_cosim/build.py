@@ -23,11 +23,12 @@ from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Model, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
+from fmu_src.packaging.description import Experiment
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["CATALOGUE", "MODELS", "Group", "Implied", "Interface", "Model", "Range", "Variable"]
+__all__ = ["CATALOGUE", "MODELS", "Experiment", "Group", "Implied", "Interface", "Model", "Range", "Variable"]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""
@@ -37,6 +38,22 @@ CAUTIONS = {"capture": net_capture_cautions, "removal": tethered_deorbit_caution
 
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
+
+
+@dataclass(frozen=True)
+class Furnished:
+    """An FMU of ours to be written for others, with values of its own.
+
+    name          of its file, without suffix
+    values        that it starts with where they are not the model's, SI by FMI name of a parameter or input
+    experiment    the run that it is for
+    """
+
+    name: str
+    model: str
+    terms: Mapping[str, str]
+    values: Mapping[str, float]
+    experiment: Experiment
 
 
 @dataclass(frozen=True)
@@ -254,32 +271,38 @@ def platform_names(text: str) -> tuple[str, ...]:
 
 
 def write_fmus(
-    wanted: Sequence[tuple[str, Mapping[str, str]]],
-    platforms: Sequence[str],
-    folder: Path,
-    announce: Callable[[str], None],
+    wanted: Sequence[Furnished], platforms: Sequence[str], folder: Path, announce: Callable[[str], None]
 ) -> list[Path]:
-    """Write the FMUs of models with their terms to a folder under readable names, each for all platforms named.
+    """Write FMUs to a folder, each with its values and for all platforms named; InputError for values it cannot have.
 
-    With no platforms named they are for this machine. Linux on arm64 has archives of its own.
+    With no platforms named they are for this machine. Linux on arm64 has archives of its own. Values cost no build:
+    the libraries are those of the cache.
     """
-    from fmu_src.packaging.archive import unite
+    from fmu_src.packaging.archive import furnish
     from fmu_src.packaging.platforms import PLATFORMS, archives, host
 
-    chosen = [PLATFORMS[name] for name in platforms]
-    wanted = [w for i, w in enumerate(wanted) if w not in wanted[:i]]
-    built = _built([CATALOGUE[model].interface(terms) for model, terms in wanted], announce, chosen)
-    chosen = chosen or [host()]
+    chosen = [PLATFORMS[name] for name in platforms] or [host()]
+    interfaces = [_furnished(fmu) for fmu in wanted]
+    keys = [(fmu.model, tuple(fmu.terms.items())) for fmu in wanted]
+    unlike = list(dict.fromkeys(keys))
+    built = _built([CATALOGUE[model].interface(dict(terms)) for model, terms in unlike], announce, platforms and chosen)
+    libraries = dict(zip(unlike, built, strict=True))
     written = []
-    for (model, terms), fmus in zip(wanted, built, strict=True):
-        of = dict(zip(chosen, fmus, strict=True))
+    for fmu, key, interface in zip(wanted, keys, interfaces, strict=True):
+        of = dict(zip(chosen, libraries[key], strict=True))
         for ending, together in archives(chosen):
-            name = Path(readable_name(model, terms))
-            written.append(folder / f"{name.stem}{ending}.fmu")
-            unite([of[platform] for platform in together], written[-1])
+            written.append(folder / f"{fmu.name}{ending}.fmu")
+            furnish([of[platform] for platform in together], interface, fmu.experiment, written[-1])
     return written
 
 
-def readable_name(model: str, terms: Mapping[str, str]) -> str:
-    """File name of an FMU for others: the model and its terms."""
-    return "-".join([model, *(f"{group}_{term}" for group, term in terms.items())]) + ".fmu"
+def _furnished(fmu: Furnished) -> Interface:
+    try:
+        return CATALOGUE[fmu.model].interface(fmu.terms).starting(fmu.values)
+    except ValueError as error:
+        raise InputError(f"{fmu.name}.fmu cannot start with the values it is to have: {error}") from None
+
+
+def printable(text: str) -> str:
+    """A text as XML and a page can hold it, whatever the name of a file may be."""
+    return "".join(c if c.isprintable() else "?" for c in text)

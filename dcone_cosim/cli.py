@@ -38,6 +38,9 @@ Settings = Annotated[
         help='Change a key of the scene, such as capture.bullets.speed="4 m/s"; may be given several times.',
     ),
 ]
+FromRun = Annotated[
+    Path | None, typer.Option("--from-run", help="Results of this scene: begin the removal as handed over there.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Answer as JSON.")]
 Offline = Annotated[
     bool,
@@ -134,30 +137,34 @@ def build(
             help="all, or some of linux64,win64,darwin64,linux-aarch64; this machine's alone.",
         ),
     ] = "",
+    from_run: FromRun = None,
     settings: Settings = None,
     offline: Offline = False,
 ) -> None:
-    """Write the FMUs of a scene, for use in other tools."""
+    """Write the FMUs of a scene, for use in other tools.
+
+    Each starts with the scene's values, and its default experiment is the phase. Values cost no build.
+    """
     _promise(offline)
     from dcone_cosim.commands import write_fmus
 
     progress = _progress()
     try:
-        paths = write_fmus(scene, out, progress, platforms, settings or ())
+        paths, notes = write_fmus(scene, out, progress, platforms, settings or (), from_run)
     finally:
         progress.close()
     with _reader_may_leave():
         for path in paths:
             typer.echo(path)
+    for note in notes:
+        _complain(f"note: {note}")
 
 
 @app.command(name="export-ssp")
 def export_ssp(
     scene: SceneName,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .ssp files.")] = Path(),
-    from_run: Annotated[
-        Path | None, typer.Option("--from-run", help="Results of this scene: begin the removal as handed over there.")
-    ] = None,
+    from_run: FromRun = None,
     parameters: Annotated[
         str, typer.Option("--parameters", help="Where the structure has its values: inline, or in the ssv files.")
     ] = "inline",

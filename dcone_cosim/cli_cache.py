@@ -30,7 +30,10 @@ def path() -> None:
 
 @cache_app.command(name="list")
 def list_kept(json: Annotated[bool, typer.Option("--json", help="Answer as JSON.")] = False) -> None:
-    """Every FMU that is kept: model, size, age, and the terms it was built with."""
+    """Every FMU that is kept: model, size, age, and the terms it was built with.
+
+    One serves every scene with these terms, whatever its values.
+    """
     from dcone_cosim.build import cache_folder, fault
     from dcone_cosim.cache import listing, spoken_age, spoken_size
 

@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from dcone_cosim import build, interrupts, placed
+from dcone_cosim.apart import ours, phases_apart
 from dcone_cosim.archives import Archives, remarks
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
@@ -114,30 +115,37 @@ def _draw(result: RunResult, folder: Path) -> list[str]:
 
 
 def write_fmus(
-    name: str, out: Path, progress: Progress, platforms: str = "", settings: Sequence[str] = ()
-) -> list[Path]:
-    """Write the FMUs of a scene to a folder under readable names, for the platforms named or for this machine's.
+    name: str,
+    out: Path,
+    progress: Progress,
+    platforms: str = "",
+    settings: Sequence[str] = (),
+    from_run: Path | None = None,
+) -> tuple[list[Path], list[str]]:
+    """Write the FMUs of a scene to a folder, for the platforms named or for this machine's; paths, and what to tell.
 
-    Files that the scene names itself are there already.
+    Each starts with the scene's values. Files that the scene names itself are there already.
+
+    from_run     folder of a run of the scene: its removal begins as it was handed over there
     """
     chosen = build.platform_names(platforms) if platforms else ()
     scene = named(name, settings)
     check_folder(out)
-    ours = [(c.model, c.terms) for phase in scene.phases for c in phase.components if c.fmu is None]
-    ours = list({build.readable_name(*wanted): wanted for wanted in ours}.values())
+    notes: list[str] = []
+    wanted = [fmu for phase in phases_apart(scene, from_run, notes) for fmu in ours(scene, phase).values()]
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)
         with Scratch(out) as draft:
             with progress.working("building"):
-                drafts = build.write_fmus(ours, chosen, draft, progress.say)
+                drafts = build.write_fmus(wanted, chosen, draft, progress.say)
             paths = [placed.put(path, out / path.name) for path in drafts]
     except BaseException:
         for folder in made:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
-    return paths
+    return paths, notes
 
 
 def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:

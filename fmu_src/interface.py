@@ -104,6 +104,15 @@ class Variable:
             names.append(name)
         return names
 
+    def typed(self, name: str, value: Value) -> Value:
+        """A value in the type of this row; ValueError, which calls it `name`, if it cannot have it."""
+        reason = self.refusal(float(value))
+        if reason is None and self.kind != "Real" and float(value) != int(value):
+            reason = "must be a whole number"
+        if reason is not None:
+            raise ValueError(f"{name} = {value:g} {reason}")
+        return float(value) if self.kind == "Real" else bool(value) if self.kind == "Boolean" else int(value)
+
     def refusal(self, value: float) -> str | None:
         """Why a value is out of bounds, or None."""
         unit = "" if self.unit == "1" else f" {self.unit}"
@@ -271,6 +280,21 @@ class Interface:
             for name, start in zip(v.element_names(), v.starts(), strict=True):
                 yield (name if v.at_interface else "@" + name), slot, v, start
                 slot += 1
+
+    def starting(self, values: Mapping[str, Value]) -> Interface:
+        """The same variables with other start values, SI by FMI name of a parameter or input.
+
+        ValueError for a name that is none, or a value that its variable cannot have.
+        """
+        left, rows = dict(values), []
+        for v in self.variables:
+            starts = dict(zip(v.element_names(), v.starts(), strict=True))
+            if v.causality in ("parameter", "input"):
+                starts |= {name: v.typed(name, left.pop(name)) for name in starts if name in left}
+            rows.append(replace(v, start=tuple(starts.values()) if v.shape else next(iter(starts.values()))))
+        for name, value in left.items():
+            raise ValueError(f"{name} = {value:g}: this {self.model.name} has no parameter or input of that name")
+        return replace(self, variables=tuple(rows))
 
     def make_record(self) -> npt.NDArray[Any]:
         """A record with every start value, as an array of length 1."""

@@ -103,7 +103,8 @@ class Component:
         if not loaded:
             reason = str(error).replace(f"{self.archive.folder}{os.sep}", "")
             return FmuError(f"{self.name}: the binary of {file} cannot be used\n  {reason}")
-        said = self._messages.words() + self._strange_guid()
+        said = self._messages.words()
+        said += self._strange_guid() if self._messages.silent or "guid" in said.lower() else ""
         return CallError(self.name, " could not be instantiated", said, f"{file}: {error}", "Error")
 
     def _strange_guid(self) -> str:

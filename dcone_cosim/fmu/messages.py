@@ -57,6 +57,11 @@ class Messages:
     def forget(self) -> None:
         self._said.clear()
 
+    @property
+    def silent(self) -> bool:
+        """Whether it has said nothing."""
+        return not any(text for _, text in self._said)
+
     def words(self) -> str:
         """Its latest complaints, the gravest first, or its latest words when none is a complaint."""
         told = [(_gravity(status), place, text) for place, (status, text) in enumerate(self._said) if text]

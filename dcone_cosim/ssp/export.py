@@ -1,12 +1,10 @@
 """Packages of a scene: one .ssp per phase, for any tool that reads SSP 1.0.
 
-A phase that follows a hand-off begins with what the one before hands over. The scene alone does not know that; the
-folder of a run does.
+Each FMU of ours starts with the scene's values by itself; the package tells them once more, where they can be changed.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import re
 import zipfile
@@ -14,19 +12,18 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 from dcone_cosim import build, placed
+from dcone_cosim.apart import exchange_step, ours, phases_apart
 from dcone_cosim.coupling.options import Connection
 from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import InputError
-from dcone_cosim.files import regular
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene, load
+from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene, load
 from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
@@ -68,12 +65,13 @@ def export_scene(
     scene = load(name, settings)
     check_folder(out)
     done = Exported()
-    phases = _phases(scene, from_run, done.notes)
-    ours = [(p.name, c) for p in phases for c in p.components if c.fmu is None]
-    built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
-    fmus = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
-    fmus |= {(p.name, c.name): c.fmu for p in phases for c in p.components if c.fmu is not None}
-    contents = [(phase.name, _package(scene, phase, fmus, form, open_inputs)) for phase in phases]
+    phases = phases_apart(scene, from_run, done.notes)
+    wanted = {(p.name, name): fmu for p in phases for name, fmu in ours(scene, p).items()}
+    with Scratch.temporary() as folder:
+        written = build.write_fmus(list(wanted.values()), (), folder, progress.say)
+        fmus = dict(zip(wanted, written, strict=True))
+        fmus |= {(p.name, c.name): c.fmu for p in phases for c in p.components if c.fmu is not None}
+        contents = [(phase.name, _package(scene, phase, fmus, form, open_inputs)) for phase in phases]
     made = [p for p in (out.absolute(), *out.absolute().parents) if not p.exists()]
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -87,65 +85,6 @@ def export_scene(
                 folder.rmdir()
         raise
     return done
-
-
-def _phases(scene: Scene, from_run: Path | None, notes: list[str]) -> list[PhaseScene]:
-    """The phases as they are to be written, each to be run by itself."""
-    if len(scene.phases) < len(PHASES):
-        if from_run is not None:
-            raise InputError(f"--from-run {from_run}: {scene.source or scene.name} has no hand-off to take from a run")
-        return list(scene.phases)
-    capture, removal = scene.phases
-    # the mission ends its capture at the hand-over; alone, a capture goes on for `after_capture`
-    capture = replace(capture, options={**capture.options, "after_capture": 0.0})
-    if from_run is not None:
-        return [capture, _handed_over(scene, removal, from_run)]
-    values = {**removal.main.defaults, **removal.main.parameters}
-    begins = "the removal begins with what the capture hands over, which the scene alone does not tell"
-    how = "run the scene, then export it with --from-run FOLDER"
-    refusals = build.cannot_work("removal", values, removal.duration, removal.main.terms, False)
-    if refusals:
-        first = refusals[0]
-        reason = f"by itself it cannot begin: {first.variable} = {first.given} {first.expected}"
-        notes.append(f"{begins}; {reason}. It is left out: {how}")
-        return [capture]
-    notes.append(f"{begins}. It is written with the scene's own start, both at rest on one orbit: {how}")
-    return [capture, removal]
-
-
-def _unlike(scene: Scene, told: Mapping[str, Any]) -> str:
-    """How the scene of a run differs from this one, and what to do about it."""
-    if told.get("scene") != scene.name:
-        return f"that run was of another scene, {told.get('scene')!r}; expected one of {scene.name!r}"
-    settings = " ".join(f"--set {setting!r}" for setting in told.get("settings", []))
-    if settings:
-        return f"that run of {scene.name!r} had other values than asked for here; its own are {settings}"
-    return f"that run of {scene.name!r} had other values than the scene has here; run it again"
-
-
-def _handed_over(scene: Scene, removal: PhaseScene, folder: Path) -> PhaseScene:
-    """The removal as a run of the scene began it."""
-    told = _json(folder, "provenance.json")
-    kept = folder / "scene.toml"
-    own = kept.is_file() and scene.source and Path(scene.source).is_file() and kept.samefile(scene.source)
-    if not own and told.get("scene_sha256") != scene.sha256:
-        raise InputError(f"--from-run {folder}: {_unlike(scene, told)}; or export its own, {kept}")
-    phase = told.get("phases", {}).get("removal")
-    if phase is None:
-        raise InputError(f"--from-run {folder}: that run has no removal: {told.get('message') or told.get('status')}")
-    start = float(_json(folder, "ledger.json")["time"]["value"])
-    parameters = {name: float(value) for name, value in {**phase["parameters"], **phase.get("given", {})}.items()}
-    return replace(removal, main=replace(removal.main, parameters=parameters), start=start)
-
-
-def _json(folder: Path, name: str) -> dict[str, Any]:
-    try:
-        content: dict[str, Any] = json.loads(regular(folder / name).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"--from-run {folder}: {name}: {error.strerror}; expected the folder of a run") from error
-    except ValueError as error:
-        raise InputError(f"--from-run {folder}: {name} is not valid JSON ({error})") from error
-    return content
 
 
 def _package(
@@ -175,8 +114,7 @@ def _package(
         [_wire(c, variables[c.source][c.output], variables[c.target][c.input]) for c in phase.connections],
         phase.start,
         phase.start + phase.duration,
-        # other tools have one step: at it they exchange values
-        (phase.others and phase.coupling.step) or phase.macro_step,
+        exchange_step(phase),
         _ours(phase),
     )
     return {STRUCTURE: structure(content), **files}

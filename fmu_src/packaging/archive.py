@@ -4,8 +4,12 @@ The same sources and the versions in PACKAGES give the same files. The archive a
 deflated by the zlib that Python and Pillow were linked with, so the archive has the same bytes where that is the same
 too. The key leaves zlib out: what an FMU does, and so its GUID, does not depend on it.
 
-The cache holds an FMU for each platform. One for several platforms is put together from those: they differ in their
-libraries alone. The IR is worked out once, since every FMU carries it among its sources.
+An FMU has two identities. The key is its library's: whatever values it starts with, it loads the saved states of all
+with that key. The GUID is the file's, values and experiment with it.
+
+The cache holds an FMU with the model's own values for each platform. One for several platforms, or with the values of
+a scene, is put together from those, without compiler or linker: platforms differ in their libraries alone, and values
+in what `described` makes. The IR is worked out once, since every FMU carries it among its sources.
 """
 
 from __future__ import annotations
@@ -19,11 +23,24 @@ import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
+from dataclasses import astuple
 from importlib.metadata import version
 from pathlib import Path
 
 from fmu_src.interface import Interface
-from fmu_src.packaging import c_header, compile, description, documentation, kept, link, picture, sources, tools
+from fmu_src.packaging import (
+    c_header,
+    compile,
+    description,
+    documentation,
+    kept,
+    link,
+    picture,
+    sources,
+    start_values,
+    tools,
+)
+from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.platforms import PLATFORMS, WIN64, Platform, host
 
 PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
@@ -83,7 +100,7 @@ def build(
             folder = stack.enter_context(workplace(cache))
         except OSError as error:
             raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
-        guid = kept.guid_of(key)
+        identity = kept.as_guid(key)
         ir = folder / "model.ll"
         known = _kernels(cache, name, key)
         if known is None:
@@ -93,16 +110,14 @@ def build(
         else:
             ir.write_bytes(known)
         header = folder / "model.h"
-        header.write_text(c_header.header(interface, name, guid))
+        header.write_text(c_header.header(interface, name, identity))
         library = folder / f"{name}{platform.suffix}"
         first = "; the first link for Windows on a machine takes minutes" if platform is WIN64 else ""
         announce(f"linking {name} for {platform.name}{first}")
         link.link(ir, header, library, platform)
-        package = version("dcone-cosim")
         files = {
-            "modelDescription.xml": description.model_description(interface, name, guid, package),
+            **described(interface, identity, Experiment.of(interface.model)),
             f"binaries/{platform.folder}/{library.name}": library.read_bytes(),
-            "documentation/index.html": documentation.page(interface, SOURCES / interface.model.name).encode(),
             "model.png": picture.png(interface),
             **sources.files(name, ir, header),
         }
@@ -112,6 +127,22 @@ def build(
             raise tools.BuildError(f"the sources of {name} changed while it was built: build it again")
         _put(finished, path)
     return path
+
+
+def described(interface: Interface, library: str, experiment: Experiment) -> dict[str, bytes]:
+    """The files in which FMUs with one library differ: what they are, the values they start with, and what for.
+
+    library    its key in the form of a GUID
+    """
+    name = interface.model.name
+    what = [library, start_values.slots(interface).hex(), *map(str, astuple(experiment))]
+    guid = kept.as_guid(hashlib.sha256(json.dumps(what).encode()).hexdigest())
+    package = version("dcone-cosim")
+    return {
+        "modelDescription.xml": description.model_description(interface, name, guid, package, experiment),
+        start_values.PATH: start_values.content(interface, library, guid),
+        "documentation/index.html": documentation.page(interface, SOURCES / name, experiment.scene).encode(),
+    }
 
 
 def _kernels(cache: Path, name: str, key: str) -> bytes | None:
@@ -151,8 +182,8 @@ def build_all(
             raise
 
 
-def unite(fmus: Sequence[Path], path: Path) -> None:
-    """Write one FMU for all the platforms of several, which must be of the same origin."""
+def unite(fmus: Sequence[Path]) -> dict[str, bytes]:
+    """Files of one FMU for all the platforms of several, which must be of the same origin."""
     files: dict[str, bytes] = {}
     for fmu in fmus:
         with zipfile.ZipFile(fmu) as archive:
@@ -160,7 +191,16 @@ def unite(fmus: Sequence[Path], path: Path) -> None:
                 content = archive.read(name)
                 if files.setdefault(name, content) != content:
                     raise ValueError(f"{fmu} is not of the same origin: its {name} differs")
-    pack(files, path)
+    return files
+
+
+def furnish(fmus: Sequence[Path], interface: Interface, experiment: Experiment, path: Path) -> None:
+    """Write one FMU for all the platforms of several, which starts with the values of the interface.
+
+    Checked  tests/packaging/test_start_values.py
+    """
+    files = unite(fmus)
+    pack(files | described(interface, start_values.library_of(files[start_values.PATH]), experiment), path)
 
 
 def pack(files: dict[str, bytes], path: Path) -> None:

@@ -1,12 +1,11 @@
-"""The generated C header that tells the shim about one model: slots, start values, bounds, derivatives, faults."""
+"""The generated C header that tells the shim about one model: slots, bounds, derivatives, faults."""
 
 from __future__ import annotations
 
 import math
-import struct
 from collections.abc import Sequence
 
-from fmu_src.interface import Fault, Interface, Value, Variable
+from fmu_src.interface import Fault, Interface, Variable
 from fmu_src.packaging.dependence import first_slots, partials, rates
 from fmu_src.packaging.description import LOG_CATEGORIES
 
@@ -16,8 +15,10 @@ SEVERITY = {"error": 0, "discard": 1, "end": 2}
 UNKNOWN = Fault(0, "error", "the kernel gave a fault that is not in its table")
 
 
-def header(interface: Interface, identifier: str, guid: str) -> str:
-    """Text of `model.h`.
+def header(interface: Interface, identifier: str, library: str) -> str:
+    """Text of `model.h`, the same whatever the start values are.
+
+    library    key by which the library knows its start values and saved states
 
     Checked  tests/packaging/test_toy.py
     """
@@ -30,16 +31,13 @@ def header(interface: Interface, identifier: str, guid: str) -> str:
     lines = [
         "/* generated from the model's table of variables */",
         f"#define DCONE_IDENTIFIER {_string(identifier)}",
-        f"#define DCONE_GUID {_string(guid)}",
+        f"#define DCONE_LIBRARY {_string(library)}",
         f"#define DCONE_SLOTS {len(scalars)}",
         f"#define DCONE_ROWS {len(interface.variables)}",
         f"#define DCONE_RATES {len(pairs)}",
         f"#define DCONE_MOVING {len(moving)}",
         f"#define DCONE_PARTIALS {len(partial_table)}",
         "static const unsigned char slot_code[DCONE_SLOTS] = {" + ",".join(codes) + "};",
-        "static const uint64_t slot_start[DCONE_SLOTS] = {"
-        + ",".join(_bits(v, start) for _, _, v, start in scalars)
-        + "};",
         *_table("struct row row_table[]", [_row(slot, v) for slot, v in first_slots(interface).values()]),
         *_table("struct rate rate_table[]", [*pairs, (-1, -1)]),
         *_table("struct rate moving_table[]", [*moving, (-1, -1)]),
@@ -54,12 +52,6 @@ def _table(declared: str, rows: Sequence[tuple[object, ...]] | Sequence[str]) ->
     """A constant array, one row a line."""
     text = [row if isinstance(row, str) else "{" + ", ".join(map(str, row)) + "}" for row in rows]
     return [f"static const {declared} = {{", *(f"    {line}," for line in text), "};"]
-
-
-def _bits(v: Variable, start: Value) -> str:
-    """A start value as the bits of its slot."""
-    raw = struct.pack("<d", float(start)) if v.kind == "Real" else struct.pack("<q", int(start))
-    return f"0x{struct.unpack('<Q', raw)[0]:x}u"
 
 
 def _row(slot: int, v: Variable) -> tuple[object, ...]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
+from dataclasses import dataclass
 
-from fmu_src.interface import Interface, Value, Variable
+from fmu_src.interface import Interface, Model, Value, Variable
 from fmu_src.packaging.dependence import inputs_of, partials, rates
 
 GENERATOR = "D-CoNe co-simulation"
@@ -20,6 +21,25 @@ LOG_CATEGORIES = (
 LONGEST_LISTED = 1000
 """Elements of an output, beyond which its initial dependencies are left out: that means all, which holds too."""
 SI_BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What an FMU is written for.
+
+    start, stop, step     of the run that a tool makes which is told of no other [s]
+    scene                 whose values it starts with; "" for the model's own
+    """
+
+    start: float
+    stop: float
+    step: float
+    scene: str = ""
+
+    @classmethod
+    def of(cls, model: Model) -> Experiment:
+        """The model's own."""
+        return cls(0.0, model.stop_time, model.macro_step)
 
 
 def number(value: Value) -> str:
@@ -59,8 +79,8 @@ def _scalars(interface: Interface) -> Iterator[tuple[str, int, Variable, Value]]
     return (row for row in interface.scalars() if row[2].at_interface)
 
 
-def summary(interface: Interface) -> str:
-    """What the model is, and the terms that are in this FMU and left out of it."""
+def summary(interface: Interface, scene: str = "") -> str:
+    """What the model is, the terms that are in this FMU and left out of it, and whose values it starts with."""
     left_out = [name for name in interface.model.groups if name not in interface.terms]
     terms = ", ".join(f"{group} {term}" for group, term in interface.terms.items())
     text = interface.model.summary
@@ -68,21 +88,26 @@ def summary(interface: Interface) -> str:
         text += f" Built with: {terms}."
     if left_out:
         text += f" Left out: {', '.join(left_out)}."
+    if scene:
+        text += f" Start values: those of the scene {scene}."
     return text
 
 
-def model_description(interface: Interface, identifier: str, guid: str, version: str) -> bytes:
-    """modelDescription.xml of an FMI 2.0 co-simulation unit.
+def model_description(
+    interface: Interface, identifier: str, guid: str, version: str, experiment: Experiment | None = None
+) -> bytes:
+    """modelDescription.xml of an FMI 2.0 co-simulation unit; its experiment is the model's own if none is given.
 
     Checked  tests/packaging/test_description.py
     """
     model = interface.model
+    experiment = experiment or Experiment.of(model)
     root = ET.Element(
         "fmiModelDescription",
         fmiVersion="2.0",
         modelName=model.name,
         guid=guid,
-        description=summary(interface),
+        description=summary(interface, experiment.scene),
         version=version,
         generationTool=GENERATOR,
         variableNamingConvention="structured",
@@ -93,8 +118,8 @@ def model_description(interface: Interface, identifier: str, guid: str, version:
     categories = ET.SubElement(root, "LogCategories")
     for name, meaning in (*LOG_CATEGORIES, ("logAll", "all of these")):
         ET.SubElement(categories, "Category", name=name, description=meaning)
-    experiment = {"startTime": "0.0", "stopTime": number(model.stop_time), "stepSize": number(model.macro_step)}
-    ET.SubElement(root, "DefaultExperiment", experiment)
+    times = {"startTime": experiment.start, "stopTime": experiment.stop, "stepSize": experiment.step}
+    ET.SubElement(root, "DefaultExperiment", {name: number(float(time)) for name, time in times.items()})
     variables = ET.SubElement(root, "ModelVariables")
     for name, slot, v, start in _scalars(interface):
         scalar = ET.SubElement(variables, "ScalarVariable", _attributes(v, name, slot))

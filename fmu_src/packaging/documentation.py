@@ -32,8 +32,11 @@ CAUSALITIES = {
 }
 
 
-def page(interface: Interface, folder: Path) -> str:
-    """HTML of the page; `folder` holds the model's README, whose equations it shows.
+def page(interface: Interface, folder: Path, scene: str = "") -> str:
+    """HTML of the page.
+
+    folder    holds the model's README, whose equations it shows
+    scene     whose values the FMU starts with; "" for the model's own
 
     Checked  tests/packaging/test_page_and_picture.py
     """
@@ -42,7 +45,14 @@ def page(interface: Interface, folder: Path) -> str:
     model = interface.model
     readme = folder / "README.md"
     text = _lower_headings(readme.read_text()) if readme.exists() else ""
-    sections = [_terms(interface), text, _variables(interface), _faults(interface), _messages()]
+    sections = [
+        _terms(interface),
+        _values(interface, scene),
+        text,
+        _variables(interface),
+        _faults(interface),
+        _messages(),
+    ]
     body: Any = MarkdownIt("commonmark", {"html": False}).enable("table").render("\n\n".join(sections))
     title = model.name.replace("_", " ").capitalize()
     return (
@@ -80,6 +90,27 @@ def _terms(interface: Interface) -> str:
     if not rows:
         return ""
     return "## What is in this FMU\n\n" + _table(("group", "term", "what it adds"), rows)
+
+
+def _values(interface: Interface, scene: str) -> str:
+    """What this FMU starts with, each value to the last bit, and where the model alone would start with another."""
+    own = {
+        name: number(as_typed(v, start)) for name, _, v, start in interface.model.interface(interface.terms).scalars()
+    }
+    rows = []
+    for name, _, v, start in interface.scalars():
+        if v.causality in ("parameter", "input"):
+            value = number(as_typed(v, start))
+            other = own[name] if own[name] != value else ""
+            rows.append(
+                (f"`{name}`", f"**{value}**" if other else value, v.unit if v.kind == "Real" else v.kind, other)
+            )
+    whose = f"those of the scene `{scene}`" if scene else "the model's own"
+    text = (
+        f"They are {whose}, and travel in `resources/start-values.bin`: the library takes them from there when it is "
+        "instantiated, and after a reset. Where they differ from the model's own, those are told beside them."
+    )
+    return f"## Values this FMU starts with\n\n{text}\n\n" + _table(("name", "value", "unit", "model's own"), rows)
 
 
 def _variables(interface: Interface) -> str:

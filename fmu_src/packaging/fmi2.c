@@ -2,12 +2,13 @@
 
    An instance is one block of 8-byte slots: first the record (parameters, inputs, state, outputs; a value reference is
    a slot), then the work memory, whose size the model tells once its parameters are known. Getting, setting and
-   serialising the FMU state are copies of that block. The generated model.h tells slots, start values, bounds,
-   derivatives and faults.
+   serialising the FMU state are copies of that block. The generated model.h tells slots, bounds, derivatives and
+   faults; the start values come with the FMU, in its resources.
 
    This file holds the instance and the way into the model; the parts at its end hold the functions of FMI, by idea.
    Nothing is global but constants, so instances may live side by side, in one thread or in several. */
 
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,6 +18,7 @@
 #include <string.h>
 
 #include "fmi2Functions.h"
+#include "resources.h"
 
 /* One row of the model's table: the slots it takes, and what they may hold. A `#` in its name stands for an index. */
 struct row { int first, count, columns, bounded, open; double low, high; const char *name, *unit; };
@@ -56,6 +58,7 @@ typedef struct {
     unsigned logged;     /* categories that are told, one bit each */
     condition at;
     slot *block;         /* record, then work */
+    slot *start;         /* record, as the FMU's resources have it */
 } instance;
 
 /* ---- the model's entry, one for each processor it was compiled for ------------------------------------------------ */
@@ -78,6 +81,7 @@ static int32_t run(instance *i, int64_t command, double time, double step) {
 static size_t block_size(int64_t work) { return (size_t)(DCONE_SLOTS + work) * sizeof(slot); }
 
 #include "fmi2_messages.h"
+#include "fmi2_start.h"
 #include "fmi2_life.h"
 #include "fmi2_values.h"
 #include "fmi2_derivatives.h"

@@ -8,7 +8,7 @@ static int take_start_values(instance *i) {
     memset(&i->at, 0, sizeof i->at);
     i->at.phase = INSTANTIATED;
     i->at.stale = 1;
-    memcpy(block, slot_start, sizeof slot_start);
+    memcpy(block, i->start, DCONE_SLOTS * sizeof(slot));
     return 1;
 }
 
@@ -64,6 +64,7 @@ static fmi2Status settle(instance *i) {
 static void release(instance *i) {
     free(i->name);
     free(i->block);
+    free(i->start);
     free(i);
 }
 
@@ -71,7 +72,7 @@ static void release(instance *i) {
    parameters ask for it, and they offer no realloc. */
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean logging) {
-    (void)resources, (void)visible;
+    (void)visible;
     instance *i = calloc(1, sizeof *i);
     if (!i) return NULL;
     if (functions) {
@@ -82,16 +83,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     const char *given_name = name && *name ? name : DCONE_IDENTIFIER;
     i->name = malloc(strlen(given_name) + 1);
     if (i->name) strcpy(i->name, given_name);
-    int good = i->name && take_start_values(i);
+    int good = i->name != NULL;
     if (good && type != fmi2CoSimulation) {
         say(i, fmi2Error, "this FMU is for co-simulation only");
         good = 0;
     }
-    if (good && (!guid || strcmp(guid, DCONE_GUID))) {
-        say(i, fmi2Error, "the GUID %s is not that of this binary, %s", guid ? guid : "(none)", DCONE_GUID);
-        good = 0;
-    }
-    if (good) return i;
+    if (good && read_start_values(i, resources, guid) && take_start_values(i)) return i;
     release(i);
     return NULL;
 }

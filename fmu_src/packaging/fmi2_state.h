@@ -1,32 +1,24 @@
-/* Part of fmi2.c: the FMU state. It holds no pointer, so it is good in any process that has loaded this FMU. */
+/* Part of fmi2.c: the FMU state. It holds no pointer, so it is good in any process that has loaded an
+   FMU with this library, whatever start values that one has. */
 
 #define MAGIC "DCONEFMU"
-#define STATE_VERSION 2
+#define STATE_VERSION 3
 
 /* What a saved state begins with, in memory and serialised; the block follows. */
 typedef struct {
+    uint64_t nothing;    /* zero: some tools free a state where its address is asked for, and so free NULL */
     char magic[8];
     uint64_t check;      /* of all that follows it, in a serialised state */
-    char guid[48];
+    char library[KEY_LENGTH];
     int64_t version;
     condition at;
 } saved;
 
 static size_t state_size(int64_t work) { return sizeof(saved) + block_size(work); }
 
-/* Check word over all that follows it, eight bytes at a time (the FNV-1a hash with words for bytes). */
-static uint64_t check_word(const void *state) {
-    const unsigned char *bytes = state;
-    saved head;
-    memcpy(&head, bytes, sizeof head);
-    uint64_t hash = UINT64_C(0xcbf29ce484222325);
-    for (size_t at = offsetof(saved, guid); at < state_size(head.at.work); at += 8) {
-        uint64_t word;
-        memcpy(&word, bytes + at, 8);
-        hash = (hash ^ word) * UINT64_C(0x100000001b3);
-        hash ^= hash >> 32;
-    }
-    return hash;
+static uint64_t check_of(const void *state, int64_t work) {
+    const size_t at = offsetof(saved, library);
+    return check_word((const char *)state + at, state_size(work) - at);
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
@@ -42,22 +34,22 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     if (!s) return say(i, fmi2Error, "no memory for the FMU state");
     memset(s, 0, sizeof *s);
     memcpy(s->magic, MAGIC, sizeof s->magic);
-    strncpy(s->guid, DCONE_GUID, sizeof s->guid - 1);
+    strncpy(s->library, DCONE_LIBRARY, sizeof s->library - 1);
     s->version = STATE_VERSION;
     s->at = i->at;
     memcpy(s + 1, i->block, block_size(i->at.work));
     return fmi2OK;
 }
 
-/* Whether a state is one of this FMU; `size` counts its bytes, SIZE_MAX where they are not known. */
+/* Whether a state is one of this library; `size` counts its bytes, SIZE_MAX where they are not known. */
 static fmi2Status usable(instance *i, const saved *s, size_t size) {
     int64_t phase = s->at.phase, work = s->at.work;
-    if (size < sizeof *s || memcmp(s->magic, MAGIC, sizeof s->magic))
+    if (size < sizeof *s || s->nothing || memcmp(s->magic, MAGIC, sizeof s->magic))
         return say(i, fmi2Error, "this is no saved state of such an FMU");
     if (s->version != STATE_VERSION)
         return say(i, fmi2Error, "the saved state has version %lld, expected %d", (long long)s->version, STATE_VERSION);
-    if (strncmp(s->guid, DCONE_GUID, sizeof s->guid))
-        return say(i, fmi2Error, "the saved state belongs to the FMU %.47s, not to %s", s->guid, DCONE_GUID);
+    if (strncmp(s->library, DCONE_LIBRARY, sizeof s->library))
+        return say(i, fmi2Error, "the saved state belongs to another library than this one, %s", DCONE_LIBRARY);
     if (work < 0 || work > INT64_C(1) << 40 || (size != SIZE_MAX && size != state_size(work)))
         return say(i, fmi2Error, "the saved state is damaged: its size does not fit its %lld numbers of memory",
                    (long long)work);
@@ -111,7 +103,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
     if (size < needed)
         return say(c, fmi2Error, "the buffer of %.0f bytes is too small for the FMU state, %.0f bytes", (double)size,
                    (double)needed);
-    uint64_t check = check_word(state);
+    uint64_t check = check_of(state, ((saved *)state)->at.work);
     memcpy(bytes, state, needed);
     memcpy(bytes + offsetof(saved, check), &check, sizeof check);
     return fmi2OK;
@@ -123,7 +115,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     if (size < sizeof head) return say(c, fmi2Error, "this is no saved state of such an FMU: it is too short");
     memcpy(&head, bytes, sizeof head);
     if (usable(c, &head, size) != fmi2OK) return fmi2Error;
-    if (check_word(bytes) != head.check)
+    if (check_of(bytes, head.at.work) != head.check)
         return say(c, fmi2Error, "the saved state is damaged: its check word does not fit");
     saved *copy = malloc(size);
     if (!copy) return say(c, fmi2Error, "no memory for the FMU state");

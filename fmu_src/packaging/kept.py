@@ -8,12 +8,12 @@ import zlib
 from contextlib import suppress
 from pathlib import Path
 
+from fmu_src.packaging import start_values
 from fmu_src.packaging.platforms import PLATFORMS, Platform
 
 KEY = 16
 """Digits of the key that stand in the file name."""
 NAME = re.compile(rf"(?P<model>\w+)-(?P<key>[0-9a-f]{{{KEY}}})-(?P<platform>[\w-]+)\.fmu")
-GUID = re.compile(rb'\bguid="\{([^"}]*)\}"')
 DAMAGED = "damaged"
 ANOTHERS = "another's, whose key is not the one in its name"
 UNKNOWN = "of a name that this program gives to no FMU"
@@ -23,15 +23,16 @@ def file_name(model: str, key: str, platform: Platform) -> str:
     return f"{model}-{key[:KEY]}-{platform.name}.fmu"
 
 
-def guid_of(key: str) -> str:
+def as_guid(key: str) -> str:
+    """A hash in the form of a GUID."""
     return "{" + f"{key[:8]}-{key[8:12]}-{key[12:16]}-{key[16:20]}-{key[20:32]}" + "}"
 
 
 def fault(path: Path) -> str:
     """What is wrong with a cached FMU, in words that follow "is"; "" for a file that is whole and what its name says.
 
-    Whole: every entry is there with the checksum it was written with. What its name says: its GUID begins with the key
-    and it has the model's library for the platform.
+    Whole: every entry is there with the checksum it was written with. What its name says: its start values are for a
+    library of that key, and it has the model's library for the platform.
 
     Checked  tests/packaging/test_kept.py
     """
@@ -44,7 +45,8 @@ def fault(path: Path) -> str:
     try:
         with zipfile.ZipFile(path) as archive:
             broken = archive.testzip()
-            text = archive.read("modelDescription.xml")
+            values = archive.read(start_values.PATH)
+            archive.getinfo("modelDescription.xml")
             archive.getinfo(f"binaries/{platform.folder}/{named['model']}{platform.suffix}")
     except KeyError:
         return ANOTHERS
@@ -52,9 +54,8 @@ def fault(path: Path) -> str:
         return DAMAGED
     if broken is not None:
         return DAMAGED
-    guid = GUID.search(text)
-    found = guid[1].replace(b"-", b"").decode("ascii", "replace") if guid else ""
-    return "" if found.startswith(named["key"]) else ANOTHERS
+    key = start_values.library_of(values).strip("{}").replace("-", "")
+    return "" if key.startswith(named["key"]) else ANOTHERS
 
 
 def holds(cache: Path, library: Path) -> bool:

@@ -12,7 +12,7 @@ from fmu_src.packaging import tools, universal
 from fmu_src.packaging.compile import ENTRY
 from fmu_src.packaging.platforms import Platform, Target
 
-SHIM = Path(__file__).parent / "fmi2.c"
+SHIM = tuple(Path(__file__).parent / name for name in ("fmi2.c", "resources.c"))
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 """The FMI headers as fmpy ships them."""
 FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-g0", "-Wno-override-module")
@@ -59,9 +59,9 @@ def _link_one(ir: Path, header: Path, library: Path, target: Target) -> None:
     paths = [f"-DDCONE_{SECOND_PATH[p].upper()}" for p in target.processors[1:]]
     system: list[str] = []
     if "linux" in target.triple:
-        system = ["-lm"]  # the others have their mathematics in the one C library
+        system = ["-lm", "-ldl"]  # the others have their mathematics, and their loader, in the one C library
     elif "macos" in target.triple:
         # without these, the folder of this build, and the names of internal functions
         system = [f"-Wl,-install_name,@rpath/{library.name}", "-Wl,-x"]
     search = ["-I", HEADERS, "-I", header.parent]
-    _clang(["-target", target.triple, *FLAGS, *SHIM_FLAGS, *search, *paths, SHIM, *objects, "-o", library, *system])
+    _clang(["-target", target.triple, *FLAGS, *SHIM_FLAGS, *search, *paths, *SHIM, *objects, "-o", library, *system])

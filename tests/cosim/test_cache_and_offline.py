@@ -21,9 +21,10 @@ from dcone_cosim import build, offline, progress
 from dcone_cosim.cache import Times, age, clear, listing, spoken_age
 from dcone_cosim.errors import InputError
 from dcone_cosim.scratch import workplace
+from fmu_src.packaging import start_values
 from tests.cosim.conftest import Dcone
 
-XML = '<fmiModelDescription guid="{{{}}}" modelName="{}" description="A net. Built with: {}. Left out: nodes."/>'
+XML = '<fmiModelDescription modelName="{}" description="A net. Built with: {}. Left out: nodes."/>'
 CAPTURE = "net_capture-0123456789abcdef-linux64"
 REMOVAL = "tethered_deorbit-456789abcdef0123-linux64"
 DAY = 86400.0
@@ -33,7 +34,10 @@ def keep(folder: Path, name: str, days: float, terms: str = "net square, gravity
     path = folder / f"{name}.fmu"
     with zipfile.ZipFile(path, "w") as archive:
         model, key, _ = name.split("-")
-        archive.writestr("modelDescription.xml", XML.format(f"{key[:8]}-{key[8:]}", model, terms))
+        archive.writestr("modelDescription.xml", XML.format(model, terms))
+        archive.writestr(
+            start_values.PATH, start_values.content(build.CATALOGUE["reel_control"].interface({}), key, "")
+        )
         archive.writestr(f"binaries/linux64/{model}.so", b"library")
     then = time.time() - days * DAY
     os.utime(path, (then, then))

@@ -39,7 +39,7 @@ def towed_by(fmu: Path, isolate: bool, timeout: str = "") -> str:
 def test_ours_from_a_file_gives_the_same_bits(dcone: Dcone, tmp_path: Path) -> None:
     """Built, copied away and named in the scene: what comes out is what came out before, to the last bit."""
     assert dcone("build", "mission", "-o", "fmus")[0] == 0
-    capture, removal = (next(Path("fmus").glob(f"{model}-*.fmu")) for model in ("net_capture", "tethered_deorbit"))
+    capture, removal = (Path(f"fmus/mission-{phase}.fmu") for phase in ("capture", "removal"))
     text = MISSION.replace("[capture]\n", f'[capture]\nfmu = "{capture}"\n')
     (tmp_path / "mine.toml").write_text(text.replace("[removal]\n", f'[removal]\nfmu = "{removal}"\n'))
     assert dcone("run", "mission", "-o", "ours", "--no-figures")[0] == 0

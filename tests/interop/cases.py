@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -53,9 +53,12 @@ class Case:
     figures: tuple[str, ...]
 
     @functools.cached_property
+    def terms(self) -> Mapping[str, str]:
+        return {p.name: p.main.terms for p in load(self.scene).phases}[self.phase]
+
+    @functools.cached_property
     def path(self) -> Path:
-        terms = {p.name: p.main.terms for p in load(self.scene).phases}[self.phase]
-        return build.ensure_fmus({self.phase: terms}, lambda _: None)[self.phase]
+        return build.ensure_fmus({self.phase: self.terms}, lambda _: None)[self.phase]
 
     def job(self, grid: str, coarse: int = 1) -> Job:
         """The run on one of the grids, with steps `coarse` times as long."""

@@ -50,7 +50,7 @@ def make(built_toy, library):
     made = []
 
     def new(**more):
-        made.append(Raw(library, built_toy.guid, built_toy.references, **more))
+        made.append(Raw(library, **{"guid": built_toy.guid, "names": built_toy.references, **more}))
         return made[-1]
 
     yield new

@@ -59,7 +59,7 @@ static void hear(fmi2ComponentEnvironment environment, fmi2String name, fmi2Stat
 static const fmi2CallbackFunctions callbacks = {hear, calloc, free, NULL, NULL};
 
 static fmi2Component make(const char *name) {
-    return Instantiate(name, fmi2CoSimulation, guid, "file:///nowhere", &callbacks, fmi2False, fmi2True);
+    return Instantiate(name, fmi2CoSimulation, guid, NULL, &callbacks, fmi2False, fmi2True);
 }
 
 /* Set what the command line asks for. */
@@ -143,6 +143,7 @@ static void without_instance(void) {
     EXPECT(fmi2Error, SetString(NULL, outputs, 1, NULL));
     FreeInstance(NULL);
     EXPECT(1, Instantiate("x", fmi2CoSimulation, "wrong", "", &callbacks, fmi2False, fmi2False) == NULL);
+    EXPECT(1, Instantiate("x", fmi2CoSimulation, guid, "file:///nowhere", &callbacks, fmi2False, fmi2False) == NULL);
     EXPECT(1, Instantiate("x", fmi2ModelExchange, guid, "", &callbacks, fmi2False, fmi2False) == NULL);
 }
 

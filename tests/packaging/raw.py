@@ -56,16 +56,21 @@ def references(*values):
 
 
 class Raw:
-    """One instance driven by variable name, each call giving its status; `said` holds (status, category, text)."""
+    """One instance driven by variable name, each call giving its status; `said` holds (status, category, text).
 
-    def __init__(self, library, guid, names=None, logging=True, hears=True, name="raw", kind=CO_SIMULATION):
+    resources    where they are, as bytes; None for those of the unpacked FMU that the library lies in
+    """
+
+    def __init__(
+        self, library, guid, names=None, logging=True, hears=True, name="raw", kind=CO_SIMULATION, resources=None
+    ):
         self.said = []
         self._logger = LOGGER(lambda env, who, status, category, form, text: self._hear(status, category, form, text))
         functions = Callbacks(logger=ctypes.cast(self._logger, c_void_p).value if hears else None)
         self.library = library
         self.names = names or {}
         self.component = c_void_p(
-            library.call("Instantiate", name.encode(), kind, guid.encode(), None, byref(functions), False, logging)
+            library.call("Instantiate", name.encode(), kind, guid.encode(), resources, byref(functions), False, logging)
         )
 
     def _hear(self, status, category, form, text):

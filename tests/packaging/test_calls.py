@@ -110,7 +110,7 @@ def test_an_instance_needs_neither_callbacks_nor_name_but_the_guid(library, buil
     library.call("FreeInstance", ctypes.c_void_p(bare))
     other = Raw(library, "{other}", built_toy.references)
     assert not other.component
-    assert "the GUID {other} is not that of this binary, {toy}" in other.last
+    assert "the GUID {other} is not that of this FMU, {toy}" in other.last
     exchange = Raw(library, built_toy.guid, built_toy.references, kind=0)
     assert not exchange.component
     assert "co-simulation only" in exchange.last

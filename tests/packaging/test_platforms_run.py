@@ -6,13 +6,16 @@ skipped where its tool is missing. The importer is a plain C program, so no Pyth
 
 import os
 import shutil
+import subprocess
+import sys
+import urllib.parse
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fmu_src.packaging import platforms
+from fmu_src.packaging import link, platforms
 from tests.packaging import platform_cases
 from tests.packaging.platform_cases import CASES
 
@@ -160,6 +163,51 @@ def test_state_crosses_platforms(saved, cache, tmp_path):
     run_tow(*arm, tmp_path / "saving", f"@{tmp_path / 'state'}")
     here, there = path.read_bytes(), (tmp_path / "state").read_bytes()
     assert len(here) == len(there)
-    assert here[:8] == there[:8]  # what kind of state
-    assert here[16:64] == there[16:64]  # of which GUID; between them stands the check word of all that follows
+    assert here[:16] == there[:16]  # what kind of state
+    assert here[24:72] == there[24:72]  # of which library; between them stands the check word of all that follows
     assert difference(run_tow(*arm, tmp_path / "loading", f"+{path}"), rows) < SPREAD
+
+
+@pytest.fixture(scope="module")
+def places(tmp_path_factory):
+    """A folder with a blank and an umlaut in its name, which holds a file to be found."""
+    folder = tmp_path_factory.mktemp("places") / "a b ü" / "resources"
+    folder.mkdir(parents=True)
+    (folder / "it").write_text("found")
+    return folder
+
+
+def located(program, launcher, environment, locations):
+    """What the program says of each location: whether it is one, what the file there holds, and its path."""
+    given = "".join(f"{location}\n" for location in locations)
+    command = [*launcher, str(program)]
+    done = subprocess.run(command, input=given, capture_output=True, encoding="utf-8", env=environment, check=True)
+    return [tuple(line.split(" ", 2)) for line in done.stdout.splitlines()]
+
+
+def test_windows_finds_resources_however_they_are_named(wine, places, tmp_path):
+    """Drive letters in all spellings; wine calls the root of this machine Z:."""
+    launcher, environment = wine
+    program = compile_locate("x86_64-windows-gnu", tmp_path / "locate.exe")
+    path = str(places)
+    encoded = urllib.parse.quote(path)
+    there = [
+        f"file:///Z:{encoded}", f"file:/Z:{encoded}", f"file://localhost/Z:{encoded}", f"file:///z:{encoded}/",
+        f"file:///Z|{encoded}", f"file:///Z%3A{encoded}", f"file://Z:{encoded}", f"file:Z:{encoded}",
+        f"Z:{path}", "Z:" + path.replace("/", "\\"), "Z:" + path.replace("/", "\\") + "\\", f"FILE:///Z:{path}",
+    ]  # fmt: skip
+    for location, row in zip(there, located(program, launcher, environment, there), strict=True):
+        assert row[:2] == ("1", "found"), (location, row)
+    nowhere = [f"file:///Z:{encoded}x", f"file:///Y:{encoded}", "file:///Z:/", f"Z:{encoded}"]
+    assert [row[1] for row in located(program, launcher, environment, nowhere)] == ["-"] * len(nowhere)
+    # the other machine's share is a path of Windows, if none that is there
+    ((found, _, name),) = located(program, launcher, environment, ["file://server/share/resources"])
+    assert (found, name) == ("1", "//server/share/resources/it")
+
+
+def compile_locate(target, program):
+    shim = Path(link.__file__).parent
+    sources = [Path(__file__).parent / "locate.c", shim / "resources.c"]
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-O1", "-std=c99", "-Wall", "-Wextra"]
+    subprocess.run([*command, "-I", str(shim), *map(str, sources), "-o", str(program)], check=True)
+    return program

@@ -130,10 +130,10 @@ def test_reset_in_the_middle_is_a_fresh_instance_bit_for_bit(middle):
     assert bits(driven) != bits(fresh)
 
 
-def test_a_state_of_another_fmu_is_refused_by_its_guid(fmu):
+def test_a_state_of_another_library_is_refused_by_its_key(fmu):
     from fmpy.fmi1 import FMICallException
 
     net, tug = (Driven(*fmu(name), {}) for name in MIDDLES)
     with pytest.raises(FMICallException):
         tug.slave.deSerializeFMUstate(net.slave.serializeFMUstate(net.slave.getFMUstate()))
-    assert any("belongs to the FMU" in text for text in tug.messages)
+    assert any("belongs to another library" in text for text in tug.messages)

@@ -32,15 +32,22 @@ def test_a_damaged_state_is_refused_wherever_it_is_damaged(make):
     raw.start({"room": 7})
     state = raw.save()
     data = raw.serialise(state)
-    assert len(data) == 144 + 8 * (29 + 7)
+    assert len(data) == 152 + 8 * (29 + 7)
     for at in range(0, len(data), 3):
         status, other = raw.deserialise(damaged(data, at, bytes([data[at] ^ 0x41])))
         assert status == ERROR, at
         assert not other.value
-    for size in (0, 1, 143, 144, len(data) - 1, len(data) - 8):
+    for size in (0, 1, 151, 152, len(data) - 1, len(data) - 8):
         assert raw.deserialise(data[:size])[0] == ERROR
     assert raw.deserialise(data + b"\0" * 8)[0] == ERROR
-    for at, words in ((0, "no saved state"), (16, "belongs to the FMU"), (64, "version"), (72, "phase"), (120, "size")):
+    for at, words in (
+        (0, "no saved state"),
+        (8, "no saved state"),
+        (24, "belongs to another library"),
+        (72, "version"),
+        (80, "phase"),
+        (128, "size"),
+    ):
         raw.deserialise(damaged(data, at, (2**40 + 3).to_bytes(8, "little")))
         assert words in raw.last, at
     assert raw.deserialise(data)[0] == OK  # the twin: as it was, it is taken
@@ -51,14 +58,15 @@ def test_a_state_in_memory_is_checked_too(make):
     raw = make()
     raw.start()
     state = raw.save()
-    memory = (ctypes.c_char * 144).from_address(state.value)
+    memory = (ctypes.c_char * 152).from_address(state.value)
     whole = memory.raw
     for at, words in (
         (0, "no saved state"),
-        (16, "belongs to the FMU"),
-        (64, "version"),
-        (72, "phase"),
-        (120, "memory"),
+        (8, "no saved state"),
+        (24, "belongs to another library"),
+        (72, "version"),
+        (80, "phase"),
+        (128, "memory"),
     ):
         memory[:] = damaged(whole, at, (33).to_bytes(8, "little"))
         assert raw.restore(state) == ERROR

@@ -7,10 +7,11 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from fmu_src.interface import Fault, Group, Model, Term, Variable
-from fmu_src.packaging import c_header, link, platforms, tools
+from fmu_src.interface import Fault, Group, Interface, Model, Term, Variable
+from fmu_src.packaging import c_header, link, platforms, start_values, tools
 
-GUID = "{toy}"
+GUID, KEY = "{toy}", "{library of the toy}"
+"""Of the whole, and of its library."""
 ENDED, REFUSED, BROKE = 1, 2, 3
 MODEL = Model(
     name="toy",
@@ -62,18 +63,29 @@ class Toy:
     guid: str = GUID
 
 
-def build(folder: Path) -> Toy:
-    """Compile and link the toy as if it were a model's."""
+def build(folder: Path, key: str = KEY) -> Toy:
+    """Compile and link the toy as if it were a model's, in the folder of its FMU, unpacked."""
+    place = folder / "binaries" / platforms.host().folder
+    place.mkdir(parents=True)
+    furnish(folder, key=key)
     slot, lines = 0, []
     for v in INTERFACE.variables:
         lines.append(f"#define {v.name.partition('[')[0].upper()} {slot}")
         slot += v.size
     (folder / "slots.h").write_text("\n".join(lines) + "\n")
-    (folder / "model.h").write_text(c_header.header(INTERFACE, "toy", GUID))
+    (folder / "model.h").write_text(c_header.header(INTERFACE, "toy", key))
     ir = folder / "model.ll"
     flags = ["-O1", "-S", "-emit-llvm", "-ffp-contract=off", "-I", folder]
     tools.run("clang", [*COMPILER, *map(str, flags), str(Path(__file__).parent / "kernel.c"), "-o", str(ir)])
     ir.write_text(re.sub(r'"target-(cpu|features)"="[^"]*" ?', "", ir.read_text()))
-    library = folder / "toy.so"
+    library = place / "toy.so"
     link.link(ir, folder / "model.h", library, platforms.host())
     return Toy(library, INTERFACE.references)
+
+
+def furnish(folder: Path, interface: Interface = INTERFACE, key: str = KEY, guid: str = GUID) -> Path:
+    """Write a file of start values into the folder of an FMU; where it is."""
+    path = folder / start_values.PATH
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(start_values.content(interface, key, guid))
+    return path
