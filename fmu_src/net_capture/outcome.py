@@ -1,8 +1,8 @@
 """How a shot stands: captured, settled, or one of the ways to fail.
 
 `captured` has to last: once the cord still out is shorter than the target's smallest girth, the target counts as caught
-when net and mouth go round most of it (see `enclosure`), so that the mouth has passed its middle and would have to pass
-it again. While it stands in the mouth nothing is decided; the shot has failed when nothing is inside any more, and a
+when net and mouth have gone round most of it for a while (see `enclosure`), so that the mouth has passed its middle and
+would have to pass it again. While it stands in the mouth nothing is decided; the shot has failed when nothing is inside any more, and a
 capture is taken back when less than half is. Both must last for a while: the cap over a slack mouth is a guess, and may
 cut through the target for a moment.
 """
@@ -16,6 +16,8 @@ FLYING, CAPTURED, SETTLED, MISSED, SLIPPED_OFF, NOT_CLOSED, TETHER_TAUT = range(
 CAUGHT = 8 / 9
 """Share of the target's sample points inside from which it is caught: all of a box but one edge. What hovers about less
 may still come out (tests/net_capture/evidence)."""
+CAUGHT_TIME = 0.25
+"""For how long [s] before it counts as caught: some poorly aimed shots get there for an instant, on their way out."""
 OUT = 0.5
 """Share inside below which a target that was caught is on its way out."""
 OUT_TIME = 1.0
@@ -51,7 +53,9 @@ def make_judge(terms, towards_chaser, share_inside):
             if has_closing:
                 if p.closing_t_start >= 0.0 and p.mouth_cord_length < p.girth:
                     look_inside(p, work, time, 0.0)
-                    if p.enclosure_share >= CAUGHT:
+                    if p.enclosure_share < CAUGHT:
+                        p.enclosure_since = time
+                    if time >= p.enclosure_since + CAUGHT_TIME:
                         catch(p, time)
                     elif is_out(p, time):
                         p.outcome = fail(p)
@@ -67,6 +71,8 @@ def make_judge(terms, towards_chaser, share_inside):
     def look_inside(p, work, time, out):
         """Share of the target inside, and when it was last above `out`; the first look counts as if it were."""
         share = share_inside(p, work)
+        if p.enclosure_share < 0.0:
+            p.enclosure_since = time
         if share > out or p.enclosure_share < 0.0:
             p.enclosure_last_in = time
         p.enclosure_share = share

@@ -272,6 +272,7 @@ CLOSING = {
             peak("enclosure.at_capture", "1", "that share at the instant of capture; -1 before"),
             peak("enclosure.least", "1", "least share since the capture; -1 before"),
             peak("t_lost", "s", "instant at which the target was out of the net again after a capture; -1 before"),
+            state("enclosure_since", "s", "since when enough of the target to count as caught has been inside"),
             state("enclosure_last_in", "s", "when enough of the target was last inside"),
             count("mouth.locked_pairs", "pairs of bullets whose cord is shorter than the lock length"),
             peak("cord.tension_max", "N", "largest tension of the cord since the start"),
