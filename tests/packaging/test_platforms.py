@@ -18,7 +18,7 @@ from dcone_cosim import build as door
 from dcone_cosim import cli
 from dcone_cosim.errors import InputError
 from fmu_src.catalogue import MODELS
-from fmu_src.interface import INITIALISE, SIZE, STEP
+from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.packaging import archive, compile, link, platforms, tools, universal
 from tests.packaging import platform_cases
 from tests.packaging.platform_cases import CASES
@@ -186,13 +186,20 @@ def run_entry(entry, model, case):
             None, None, whole(work.size), whole(8), work.ctypes.data_as(ctypes.c_void_p), whole(work.size), whole(8),
             real(time), real(step),
         )  # fmt: skip
-        assert (status, result.value) == (0, 0)
+        assert status == 0
+        return result.value
 
-    call(SIZE, 0.0, 0.0)
+    def settle(command, time, step):
+        answer = call(command, time, step)
+        while answer == UNDER_WAY:
+            answer = call(GO_ON, time, step)
+        assert answer == 0
+
+    settle(SIZE, 0.0, 0.0)
     work = np.zeros(int(record["work_size"][0]), np.uint64)
-    call(INITIALISE, 0.0, 0.0)
+    settle(INITIALISE, 0.0, 0.0)
     for k in range(case.count):
-        call(STEP, k * case.step, case.step)
+        settle(STEP, k * case.step, case.step)
     return np.concatenate([slots, work])
 
 

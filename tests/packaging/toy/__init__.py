@@ -47,6 +47,7 @@ MODEL = Model(
     module="none",
     stop_time=10.0,
     macro_step=0.5,
+    differentiable=True,
 )
 INTERFACE = MODEL.interface({})
 
