@@ -389,7 +389,7 @@ def make_entry(terms):
             fault = check(p)
         elif command == INITIALISE:
             fault = initialise(p, work, time)
-        elif command == STEP or command == GO_ON:
+        elif command in (STEP, GO_ON):
             fault = advance(p, work, time + step, command == STEP)
         if fault > 0:
             explain(p, fault, time)

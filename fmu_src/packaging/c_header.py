@@ -60,8 +60,13 @@ def _row(slot: int, v: Variable) -> tuple[object, ...]:
         raise ValueError(f"{v.name}: the shim names arrays of at most two indices")
     bounded = v.causality in ("parameter", "input") and v.kind != "Boolean"
     columns = v.shape[1] if len(v.shape) == 2 else 1
-    low, high = _number(v.minimum), _number(v.maximum)
-    return slot, v.size, columns, int(bounded), int(v.open_minimum), low, high, _string(v.name), _string(v.unit)
+    numbers = map(_number, (v.minimum, v.maximum, _typical(v)))
+    return slot, v.size, columns, int(bounded), int(v.open_minimum), *numbers, _string(v.name), _string(v.unit)
+
+
+def _typical(v: Variable) -> float:
+    """A size that its values have: its nominal one, else that of its start values, else 1."""
+    return v.nominal or max(abs(float(start)) for start in v.starts()) or 1.0
 
 
 def _fault(fault: Fault) -> tuple[object, ...]:

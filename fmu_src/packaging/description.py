@@ -15,7 +15,10 @@ LOG_CATEGORIES = (
     ("logStatusError", "why a call was refused, or the model failed"),
     ("logStatusDiscard", "why a step was discarded, or that the model came to its own end"),
     ("logStatusWarning", "what is to be taken with care"),
-    ("logEvents", "what the instance does: initialised, terminated, reset, put back into a state; in long steps, where it is"),
+    (
+        "logEvents",
+        "what the instance does: initialised, terminated, reset, put back into a state; where it is in long steps",
+    ),
 )
 """Name and meaning of each category, in the order the shim counts them."""
 LONGEST_LISTED = 1000

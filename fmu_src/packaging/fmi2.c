@@ -23,7 +23,7 @@
 #include "resources.h"
 
 /* One row of the model's table: the slots it takes, and what they may hold. A `#` in its name stands for an index. */
-struct row { int first, count, columns, bounded, open; double low, high; const char *name, *unit; };
+struct row { int first, count, columns, bounded, open; double low, high, typical; const char *name, *unit; };
 struct fault { int code, severity, names; const char *text; };   /* names: its index is a value reference */
 struct rate { int slot, rate; };               /* an input or output, and the slot of its time derivative */
 struct partial { int output, input, slot; };   /* an output, an input it depends on, and the slot of the derivative */

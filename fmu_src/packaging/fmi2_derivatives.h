@@ -80,7 +80,7 @@ static const struct { double at[POINTS], weight[POINTS]; } stencils[] = {
     {{0, 1, 2, 3, 4}, {-25.0 / 12, 4, -3, 4.0 / 3, -1.0 / 4}},
     {{0, -1, -2, -3, -4}, {25.0 / 12, -4, 3, -4.0 / 3, 1.0 / 4}},
 };
-static const double BESIDE = 1e-4; /* length of a step, of the value, or of 1 where that is zero */
+static const double BESIDE = 1e-4; /* length of a step, of the value or of what is typical for it, if that is more */
 
 /* Start a silent twin of an instance with another value of one variable, and add by weight how much its outputs differ;
    0 if none starts so. */
@@ -103,7 +103,7 @@ static int add_twin(const instance *i, fmi2ValueReference known, double value, d
 /* Derivatives of outputs at the start by one parameter or input; 0 if no two starts can be compared. */
 static int differ(const instance *i, fmi2ValueReference known, const fmi2ValueReference unknown[], size_t n,
                   double slope[]) {
-    double here = i->block[known].real, step = BESIDE * (here != 0.0 ? fabs(here) : 1.0);
+    double here = i->block[known].real, step = BESIDE * fmax(fabs(here), row_of(known)->typical);
     for (size_t s = 0; s < sizeof stencils / sizeof *stencils; s++) {
         int good = 1;
         memset(slope, 0, n * sizeof *slope);

@@ -356,7 +356,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if command == INITIALISE:
             r.state_start = time
             return initialise(record, work)
-        if command == STEP or command == GO_ON:
+        if command in (STEP, GO_ON):
             return step_to(record, work, time, step, command == STEP)
         if command == REFRESH:
             return look(record, work, False)

@@ -8,6 +8,7 @@ import pytest
 from tests.packaging.driven import SMALL, Driven, library_of
 from tests.packaging.hosts import NO_VALGRIND, VALGRIND, compile_host
 
+
 @pytest.fixture(scope="module")
 def host(tmp_path_factory):
     return compile_host("host.c", tmp_path_factory.mktemp("host"))

@@ -93,7 +93,7 @@ def test_newer_glibc_would_be_seen(tmp_path):
 
 @pytest.mark.slow
 def test_arm64_has_one_library_wherever_it_is_looked_for(library):
-    """By the tuple of FMI 3.0, and where older loaders look: the same bytes; on a Mac as a part of the universal one."""
+    """By the tuple of FMI 3.0, and where older loaders look: the same bytes, part of the universal file."""
     assert library(platforms.LINUX_AARCH64).read_bytes() == library(platforms.LINUX_AARCH64, 1).read_bytes()
     whole, part = (library(platforms.DARWIN64, place).read_bytes() for place in (0, 1))
     assert len(part) > 10_000

@@ -151,7 +151,7 @@ def test_at_the_start_derivatives_are_those_of_the_start(make):
     assert raw.get("x", "y") == before == [0.0, 4.0]
 
 
-@pytest.mark.parametrize("gain", [100.0, 1e-300])
+@pytest.mark.parametrize("gain", [100.0, 99.999, 1e-9, 1e-300, 5e-324])
 def test_at_a_bound_a_derivative_is_that_of_the_inner_side(make, gain):
     raw = make()
     raw.set({"gain": gain, "push": 1.5})
