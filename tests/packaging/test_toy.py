@@ -165,6 +165,17 @@ def test_at_a_bound_a_derivative_is_that_of_the_inner_side(make, gain):
     assert "gain = 101" in raw.last
 
 
+def test_where_no_start_is_near_a_derivative_is_refused_and_the_instance_lives(make):
+    raw = make()
+    raw.set({"gain": 42.0, "push": 1.5})
+    raw.call("EnterInitializationMode")
+    assert raw.directional(["y"], {"gain": 1.0})[0] == DISCARD
+    assert "no derivative by gain: the model can start on neither side of 42" in raw.last
+    assert raw.directional(["y"], {"push": 1.0}) == (OK, [42.0])
+    assert raw.call("ExitInitializationMode") == OK
+    assert raw.get("y") == 63.0
+
+
 # ---- ends and refusals ----------------------------------------------------------------------------------------------
 
 
