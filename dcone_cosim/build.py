@@ -275,7 +275,7 @@ def write_fmus(
 ) -> list[Path]:
     """Write FMUs to a folder, each with its values and for all platforms named; InputError for values it cannot have.
 
-    With no platforms named they are for this machine. Linux on arm64 has archives of its own. Values cost no build:
+    With no platforms named they are for this machine. Linux on arm64 has archives of its own too. Values cost no build:
     the libraries are those of the cache.
     """
     from fmu_src.packaging.archive import furnish
@@ -292,7 +292,8 @@ def write_fmus(
         of = dict(zip(chosen, libraries[key], strict=True))
         for ending, together in archives(chosen):
             written.append(folder / f"{fmu.name}{ending}.fmu")
-            furnish([of[platform] for platform in together], interface, fmu.experiment, written[-1])
+            taken = {of[platform]: folders for platform, folders in together.items()}
+            furnish(taken, interface, fmu.experiment, written[-1])
     return written
 
 

@@ -10,7 +10,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fmu_src.interface import DIFFERENTIATE, INDEX, INITIALISE, REFRESH, SIZE, STEP, Interface, Model, Value, Variable
+from fmu_src.interface import (
+    DIFFERENTIATE,
+    GO_ON,
+    INDEX,
+    INITIALISE,
+    REFRESH,
+    SIZE,
+    STEP,
+    UNDER_WAY,
+    Interface,
+    Model,
+    Value,
+    Variable,
+)
 
 
 class ModelFault(RuntimeError):
@@ -61,7 +74,10 @@ class Instance:
         return view
 
     def _call(self, command: int, time: float, step: float) -> None:
-        if self._entry(command, self.record, self.work, time, step):
+        status = self._entry(command, self.record, self.work, time, step)
+        while status == UNDER_WAY:
+            status = self._entry(GO_ON, self.record, self.work, time, step)
+        if status:
             code = int(self.record["fault_code"][0])
             fault = next(f for f in self.interface.model.faults if f.code == code)
             where = {k: self.record["fault_" + k][0] for k in ("index", "value", "time")}

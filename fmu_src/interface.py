@@ -40,6 +40,7 @@ class Variable:
     partials     of an output that depends directly on inputs: input and the state that holds the derivative by it (of
                  the same shape; zero for what changes by jumps, as a Boolean does). An interface shows only those of
                  its own inputs
+    at_start     of an output: inputs that its value at the start depends on, beside those of `partials`
     """
 
     name: str
@@ -58,6 +59,7 @@ class Variable:
     nominal: float = 0.0
     rate: str = ""
     partials: tuple[tuple[str, str], ...] = ()
+    at_start: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.name.count(INDEX) != len(self.shape):
@@ -145,11 +147,13 @@ class Term:
     """One physics term a scene may name: its variables, and a sentence on what it adds.
 
     needs    groups without a term of which it has nothing to act on
+    states   outputs that are states with it: they begin with what their inputs say, and follow them over a step only
     """
 
     summary: str
     variables: tuple[Variable, ...] = ()
     needs: tuple[str, ...] = ()
+    states: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -176,14 +180,16 @@ HEAD = (
 )
 """Every record begins with these; the C shim knows them by their place."""
 
-SIZE, INITIALISE, STEP, REFRESH, DIFFERENTIATE = range(5)
+SIZE, INITIALISE, STEP, REFRESH, DIFFERENTIATE, GO_ON = range(6)
 """Commands of a model's entry `entry(command, record, work, time, step) -> status`.
 
 SIZE           set `work_size` from the parameters
 INITIALISE     fill state and outputs from parameters; `time` is the start time [s]
 STEP           advance from `time` by `step` [s]. An input whose rate is not zero is value + rate (t - time) on the way;
                the value it has reached is left in its slot, so that nothing jumps when the importer sets nothing, and
-               the caller clears the rate. A step without rates is the same to the last bit as if there were none
+               the caller clears the rate. A step without rates is the same to the last bit as if there were none. A
+               long one may be left with UNDER_WAY, at the time in `fault_time`: then it is to be called again
+GO_ON          go on with the step under way, with its `time` and `step`; the result has the bits of one never left
 REFRESH        called when an output is read after an input was set: recompute the outputs that depend directly on
                inputs, at `time`, as the next step will begin with them; the state stays, and so do the outputs when
                the inputs are as the last step left them
@@ -191,6 +197,8 @@ DIFFERENTIATE  called when a derivative is asked for: fill the states that `rate
                `time`, for the inputs of now. They move at their rates; an input that is as a step with a rate has left
                it counts as going on at that rate, so that the derivatives at the end of a step are those of its end
 """
+UNDER_WAY = -2
+"""What the entry answers when a step is not done yet: success is 0, and faults are positive."""
 
 
 @dataclass(frozen=True)
@@ -198,6 +206,8 @@ class Model:
     """What a model offers: its name, the variables it always has, its groups of terms, and its faults.
 
     stop_time, macro_step   a sensible experiment for tools that ask for one [s]
+    differentiable          its outputs at the start change smoothly with every Real parameter: then derivatives of them
+                            are offered, at the start by parameters and inputs, later by inputs
     """
 
     name: str
@@ -208,6 +218,7 @@ class Model:
     module: str
     stop_time: float
     macro_step: float
+    differentiable: bool = False
 
     def missing(self, terms: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         """Each group whose term needs another group that is not there, and that group."""
@@ -233,8 +244,17 @@ class Model:
         for name, term in ordered.items():
             variables += [v for v in self.groups[name].terms[term].variables if v not in variables]
         inputs = {v.name for v in variables if v.causality == "input"}
-        variables = [replace(v, partials=tuple(p for p in v.partials if p[0] in inputs)) for v in variables]
-        return Interface(self, ordered, tuple(variables))
+        states = {output for name, term in ordered.items() for output in self.groups[name].terms[term].states}
+        return Interface(self, ordered, tuple(_reduced(v, inputs, v.name in states) for v in variables))
+
+
+def _reduced(v: Variable, inputs: Container[str], is_state: bool) -> Variable:
+    """A row with the dependencies it has beside these inputs; those of a state hold at the start alone."""
+    partials = tuple(p for p in v.partials if p[0] in inputs)
+    at_start = tuple(name for name in v.at_start if name in inputs)
+    if is_state:
+        return replace(v, partials=(), at_start=tuple(name for name, _ in partials) + at_start)
+    return replace(v, partials=partials, at_start=at_start)
 
 
 def check_implemented(model: Model, implemented: Mapping[str, Container[str]], terms: Mapping[str, str]) -> None:

@@ -19,7 +19,7 @@ import math
 import numpy as np
 from numba import from_dtype, njit, types
 
-from fmu_src.interface import INITIALISE, SIZE, STEP, check_implemented
+from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY, check_implemented
 from fmu_src.net_capture import (
     book,
     closure,
@@ -333,11 +333,11 @@ def make_entry(terms):
         return fault
 
     @kernel
-    def advance(p, work, end):
-        """Substeps up to the last grid point not after `end`, then the outputs at `end`."""
+    def advance(p, work, end, anew):
+        """Substeps up to the last grid point not after `end`, then the outputs at `end`; left after each look."""
         q = (end - p.start_time) / p.solver_substep
         last = math.floor(q + ON_GRID)
-        if p.grid < last:
+        if anew and p.grid < last:
             quality.clear_peaks(p, work)
             if has_closing:
                 p.cord_tension_peak = 0.0
@@ -347,6 +347,9 @@ def make_entry(terms):
                 fault = look(p, work)
                 if fault != 0:
                     return fault
+                if p.grid < last:
+                    p.fault_time = p.start_time + now(p)
+                    return UNDER_WAY
         ahead = (q - p.grid) * p.solver_substep
         if ahead < ON_GRID * p.solver_substep:
             ahead = 0.0
@@ -380,14 +383,15 @@ def make_entry(terms):
         p = instance[0]
         fault = 0
         p.fault_index = 0
+        p.fault_time = 0.0
         p.fault_value = 0.0
         if command == SIZE:
             fault = check(p)
         elif command == INITIALISE:
             fault = initialise(p, work, time)
-        elif command == STEP:
-            fault = advance(p, work, time + step)
-        if fault != 0:
+        elif command in (STEP, GO_ON):
+            fault = advance(p, work, time + step, command == STEP)
+        if fault > 0:
             explain(p, fault, time)
         return fault
 

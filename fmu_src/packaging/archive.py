@@ -20,7 +20,7 @@ import os
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import astuple
@@ -114,10 +114,13 @@ def build(
         library = folder / f"{name}{platform.suffix}"
         first = "; the first link for Windows on a machine takes minutes" if platform is WIN64 else ""
         announce(f"linking {name} for {platform.name}{first}")
-        link.link(ir, header, library, platform)
+        libraries = {}
+        for place in platform.places:
+            link.link(ir, header, library, place.targets)
+            libraries[f"binaries/{place.folder}/{library.name}"] = library.read_bytes()
         files = {
             **described(interface, identity, Experiment.of(interface.model)),
-            f"binaries/{platform.folder}/{library.name}": library.read_bytes(),
+            **libraries,
             "model.png": picture.png(interface),
             **sources.files(name, ir, header),
         }
@@ -182,20 +185,27 @@ def build_all(
             raise
 
 
-def unite(fmus: Sequence[Path]) -> dict[str, bytes]:
-    """Files of one FMU for all the platforms of several, which must be of the same origin."""
+def unite(fmus: Mapping[Path, Container[str]]) -> dict[str, bytes]:
+    """Files of one FMU for all the platforms of several, which must be of the same origin.
+
+    fmus   with the folders under `binaries/` that are taken from each
+    """
     files: dict[str, bytes] = {}
-    for fmu in fmus:
+    for fmu, folders in fmus.items():
         with zipfile.ZipFile(fmu) as archive:
             for name in archive.namelist():
+                if name.startswith("binaries/") and name.split("/")[1] not in folders:
+                    continue
                 content = archive.read(name)
                 if files.setdefault(name, content) != content:
                     raise ValueError(f"{fmu} is not of the same origin: its {name} differs")
     return files
 
 
-def furnish(fmus: Sequence[Path], interface: Interface, experiment: Experiment, path: Path) -> None:
+def furnish(fmus: Mapping[Path, Container[str]], interface: Interface, experiment: Experiment, path: Path) -> None:
     """Write one FMU for all the platforms of several, which starts with the values of the interface.
+
+    fmus   as for `unite`
 
     Checked  tests/packaging/test_start_values.py
     """

@@ -37,6 +37,7 @@ def header(interface: Interface, identifier: str, library: str) -> str:
         f"#define DCONE_RATES {len(pairs)}",
         f"#define DCONE_MOVING {len(moving)}",
         f"#define DCONE_PARTIALS {len(partial_table)}",
+        f"#define DCONE_DIFFERENTIABLE {int(interface.model.differentiable)}",
         "static const unsigned char slot_code[DCONE_SLOTS] = {" + ",".join(codes) + "};",
         *_table("struct row row_table[]", [_row(slot, v) for slot, v in first_slots(interface).values()]),
         *_table("struct rate rate_table[]", [*pairs, (-1, -1)]),
@@ -59,8 +60,13 @@ def _row(slot: int, v: Variable) -> tuple[object, ...]:
         raise ValueError(f"{v.name}: the shim names arrays of at most two indices")
     bounded = v.causality in ("parameter", "input") and v.kind != "Boolean"
     columns = v.shape[1] if len(v.shape) == 2 else 1
-    low, high = _number(v.minimum), _number(v.maximum)
-    return slot, v.size, columns, int(bounded), int(v.open_minimum), low, high, _string(v.name), _string(v.unit)
+    numbers = map(_number, (v.minimum, v.maximum, _typical(v)))
+    return slot, v.size, columns, int(bounded), int(v.open_minimum), *numbers, _string(v.name), _string(v.unit)
+
+
+def _typical(v: Variable) -> float:
+    """A size that its values have: its nominal one, else that of its start values, else 1."""
+    return v.nominal or max(abs(float(start)) for start in v.starts()) or 1.0
 
 
 def _fault(fault: Fault) -> tuple[object, ...]:

@@ -64,10 +64,8 @@ def partials(interface: Interface) -> list[Partial]:
     found = []
     for v in interface.variables:
         for by, held in v.partials:
-            if by not in rows or rows[by][1].causality != "input" or rows[by][1].shape:
-                raise ValueError(f"{v.name} is said to depend on {by}, which is no scalar input of this model")
-            first = _named(interface, v, held)
-            found += [Partial(rows[v.name][0] + k, rows[by][0], first + k) for k in range(v.size)]
+            source, first = _input(interface, v, by), _named(interface, v, held)
+            found += [Partial(rows[v.name][0] + k, source, first + k) for k in range(v.size)]
     return sorted(found, key=lambda p: (p.output, p.input))
 
 
@@ -79,9 +77,28 @@ def inputs_of(interface: Interface) -> dict[int, list[int]]:
     return found
 
 
+def inputs_at_start(interface: Interface) -> dict[int, list[int]]:
+    """Slots of the inputs each output depends on at the start, in order: those it depends on directly, and more."""
+    rows = first_slots(interface)
+    found = inputs_of(interface)
+    for v in interface.variables:
+        more = [_input(interface, v, by) for by in v.at_start]
+        for slot in range(rows[v.name][0], rows[v.name][0] + v.size) if more else ():
+            found[slot] = sorted({*found.get(slot, ()), *more})
+    return found
+
+
 def names_by_slot(interface: Interface) -> Iterator[str]:
     """Name of every scalar, hidden ones too, in the order of their slots."""
     return (name.removeprefix("@") for name, _, _, _ in interface.scalars())
+
+
+def _input(interface: Interface, v: Variable, by: str) -> int:
+    """Slot of the scalar input `by`, which `v` names."""
+    slot, row = first_slots(interface).get(by, (0, None))
+    if row is None or row.causality != "input" or row.shape:
+        raise ValueError(f"{v.name} is said to depend on {by}, which is no scalar input of this model")
+    return slot
 
 
 def _named(interface: Interface, v: Variable, other: str) -> int:

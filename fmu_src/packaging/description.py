@@ -8,14 +8,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from fmu_src.interface import Interface, Model, Value, Variable
-from fmu_src.packaging.dependence import inputs_of, partials, rates
+from fmu_src.packaging.dependence import inputs_at_start, inputs_of, rates
 
 GENERATOR = "D-CoNe co-simulation"
 LOG_CATEGORIES = (
     ("logStatusError", "why a call was refused, or the model failed"),
     ("logStatusDiscard", "why a step was discarded, or that the model came to its own end"),
     ("logStatusWarning", "what is to be taken with care"),
-    ("logEvents", "what the instance does: initialised, terminated, reset, put back into a state"),
+    (
+        "logEvents",
+        "what the instance does: initialised, terminated, reset, put back into a state; where it is in long steps",
+    ),
 )
 """Name and meaning of each category, in the order the shim counts them."""
 LONGEST_LISTED = 1000
@@ -132,7 +135,6 @@ def model_description(
 def _capabilities(interface: Interface) -> dict[str, str]:
     """What the shim can do for this model."""
     moving = [r for r in rates(interface) if r.is_input]
-    smooth = {slot for _, slot, v, _ in interface.scalars() if v.kind == "Real"}
     growing = [r for r in rates(interface) if not r.is_input]
     return {
         "canHandleVariableCommunicationStepSize": "true",
@@ -142,7 +144,7 @@ def _capabilities(interface: Interface) -> dict[str, str]:
         "canNotUseMemoryManagementFunctions": "true",
         "canGetAndSetFMUstate": "true",
         "canSerializeFMUstate": "true",
-        "providesDirectionalDerivative": number(any(p.output in smooth for p in partials(interface))),
+        "providesDirectionalDerivative": number(interface.model.differentiable),
     }
 
 
@@ -174,22 +176,22 @@ def _type_attributes(v: Variable, start: Value) -> dict[str, str]:
 
 
 def _structure(root: ET.Element, interface: Interface) -> None:
-    """Which inputs each output depends on directly, and what it depends on at the start: these and all parameters."""
+    """Which inputs each output depends on directly; and what it depends on at the start: inputs, all parameters."""
     indices = {slot: index for index, (_, slot, _, _) in enumerate(_scalars(interface), 1)}
     parameters = [indices[slot] for _, slot, v, _ in _scalars(interface) if v.causality == "parameter"]
-    direct = inputs_of(interface)
+    direct, at_start = inputs_of(interface), inputs_at_start(interface)
     structure = ET.SubElement(root, "ModelStructure")
     outputs = ET.SubElement(structure, "Outputs")
     unknowns = ET.SubElement(structure, "InitialUnknowns")
     for _, slot, v, _ in _scalars(interface):
         if v.causality != "output":
             continue
-        inputs = [indices[s] for s in direct.get(slot, ())]
-        ET.SubElement(outputs, "Unknown", _dependencies(indices[slot], inputs))
-        at_start = {"index": str(indices[slot])}
+        ET.SubElement(outputs, "Unknown", _dependencies(indices[slot], [indices[s] for s in direct.get(slot, ())]))
+        unknown = {"index": str(indices[slot])}
         if v.size <= LONGEST_LISTED:
-            at_start = _dependencies(indices[slot], sorted(parameters + inputs))
-        ET.SubElement(unknowns, "Unknown", at_start)
+            inputs = [indices[s] for s in at_start.get(slot, ())]
+            unknown = _dependencies(indices[slot], sorted(parameters + inputs))
+        ET.SubElement(unknowns, "Unknown", unknown)
 
 
 def _dependencies(index: int, on: list[int]) -> dict[str, str]:

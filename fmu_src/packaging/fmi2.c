@@ -9,6 +9,7 @@
    Nothing is global but constants, so instances may live side by side, in one thread or in several. */
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,12 +17,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "fmi2Functions.h"
 #include "resources.h"
 
 /* One row of the model's table: the slots it takes, and what they may hold. A `#` in its name stands for an index. */
-struct row { int first, count, columns, bounded, open; double low, high; const char *name, *unit; };
+struct row { int first, count, columns, bounded, open; double low, high, typical; const char *name, *unit; };
 struct fault { int code, severity, names; const char *text; };   /* names: its index is a value reference */
 struct rate { int slot, rate; };               /* an input or output, and the slot of its time derivative */
 struct partial { int output, input, slot; };   /* an output, an input it depends on, and the slot of the derivative */
@@ -30,7 +32,8 @@ struct partial { int output, input, slot; };   /* an output, an input it depends
 
 enum { REAL = 1, INTEGER = 2, BOOLEAN = 3 };
 enum { HIDDEN = 0, OUTPUT = 1, PARAMETER = 2, INPUT = 3 };
-enum { SIZE = 0, INITIALISE = 1, STEP = 2, REFRESH = 3, DIFFERENTIATE = 4 };
+enum { SIZE = 0, INITIALISE = 1, STEP = 2, REFRESH = 3, DIFFERENTIATE = 4, GO_ON = 5 };
+enum { UNDER_WAY = -2 };   /* the entry's answer when a step is not done yet */
 enum { WORK_SIZE = 0, FAULT_CODE = 1, FAULT_INDEX = 2, FAULT_TIME = 3, FAULT_VALUE = 4 };
 enum { SEVERITY_ERROR = 0, SEVERITY_DISCARD = 1, SEVERITY_END = 2 };
 

@@ -109,6 +109,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
     return fmi2OK;
 }
 
+/* What `state` points to is written only: it may never have held anything. */
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
     saved head;
     if (!c || !given(c, 1, bytes, state, "fmi2DeSerializeFMUstate")) return fmi2Error;
@@ -124,7 +125,6 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
         free(copy);
         return fmi2Error;
     }
-    free(*state);
     *state = copy;
     return fmi2OK;
 }

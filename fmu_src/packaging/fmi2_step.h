@@ -2,8 +2,35 @@
 
 enum { ASKED_PHASES = STEPPING | FAILED | TERMINATED };
 
-/* Two times that a master adding up steps may take for one another. */
-static double drift(double one, double other) { return 1e-9 * (fabs(one) + fabs(other)) + 1e-9; }
+enum { TELL_EVERY = 5 };   /* seconds of a clock on the wall between two words of a long step */
+
+/* What a time may be off by rounding where a master adds up steps: some last digits of it, and a share of the step. */
+static double slack(double time, double share, double step) { return 16.0 * DBL_EPSILON * fabs(time) + share * step; }
+
+/* Whether a master that stands at `time` means where the FMU stands. A gap is closed by the step, so that it is to be
+   seen only where it is more than rounding. */
+static int meets(const instance *i, double time, double step) {
+    return fabs(time - i->at.time) <= slack(fmax(fabs(time), fabs(i->at.time)), 1e-6, step);
+}
+
+/* Whether a step ends before the stop, where millions of steps added up may be off by more than one is. */
+static int within_stop(const instance *i, double time, double step) {
+    return !i->at.has_stop || time + step <= i->at.stop + slack(i->at.stop, 1e-2, step);
+}
+
+/* Have the model make a step, which it leaves now and then; say where it is when that takes long. */
+static int32_t make_step(instance *i, double span) {
+    time_t told = time(NULL);
+    int32_t answer = run(i, STEP, i->at.time, span);
+    while (answer == UNDER_WAY) {
+        if (difftime(time(NULL), told) >= TELL_EVERY) {
+            told = time(NULL);
+            say(i, fmi2OK, "at %.9g s, in the step to %.9g s", i->block[FAULT_TIME].real, i->at.time + span);
+        }
+        answer = run(i, GO_ON, i->at.time, span);
+    }
+    return answer;
+}
 
 /* An error if an input that moves would end out of its bounds. */
 static fmi2Status check_ends(instance *i, double span) {
@@ -26,14 +53,14 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     if (!allowed(i, STEPPING, "fmi2DoStep")) return fmi2Error;
     if (!isfinite(time) || !(step >= 0.0) || !isfinite(step))
         return say(i, fmi2Error, "a step from %.17g s of %.17g s can not be made", time, step);
-    if (fabs(time - i->at.time) > drift(time, i->at.time))
+    if (!meets(i, time, step))
         return say(i, fmi2Error, "the step begins at %.17g s, but the FMU stands at %.17g s", time, i->at.time);
-    if (i->at.has_stop && time + step > i->at.stop + drift(i->at.stop, time))
+    if (!within_stop(i, time, step))
         return say(i, fmi2Error, "the step to %.17g s goes beyond the stop time, %.17g s", time + step, i->at.stop);
     if (step == 0.0) return fmi2OK;
     /* a master that adds up times drifts by rounding: the gap is closed, so that the model sees none */
     double span = (time - i->at.time) + step;
-    if (span <= 0.0) { /* drift is longer than the step: the FMU is there already, and waits for the master */
+    if (span <= 0.0) { /* a step of last digits only: the FMU is there already, and waits for the master */
         hold_inputs(i);
         i->at.derived = 0;
         return fmi2OK;
@@ -41,7 +68,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     if (check_ends(i, span) != fmi2OK) return fmi2Error;
     i->block[FAULT_CODE].integer = 0;
     i->at.derived = 0;
-    if (run(i, STEP, i->at.time, span)) return tell_fault(i, STEP);
+    if (make_step(i, span)) return tell_fault(i, STEP);
     hold_inputs(i); /* where the model has left them: where they have come to */
     i->at.moved = 0;
     i->at.time = time + step;

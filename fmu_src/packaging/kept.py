@@ -47,7 +47,8 @@ def fault(path: Path) -> str:
             broken = archive.testzip()
             values = archive.read(start_values.PATH)
             archive.getinfo("modelDescription.xml")
-            archive.getinfo(f"binaries/{platform.folder}/{named['model']}{platform.suffix}")
+            for place in platform.places:
+                archive.getinfo(f"binaries/{place.folder}/{named['model']}{platform.suffix}")
     except KeyError:
         return ANOTHERS
     except Exception:  # zipfile answers damage with a dozen kinds of error, those of zlib and struct among them

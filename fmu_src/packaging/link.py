@@ -10,7 +10,7 @@ import fmpy
 
 from fmu_src.packaging import tools, universal
 from fmu_src.packaging.compile import ENTRY
-from fmu_src.packaging.platforms import Platform, Target
+from fmu_src.packaging.platforms import Target
 
 SHIM = tuple(Path(__file__).parent / name for name in ("fmi2.c", "resources.c"))
 HEADERS = Path(fmpy.__file__).parent / "c-code"
@@ -40,17 +40,17 @@ def compile_kernels(ir: Path, target: Target, folder: Path) -> list[Path]:
     return objects
 
 
-def link(ir: Path, header: Path, library: Path, platform: Platform) -> None:
+def link(ir: Path, header: Path, library: Path, targets: Sequence[Target]) -> None:
     """Make the shared library of one FMU from its IR and its generated header; BuildError if a tool fails.
 
-    What is made on the way stays in the folder of `library`, in one folder per machine code.
+    What is made on the way stays in the folder of `library`, in one folder per machine code; what is there is taken.
     """
     parts = []
-    for target in platform.targets:
-        folder = library.parent / target.triple
-        folder.mkdir()
-        parts.append(folder / library.name)
-        _link_one(ir, header, parts[-1], target)
+    for target in targets:
+        parts.append(library.parent / target.triple / library.name)
+        if not parts[-1].exists():
+            parts[-1].parent.mkdir()
+            _link_one(ir, header, parts[-1], target)
     library.write_bytes(parts[0].read_bytes() if len(parts) == 1 else universal.join([p.read_bytes() for p in parts]))
 
 

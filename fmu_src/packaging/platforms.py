@@ -23,33 +23,53 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Platform:
-    """One slot of an FMU.
+class Place:
+    """One folder of an FMU's libraries.
 
-    name      as the command line says it
     folder    under `binaries/`
-    suffix    of the library
-    targets   machine codes in the one file; several make a universal binary
-    apart     needs an archive of its own, since FMI 2.0 gives its folder to another platform
+    targets   machine codes in the one file there; several make a universal binary
+    apart     only in an archive of its own, since FMI 2.0 gives the folder to another platform
     """
 
-    name: str
     folder: str
-    suffix: str
     targets: tuple[Target, ...]
     apart: bool = False
 
 
+@dataclass(frozen=True)
+class Platform:
+    """One kind of machine, and where importers on it look.
+
+    name      as the command line says it
+    suffix    of the library
+    places    folders it stands in
+    """
+
+    name: str
+    suffix: str
+    places: tuple[Place, ...]
+
+    @property
+    def apart(self) -> bool:
+        """Whether it needs an archive of its own too."""
+        return any(place.apart for place in self.places)
+
+
 X86_64 = ("x86_64", "x86_64_v3")
-LINUX64 = Platform("linux64", "linux64", ".so", (Target("x86_64-linux-gnu.2.17", X86_64),))
-WIN64 = Platform("win64", "win64", ".dll", (Target("x86_64-windows-gnu", X86_64),))
+MAC_ARM = Target("aarch64-macos.11.0", ("apple_m1",))
+LINUX_ARM = Target("aarch64-linux-gnu.2.17", ("generic",))
+LINUX64 = Platform("linux64", ".so", (Place("linux64", (Target("x86_64-linux-gnu.2.17", X86_64),)),))
+WIN64 = Platform("win64", ".dll", (Place("win64", (Target("x86_64-windows-gnu", X86_64),)),))
 DARWIN64 = Platform(
-    "darwin64", "darwin64", ".dylib", (Target("x86_64-macos.11.0", X86_64), Target("aarch64-macos.11.0", ("apple_m1",)))
+    "darwin64",
+    ".dylib",
+    (Place("darwin64", (Target("x86_64-macos.11.0", X86_64), MAC_ARM)), Place("aarch64-darwin", (MAC_ARM,))),
 )
 LINUX_AARCH64 = Platform(
-    "linux-aarch64", "linux64", ".so", (Target("aarch64-linux-gnu.2.17", ("generic",)),), apart=True
+    "linux-aarch64", ".so", (Place("aarch64-linux", (LINUX_ARM,)), Place("linux64", (LINUX_ARM,), apart=True))
 )
-"""FMI 2.0 knows no folder for it: `linux64` is where fmpy looks on such a machine, as on every 64-bit Linux."""
+"""FMI 2.0.4, section 2.3, names folders for processors other than x86 by the tuples of FMI 3.0. Older loaders look in
+`linux64` on every 64-bit Linux, fmpy's among them, and in `darwin64` on every Mac."""
 
 PLATFORMS = {p.name: p for p in (LINUX64, WIN64, DARWIN64, LINUX_AARCH64)}
 MACHINES = {
@@ -74,8 +94,11 @@ def host() -> Platform:
         raise BuildError(f"no FMU can be built for {sys.platform} on {machine}, only for {known}") from None
 
 
-def archives(chosen: Sequence[Platform]) -> list[tuple[str, list[Platform]]]:
-    """Which platforms go into which archive, with what its name ends in: "" for the one most share."""
-    together = [p for p in chosen if not p.apart]
-    shared = [("", together)] if together else []
-    return shared + [(f"-{p.name}", [p]) for p in chosen if p.apart]
+def archives(chosen: Sequence[Platform]) -> list[tuple[str, dict[Platform, list[str]]]]:
+    """What goes into which archive: what its name ends in, "" for the one that most share, and folders by platform.
+
+    A platform that needs an archive of its own is in the shared one too, in the folders that are its alone.
+    """
+    shared = {p: [place.folder for place in p.places if not place.apart] for p in chosen}
+    found = [("", shared)] if not all(p.apart for p in chosen) else []
+    return found + [(f"-{p.name}", {p: [place.folder for place in p.places]}) for p in chosen if p.apart]

@@ -65,6 +65,7 @@ MOTORS = Group(
         "lag": Term(
             "a motor behind the law: dT/dt = (asked - T) / time_constant",
             (_parameter("motor.time_constant", "s", "of the motor", 5.0, 1e6, zero=False),),
+            states=("tension",),
         ),
     },
     optional=True,
@@ -79,4 +80,5 @@ MODEL = Model(
     module="fmu_src.reel_control.model",
     stop_time=86400.0,
     macro_step=1.0,
+    differentiable=True,
 )

@@ -156,8 +156,6 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         pulls = r.length != 0.0 and (force > 0.0 or (force == 0.0 and slope > 0.0))
         if has_lag:
             r.rate_tension = (asked(record) - r.tension) / r.motor_time_constant
-            r.partial_length = 0.0
-            r.partial_length_rate = 0.0
             return
         r.rate_tension = slope if pulls else 0.0
         r.partial_length = r.gain_proportional if pulls else 0.0

@@ -80,8 +80,8 @@ def _out(name: str, unit: str, description: str, nominal: float = 0.0, rate: str
     return Variable(name, unit, "output", description, nominal=nominal, rate=rate, **more)
 
 
-def _count(name: str, description: str) -> Variable:
-    return Variable(name, "1", "output", description, kind="Integer", discrete=True)
+def _count(name: str, description: str, **more: Any) -> Variable:
+    return Variable(name, "1", "output", description, kind="Integer", discrete=True, **more)
 
 
 def _vector(name: str, unit: str, description: str, nominal: float, rate: str = "") -> Variable:
@@ -108,9 +108,12 @@ def _partial(name: str, unit: str) -> Variable:
     return Variable(f"partial.{name}", unit, "state", "direct derivative")
 
 
-def _ring(name: str, unit: str, description: str) -> Variable:
-    return Variable(f"tug[#].{name}", unit, "output", description, shape=(TUGS,), discrete=True)
+def _ring(name: str, unit: str, description: str, **more: Any) -> Variable:
+    return Variable(f"tug[#].{name}", unit, "output", description, shape=(TUGS,), discrete=True, **more)
 
+
+COMMANDS = ("reel.length_offset", "reel.tension")
+"""The input of every law of the line: it settles whether and how hard the line pulls at the start."""
 
 BODIES = (
     _positive("chaser.mass", "kg", "chaser with thruster, reel and propellant; held constant", 2000.0, 1e6),
@@ -155,8 +158,10 @@ SOLVER = (
 OUTPUTS = (
     _out("tether.tension", "N", "in the line, zero when slack", 1.0, "rate.tension",
          partials=(("reel.length_offset", "partial.tension"), ("reel.tension", "partial.tension"))),
-    _out("tether.tension_peak", "N", "largest over the last macro step, also between its ends", 1.0, discrete=True),
-    _out("tether.tension_least", "N", "least over the last macro step, also between its ends", 1.0, discrete=True),
+    _out("tether.tension_peak", "N", "largest over the last macro step, also between its ends", 1.0, discrete=True,
+         at_start=COMMANDS),
+    _out("tether.tension_least", "N", "least over the last macro step, also between its ends", 1.0, discrete=True,
+         at_start=COMMANDS),
     _out("tether.impulse", "N.s", "integral of the tension over time, since the start of this instance", 1.0,
          "tether.tension"),
     _out("tether.length", "m", "between its attachments: separation less target.attachment_distance", 10.0,
@@ -164,12 +169,13 @@ OUTPUTS = (
     _out("tether.length_rate", "m/s", "its rate of change", 0.01, "rate.length_rate"),
     _out("tether.taut", "1", "the line carries tension", kind="Boolean", discrete=True,
          partials=(("reel.length_offset", "partial.jump"), ("reel.tension", "partial.jump"))),
-    _count("tether.tug_count", "how often the line has gone taut and pulled; taut at the start counts"),
+    _count("tether.tug_count", "how often the line has gone taut and pulled; taut at the start counts",
+           at_start=COMMANDS),
     _out("tether.angle", "rad", "of the line chaser to target in the orbital plane, from the local vertical towards "
          "along-track", 1.0, "rate.angle", display_unit="deg"),
     _ring("time", "s", "when the tug began, newest first, since the start of this instance; zero when absent"),
-    _ring("peak", "N", "its largest tension; grows until the line is slack again"),
-    _ring("speed", "m/s", "rate of lengthening as it began"),
+    _ring("peak", "N", "its largest tension; grows until the line is slack again", at_start=COMMANDS),
+    _ring("speed", "m/s", "rate of lengthening as it began", at_start=COMMANDS),
     _out("separation", "m", "distance of the two centres of mass", 10.0, "tether.length_rate"),
     _out("approach.distance", "m", "least separation since the start of this instance", 10.0, discrete=True),
     _out("approach.time", "s", "when that was, since the start of this instance", discrete=True),
@@ -209,6 +215,7 @@ STATE = (
     _state("next_step", "s", "size to try next"),
     _state("error", "1", "error of the last step, in tolerances"),
     _state("published", "s", "latest communication point"),
+    _state("changes", "1", "between slack and taut in the current macro step", "Integer"),
     _state("peak", "N", "largest tension of the current macro step so far"),
     _state("least", "N", "least tension of the current macro step so far"),
     _state("approach_distance", "m", "least separation up to the begin of the step"),
@@ -324,4 +331,5 @@ MODEL = Model(
     module="fmu_src.tethered_deorbit.model",
     stop_time=86400.0,
     macro_step=60.0,
+    differentiable=True,
 )

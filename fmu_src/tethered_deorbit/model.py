@@ -10,7 +10,7 @@ import numba
 from numba import njit
 
 from fmu_src.integrators import make_dop853
-from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP, check_implemented
+from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, STEP, UNDER_WAY, check_implemented
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.environment import add_gravity
@@ -32,8 +32,11 @@ from orbital.twobody import mean_motion
 from orbital.vectors import Array, norm
 
 EVENT_LIMIT = 1_000_000
-TIME_DRIFT = 1.0e-9
-"""By how much, relative, a communication point may miss the end of the last macro step: masters accumulate t += h."""
+SLICE = 4096
+"""Steps of the integrator after which a macro step is left, so that it can be told where it is: some 20 ms."""
+GAP, GAP_SHARE = 16.0 * 2.220446049250313e-16, 1e-6
+"""By how much a communication point may miss the end of the last macro step, of the times and of the step: the rounding
+of times that a master adds up."""
 
 IMPLEMENTED = {"reel": tuple(LAWS), "thrust": tuple(DIRECTIONS)}
 """Terms that are composed here."""
@@ -155,6 +158,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if not finite(end):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), 0.0)
         r.state_published = 0.0
+        r.state_changes = 0
         r.solver_steps = 0
         r.solver_rejected = 0
         clear_tugs(record)
@@ -250,31 +254,38 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         trajectory.restart(record, work, r.state_end)
 
     @kernel
-    def step_to(record: Any, work: Array, time: float, step: float) -> int:
+    def step_to(record: Any, work: Array, time: float, step: float, anew: bool) -> int:
+        """Take a macro step, or go on with it; it is left after a slice of steps, and nothing is then half done."""
         r = record[0]
         if not (math.isfinite(time) and math.isfinite(step) and step >= 0.0):
             return fail(record, blame(record, TIME_GAP, 0, step), r.state_published)
         target = time + step - r.state_start
-        if abs(time - r.state_start - r.state_published) > TIME_DRIFT * max(1.0, abs(time)):
+        gap = GAP * max(abs(time), abs(r.state_start)) + GAP_SHARE * step
+        if abs(time - r.state_start - r.state_published) > gap:
             return fail(record, blame(record, TIME_GAP, 0, time), r.state_published)
         if not target > r.state_published or step == 0.0:
             return 0
         duration = target - r.state_published
-        code = take_inputs(record, work, duration)
-        if code != 0:
-            return code
+        if anew:
+            code = take_inputs(record, work, duration)
+            if code != 0:
+                return code
+            extremes.begin_macro_step(record)
         moving = r.state_command_rate != 0.0 or r.state_thrust_rate != 0.0
-        extremes.begin_macro_step(record)
-        changes = 0
+        left = SLICE
         while r.state_end <= target:
+            if left == 0:
+                r.fault_time = r.state_start + r.state_end
+                return UNDER_WAY
+            left -= 1
             radius = norm(work[layout.END : layout.END + 3])
             if radius < EARTH_EQUATORIAL_RADIUS:
                 return fail(record, blame(record, GROUND, 0, radius), r.state_end)
             extremes.note(record, work, r.state_end)
             if r.state_event:
-                changes += 1
-                if changes > EVENT_LIMIT:
-                    return fail(record, blame(record, TOO_MANY_EVENTS, 0, float(changes)), r.state_end)
+                r.state_changes += 1
+                if r.state_changes > EVENT_LIMIT:
+                    return fail(record, blame(record, TOO_MANY_EVENTS, 0, float(r.state_changes)), r.state_end)
                 change_line(record, work)
             # A moving input is known up to the communication point only: there the last step ends.
             if moving and r.state_end == target:
@@ -293,6 +304,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         publish(record, here, separation, speed, r.state_since + (target - r.state_begin))
         thrust.publish(record, target)
         r.state_published = target
+        r.state_changes = 0
         extremes.publish(record)
         if moving:
             return int(leave_inputs(record, work, duration))
@@ -336,6 +348,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r = record[0]
         r.fault_code = 0
         r.fault_index = 0
+        r.fault_time = 0.0
         r.fault_value = 0.0
         if command == SIZE:
             r.work_size = layout.WORK
@@ -343,8 +356,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if command == INITIALISE:
             r.state_start = time
             return initialise(record, work)
-        if command == STEP:
-            return step_to(record, work, time, step)
+        if command in (STEP, GO_ON):
+            return step_to(record, work, time, step, command == STEP)
         if command == REFRESH:
             return look(record, work, False)
         if command == DIFFERENTIATE:

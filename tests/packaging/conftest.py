@@ -8,19 +8,20 @@ from fmpy import extract
 from fmu_src.catalogue import MODELS
 from fmu_src.packaging import archive
 from tests.packaging import toy
-from tests.packaging.driven import CASES, TERMS
+from tests.packaging.driven import CASES, TERMS, VARIANTS
 from tests.packaging.raw import OK, Library, Raw
 
 
 @pytest.fixture(scope="session")
 def fmu(tmp_path_factory):
-    """Path and unpacked folder of an FMU, by model; built once for all processes of the session."""
+    """Path and unpacked folder of an FMU, by model or variant; built once for all processes of the session."""
     cache = Path(tmp_path_factory.getbasetemp()).parent / "fmus"
     made = {}
 
     def make(name):
         if name not in made:
-            path = archive.build(MODELS[name].interface(TERMS[name]), cache)
+            model, terms = VARIANTS.get(name) or (name, TERMS[name])
+            path = archive.build(MODELS[model].interface(terms), cache)
             made[name] = (path, str(extract(str(path), unzipdir=str(tmp_path_factory.mktemp(name)))))
         return made[name]
 

@@ -11,7 +11,7 @@ import sys
 
 from tests.packaging.raw import OK, Library, Raw
 
-WARM, CYCLES, CROWD = 3000, 2000, 50
+WARM, CYCLES, CROWD = 3000, 3000, 50
 """Cycles before memory is looked at (Python and malloc have then found their size), cycles that count, and how many
 instances a crowd has."""
 

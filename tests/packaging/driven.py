@@ -22,6 +22,12 @@ CASES = {
 }
 TERMS = {**{name: case[0] for name, case in CASES.items()}, "reel_control": {}}
 """Every FMU that the tests of this folder may ask for, and its terms."""
+VARIANTS = {
+    "removal, linear": ("tethered_deorbit", {"reel": "linear", "thrust": "tether"}),
+    "removal, commanded": ("tethered_deorbit", {"reel": "commanded"}),
+    "reel control, motor": ("reel_control", {"motor": "lag"}),
+}
+"""More of them, each a model with other terms."""
 SMALL = {
     "net_capture": (
         CAPTURE,

@@ -5,46 +5,21 @@
    OUTPUT is the value reference of a Real; KIND is r, i or b. Prints the outputs at the end as hexadecimal floats, and
    returns 0 if every call gave what was expected; else it tells the line. Made to be run under valgrind as well. */
 
-#include <dlfcn.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "fmi2FunctionTypes.h"
+#include "loaded.h"
 
 enum { MOST = 64, STEPS = 6 };
 
-#define FUNCTIONS(DO)                                                                                                  \
-    DO(GetVersion) DO(GetTypesPlatform) DO(SetDebugLogging) DO(Instantiate) DO(FreeInstance) DO(SetupExperiment)       \
-    DO(EnterInitializationMode) DO(ExitInitializationMode) DO(Terminate) DO(Reset) DO(GetReal) DO(GetInteger)          \
-    DO(GetBoolean) DO(GetString) DO(SetReal) DO(SetInteger) DO(SetBoolean) DO(SetString) DO(GetFMUstate)               \
-    DO(SetFMUstate) DO(FreeFMUstate) DO(SerializedFMUstateSize) DO(SerializeFMUstate) DO(DeSerializeFMUstate)          \
-    DO(GetDirectionalDerivative) DO(SetRealInputDerivatives) DO(GetRealOutputDerivatives) DO(DoStep) DO(CancelStep)    \
-    DO(GetStatus) DO(GetRealStatus) DO(GetIntegerStatus) DO(GetBooleanStatus) DO(GetStringStatus)
-
-#define DECLARE(NAME) static fmi2##NAME##TYPE *NAME;
-FUNCTIONS(DECLARE)
-
-static int failures, checks, heard;
-static char last[2048];
+static int heard;
 static const char *guid;
 static double step;
 static fmi2ValueReference outputs[MOST];
 static size_t output_count;
 static char **settings;
 static int setting_count;
-
-#define EXPECT(STATUS, CALL)                                                                                           \
-    do {                                                                                                               \
-        int got = (int)(CALL);                                                                                         \
-        checks++;                                                                                                      \
-        if (got != (int)(STATUS)) {                                                                                    \
-            failures++;                                                                                                \
-            fprintf(stderr, "line %d: %s gave %d, expected %d (%s)\n", __LINE__, #CALL, got, (int)(STATUS), last);     \
-        }                                                                                                              \
-    } while (0)
 
 static void hear(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
                  fmi2String message, ...) {
@@ -183,18 +158,6 @@ static void replay(fmi2Component c, double ends[MOST]) {
 #ifndef FORGETFUL
     FreeInstance(second);
 #endif
-}
-
-static void load(const char *path) {
-    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (!library) {
-        fprintf(stderr, "%s\n", dlerror());
-        exit(2);
-    }
-#define LOOK_UP(NAME)                                                                                                  \
-    *(void **)&NAME = dlsym(library, "fmi2" #NAME);                                                                    \
-    if (!NAME) exit(3);
-    FUNCTIONS(LOOK_UP)
 }
 
 int main(int count, char **words) {

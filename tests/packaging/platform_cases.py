@@ -41,11 +41,11 @@ def build(model, platform, cache):
     return archive.build(MODELS[model].interface(CASES[model].terms), cache, platform=platform)
 
 
-def unpack(fmu, folder):
-    """Folder with an FMU's content, and the path of its one library in it."""
+def unpack(fmu, folder, place="*"):
+    """Folder with an FMU's content, and the path of its one library, or that of one place."""
     with zipfile.ZipFile(fmu) as content:
         content.extractall(folder)
-    (library,) = Path(folder).glob("binaries/*/*")
+    (library,) = Path(folder).glob(f"binaries/{place}/*")
     return Path(folder), library
 
 
@@ -67,10 +67,10 @@ def compile_host(target, folder):
     return path
 
 
-def run_case(model, fmu, folder, launcher=(), target="x86_64-linux-gnu.2.17", environment=None, more=()):
+def run_case(model, fmu, folder, launcher=(), target="x86_64-linux-gnu.2.17", environment=None, more=(), place="*"):
     """Outputs after every step, rows of (count, smooth outputs), from the importer in a process of its own."""
     case = CASES[model]
-    _, library = unpack(fmu, Path(folder) / "fmu")
+    _, library = unpack(fmu, Path(folder) / "fmu", place)
     description = read_model_description(str(fmu))
     references = {v.name: (v.valueReference, "i" if v.type == "Integer" else "") for v in description.modelVariables}
     given = [f"={references[n][0]}{references[n][1]}:{v!r}" for n, v in case.parameters.items()]

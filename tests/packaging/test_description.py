@@ -23,6 +23,7 @@ INTERFACES = {
     "tug, linear": MODELS["tethered_deorbit"].interface({"reel": "linear"}),
     "tug, commanded": MODELS["tethered_deorbit"].interface({"reel": "commanded"}),
     "reel control": MODELS["reel_control"].interface({}),
+    "reel control, motor": MODELS["reel_control"].interface({"motor": "lag"}),
     "toy": toy.INTERFACE,
 }
 
@@ -104,8 +105,9 @@ def test_dependencies_are_the_tables(interface, root):
     outputs = {n: v for n, _, v, _ in interface.scalars() if v.causality == "output"}
     parameters = {n for n, _, v, _ in interface.scalars() if v.causality == "parameter"}
     table = {name: {by for by, _ in v.partials} for name, v in outputs.items()}
+    at_start = {name: on | set(outputs[name].at_start) for name, on in table.items()}
     assert depends(root, "Outputs") == table
-    assert depends(root, "InitialUnknowns") == {name: parameters | on for name, on in table.items()}
+    assert depends(root, "InitialUnknowns") == {name: parameters | on for name, on in at_start.items()}
     indices = [int(u.get("index")) for u in root.iterfind("ModelStructure/Outputs/Unknown")]
     assert indices == sorted(indices)
 
@@ -126,6 +128,7 @@ def test_long_arrays_leave_their_initial_dependencies_out():
         ("tug, locked", "1", "true", "true"),
         ("tug, commanded", "1", "true", "true"),
         ("reel control", "1", "true", "true"),
+        ("reel control, motor", "1", "true", "true"),
         ("toy", "1", "true", "true"),
     ],
 )

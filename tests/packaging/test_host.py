@@ -2,30 +2,16 @@
 
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
 
-from fmu_src.packaging import link
-from tests.packaging import toy
 from tests.packaging.driven import SMALL, Driven, library_of
-
-HOST = Path(__file__).parent / "host.c"
-NO_VALGRIND = "memcheck was not run: valgrind is not on this machine (Debian: apt-get install valgrind)"
-VALGRIND = ["valgrind", "--error-exitcode=99", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect", "-q"]
-
-
-def compile_host(folder, *flags):
-    program = folder / "host"
-    command = [*toy.COMPILER, "-std=c99", "-D_POSIX_C_SOURCE=200809L", "-Wall", "-Wextra"]
-    command += ["-Werror", "-O1", "-gdwarf-4", "-I", link.HEADERS, *flags, HOST, "-o", program, "-ldl", "-lm"]
-    subprocess.run(list(map(str, command)), check=True, capture_output=True)
-    return program
+from tests.packaging.hosts import NO_VALGRIND, VALGRIND, compile_host
 
 
 @pytest.fixture(scope="module")
 def host(tmp_path_factory):
-    return compile_host(tmp_path_factory.mktemp("host"))
+    return compile_host("host.c", tmp_path_factory.mktemp("host"))
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +65,7 @@ def test_valgrind_would_find_a_leak(tmp_path, hosted):
     """The twin: a host that forgets to free its second instance."""
     if not shutil.which("valgrind"):
         pytest.skip(NO_VALGRIND)
-    program = compile_host(tmp_path, "-DFORGETFUL")
+    program = compile_host("host.c", tmp_path, "-DFORGETFUL")
     done = subprocess.run([*VALGRIND, program, *hosted("toy")], capture_output=True, text=True)
     assert done.returncode == 99
     assert "fmi2Instantiate" in done.stderr or "definitely lost" in done.stderr

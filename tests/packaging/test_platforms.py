@@ -18,7 +18,7 @@ from dcone_cosim import build as door
 from dcone_cosim import cli
 from dcone_cosim.errors import InputError
 from fmu_src.catalogue import MODELS
-from fmu_src.interface import INITIALISE, SIZE, STEP
+from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.packaging import archive, compile, link, platforms, tools, universal
 from tests.packaging import platform_cases
 from tests.packaging.platform_cases import CASES
@@ -39,11 +39,12 @@ def cache(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def library(cache, tmp_path_factory):
-    """Library of the small model for a platform, unpacked."""
+    """Library of the small model for a platform, in one of its places, unpacked."""
 
-    def make(platform):
+    def make(platform, place=0):
         fmu = platform_cases.build(SMALL, platform, cache)
-        return platform_cases.unpack(fmu, tmp_path_factory.mktemp(platform.name))[1]
+        folder = platform.places[place].folder
+        return platform_cases.unpack(fmu, tmp_path_factory.mktemp(platform.name), folder)[1]
 
     return make
 
@@ -91,16 +92,27 @@ def test_newer_glibc_would_be_seen(tmp_path):
 
 
 @pytest.mark.slow
-def test_mac_library_is_universal_and_shows_the_interface_alone(library):
+def test_arm64_has_one_library_wherever_it_is_looked_for(library):
+    """By the tuple of FMI 3.0, and where older loaders look: the same bytes, part of the universal file."""
+    assert library(platforms.LINUX_AARCH64).read_bytes() == library(platforms.LINUX_AARCH64, 1).read_bytes()
+    whole, part = (library(platforms.DARWIN64, place).read_bytes() for place in (0, 1))
+    assert len(part) > 10_000
+    assert part in whole
+    assert lief.MachO.parse(list(part)).at(0).header.cpu_type == lief.MachO.Header.CPU_TYPE.ARM64
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("place", "machines"), [(0, ["X86_64", "ARM64"]), (1, ["ARM64"])])
+def test_mac_library_is_universal_and_shows_the_interface_alone(library, place, machines):
     """Linked only: no Mac runs these tests."""
-    parts = lief.MachO.parse(str(library(platforms.DARWIN64)))
-    assert [p.header.cpu_type for p in parts] == [lief.MachO.Header.CPU_TYPE.X86_64, lief.MachO.Header.CPU_TYPE.ARM64]
+    parts = lief.MachO.parse(str(library(platforms.DARWIN64, place)))
+    assert [p.header.cpu_type.name for p in parts] == machines
     for part in parts:
         assert {s.name.removeprefix("_") for s in part.exported_symbols} >= FUNCTIONS
         assert not any("dcone" in s.name for s in part.exported_symbols)
         assert {x.name for x in part.libraries} == {f"@rpath/{SMALL}.dylib", "/usr/lib/libSystem.B.dylib"}
         assert list(part.build_version.minos)[:1] == [11]
-    assert parts.at(1).has_code_signature  # an arm64 Mac loads nothing unsigned
+    assert parts.at(len(machines) - 1).has_code_signature  # an arm64 Mac loads nothing unsigned
 
 
 @pytest.mark.release
@@ -153,7 +165,7 @@ def test_both_code_paths_give_the_same_bits(cache, tmp_path):
         folder, _ = platform_cases.unpack(platform_cases.build(model, platforms.LINUX64, cache), tmp_path / model)
         ir = folder / "visible.ll"
         ir.write_text((folder / "sources/model.ll").read_text().replace("define hidden", "define"))
-        (target,) = platforms.LINUX64.targets
+        ((target,),) = (place.targets for place in platforms.LINUX64.places)
         objects = link.compile_kernels(ir, target, folder)
         shared = folder / "both.so"
         command = [sys.executable, "-m", "ziglang", "cc", "-target", target.triple, *FAST, *objects, "-o", shared]
@@ -186,13 +198,20 @@ def run_entry(entry, model, case):
             None, None, whole(work.size), whole(8), work.ctypes.data_as(ctypes.c_void_p), whole(work.size), whole(8),
             real(time), real(step),
         )  # fmt: skip
-        assert (status, result.value) == (0, 0)
+        assert status == 0
+        return result.value
 
-    call(SIZE, 0.0, 0.0)
+    def settle(command, time, step):
+        answer = call(command, time, step)
+        while answer == UNDER_WAY:
+            answer = call(GO_ON, time, step)
+        assert answer == 0
+
+    settle(SIZE, 0.0, 0.0)
     work = np.zeros(int(record["work_size"][0]), np.uint64)
-    call(INITIALISE, 0.0, 0.0)
+    settle(INITIALISE, 0.0, 0.0)
     for k in range(case.count):
-        call(STEP, k * case.step, case.step)
+        settle(STEP, k * case.step, case.step)
     return np.concatenate([slots, work])
 
 
@@ -222,33 +241,36 @@ def small_fmu(path, **files):
 def test_fmus_of_one_origin_are_united(tmp_path):
     one = small_fmu(tmp_path / "one", binaries__linux64__a=b"1")
     two = small_fmu(tmp_path / "two", binaries__win64__a=b"2")
+    everywhere = ("linux64", "win64")
     for k, order in enumerate(itertools.permutations([one, two])):
-        archive.pack(archive.unite(order), tmp_path / f"both{k}")
+        archive.pack(archive.unite(dict.fromkeys(order, everywhere)), tmp_path / f"both{k}")
     assert (tmp_path / "both0").read_bytes() == (tmp_path / "both1").read_bytes()
     with zipfile.ZipFile(tmp_path / "both0") as content:
         assert set(content.namelist()) == {"modelDescription.xml", "binaries/linux64/a", "binaries/win64/a"}
     stranger = small_fmu(tmp_path / "three", binaries__win64__a=b"2", sources__model=b"3")
-    assert archive.unite([one, stranger])["sources/model"] == b"3"
+    assert archive.unite(dict.fromkeys([one, stranger], everywhere))["sources/model"] == b"3"
+    four = small_fmu(tmp_path / "four", binaries__win64__a=b"other")
     with pytest.raises(ValueError, match="not of the same origin"):
-        archive.unite([two, small_fmu(tmp_path / "four", binaries__win64__a=b"other")])
+        archive.unite(dict.fromkeys([two, four], everywhere))
+    assert archive.unite({two: everywhere, four: ()}) == archive.unite({two: everywhere})
 
 
 def test_kernels_are_worked_out_once_for_all_platforms(tmp_path, monkeypatch):
     emitted, linked = [], []
     monkeypatch.setattr(compile, "emit", lambda name, terms, path: (emitted.append(name), path.write_text("IR")))
     monkeypatch.setattr(
-        link, "link", lambda ir, header, library, platform: (linked.append(platform.name), library.write_bytes(b"1"))
+        link, "link", lambda ir, header, library, targets: (linked.append(targets), library.write_bytes(b"1"))
     )
     interface = MODELS[SMALL].interface(CASES[SMALL].terms)
     told = []
     chosen = list(platforms.PLATFORMS.values())
     ((*fmus,),) = archive.build_all([interface], tmp_path, told.append, chosen)
     assert emitted == [SMALL]
-    assert linked == [p.name for p in chosen]
+    assert linked == [place.targets for p in chosen for place in p.places]
     assert len(set(fmus)) == 4
     assert any("win64" in line and "minutes" in line for line in told)
     archive.build_all([interface], tmp_path, told.append, chosen)
-    assert len(linked) == 4
+    assert len(linked) == 6
 
 
 def test_platforms_by_name():
@@ -260,13 +282,13 @@ def test_platforms_by_name():
         door.platform_names("linux64,")
 
 
-def test_linux_on_arm64_has_an_archive_of_its_own():
+def test_linux_on_arm64_has_an_archive_of_its_own_too():
     together, apart = platforms.archives(list(platforms.PLATFORMS.values()))
-    assert (together[0], [p.name for p in together[1]]) == ("", ["linux64", "win64", "darwin64"])
-    assert (apart[0], [p.name for p in apart[1]]) == ("-linux-aarch64", ["linux-aarch64"])
-    for _, group in (together, apart):
-        assert len({p.folder for p in group}) == len(group)
-    assert platforms.archives([platforms.LINUX_AARCH64]) == [("-linux-aarch64", [platforms.LINUX_AARCH64])]
+    folders = ["linux64", "win64", "darwin64", "aarch64-darwin", "aarch64-linux"]
+    assert (together[0], [f for group in together[1].values() for f in group]) == ("", folders)
+    assert apart == ("-linux-aarch64", {platforms.LINUX_AARCH64: ["aarch64-linux", "linux64"]})
+    assert platforms.archives([platforms.LINUX_AARCH64]) == [apart]
+    assert [ending for ending, _ in platforms.archives([platforms.LINUX64, platforms.WIN64])] == [""]
 
 
 @pytest.mark.parametrize(
@@ -291,7 +313,9 @@ def test_each_machine_builds_for_itself(system, machine, name, monkeypatch):
 def without_tools(tmp_path, monkeypatch):
     """Builds that neither compile nor link: what an archive is called and holds is seen without."""
     monkeypatch.setattr(compile, "emit", lambda name, terms, path: path.write_text("IR"))
-    monkeypatch.setattr(link, "link", lambda ir, header, library, platform: library.write_text(platform.name))
+    monkeypatch.setattr(
+        link, "link", lambda ir, header, library, targets: library.write_text(" ".join(t.triple for t in targets))
+    )
     monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
 
@@ -307,13 +331,14 @@ def test_command_writes_two_archives_for_all_platforms(without_tools, tmp_path, 
     for path in written:
         with zipfile.ZipFile(path) as content:
             binaries.append({n: content.read(n).decode() for n in content.namelist() if n.startswith("binaries/")})
-    name = f"binaries/linux64/{SMALL}.so"
+    arm = {f"binaries/aarch64-linux/{SMALL}.so": "aarch64-linux-gnu.2.17"}
     assert written[0].stem == f"{written[1].stem}-linux-aarch64"
-    assert binaries[0] == {name: "linux-aarch64"}
-    assert binaries[1] == {
-        name: "linux64",
-        f"binaries/win64/{SMALL}.dll": "win64",
-        f"binaries/darwin64/{SMALL}.dylib": "darwin64",
+    assert binaries[0] == arm | {f"binaries/linux64/{SMALL}.so": "aarch64-linux-gnu.2.17"}
+    assert binaries[1] == arm | {
+        f"binaries/linux64/{SMALL}.so": "x86_64-linux-gnu.2.17",
+        f"binaries/win64/{SMALL}.dll": "x86_64-windows-gnu",
+        f"binaries/darwin64/{SMALL}.dylib": "x86_64-macos.11.0 aarch64-macos.11.0",
+        f"binaries/aarch64-darwin/{SMALL}.dylib": "aarch64-macos.11.0",
     }
 
 

@@ -102,20 +102,23 @@ def test_windows_under_wine(model, native, wine, cache, tmp_path):
 def test_windows_without_avx2_under_wine(model, native, wine, cache, tmp_path):
     """The plain code path alone, since wine shows the processor as it is."""
     launcher, environment = wine
-    (target,) = platforms.WIN64.targets
-    plain = replace(platforms.WIN64, name="win64-plain", targets=(replace(target, processors=target.processors[:1]),))
+    (place,) = platforms.WIN64.places
+    (target,) = place.targets
+    plain_place = replace(place, targets=(replace(target, processors=target.processors[:1]),))
+    plain = replace(platforms.WIN64, name="win64-plain", places=(plain_place,))
     fmu = platform_cases.build(model, plain, cache)
     rows = platform_cases.run_case(model, fmu, tmp_path, launcher, "x86_64-windows-gnu", environment)
     assert difference(rows, native[model]) < SPREAD
 
 
+@pytest.mark.parametrize("place", [place.folder for place in platforms.LINUX_AARCH64.places])
 @pytest.mark.parametrize("model", CASES)
-def test_linux_on_arm64_under_qemu(model, native, cache, tmp_path):
+def test_linux_on_arm64_under_qemu(model, place, native, cache, tmp_path):
     if not ARM_LIBRARIES.is_dir():
         pytest.skip(f"no arm64 libraries in {ARM_LIBRARIES} (Debian: libc6-arm64-cross)")
     fmu = platform_cases.build(model, platforms.LINUX_AARCH64, cache)
     launcher = (qemu("aarch64"), "-L", str(ARM_LIBRARIES))
-    rows = platform_cases.run_case(model, fmu, tmp_path, launcher, "aarch64-linux-gnu.2.17")
+    rows = platform_cases.run_case(model, fmu, tmp_path, launcher, "aarch64-linux-gnu.2.17", place=place)
     assert difference(rows, native[model]) < SPREAD
 
 
@@ -132,8 +135,10 @@ def run_tow(platform, launcher, cache, folder, *more):
     """Rows of the tow on a platform, with more arguments for the importer."""
     folder.mkdir()
     fmu = platform_cases.build("tethered_deorbit", platform, cache)
+    place = platform.places[0]
+    (target,), more = place.targets, list(map(str, more))
     return platform_cases.run_case(
-        "tethered_deorbit", fmu, folder, launcher, platform.targets[0].triple, more=list(map(str, more))
+        "tethered_deorbit", fmu, folder, launcher, target.triple, more=more, place=place.folder
     )
 
 

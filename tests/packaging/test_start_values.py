@@ -290,7 +290,7 @@ def build(monkeypatch, tmp_path):
         called.append("compiled")
         ir.write_text("; no kernels")
 
-    def link(ir, header, library, platform):
+    def link(ir, header, library, targets):
         called.append("linked")
         library.write_bytes(b"library")
 
@@ -301,7 +301,7 @@ def build(monkeypatch, tmp_path):
     def write(name, values, scene="tow", cache="cache", step=2.0):
         fmu = archive.build(plain, tmp_path / cache)
         path = tmp_path / name
-        archive.furnish([fmu], plain.starting(values), Experiment(1.5, 7.5, step, scene), path)
+        archive.furnish({fmu: ["linux64"]}, plain.starting(values), Experiment(1.5, 7.5, step, scene), path)
         with zipfile.ZipFile(path) as content:
             return path, {name: content.read(name) for name in content.namelist()}
 

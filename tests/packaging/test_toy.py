@@ -114,7 +114,9 @@ def test_output_derivatives(running):
     assert running.output_rate("y") == (OK, 2.0 + 3.0 * 0.5)
     assert running.output_rate("sum")[0] == DISCARD
     assert "sum has no derivative" in running.last
-    assert running.output_rate("x", order=2)[0] == ERROR
+    assert running.output_rate("x", order=2) == running.output_rate("y", order=3) == (OK, 0.0)
+    assert running.output_rate("sum", order=2)[0] == DISCARD
+    assert running.output_rate("x", order=0)[0] == running.output_rate("x", order=-1)[0] == ERROR
     assert running.output_rate("push")[0] == ERROR
 
 
@@ -131,6 +133,47 @@ def test_directional_derivatives_equal_differences(running):
     assert running.directional(["lit"], along)[0] == ERROR
     assert running.directional(["y"], {"gain": 1.0})[0] == ERROR
     assert "gain is no input" in running.last
+
+
+def test_at_the_start_derivatives_are_those_of_the_start(make):
+    """By parameters too; y = gain push + 2 pull there, and x = 0."""
+    raw = make()
+    raw.set({"gain": 4.0, "push": 1.5, "pull": -1.0})
+    raw.call("EnterInitializationMode")
+    assert raw.directional(["y", "x"], {"push": 0.25, "pull": 3.0}) == (OK, [4.0 * 0.25 + 2.0 * 3.0, 0.0])
+    status, slopes = raw.directional(["y", "x"], {"gain": 2.0, "push": 1.0})
+    assert status == OK
+    assert slopes == pytest.approx([1.5 * 2.0 + 4.0, 0.0], rel=1e-11)
+    assert raw.directional(["y"], {"room": 1.0})[0] == raw.directional(["y"], {"x": 1.0})[0] == ERROR
+    assert raw.directional(["gain"], {"push": 1.0})[0] == ERROR
+    before = raw.get("x", "y")
+    assert raw.call("ExitInitializationMode") == OK
+    assert raw.get("x", "y") == before == [0.0, 4.0]
+
+
+@pytest.mark.parametrize("gain", [100.0, 99.999, 1e-9, 1e-300, 5e-324])
+def test_at_a_bound_a_derivative_is_that_of_the_inner_side(make, gain):
+    raw = make()
+    raw.set({"gain": gain, "push": 1.5})
+    raw.call("EnterInitializationMode")
+    status, slopes = raw.directional(["y"], {"gain": 1.0})
+    assert status == OK
+    assert slopes == pytest.approx([1.5], rel=1e-9)
+    raw.said.clear()
+    raw.set({"gain": 101.0})
+    assert raw.directional(["y"], {"gain": 1.0})[0] == ERROR
+    assert "gain = 101" in raw.last
+
+
+def test_where_no_start_is_near_a_derivative_is_refused_and_the_instance_lives(make):
+    raw = make()
+    raw.set({"gain": 42.0, "push": 1.5})
+    raw.call("EnterInitializationMode")
+    assert raw.directional(["y"], {"gain": 1.0})[0] == DISCARD
+    assert "no derivative by gain: the model can start on neither side of 42" in raw.last
+    assert raw.directional(["y"], {"push": 1.0}) == (OK, [42.0])
+    assert raw.call("ExitInitializationMode") == OK
+    assert raw.get("y") == 63.0
 
 
 # ---- ends and refusals ----------------------------------------------------------------------------------------------
@@ -176,31 +219,74 @@ def test_an_error_breaks_the_instance_until_it_is_reset(running, built_toy):
     assert running.step(0.0, 1.0) == OK
 
 
-@pytest.mark.parametrize("back", [1e-5, 2e-6, 1e-6])
-def test_a_step_shorter_than_the_drift_behind_it_is_none(make, back):
-    """At 6000 s times may differ by 1.2e-5 s. The FMU is ahead of its master then, and lets it come."""
+DIGIT = math.ulp(6000.0)
+
+
+@pytest.mark.parametrize("back", [20, 4, 2])
+def test_a_step_shorter_than_the_rounding_behind_it_is_none(make, back):
+    """In last digits of the time. The FMU is ahead of its master then, and lets it come."""
     raw = make()
     raw.start({"push": 1.0})
     assert raw.step(0.0, 6000.0) == OK
     before = raw.get("x", "y")
     assert raw.ramp("push", 0.5) == OK
-    assert raw.step(6000.0 - back, 1e-6) == OK
+    assert raw.step(6000.0 - back * DIGIT, 2.0 * DIGIT) == OK
     assert raw.get("steps", kind="Integer") == 1
     assert raw.get("x", "y") == before
     assert raw.output_rate("y") == (OK, 1.0)  # the ramp went with its step
-    assert raw.step(6000.0 - back + 1e-6, 2.0) == OK
-    assert raw.get("x") == pytest.approx(6002.0 - back + 1e-6, abs=1e-11)
+    assert raw.step(6000.0 - (back - 2) * DIGIT, 2.0) == OK
+    assert raw.get("x") == pytest.approx(6002.0 - (back - 2) * DIGIT, abs=DIGIT)
     assert raw.get("steps", kind="Integer") == 2
 
 
-def test_a_step_that_reaches_beyond_the_drift_is_made(make):
+def test_a_step_that_reaches_beyond_the_rounding_is_made(make):
     """The twin."""
     raw = make()
     raw.start({"push": 1.0})
     raw.step(0.0, 6000.0)
-    assert raw.step(6000.0 - 1e-5, 2e-5) == OK
-    assert raw.get("x") == pytest.approx(6000.00001, abs=1e-11)
-    assert raw.step(6000.0 - 2e-5, 1e-6) == ERROR
+    assert raw.step(6000.0 - 20 * DIGIT, 40 * DIGIT) == OK
+    assert raw.get("x") == pytest.approx(6000.0 + 20 * DIGIT, abs=DIGIT)
+    assert raw.step(6000.0 - 10 * DIGIT, 2 * DIGIT) == ERROR
+
+
+@pytest.mark.parametrize("begin", [0.0, 6e3, 1e6, 1e9, -1e6])
+def test_a_master_that_stands_still_is_told_so_at_any_time(make, begin):
+    """A thousand steps of 1 ms from one and the same time: answered OK, they would not move."""
+    raw = make()
+    raw.start({"push": 1.0, "end": 2e9}, begin=begin)
+    assert raw.step(begin, 1e-3) == OK
+    for wrong in (begin, begin + 2e-3, begin + 0.99e-3, begin + 1.01e-3):
+        assert raw.step(wrong, 1e-3) == ERROR, wrong
+        assert "the FMU stands at" in raw.last
+    for k in range(1, 1000):
+        assert raw.step(begin + k * 1e-3, 1e-3) == OK
+    assert raw.get("steps", kind="Integer") == 1000
+    assert raw.get("x") == pytest.approx(1.0, abs=1e-3 * abs(begin) * 1e-9 + 1e-12)
+
+
+@pytest.mark.parametrize("begin", [0.0, 1e6, 1e7])
+def test_times_that_a_master_adds_up_are_taken(make, begin):
+    """By t += h, and as i h; a master whose clock counts nanoseconds is off by that of a step of 1 ms."""
+    for times in ("added", "multiplied", "nanoseconds"):
+        raw = make()
+        raw.start({"push": 1.0, "end": 2e9}, begin=begin, stop=begin + 1.0)
+        time = begin
+        for k in range(1000):
+            assert raw.step(time, 1e-3) == OK, raw.last
+            time = time + 1e-3 if times == "added" else begin + (k + 1) * 1e-3
+            time = round(time, 9) if times == "nanoseconds" else time
+        assert raw.get("steps", kind="Integer") == 1000
+
+
+@pytest.mark.parametrize("stop", [1.0, 1e6, 1e9])
+def test_a_step_beyond_the_stop_is_refused_at_any_time(make, stop):
+    raw = make()
+    raw.start(stop=stop)
+    assert raw.step(0.0, stop - 1e-3) == OK
+    assert raw.step(raw.real_status()[1], 2e-3) == ERROR
+    assert "beyond the stop time" in raw.last
+    assert raw.step(raw.real_status()[1], 1e-3) == OK
+    assert raw.step(raw.real_status()[1], 1e-3) == ERROR
 
 
 def test_the_stop_time_holds(make):

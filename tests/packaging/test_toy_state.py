@@ -2,6 +2,8 @@
 
 import ctypes
 
+import pytest
+
 from tests.packaging.raw import DISCARD, ERROR, OK, Count
 
 
@@ -78,6 +80,22 @@ def test_a_state_in_memory_is_checked_too(make):
     raw.drop(state)
     assert not state.value
     assert raw.drop(state) == OK
+
+
+@pytest.mark.parametrize("left", [0, 1, 0xDEADBEEF, 2**64 - 1])
+def test_a_state_is_written_over_whatever_the_pointer_held(make, left):
+    """An uninitialised variable of the importer's is neither freed nor read; a refusal leaves it as it was."""
+    raw = make()
+    raw.start()
+    state = raw.save()
+    data = raw.serialise(state)
+    pointer = ctypes.c_void_p(left)
+    assert raw.call("DeSerializeFMUstate", data[:-8], Count(len(data) - 8), ctypes.byref(pointer)) == ERROR
+    assert (pointer.value or 0) == left
+    assert raw.call("DeSerializeFMUstate", data, Count(len(data)), ctypes.byref(pointer)) == OK
+    assert raw.restore(pointer) == OK
+    raw.drop(pointer)
+    raw.drop(state)
 
 
 def test_reset_is_a_fresh_instance_bit_for_bit(make):

@@ -47,10 +47,12 @@ MODEL = Model(
     module="none",
     stop_time=10.0,
     macro_step=0.5,
+    differentiable=True,
 )
 INTERFACE = MODEL.interface({})
 
-COMPILER = [sys.executable, "-m", "ziglang", "cc", "-target", platforms.host().targets[0].triple]
+HOST = platforms.host().places[0].targets
+COMPILER = [sys.executable, "-m", "ziglang", "cc", "-target", HOST[0].triple]
 """Whoever builds FMUs has it; the target is theirs, whose C library is then at hand."""
 
 
@@ -65,7 +67,7 @@ class Toy:
 
 def build(folder: Path, key: str = KEY) -> Toy:
     """Compile and link the toy as if it were a model's, in the folder of its FMU, unpacked."""
-    place = folder / "binaries" / platforms.host().folder
+    place = folder / "binaries" / platforms.host().places[0].folder
     place.mkdir(parents=True)
     furnish(folder, key=key)
     slot, lines = 0, []
@@ -79,7 +81,7 @@ def build(folder: Path, key: str = KEY) -> Toy:
     tools.run("clang", [*COMPILER, *map(str, flags), str(Path(__file__).parent / "kernel.c"), "-o", str(ir)])
     ir.write_text(re.sub(r'"target-(cpu|features)"="[^"]*" ?', "", ir.read_text()))
     library = place / "toy.so"
-    link.link(ir, folder / "model.h", library, platforms.host())
+    link.link(ir, folder / "model.h", library, HOST)
     return Toy(library, INTERFACE.references)
 
 

@@ -44,7 +44,10 @@ int32_t dcone_entry(int32_t *result, void **exception, int64_t command, ARRAY(r)
                     double step) {
     int32_t code = 0;
     if (command == SIZE) r[WORK_SIZE].integer = r[ROOM].integer;
-    if (command == INITIALISE) {
+    double apart = r[GAIN].real - 42.0;
+    if (command == INITIALISE && apart != 0.0 && apart > -0.1 && apart < 0.1) /* 42 stands alone */
+        code = stop(r, BROKE, GAIN, time, r[GAIN].real);
+    else if (command == INITIALISE) {
         r[X].real = r[SUM].real = 0.0;
         r[STEPS].integer = 0;
         for (int64_t k = 0; k < r[WORK_SIZE].integer; k++) work[k].real = k;
