@@ -2,9 +2,9 @@
 
 `captured` has to last: once the cord still out is shorter than the target's smallest girth, the target counts as caught
 when net and mouth have gone round most of it for a while (see `enclosure`), so that the mouth has passed its middle and
-would have to pass it again. While it stands in the mouth nothing is decided; the shot has failed when nothing is inside any more, and a
-capture is taken back when less than half is. Both must last for a while: the cap over a slack mouth is a guess, and may
-cut through the target for a moment.
+would have to pass it again. While it stands in the mouth nothing is decided; the shot has failed when nothing is inside
+any more, and a capture is taken back when less than half is. Both must last for a while: the cap over a slack mouth is
+a guess, and may cut through the target for a moment.
 """
 
 from fmu_src.net_capture import quality
