@@ -127,6 +127,4 @@ def _of_cord(values: Values) -> Iterator[Implied]:
         frequency = formula(oscillators.natural_frequency)(stiffness, 0.5 * values["bullets.mass"])
         yield Implied(f"{key}.stiffness", f"stiffness of {label}", stiffness, "N/m")
         yield Implied(f"{key}.period", "its period, undamped", 2.0 * math.pi / frequency, "s")
-    yield Implied(
-        "cord.open_loop", "way round the largest loop of the mouth that a locked cord leaves", open_loop(values), "m"
-    )
+    yield Implied("cord.open_loop", "largest loop of the closed mouth", open_loop(values), "m")

@@ -21,9 +21,12 @@ MUZZLE = 'start_position = ["0 m", "-12 m", "0 m"]'
 PHASES = 'phases = ["capture", "removal"]'
 REST = 'rest_length = "14 m"'
 PAID_OUT = 'state = "slack"\nlength = "14 m"'
-CLOSING = '[capture.closing]\ndrive = "winches"\ntrigger = "time"\ntime = "{}"\nspeed = "5 m/s"\nstall_force = "{}"\n'
-MISSION_CLOSING = CLOSING.format("6.4 s", "25 N")
-TABLE_1_CLOSING = CLOSING.format("11.2 s", "10 N")
+CLOSING = (
+    '[capture.closing]\ndrive = "winches"\ntrigger = "time"\ntime = "{}"\nspeed = "5 m/s"\nstall_force = "{}"\n'
+    "rings = 1\n"
+)
+MISSION_CLOSING = CLOSING.format("6.4 s", "6 N")
+TABLE_1_CLOSING = CLOSING.format("11.2 s", "5 N")
 
 
 def changed(scene: str, *changes: tuple[str, str]) -> str:

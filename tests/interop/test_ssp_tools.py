@@ -94,7 +94,7 @@ def test_a_capture_has_our_bits(tool: str, mission: tuple[Path, ...]) -> None:
 
 
 SPREADS = {"libcosim": 0.0, "fmpy": 2e-12, "ecos": 2e-12}
-"""Of the mission's removal, which begins at 8.14 s: the time of a tool off by an ulp moves a tug by as much.
+"""Of the mission's removal, which begins at 8.78 s: the time of a tool off by an ulp moves a tug by as much.
 6e-13 and 9e-13 were seen; twice the larger leaves room for another processor's last bits, and a thrust off by 1 % makes
 a million times as much."""
 

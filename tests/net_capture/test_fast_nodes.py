@@ -18,8 +18,10 @@ LIGHT = {
     "bullets.mass": 1e-3,
     "bullets.angle": 0.3,
     "chaser.start_position[2]": -5.0,
+    "closing.rings": 0,
 }
-"""A net of milligrams whose soft threads leave the substep at a millisecond and more."""
+"""A net of milligrams whose soft threads leave the substep at a millisecond and more; a stiff cord through its light
+knots would not."""
 
 
 def deepest(net):
