@@ -86,6 +86,8 @@ def cord_mass(bullet_mass: float, edge_mass: float, rings: int) -> float:
     bullet_mass   m      of each                                 [kg]
     edge_mass     q      of a knot on the net's edge             [kg]
     rings         n      on such knots, which it runs through    [1]
+
+    Checked  tests/net_capture/test_formulas.py
     """
     return 1.0 / (2.0 / bullet_mass + 4.0 * rings / edge_mass)
 

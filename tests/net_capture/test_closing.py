@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from fmu_src.net_capture import closure
+from fmu_src.net_capture.interface import MODEL
 
 SPEED, STALL, BULLET = 5.0, 10.0, 0.5
 TERMS = {"net": "square", "gravity": "none", "closing": "winches"}
@@ -174,6 +175,27 @@ def test_a_ring_is_drawn_after_the_bullets(shoot, stiffness, ratio):
     assert net["mouth.cord_length"] == pytest.approx(4.0 * length, rel=2e-4)
     assert net["closing.work"] == pytest.approx(work, rel=2e-3)
     assert abs(net["energy.remainder"]) < 2e-3 * work
+
+
+@pytest.mark.parametrize(
+    ("knots", "rings", "first", "third"),
+    [
+        (25, 0, [0, 24], [624, 600]),
+        (25, 1, [0, 12, 24], [624, 612, 600]),
+        (25, 3, [0, 6, 12, 18, 24], [624, 618, 612, 606, 600]),
+        (12, 2, [0, 4, 7, 11], [143, 139, 136, 132]),
+        (3, 1, [0, 1, 2], [8, 7, 6]),
+    ],
+)
+def test_rings_are_spread_evenly_over_a_side(knots, rings, first, third):
+    """Knots counted by hand, row by row; the second and fourth side run along the columns."""
+    p = MODEL.interface(TERMS).make_record().view(np.recarray)[0]
+    p.knots, p.closing_rings = knots, rings
+    sides = [[int(closure.cord_stop(p, side, stop)) for stop in range(rings + 2)] for side in range(4)]
+    assert sides[0] == first
+    assert sides[2] == third
+    assert sides[1] == [knots - 1 + knots * knot for knot in first]
+    assert sides[3] == [knots * (knots - 1 - knot) for knot in first]
 
 
 @pytest.mark.parametrize("fold", [0.05, 0.5, 5.0])

@@ -6,6 +6,15 @@ import pytest
 
 from tests.packaging.raw import DISCARD, ERROR, OK, Count
 
+HEADER = (
+    (0, "no saved state"),
+    (8, "no saved state"),
+    (24, "belongs to another library"),
+    (72, "version"),
+    (80, "phase"),
+)
+"""What is said of a state whose header is wrong at a byte."""
+
 
 def test_a_state_carries_everything_even_to_another_instance(make):
     one = make()
@@ -42,14 +51,7 @@ def test_a_damaged_state_is_refused_wherever_it_is_damaged(make):
     for size in (0, 1, 151, 152, len(data) - 1, len(data) - 8):
         assert raw.deserialise(data[:size])[0] == ERROR
     assert raw.deserialise(data + b"\0" * 8)[0] == ERROR
-    for at, words in (
-        (0, "no saved state"),
-        (8, "no saved state"),
-        (24, "belongs to another library"),
-        (72, "version"),
-        (80, "phase"),
-        (128, "size"),
-    ):
+    for at, words in (*HEADER, (128, "size")):
         raw.deserialise(damaged(data, at, (2**40 + 3).to_bytes(8, "little")))
         assert words in raw.last, at
     assert raw.deserialise(data)[0] == OK  # the twin: as it was, it is taken
@@ -62,14 +64,7 @@ def test_a_state_in_memory_is_checked_too(make):
     state = raw.save()
     memory = (ctypes.c_char * 152).from_address(state.value)
     whole = memory.raw
-    for at, words in (
-        (0, "no saved state"),
-        (8, "no saved state"),
-        (24, "belongs to another library"),
-        (72, "version"),
-        (80, "phase"),
-        (128, "memory"),
-    ):
+    for at, words in (*HEADER, (128, "memory")):
         memory[:] = damaged(whole, at, (33).to_bytes(8, "little"))
         assert raw.restore(state) == ERROR
         assert words in raw.last, at
