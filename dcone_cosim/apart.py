@@ -96,7 +96,14 @@ def ours(scene: Scene, phase: PhaseScene) -> dict[str, build.Furnished]:
         phase.start, phase.start + phase.duration, exchange_step(phase), build.printable(scene.name)
     )
     return {
-        c.name: build.Furnished(_file_name(scene, phase, c), c.model, c.terms, _numbers(c.parameters), experiment)
+        c.name: build.Furnished(
+            _file_name(scene, phase, c),
+            c.model,
+            c.terms,
+            _numbers(c.parameters),
+            experiment,
+            {name: table.numbers for name, table in c.tables.items()},
+        )
         for c in phase.components
         if c.fmu is None
     }

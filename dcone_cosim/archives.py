@@ -15,6 +15,7 @@ from dcone_cosim.fmu.leaving import guard_exit
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.mistakes import places_named
 from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scratch import Scratch
 
 
 class Archives:
@@ -82,12 +83,12 @@ class Archives:
     def _ours(path: Path, component: ComponentScene) -> Archive:
         """One of ours from the cache; built again should somebody have cleared it away in between."""
         try:
-            return Archive(path)
-        except FmuError:
+            return opened(path, component)
+        except (FmuError, FileNotFoundError):
             if path.exists():
                 raise
             (path,) = build.ensure([(component.model, component.terms)], lambda _: None)
-            return Archive(path)
+            return opened(path, component)
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
         archive = self._of[phase.name, component.name]
@@ -158,6 +159,7 @@ class Archives:
             "texts": {**texts, **component.texts},
             "tolerance": archive.tolerance,
             "remarks": list(archive.remarks),
+            "tables": {n: {"file": table.file.name, "sha256": table.sha256} for n, table in component.tables.items()},
         }
 
     def __enter__(self) -> Archives:
@@ -170,6 +172,19 @@ class Archives:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def opened(path: Path, component: ComponentScene) -> Archive:
+    """One of ours from the cache, with the component's tables."""
+    if not component.tables:
+        return Archive(path)
+    numbers = {name: table.numbers for name, table in component.tables.items()}
+    scratch = Scratch.temporary()
+    try:
+        return Archive(build.with_tables(path, component.model, component.terms, numbers, scratch.path), within=scratch)
+    except BaseException:
+        scratch.remove()
+        raise
 
 
 def remarks(facts: Mapping[str, Mapping[str, Any]]) -> list[str]:

@@ -9,7 +9,7 @@ import math
 import os
 import time as clock
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +23,15 @@ from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Model, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
+from fmu_src.net_capture.interface import NETS, TARGETS
 from fmu_src.packaging.description import Experiment
+from fmu_src.packaging.sources import SHIM
+from fmu_src.tables import Table
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["CATALOGUE", "MODELS", "Experiment", "Group", "Implied", "Interface", "Model", "Range", "Variable"]
+__all__ = ["CATALOGUE", "MODELS", "Experiment", "Group", "Implied", "Interface", "Model", "Range", "Table", "Variable"]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""
@@ -47,6 +50,7 @@ class Furnished:
     name          of its file, without suffix
     values        that it starts with where they are not the model's, SI by FMI name of a parameter or input
     experiment    the run that it is for
+    tables        numbers of each table of its parts, by name
     """
 
     name: str
@@ -54,6 +58,7 @@ class Furnished:
     terms: Mapping[str, str]
     values: Mapping[str, float]
     experiment: Experiment
+    tables: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
@@ -86,6 +91,13 @@ def all_rows(model: Model) -> Iterator[Variable]:
     for group in model.groups.values():
         for term in group.terms:
             yield from term_rows(group, term)
+
+
+def all_tables(model: Model) -> Iterator[Table]:
+    """Every table the model can have."""
+    for group in model.groups.values():
+        for term in group.terms:
+            yield from group.terms[term].tables if term in group.terms else ()
 
 
 def defaults(interface: Interface) -> dict[str, float]:
@@ -123,10 +135,9 @@ def cannot_work(
     handed_over   the phase begins with what the one before hands over
     """
     if phase == "capture":
-        from fmu_src.net_capture.reach import refusals
+        from fmu_src.net_capture.interface import refusals
 
-        capacity = int(terms["nodes"]) if "nodes" in terms else None
-        return [Refusal(*row) for row in refusals(values, duration, capacity)]
+        return [Refusal(*row) for row in refusals(terms, values, duration)]
     if handed_over or values["start.condition"] == HANDED_OVER:
         return []
     separation, attachment = values["start.separation"], values["target.attachment_distance"]
@@ -166,12 +177,28 @@ def implied(phase: str, values: Mapping[str, float], terms: Mapping[str, str]) -
 
     values        every parameter and input of the phase by FMI name, SI
     """
-    # these import the kernels, and with them numba
     from fmu_src.net_capture import implied as of_net_capture
     from fmu_src.tethered_deorbit import implied as of_tethered_deorbit
 
     models = {"capture": of_net_capture, "removal": of_tethered_deorbit}
     return list(models[phase].rows(values, terms)) if phase in models else []
+
+
+def net_drawing(values: Mapping[str, float]) -> tuple[list[list[int]], list[int]] | None:
+    """Lines of threads and closed rim of the net with these values, as numbers of nodes; None for none of ours."""
+    for part in NETS.values():
+        if all(v.name in values for v in part.variables):
+            return part.checks.drawing(values)  # type: ignore[no-any-return]
+    return None
+
+
+def target_surface(values: Mapping[str, float]) -> tuple[list[Any], list[list[int]]] | None:
+    """Corners (n, 3) [m] and faces of the target with these values, body axes; None for none of ours."""
+    for part in TARGETS.values():
+        names = [n for v in part.variables if v.causality == "parameter" for n in v.element_names()]
+        if all(name in values for name in names):
+            return part.checks.surface(values)  # type: ignore[no-any-return]
+    return None
 
 
 def masses_after(capture: Mapping[str, float]) -> dict[str, float]:
@@ -181,6 +208,11 @@ def masses_after(capture: Mapping[str, float]) -> dict[str, float]:
     if "target.mass" not in capture:
         return {}
     return {"chaser.mass": capture["chaser.mass"], "target.mass": capture["target.mass"] + catch_mass(capture)}
+
+
+def shared_with_template() -> dict[str, str]:
+    """The files of our own FMI interface that an FMU from the C template has as well, by name."""
+    return {name: (SHIM / name).read_text(encoding="utf-8") for name in ("fmi2_log.h", "fmi2_absent.h")}
 
 
 def _spoken(phase: str, found: Iterable[Caution]) -> list[str]:
@@ -297,9 +329,20 @@ def write_fmus(
     return written
 
 
+def with_tables(fmu: Path, model: str, terms: Mapping[str, str], tables: Mapping[str, Any], folder: Path) -> Path:
+    """An FMU of the cache written once more to a folder, with the tables of its parts."""
+    from fmu_src.packaging.archive import furnish
+    from fmu_src.packaging.platforms import host
+
+    interface = CATALOGUE[model].interface(terms).with_tables(tables)
+    places = [place.folder for place in host().places]
+    furnish({fmu: places}, interface, Experiment.of(interface.model), folder / fmu.name)
+    return folder / fmu.name
+
+
 def _furnished(fmu: Furnished) -> Interface:
     try:
-        return CATALOGUE[fmu.model].interface(fmu.terms).starting(fmu.values)
+        return CATALOGUE[fmu.model].interface(fmu.terms).with_tables(fmu.tables).starting(fmu.values)
     except ValueError as error:
         raise InputError(f"{fmu.name}.fmu cannot start with the values it is to have: {error}") from None
 

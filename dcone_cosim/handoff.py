@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from orbital import plain
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
 Vector = npt.NDArray[np.float64]
@@ -27,6 +28,7 @@ CAPTURE_OUTPUTS = (
     *(f"target.{what}[{i}]" for what in ("position", "velocity", "rate", "inertia", "spin") for i in (1, 2, 3)),
     *(f"target.attitude[{i}]" for i in (1, 2, 3, 4)),
     *(f"vertex.position[{i}]" for i in (1, 2, 3)),
+    "target.reach",
     "catch.mass",
     *(f"catch.{what}[{i}]" for what in ("position", "velocity", "spin") for i in (1, 2, 3)),
     *(f"catch.inertia[{i}]" for i in range(1, 7)),
@@ -37,7 +39,6 @@ CAPTURE_OUTPUTS = (
 CAPTURE_PARAMETERS = (
     "chaser.mass",
     "target.mass",
-    *(f"target.size[{i}]" for i in (1, 2, 3)),
     *(f"chaser.start_velocity[{i}]" for i in (1, 2, 3)),
 )
 
@@ -67,8 +68,8 @@ class Body:
 
 @dataclass(frozen=True)
 class Handoff:
-    """What is handed over: the bodies before, the joined body, where the line is made fast on it [m] (3,), and the
-    removal's parameters."""
+    """What is handed over: the bodies before, the joined body, where the line is made fast on it [m] (3,), how far the
+    target reaches from its centre of mass [m], and the removal's parameters."""
 
     chaser: Body
     target: Body
@@ -76,17 +77,17 @@ class Handoff:
     catch_energy: float
     joint: Body
     vertex: Vector
+    reach: float
     turning: Vector
     parameters: dict[str, float]
 
 
 def mean_motion(altitude: float) -> float:
-    """Rate at which the orbital frame turns on a circular orbit, n = sqrt(mu / a^3) [rad/s].
+    """Rate at which the orbital frame turns on a circular orbit [rad/s].
 
     altitude      over the equatorial radius                     [m]
     """
-    axis = EARTH_EQUATORIAL_RADIUS + altitude
-    return math.sqrt(EARTH_MU / axis) / axis
+    return plain.mean_motion(EARTH_EQUATORIAL_RADIUS + altitude, EARTH_MU)
 
 
 def _vector(values: Values, name: str) -> Vector:
@@ -95,14 +96,9 @@ def _vector(values: Values, name: str) -> Vector:
 
 def rotation_matrix(attitude: Vector) -> Vector:
     """(3, 3) from body to orbital axes, of a unit quaternion, scalar first."""
-    w, x, y, z = attitude
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    matrix = np.empty((3, 3))
+    plain.to_matrix(matrix, attitude)
+    return matrix
 
 
 def join(first: Body, second: Body, turning: Vector) -> Body:
@@ -171,7 +167,9 @@ def prepare(capture: Values, frame_rate: float) -> Handoff:
     inner += float(turning @ seen_spin) + 0.5 * float(turning @ inertia @ turning)
     joint = join(target, catch, turning)
     vertex = _vector(capture, "vertex.position")
-    return Handoff(chaser, target, catch, inner, joint, vertex, turning, pair_parameters(chaser, joint))
+    return Handoff(
+        chaser, target, catch, inner, joint, vertex, capture["target.reach"], turning, pair_parameters(chaser, joint)
+    )
 
 
 def held_bodies(removal: Values) -> tuple[Body, Body]:
@@ -197,7 +195,7 @@ def spin_energy(body: Body) -> float:
 class SpinCheck:
     """How much the dropped spin would have mattered.
 
-    attachment_speed   |H| / I_min times the target's half diagonal: how fast it may carry the tether's end [m/s]
+    attachment_speed   |H| / I_min times how far the target reaches: how fast it may carry the tether's end [m/s]
     tug_speed          estimate of the speed at which the line first comes taut [m/s]
     """
 
@@ -214,12 +212,11 @@ class SpinCheck:
         return self.attachment_speed <= self.tolerance * self.tug_speed
 
 
-def check_spin(handed: Handoff, size: Vector, slack: float, thrust: float, tolerance: float) -> SpinCheck:
+def check_spin(handed: Handoff, slack: float, thrust: float, tolerance: float) -> SpinCheck:
     """Compare the speed the dropped spin gives the attachment with the relative speed of the first tug.
 
         v_tug^2 = v_rel^2 + 2 (|F|/m_chaser) s
 
-    size          edges of the target                            [m]    (3,)
     slack         s of the tether                                [m]
     thrust        F of the chaser                                [N]
 
@@ -227,8 +224,7 @@ def check_spin(handed: Handoff, size: Vector, slack: float, thrust: float, toler
     """
     joint, chaser = handed.joint, handed.chaser
     smallest = float(np.linalg.eigvalsh(joint.inertia)[0])
-    arm = 0.5 * float(np.linalg.norm(size))
-    speed = float(np.linalg.norm(joint.spin)) / smallest * arm if smallest > 0.0 else 0.0
+    speed = float(np.linalg.norm(joint.spin)) / smallest * handed.reach if smallest > 0.0 else 0.0
     relative = joint.velocity - chaser.velocity
     tug = math.sqrt(float(relative @ relative) + 2.0 * abs(thrust) / chaser.mass * max(0.0, slack))
     return SpinCheck(speed, tug, tolerance)

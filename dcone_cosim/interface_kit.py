@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dcone_cosim import placed
+from dcone_cosim.build import shared_with_template
 from dcone_cosim.contract import NEEDS, Asked, asked
 from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.errors import InputError
@@ -121,6 +122,7 @@ def _c_files(phase: str, rows: Sequence[Asked]) -> dict[str, str]:
     for name in ("fmu.c", "model.h", "CMakeLists.txt", "README.md"):
         text = (TEMPLATES / "c" / name).read_text(encoding="utf-8")
         files[name] = text.replace("@MODEL@", model).replace("@PHASE@", phase)
+    files |= shared_with_template()
     places = [_constant(row.name) for row in rows]
     lines = [
         f"/* The model of {model}. The table of variables: the place of a row is its value reference. */",

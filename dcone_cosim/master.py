@@ -197,7 +197,7 @@ def _run_removal(run: RunResult, phase: PhaseScene, instantiate: Instantiate, pr
         parameters["orbit.true_anomaly"] = advanced(anomaly, record.handed.turning[2] * record.time)
         parameters["start.condition"] = phase.choice("start.condition", HANDED_OVER)
         try:
-            check_before(record, run.parameters["capture"], phase, float(run.scene.handoff.get("spin_tolerance", 0.1)))
+            check_before(record, phase, float(run.scene.handoff.get("spin_tolerance", 0.1)))
         except HandoffError as error:
             record.failure = str(error)
             run.fail("hand-off refused", str(error), HANDOFF_FAILED)

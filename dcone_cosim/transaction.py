@@ -11,7 +11,7 @@ import numpy as np
 
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinCheck, Values, check_spin, held_bodies
+from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinCheck, check_spin, held_bodies
 from dcone_cosim.ledger import LedgerRow, ledger
 from dcone_cosim.line import ATTACHMENT, LINE_HELD, REST_LENGTH, Line, line_rows
 from dcone_cosim.scenes.scene import PhaseScene
@@ -51,19 +51,17 @@ class HandoffRecord:
     failure: str = ""
 
 
-def check_before(record: HandoffRecord, capture: Values, phase: PhaseScene, tolerance: float) -> None:
+def check_before(record: HandoffRecord, phase: PhaseScene, tolerance: float) -> None:
     """Refuse a hand-off that the removal could not carry truthfully.
 
-    capture      the capture's parameters, SI
     phase        the removal
     tolerance    spin allowed to the attachment, as a share of the first tug's speed
     """
-    size = np.array([capture[f"target.size[{i}]"] for i in (1, 2, 3)])
     handed, line = record.handed, record.line
     elastic, commanded = phase.setting(REST_LENGTH), phase.setting("reel.length")
     length = commanded if elastic is None else elastic
     slack = 0.0 if length is None else length + line.attachment - line.distance
-    spin = check_spin(handed, size, slack, phase.setting("thrust.level") or 0.0, tolerance)
+    spin = check_spin(handed, slack, phase.setting("thrust.level") or 0.0, tolerance)
     record.spin = spin
     if elastic is not None and line.overrun:
         raise HandoffError(

@@ -94,12 +94,12 @@ def _shorter_step(step: float, error: float) -> float:
 
 
 def make_dop853(
-    derivative: Callable[..., Any], measure: Callable[..., Any], size: int, counted: int = 0
+    derivative: Callable[..., Any], squared_error: Callable[..., Any], size: int, counted: int = 0
 ) -> AdaptiveScheme:
     """The explicit Runge-Kutta scheme of Dormand and Prince, order 8(5,3), with its dense output of order 7.
 
     derivative(context, state, rate, elapsed)   writes d(state)/dt, at `elapsed` [s] after the begin of the step
-    measure(context, state, error)              square of the error's size in units of the tolerance [-]
+    squared_error(context, state, error)        square of the error's size in units of the tolerance [-]
     size                                        number of components
     counted                                     components behind those that the equations do not depend on: integrals
                                                 along the way, for which no stage is formed
@@ -107,8 +107,8 @@ def make_dop853(
     Order      8; error estimate from embedded orders 5 and 3; dense output 7, continuous to the first derivative
     Stability  h |lambda| up to 6.4 on the negative real axis and 5.97 on the imaginary one; below that an undamped
                oscillation decays, by 2.3e-11 of its size a step at 0.5, 2.4e-8 at 1, 2.7e-5 at 2
-    A state, a rate and a row of stages hold size + counted numbers. What `measure` makes of the counted ones is its own
-    affair; where it leaves them out the others keep their bits.
+    A state, a rate and a row of stages hold size + counted numbers. What `squared_error` makes of the counted ones is
+    its own affair; where it leaves them out the others keep their bits.
 
     Cost       11 evaluations a step (the first is the last step's last), 3 more when dense output is asked for
     Source     Hairer, Norsett and Wanner (1993), section II.5 and II.6; the numbers are those of scipy's DOP853
@@ -118,6 +118,18 @@ def make_dop853(
 
     @kernel
     def attempt(context: Any, start: Array, step: float, stages: Array, end: Array) -> None:
+        """One step: fills the stages, the state at its end and, as row 12, the derivative there.
+
+            x_i = x + h sum_j a_ij k_j,   k_i = f(x_i, c_i h),   x_end = x + h sum_j b_j k_j
+
+        start         x      (size + counted,)
+        step          h                                              [s]
+        stages        k      rows of size + counted, row 0 given     (DOP853_ROWS rows)
+        end           x_end  out                                     (size + counted,)
+
+        Source   as `make_dop853`
+        Checked  tests/tethered_deorbit/test_integrator.py: order 8, and lower with one coefficient off
+        """
         for i in range(1, DOP853_STAGES + 1):
             for n in range(size):
                 end[n] = 0.0
@@ -138,6 +150,15 @@ def make_dop853(
 
     @kernel
     def error(context: Any, end: Array, step: float, stages: Array, low: Array, high: Array) -> float:
+        """Estimated error of the step in units of the tolerance [-]; above 1 it is to be taken again, shorter.
+
+            e = h |e5|^2 / sqrt(|e5|^2 + 0.01 |e3|^2),   e5 and e3 the errors by the embedded orders 5 and 3
+
+        low, high     room for e3 and e5                             (size + counted,)
+
+        Source   as `make_dop853`
+        Checked  tests/tethered_deorbit/test_integrator.py: its size, against scipy's
+        """
         for n in range(width):
             low[n] = 0.0
             high[n] = 0.0
@@ -145,16 +166,24 @@ def make_dop853(
             for n in range(width):
                 low[n] += _E3[j] * stages[j * width + n]
                 high[n] += _E5[j] * stages[j * width + n]
-        fifth = measure(context, end, high)
+        fifth = squared_error(context, end, high)
         if fifth == 0.0:
             return 0.0
-        third = measure(context, end, low)
+        third = squared_error(context, end, low)
         return step * float(fifth) / math.sqrt(fifth + 0.01 * third)
 
     @kernel
     def prepare_dense(
         context: Any, start: Array, end: Array, step: float, stages: Array, dense: Array, scratch: Array
     ) -> None:
+        """Fill the seven rows of the dense output from the stages of a step, by three more evaluations.
+
+        dense         out    rows of size + counted                  (DOP853_DENSE_ROWS rows)
+        scratch       room                                           (size + counted,)
+
+        Source   as `make_dop853`
+        Checked  tests/tethered_deorbit/test_integrator.py: order 7 within the step
+        """
         for i in range(DOP853_STAGES + 1, DOP853_ROWS):
             for n in range(size):
                 scratch[n] = 0.0
@@ -186,6 +215,19 @@ def make_dop853(
 
     @kernel
     def dense_value(start: Array, dense: Array, fraction: float, first: int, count: int, out: Array) -> None:
+        """out = components of the state at a fraction of the step; the bits of the start at 0.
+
+            x(s) = x + s (d_0 + (1 - s) (d_1 + s (d_2 + (1 - s) (d_3 + ...))))
+
+        start         x      at the begin of the step                (size + counted,)
+        dense         d      from `prepare_dense`
+        fraction      s      of the step, 0 to 1                     [-]
+        first, count         which components
+        out                                                          (count,)
+
+        Source   as `make_dop853`
+        Checked  tests/tethered_deorbit/test_integrator.py: order 7 within the step
+        """
         rest = 1.0 - fraction
         for n in range(count):
             value = 0.0
@@ -196,6 +238,16 @@ def make_dop853(
 
     @kernel
     def dense_rate(dense: Array, fraction: float, step: float, first: int, count: int, out: Array) -> None:
+        """out = rate of components of the state at a fraction of the step [their unit/s].
+
+        The derivative of `dense_value`.
+
+        step          h                                              [s]
+        The others as in `dense_value`.
+
+        Source   as `make_dop853`; the product rule along its nested factors
+        Checked  tests/tethered_deorbit/test_integrator.py: order 6 within the step
+        """
         rest = 1.0 - fraction
         for n in range(count):
             value = 0.0

@@ -10,13 +10,17 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
+
+from fmu_src import tables
+from fmu_src.tables import Table
 
 Kind = Literal["Real", "Integer", "Boolean"]
 Causality = Literal["parameter", "input", "output", "state"]
@@ -134,12 +138,27 @@ class Fault:
     severity        error; discard (a step may be tried again otherwise); end (the model's own end: nothing is wrong,
                     `fault_time` is when, and the outputs are those of the last communication point)
     names_variable  `fault_index` is the value reference of the variable at fault; else it is zero or what the text says
+    name            by which a part's kernels find the code that the model gave it
+    blames          the variable it names, or its first component
     """
 
     code: int
     severity: Literal["discard", "error", "end"]
     text: str
     names_variable: bool = False
+    name: str = ""
+    blames: str = ""
+
+
+def fault(name: str, blames: str, text: str) -> Fault:
+    """An error of a part: the model that takes it in numbers it. `blames` is empty where no one value is at fault."""
+    return Fault(0, "error", text, bool(blames), name, blames)
+
+
+def numbered(faults: Iterable[Fault]) -> tuple[Fault, ...]:
+    """Faults with codes from 1 on, in their order; each name once."""
+    unlike = {f.name: f for f in faults}
+    return tuple(replace(f, code=code) for code, f in enumerate(unlike.values(), 1))
 
 
 @dataclass(frozen=True)
@@ -147,13 +166,25 @@ class Term:
     """One physics term a scene may name: its variables, and a sentence on what it adds.
 
     needs    groups without a term of which it has nothing to act on
+    excludes groups with any term of which it cannot go together
     states   outputs that are states with it: they begin with what their inputs say, and follow them over a step only
+    faults   for which its kernels may stop
+    tables   that its kernels read, each given when an FMU or an instance is made
+    make     `make(composition)`: its kernels, as the model it is a part of asks for them
+    checks   what the model asks of it before any build or run
+    refuses  `refuses(scene)`: why it can not work with a scene's values, as the model it is a part of asks for it
     """
 
     summary: str
     variables: tuple[Variable, ...] = ()
     needs: tuple[str, ...] = ()
+    excludes: tuple[str, ...] = ()
     states: tuple[str, ...] = ()
+    faults: tuple[Fault, ...] = ()
+    tables: tuple[Table, ...] = ()
+    make: Callable[[Any], Any] | None = None
+    checks: Any = None
+    refuses: Callable[[Any], Iterable[Any]] | None = None
 
 
 @dataclass(frozen=True)
@@ -161,6 +192,8 @@ class Group:
     """Terms of which a scene names at most one, by the key `selector` of its table.
 
     optional     the scene may leave the group out; then nothing of it is in the FMU
+    default      the term that is taken where the scene names none; then the table may be left out
+    table        of the scene that has the selector; empty: that of the group's own name
     follows      the term that follows from the values, SI by FMI name, where the scene has the table and names none
     """
 
@@ -168,6 +201,8 @@ class Group:
     selector: str = "law"
     optional: bool = False
     follows: Callable[[Mapping[str, float]], str] | None = None
+    default: str = ""
+    table: str = ""
 
 
 HEAD = (
@@ -176,6 +211,8 @@ HEAD = (
     Variable("fault_index", "1", "state", "value reference of the variable at fault", kind="Integer"),
     Variable("fault_time", "s", "state", "when"),
     Variable("fault_value", "1", "state", "offending value, SI"),
+    Variable("tables", "1", "state", "identity of the tables, 0 for none", kind="Integer"),
+    Variable("tables_at", "1", "state", "where they lie while the entry runs, 0 at all other times", kind="Integer"),
     Variable("terms", "1", "state", "unused; its name in the record tells one choice of terms from another"),
 )
 """Every record begins with these; the C shim knows them by their place."""
@@ -227,6 +264,13 @@ class Model:
                 if needed not in terms:
                     yield group, needed
 
+    def clashing(self, terms: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+        """Each group whose term cannot go together with another group that is there, and that group."""
+        for group, term in terms.items():
+            for other in self.groups[group].terms[term].excludes:
+                if other in terms:
+                    yield group, other
+
     def interface(self, terms: Mapping[str, str]) -> Interface:
         """The interface of this model built with the given terms, `{group: term}`."""
         for group, term in terms.items():
@@ -234,11 +278,14 @@ class Model:
                 raise ValueError(f"{self.name} has no group of terms {group!r}; it has {', '.join(self.groups)}")
             if term not in self.groups[group].terms:
                 raise ValueError(f"{group} = {term!r}: expected one of {', '.join(self.groups[group].terms)}")
+        terms = {name: group_.default for name, group_ in self.groups.items() if group_.default} | dict(terms)
         for name, group_ in self.groups.items():
             if not group_.optional and name not in terms:
                 raise ValueError(f"{self.name} needs a choice of {name}: {', '.join(group_.terms)}")
         for group, needed in self.missing(terms):
             raise ValueError(f"{self.name}: {group} = {terms[group]!r} needs a choice of {needed}")
+        for group, other in self.clashing(terms):
+            raise ValueError(f"{self.name}: {group} = {terms[group]!r} cannot go together with {other}")
         ordered = {name: terms[name] for name in self.groups if name in terms}
         variables = list(HEAD + self.base)
         for name, term in ordered.items():
@@ -269,11 +316,49 @@ def check_implemented(model: Model, implemented: Mapping[str, Container[str]], t
 
 @dataclass(frozen=True)
 class Interface:
-    """The variables of one model with one choice of terms."""
+    """The variables of one model with one choice of terms.
+
+    given    numbers of its tables, of all or of none: what is built does not depend on them
+    """
 
     model: Model
     terms: Mapping[str, str]
     variables: tuple[Variable, ...]
+    given: Mapping[str, npt.NDArray[np.float64]] = field(default_factory=dict, compare=False)
+
+    @cached_property
+    def tables(self) -> tuple[Table, ...]:
+        """Those of its terms, in order; ValueError if two of them share a name."""
+        chosen = (self.model.groups[group].terms[term].tables for group, term in self.terms.items())
+        found = tuple(dict.fromkeys(itertools.chain.from_iterable(chosen)))
+        for name, count in Counter(table.name for table in found).items():
+            if count > 1:
+                raise ValueError(f"{self.model.name}: two parts bring a table {name}, and they differ")
+        return found
+
+    def with_tables(self, given: Mapping[str, npt.ArrayLike]) -> Interface:
+        """The same variables with these tables; ValueError if one is missing, unknown, or can not be what it is for."""
+        if not self.tables and not given:
+            return self
+        numbers = tables.numbers(self.tables, given, self.model.name)
+        key = tables.identity(tables.block(self.tables, numbers))
+        rows = tuple(replace(v, start=key) if v.name == "tables" else v for v in self.variables)
+        return replace(self, variables=rows, given=numbers)
+
+    def demand_tables(self) -> None:
+        """ValueError if it has tables, and was not given them."""
+        tables.demand(self.tables, self.given, self.model.name)
+
+    @cached_property
+    def table_block(self) -> npt.NDArray[np.int64]:
+        """Its tables as its kernels read them; ValueError if it has any, and was not given them."""
+        self.demand_tables()
+        return tables.block(self.tables, self.given)
+
+    @property
+    def tables_identity(self) -> int:
+        """0 where it has none, or was not given them."""
+        return next(int(v.starts()[0]) for v in self.variables if v.name == "tables")
 
     @cached_property
     def dtype(self) -> np.dtype[np.void]:

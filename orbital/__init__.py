@@ -6,5 +6,6 @@ the reports call it in the process, and the tests judge both by the closed forms
 `oscillators`). SI units and radians everywhere.
 
 The frame of both models is the orbital frame of `frames`: axis 1 radial outward, 2 along-track, 3 along the orbit
-normal. Functions under the `kernel` decorator allocate nothing; they write into `out`, their first argument.
+normal. Functions under the `kernel` decorator allocate nothing; they write into `out`, their first argument. Those of
+`plain` are wanted without numba as well, and compiled by the module they belong to.
 """

@@ -8,6 +8,7 @@ the kinematics read dq/dt = q (0, rate) / 2. Results go into `out`, which may be
 
 import math
 
+from orbital import plain
 from orbital.kernel import kernel
 from orbital.vectors import Array
 
@@ -197,24 +198,7 @@ def quaternion_rate(out: Array, q: Array, body_rate: Array) -> None:
     out[3] = z_out
 
 
-@kernel
-def to_matrix(out: Array, q: Array) -> None:
-    """out = the rotation matrix [-] (3, 3) of a unit quaternion: v_reference = R v_body.
-
-    Valid    unit quaternions
-    Source   `rotate` applied to the three axes
-    Checked  tests/orbital/test_rotations.py
-    """
-    w, x, y, z = q[0], q[1], q[2], q[3]
-    out[0, 0] = 1.0 - 2.0 * (y * y + z * z)
-    out[0, 1] = 2.0 * (x * y - w * z)
-    out[0, 2] = 2.0 * (x * z + w * y)
-    out[1, 0] = 2.0 * (x * y + w * z)
-    out[1, 1] = 1.0 - 2.0 * (x * x + z * z)
-    out[1, 2] = 2.0 * (y * z - w * x)
-    out[2, 0] = 2.0 * (x * z - w * y)
-    out[2, 1] = 2.0 * (y * z + w * x)
-    out[2, 2] = 1.0 - 2.0 * (x * x + y * y)
+to_matrix = kernel(plain.to_matrix)
 
 
 @kernel
@@ -259,7 +243,12 @@ def from_matrix(out: Array, matrix: Array) -> None:
 
 @kernel
 def _turn(out: Array, w: float, x: float, y: float, z: float, v: Array) -> None:
-    """out = v turned by the unit quaternion (w, x, y, z); see `rotate`."""
+    """out = v turned by the unit quaternion (w, x, y, z) [unit of v] (3,); see `rotate`.
+
+        v + w t + u x t,   t = 2 u x v,   u = (x, y, z)
+
+    Checked  tests/orbital/test_rotations.py
+    """
     v0, v1, v2 = v[0], v[1], v[2]
     t0 = 2.0 * (y * v2 - z * v1)
     t1 = 2.0 * (z * v0 - x * v2)

@@ -7,6 +7,7 @@ Orbital elements and propagation along a Kepler orbit stand in `kepler`.
 
 import math
 
+from orbital import plain
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
@@ -97,20 +98,7 @@ def semi_major_axis(position: Array, velocity: Array, mu: float) -> float:
     return 1.0 / (2.0 / norm(position) - dot(velocity, velocity) / mu)
 
 
-@kernel
-def mean_motion(semi_major_axis: float, mu: float) -> float:
-    """Mean angular rate of a closed orbit [rad/s].
-
-        n = sqrt(mu / a^3)
-
-    semi_major_axis  a   of the ellipse, the radius of a circle  [m]
-    mu               mu  gravitational parameter                 [m^3/s^2]
-
-    Valid    a > 0
-    Source   Kepler's third law
-    Checked  tests/orbital/test_twobody.py; 1.0381289e-3 rad/s at 800 km
-    """
-    return math.sqrt(mu / semi_major_axis) / semi_major_axis
+mean_motion = kernel(plain.mean_motion)
 
 
 @kernel

@@ -46,11 +46,14 @@ class Archive:
 
     folder       an FMU that is unpacked already, which `close` leaves alone
     tolerance    that the FMU's own solver is told, None for none; that of its default experiment if not given
+    within       a folder that the file is in and `close` removes
     remarks      what its user should know of what its instances did, each sentence once
     """
 
-    def __init__(self, path: Path, folder: Path | None = None, tolerance: float | None = None) -> None:
-        self.path = path
+    def __init__(
+        self, path: Path, folder: Path | None = None, tolerance: float | None = None, within: Scratch | None = None
+    ) -> None:
+        self.path, self._within = path, within
         self.remarks: dict[str, None] = {}
         self._unpacked: Scratch | None = None
         self.folder: Path | None = folder
@@ -129,8 +132,9 @@ class Archive:
         return IsolatedComponent(self, name, timeout)
 
     def close(self) -> None:
-        if self._unpacked is not None:
-            self._unpacked.remove()
+        for scratch in (self._unpacked, self._within):
+            if scratch is not None:
+                scratch.remove()
         self.folder = None
 
     def __enter__(self) -> Archive:

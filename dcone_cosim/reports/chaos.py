@@ -24,7 +24,7 @@ SPREADS: Mapping[str, Mapping[str, float]] = {
         "mouth.area_max": 2e-3,
         "thread.tension_max": 0.31,
         "cord.tension_max": 0.17,
-        "mouth.cord_length": 5e-3,
+        "mouth.cord_length": 0.07,
         "contact.loss": 0.1,
         "closing.work": 0.13,
         "thread.dissipated": 0.1,

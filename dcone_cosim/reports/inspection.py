@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
-from dcone_cosim.archives import isolated
+from dcone_cosim.archives import isolated, opened
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.master import cannot_begin
@@ -89,7 +89,7 @@ def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: 
     if component is phase.main:
         about.implied += build.implied(phase.name, values, component.terms)
     try:
-        with Archive(path) as archive:
+        with opened(path, component) as archive:
             about.facts, more = _sizes(phase, component, archive)
     except FmuError as error:
         raise cannot_begin(scene, phase.name, error) from None

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from dcone_cosim import build
 from dcone_cosim.handoff import rotation_matrix
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.reports import style
@@ -17,8 +18,6 @@ LEAST_WIDTH = 9.0
 """Width that the legend needs [inch]."""
 SHOWN = (1, 2, 0)
 """Axes of a panel: along-track to the right, cross-track into the page, radial up."""
-CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
 
 
 def choose(times: list[float], asked: bool, located: float | None) -> list[int]:
@@ -70,15 +69,15 @@ def _panel(axes: Any, result: PhaseResult, shot: int, row: int, parameters: dict
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
     nodes = result.snapshots.nodes[shot][:, SHOWN]
-    _box(axes, result, row, parameters)
-    lines = _thread_lines(nodes, parameters)
+    _target(axes, result, row, parameters)
+    lines, rim = _thread_lines(nodes, parameters)
     if lines:
         axes.add_collection3d(Line3DCollection(lines, colors=style.NET, linewidths=0.35, alpha=0.75, zorder=3))
     else:
         axes.plot(*nodes.T, ".", color=style.NET, markersize=1, zorder=3)
     bullets = _bullets(result, row)[:, SHOWN]
     if len(bullets):
-        ring = np.vstack([bullets, bullets[:1]])
+        ring = rim if rim is not None else np.vstack([bullets, bullets[:1]])
         axes.plot(*ring.T, color=style.BULLET, linewidth=0.9, alpha=0.8, zorder=4)
         axes.plot(*bullets.T, "o", color=style.BULLET, markersize=2.8, zorder=5)
 
@@ -91,40 +90,38 @@ def _bullets(result: PhaseResult, row: int) -> Array:
     return np.array([[recorder[f"bullet[{b}].position[{i}]"][row] for i in (1, 2, 3)] for b in (1, 2, 3, 4)])
 
 
-def _thread_lines(nodes: Array, parameters: dict[str, float]) -> list[Array]:
-    """The threads as rows and columns of knots, (knots, 3) each; empty when the net's shape is not known."""
-    side, mesh = parameters.get("net.side"), parameters.get("net.mesh")
-    if not side or not mesh:
-        return []
-    knots = round(side / mesh) + 1
-    if knots * knots > len(nodes):
-        return []
-    grid = nodes[: knots * knots].reshape(knots, knots, 3)
-    return [*grid, *grid.transpose(1, 0, 2)]
+def _thread_lines(nodes: Array, parameters: dict[str, float]) -> tuple[list[Array], Array | None]:
+    """The threads as lines of knots, (knots, 3) each, and the rim; nothing when the net's shape is not known."""
+    drawing = build.net_drawing(parameters)
+    if drawing is None:
+        return [], None
+    lines, rim = drawing
+    if max(rim) >= len(nodes):
+        return [], None
+    return [nodes[line] for line in lines], nodes[rim]
 
 
-def _box(axes: Any, result: PhaseResult, row: int, parameters: dict[str, float]) -> None:
+def _target(axes: Any, result: PhaseResult, row: int, parameters: dict[str, float]) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    corners = _corners(result, row, parameters)
+    corners, faces = _surface(result, row, parameters)
     if corners is None:
         return
     corners = corners[:, SHOWN]
-    faces = [corners[list(face)] for face in FACES]
+    polygons = [corners[face] for face in faces]
     axes.add_collection3d(
-        Poly3DCollection(faces, facecolors=style.TARGET, edgecolors="#4d3b1c", linewidths=0.5, alpha=0.45, zorder=2)
+        Poly3DCollection(polygons, facecolors=style.TARGET, edgecolors="#4d3b1c", linewidths=0.5, alpha=0.45, zorder=2)
     )
 
 
-def _corners(result: PhaseResult, row: int, parameters: dict[str, float]) -> Array | None:
-    """Corners of the target turned by its attitude, (8, 3) [m]."""
-    recorder = result.recorder
-    if "target.attitude[1]" not in recorder or "target.size[1]" not in parameters:
-        return None
-    size = np.array([parameters[f"target.size[{i}]"] for i in (1, 2, 3)])
+def _surface(result: PhaseResult, row: int, parameters: dict[str, float]) -> tuple[Array | None, list[list[int]]]:
+    """Corners of the target turned by its attitude, (n, 3) [m], and its faces; None where its shape is not known."""
+    recorder, surface = result.recorder, build.target_surface(parameters)
+    if "target.attitude[1]" not in recorder or surface is None:
+        return None, []
     turn = rotation_matrix(recorder.vector("target.attitude", 4)[row])
-    corners: Array = recorder.vector("target.position")[row] + (CORNERS * size) @ turn.T
-    return corners
+    corners: Array = recorder.vector("target.position")[row] + np.array(surface[0]) @ turn.T
+    return corners, surface[1]
 
 
 def _limits(
@@ -133,7 +130,7 @@ def _limits(
     """Bounds of everything shown, one for all panels so that they compare."""
     clouds = [result.snapshots.nodes[i] for i in chosen] + [_bullets(result, rows[i]) for i in chosen]
     for i in chosen:
-        corners = _corners(result, rows[i], parameters)
+        corners, _ = _surface(result, rows[i], parameters)
         if corners is not None:
             clouds.append(corners)
     points = np.concatenate(clouds)[:, SHOWN]

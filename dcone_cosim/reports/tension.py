@@ -9,6 +9,7 @@ import numpy as np
 
 from dcone_cosim.phases import PhaseResult
 from orbital.constants import EARTH_MU
+from orbital.plain import mean_motion
 
 
 class Tension(NamedTuple):
@@ -29,11 +30,11 @@ class Tension(NamedTuple):
 
 
 def orbital_period(axis: float) -> float:
-    """Period [s] of an orbit about the Earth, 2 pi sqrt(a^3 / mu); `orbital.twobody` has it too, and numba with it.
+    """Period [s] of an orbit about the Earth: 2 pi / n.
 
     axis          a   semi-major                                 [m]
     """
-    return 2.0 * math.pi * math.sqrt(axis**3 / EARTH_MU)
+    return 2.0 * math.pi / mean_motion(axis, EARTH_MU)
 
 
 def last_orbit(result: PhaseResult) -> Tension | None:

@@ -66,26 +66,32 @@ def approach(result: PhaseResult) -> Approach | None:
     return Approach(float(recorder["separation"][row]), float(time[row] - time[0]), True)
 
 
+def _reach(run: RunResult) -> float | None:
+    """How far the target reaches from its centre [m], as handed over or by its shape; None where neither is known."""
+    if run.handoff is not None:
+        return run.handoff.handed.reach
+    surface = build.target_surface(run.parameters.get("capture", {}))
+    return None if surface is None else max(math.hypot(*corner) for corner in surface[0])
+
+
 def _of_meeting(run: RunResult, result: PhaseResult) -> Iterator[str]:
     """Whether the bodies would meet, by what is known of how far they reach from their centres of mass.
 
-    A box reaches half its diagonal at most, so a pass that is told may still be a miss; none that is not told is a hit,
-    as far as the chaser reaches no farther than is assumed.
+    A target reaches as far as its farthest corner at most, so a pass that is told may still be a miss; none that is not
+    told is a hit, as far as the chaser reaches no farther than is assumed.
     """
     nearest = approach(result)
     if nearest is None:
         return
-    capture = run.parameters.get("capture", {})
-    size = [capture.get(f"target.size[{i}]", math.nan) for i in (1, 2, 3)]
-    if math.isnan(sum(size)):
+    reach = _reach(run)
+    if reach is None:
         reach, assumed = (
             UNKNOWN_EXTENT,
             f"each is taken to reach {UNKNOWN_EXTENT:g} m from its centre, as no size is known",
         )
     else:
-        reach = 0.5 * math.hypot(*size)
         assumed = (
-            f"the target's corners are {reach:.3g} m from its centre, "
+            f"the target reaches {reach:.3g} m from its centre, "
             f"and the chaser is taken to reach {UNKNOWN_EXTENT:g} m from its own"
         )
     if nearest.distance < reach + UNKNOWN_EXTENT:

@@ -37,7 +37,7 @@ from dcone_cosim.scenes.keys import (
     table_in,
 )
 from dcone_cosim.scenes.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
-from dcone_cosim.scenes.parts import RESERVED, Part, follow, of_fmu, of_model, read_part, reserved_of
+from dcone_cosim.scenes.parts import RESERVED, Part, follow, of_fmu, of_model, read_files, read_part, reserved_of
 from dcone_cosim.scenes.relations import (
     about_hand_over,
     about_line,
@@ -71,6 +71,7 @@ class _Component:
             self.part.choices(),
             self.options.get("solver_tolerance"),
             self.part.texts,
+            self.part.tables,
         )
 
 
@@ -198,6 +199,7 @@ def _read_component(
         of_model(part, part.model, tables, mistakes)
     elif not _named_model(part, tables, mistakes):
         return read
+    read_files(part, tables, folder, mistakes)
     read.parameters = read_part(part, tables, orbit, mistakes)
     follow(part, read.parameters)
     return read

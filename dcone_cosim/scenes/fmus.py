@@ -30,12 +30,12 @@ class Offer:
     slots: Mapping[str, Slot]
 
 
-def file_of(given: object, folder: Path) -> Path:
-    """Path of the FMU that a scene in this folder names, or `Unexpected`. Whether it is one, opening it shows."""
+def file_of(given: object, folder: Path, what: str = "FMU", example: str = "my.fmu") -> Path:
+    """Path of the file that a scene in this folder names, or `Unexpected`. Whether it is one, opening it shows."""
     if not isinstance(given, str) or not given.strip():
-        raise Unexpected('expected the path of an FMU, such as "my.fmu"')
+        raise Unexpected(f'expected the path of {"an" if what == "FMU" else "a"} {what}, such as "{example}"')
     if ADDRESS.match(given):
-        raise Unexpected("is an address: nothing is fetched; download the FMU and give its path")
+        raise Unexpected(f"is an address: nothing is fetched; download the {what} and give its path")
     if "\0" in given:
         raise Unexpected("is no path: it holds a NUL")
     return folder / Path(given).expanduser()

@@ -1,6 +1,6 @@
 """What the folder of a run keeps so that the run can be made again from it alone, wherever it is moved to.
 
-    scene.toml, fmus/*.fmu                    a scene as run, with copies of the FMUs that it names
+    scene.toml, fmus/*.fmu, tables/*          a scene as run, with copies of the FMUs and tables that it names
     system.ssp, SystemStructure.ssd           a package as it was, and its structure to be read by people
 
 `dcone run FOLDER` makes the run again. Values given on the command line stand in the scene's text; a package is left as
@@ -24,8 +24,8 @@ from dcone_cosim.scenes.text import moved
 if TYPE_CHECKING:
     from dcone_cosim.scenes.scene import Scene
 
-PROVENANCE, SCENE, PACKAGE, STRUCTURE, FMUS = (
-    *("provenance.json", "scene.toml", "system.ssp", "SystemStructure.ssd", "fmus"),
+PROVENANCE, SCENE, PACKAGE, STRUCTURE, FMUS, TABLES = (
+    *("provenance.json", "scene.toml", "system.ssp", "SystemStructure.ssd", "fmus", "tables"),
 )
 
 
@@ -44,21 +44,23 @@ def keep(scene: Scene, folder: Path) -> None:
         shutil.copyfile(scene.source, folder / PACKAGE)
         (folder / STRUCTURE).write_text(scene.text, encoding="utf-8")
         return
-    copies = _names([c.fmu.absolute() for phase in scene.phases for c in phase.components if c.fmu is not None])
-    for fmu, name in copies.items():
-        (folder / FMUS).mkdir(exist_ok=True)
-        shutil.copyfile(fmu, folder / FMUS / name)
-    text = moved(scene.text, {fmu: f"{FMUS}/{name}" for fmu, name in copies.items()}) if copies else scene.text
-    (folder / SCENE).write_text(text, encoding="utf-8")
+    fmus = _copied(
+        [c.fmu.absolute() for phase in scene.phases for c in phase.components if c.fmu is not None], folder, FMUS
+    )
+    tables = _copied([table.file.absolute() for table in scene.tables], folder, TABLES)
+    named = {table.path: tables[table.file.absolute()] for table in scene.tables}
+    (folder / SCENE).write_text(moved(scene.text, fmus, named), encoding="utf-8")
 
 
-def _names(fmus: list[Path]) -> dict[Path, str]:
-    """A name for a copy of each, its own unless another has it."""
+def _copied(files: list[Path], folder: Path, place: str) -> dict[Path, str]:
+    """Copies of files in a folder, each under its own name unless another has that; where they are, in the folder."""
     names: dict[Path, str] = {}
-    for fmu in fmus:
-        if fmu not in names:
-            same = sum(other.name == fmu.name for other in names)
-            names[fmu] = f"{fmu.stem}-{same + 1}{fmu.suffix}" if same else fmu.name
+    for file in files:
+        if file not in names:
+            same = sum(other.name == file.name for other in names)
+            names[file] = f"{place}/{file.stem}-{same + 1}{file.suffix}" if same else f"{place}/{file.name}"
+            (folder / place).mkdir(exist_ok=True)
+            shutil.copyfile(file, folder / names[file])
     return names
 
 

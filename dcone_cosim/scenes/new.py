@@ -17,6 +17,7 @@ from dcone_cosim.line import ATTACHMENT
 from dcone_cosim.scenes.keys import COUPLING_KEYS, HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
 from dcone_cosim.scenes.parts import term_named
 from dcone_cosim.scenes.scene import PHASES
+from dcone_cosim.scenes.tables import EXAMPLE
 from dcone_cosim.scenes.toml_lines import dotted
 from dcone_cosim.scenes.units import Expected
 
@@ -77,10 +78,11 @@ def _somewhere(document: Mapping[str, Any], name: str) -> bool:
 
 
 def _terms(model: build.Model, tables: Mapping[str, Any]) -> dict[str, str]:
+    named = {name: tables.get(group.table or name, {}) for name, group in model.groups.items()}
     return {
-        name: term_named(tables[name].get(group.selector))
+        name: term_named(named[name][group.selector]) if group.selector in named[name] else group.default
         for name, group in model.groups.items()
-        if name in tables and (group.follows is None or group.selector in tables[name])
+        if group.selector in named[name] or group.default
     }
 
 
@@ -118,19 +120,24 @@ def _component(
 ) -> Iterator[str]:
     """What a component of our models can be told, under the header of its table."""
     above, terms = dotted(path), _terms(model, tables)
-    rows = [row for row in build.settable(model.interface(terms)) if row.section != SHARED]
+    interface = model.interface(terms)
+    rows = [row for row in build.settable(interface) if row.section != SHARED]
     rows = [row for row in rows if not build.scene_name(row).startswith(tuple(skip) or ("\0",))]
     own = {build.scene_name(row): _described(row) for row in rows if not row.key}
     yield from _table(tables, own)
     tables = {name: table for name, table in tables.items() if isinstance(table, dict) and name not in RESERVED}
-    for section in dict.fromkeys((*tables, *terms, *(row.section for row in rows if row.key))):
+    homes = {name: model.groups[name].table or name for name in terms}
+    for section in dict.fromkeys((*tables, *homes.values(), *(row.section for row in rows if row.key))):
         keys = {row.key: _described(row) for row in rows if row.section == section}
         given = tables.get(section)
         yield ""
         yield f"[{above}.{section}]" if given is not None else f"# [{above}.{section}]"
-        if section in terms:
-            yield _selection(model.groups[section], terms[section])
-        yield from _table(given or {}, keys)
+        for name in (name for name, home in homes.items() if home == section):
+            group = model.groups[name]
+            yield _selection(group, terms[name], "" if group.selector in (given or {}) else "# ")
+        selectors = {model.groups[name].selector for name in homes if homes[name] == section}
+        yield from _files(section, given or {}, interface.tables)
+        yield from _table({key: value for key, value in (given or {}).items() if key not in selectors}, keys)
     for name, group in model.groups.items():
         if name not in terms and name not in tables:
             yield from ("", *_left_out(above, name, group))
@@ -153,9 +160,18 @@ def _left_out(above: str, name: str, group: build.Group) -> Iterator[str]:
         return
     yield f"# [{above}.{name}]"
     yield _selection(group, first, "# ")
+    yield from _files(name, {}, group.terms[first].tables, "# ")
     for row in build.term_rows(group, first):
         if row.causality in build.SETTABLE and row.section == name:
             yield _default(row.key, _described(row))
+
+
+def _files(section: str, given: Mapping[str, Any], tables: Sequence[build.Table], mark: str = "") -> Iterator[str]:
+    """The keys of a section that name files, with what is given or an example."""
+    for table in tables:
+        home, _, key = table.name.partition(".")
+        if home == section:
+            yield _line(key, _toml(given.get(key, EXAMPLE)), f"path of a file: {table.description}", mark)
 
 
 def _described(row: build.Variable) -> Key:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,9 @@ from dcone_cosim.fmu.units import by_name
 from dcone_cosim.scenes.fmus import Offer
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
 from dcone_cosim.scenes.mistakes import Mistake, unknown
-from dcone_cosim.scenes.toml_lines import Path, dotted
+from dcone_cosim.scenes.scene import TableFile
+from dcone_cosim.scenes.tables import EXAMPLE, table_of
+from dcone_cosim.scenes.toml_lines import Path, dotted, given_at
 from dcone_cosim.scenes.units import LARGEST_INTEGER, TEXT
 
 if TYPE_CHECKING:
@@ -38,6 +41,8 @@ class Part:
     given        where the value of each variable was given
     following    groups whose term follows from the values
     texts        that the scene gives to Strings, by variable
+    files        tables that our model reads, by name, which a scene gives as the path of a file
+    tables       those that it gives
     """
 
     path: Path
@@ -52,6 +57,8 @@ class Part:
     given: dict[str, Path] = field(default_factory=dict)
     following: list[str] = field(default_factory=list)
     texts: dict[str, str] = field(default_factory=dict)
+    files: dict[str, build.Table] = field(default_factory=dict)
+    tables: dict[str, TableFile] = field(default_factory=dict)
 
     @property
     def groups(self) -> Mapping[str, build.Group]:
@@ -59,11 +66,11 @@ class Part:
 
     def selects(self, names: tuple[str, ...]) -> bool:
         """Whether a key chooses a term of our model."""
-        return len(names) == 2 and names[0] in self.groups and self.groups[names[0]].selector == names[1]
+        return any(names == (group.table or name, group.selector) for name, group in self.groups.items())
 
     def holds(self, table: str) -> bool:
         """Whether a name is that of a table of keys."""
-        return any(name.startswith(table + ".") for name in self.keys)
+        return any(name.startswith(table + ".") for name in (*self.keys, *self.files))
 
     def defaults(self) -> dict[str, float]:
         numbers = [key for key in self.keys.values() if key.expected.kind != TEXT]
@@ -77,8 +84,11 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
     """The part as this model of ours; a wrong term is noted, and the check goes on with the likeliest."""
     part.model = model
     for group_name, group in model.groups.items():
-        path = (*part.path, group_name)
-        table = tables.get(group_name)
+        path = (*part.path, group.table or group_name)
+        table = tables.get(group.table or group_name)
+        if group.default and (table is None or (isinstance(table, dict) and group.selector not in table)):
+            part.terms[group_name] = group.default
+            continue
         if table is None:
             if not group.optional:
                 text = f"expected this table, with {group.selector} = one of {', '.join(group.terms)}"
@@ -109,7 +119,17 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
         text = f"needs the table [{dotted((*part.path, needed))}], which this scene lacks"
         mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
         part.terms[needed] = next(iter(model.groups[needed].terms))
-    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(model.interface(part.terms))}
+    clashes: dict[str, list[str]] = {}
+    for group_name, other in model.clashing(part.terms):
+        clashes.setdefault(group_name, []).append(f"[{dotted((*part.path, other))}]")
+    for group_name, others in clashes.items():
+        group = model.groups[group_name]
+        path = (*part.path, group.table or group_name, group.selector)
+        mistakes.append(Mistake(path, part.terms[group_name], f"cannot go together with {' and '.join(others)}"))
+        part.terms[group_name] = group.default or next(iter(group.terms))
+    interface = model.interface(part.terms)
+    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(interface)}
+    part.files = {table.name: table for table in interface.tables}
     _offer_slots(part, model)
     return part
 
@@ -145,6 +165,21 @@ def term_named(given: object) -> str:
     if isinstance(given, int) and not isinstance(given, bool) and 0 <= given <= LARGEST_INTEGER:
         return str(given)
     return given if isinstance(given, str) and not given.isdecimal() else ""
+
+
+def read_files(part: Part, tables: Mapping[str, Any], folder: File, mistakes: list[Mistake]) -> None:
+    """Read the files of tables that the scene names; one that it does not name is missing."""
+    for name, table in part.files.items():
+        path = (*part.path, *name.split("."))
+        given = given_at(tables, path[len(part.path) :])
+        if given is None:
+            mistakes.append(
+                Mistake(path, None, f'expected the path of a file, such as "{EXAMPLE}": {table.description}')
+            )
+            continue
+        read = read_value(given, partial(table_of, table, folder=folder, path=path), path, mistakes)
+        if read is not None:
+            part.tables[name] = read
 
 
 def read_part(
@@ -188,6 +223,8 @@ def _walk(part: Part, names: tuple[str, ...], value: Any, found: dict[str, float
     ours = part.fmu is None
     if joined in part.keys and not (ours and names[0] == SHARED):
         _take(part, joined, value, path, found, mistakes)
+    elif joined in part.files:
+        return  # looked at by `read_files`
     elif part.selects(names):
         _look_at_choice(part, names, value, mistakes)
     elif ours and joined in part.groups and not isinstance(value, dict):
@@ -207,7 +244,7 @@ def _look_at_choice(part: Part, names: tuple[str, ...], value: Any, mistakes: li
     """A term that is named beside an FMU, which has its terms built in: it says nothing, but must be one."""
     if part.fmu is None:
         return  # looked at by `of_model`
-    terms = part.groups[names[0]].terms
+    terms = next(g.terms for name, g in part.groups.items() if names == (g.table or name, g.selector))
     if term_named(value) not in terms:
         shown = [term for term in terms if term in terms]
         text = f"names no term; it may be left out, since {part.fmu.name} has its terms built in"
@@ -216,7 +253,8 @@ def _look_at_choice(part: Part, names: tuple[str, ...], value: Any, mistakes: li
 
 def _is_table(part: Part, names: tuple[str, ...]) -> bool:
     joined = ".".join(names)
-    return joined in part.groups or (part.holds(joined) and not (part.fmu is None and joined == SHARED))
+    tables = {group.table or name for name, group in part.groups.items()}
+    return joined in tables or (part.holds(joined) and not (part.fmu is None and joined == SHARED))
 
 
 def _take(part: Part, name: str, value: Any, path: Path, found: dict[str, float], mistakes: list[Mistake]) -> None:
@@ -258,9 +296,9 @@ def _unknown(part: Part, names: tuple[str, ...], value: object) -> Mistake:
     if home is not None:
         return Mistake(path, value, f"belongs to the term {home}, which this scene does not name")
     if len(names) == 1:
-        tables = {name.partition(".")[0] for name in part.keys} | set(part.groups) | set(part.reserved)
+        tables = {name.partition(".")[0] for name in (*part.keys, *part.files)} | set(part.groups) | set(part.reserved)
         return unknown(path, value, "unknown key", key, tables - {SHARED})
-    keys = [name.partition(".")[2] for name in part.keys if name.startswith(names[0] + ".")]
+    keys = [name.partition(".")[2] for name in (*part.keys, *part.files) if name.startswith(names[0] + ".")]
     return unknown(path, value, "unknown key", key, keys)
 
 
@@ -270,7 +308,8 @@ def _term_that_has(part: Part, names: tuple[str, ...]) -> str | None:
         for term in group.terms:
             for row in build.term_rows(group, term):
                 if row.causality in build.SETTABLE and (row.section, row.key)[: len(names)] == names:
-                    return f'[{dotted((*part.path, group_name))}] {group.selector} = "{term}"'
+                    path = (*part.path, group.table or group_name)
+                    return f'[{dotted(path)}] {group.selector} = "{term}"'
     return None
 
 

@@ -25,11 +25,26 @@ from dcone_cosim.files import no_file, regular
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scenes.mistakes import Places
 from dcone_cosim.scenes.toml_lines import DEEPEST, deep_key
+from dcone_cosim.scenes.toml_lines import Path as KeyPath
 
 SHIPPED = Path(__file__).parent
 PHASES = ("capture", "removal")
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """Byte order marks of UTF-16."""
+
+
+@dataclass(frozen=True)
+class TableFile:
+    """A table of a part of ours, and the file it is from.
+
+    path       of the key that names the file
+    sha256     of the file, as it was read
+    """
+
+    path: KeyPath
+    file: Path
+    sha256: str
+    numbers: Any = field(repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -47,6 +62,7 @@ class ComponentScene:
     choices      FMI name: names of the values of an Integer choice
     tolerance    that the FMU's own solver is told; None for that of its default experiment
     texts        FMI name: value of each String that the scene gives
+    tables       of a model of ours, by name
     """
 
     name: str
@@ -60,6 +76,7 @@ class ComponentScene:
     choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     tolerance: float | None = None
     texts: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, TableFile] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -127,6 +144,11 @@ class Scene:
             main, *others = (replace(component, isolate=isolate) for component in phase.components)
             phases.append(replace(phase, main=main, others=tuple(others)))
         return replace(self, phases=tuple(phases))
+
+    @property
+    def tables(self) -> list[TableFile]:
+        """Those of all components."""
+        return [table for phase in self.phases for c in phase.components for table in c.tables.values()]
 
     @property
     def sha256(self) -> str:
@@ -223,7 +245,8 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
     name_changes(text, document, overrides)
     places = Places(source, text, tuple(overrides))
     scene = check(document, name, places, folder)
-    return replace(scene, text=as_run(text, document, overrides, folder))
+    tables = {table.path: table.file for table in scene.tables}
+    return replace(scene, text=as_run(text, document, overrides, folder, tables))
 
 
 def title_of(path: Path) -> str:

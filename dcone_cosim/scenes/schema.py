@@ -104,7 +104,7 @@ def _phase(phase: str) -> Schema:
     """A phase: with a model of ours only the keys that this has, with an FMU in its place any."""
     model = build.MODELS[phase]
     tables, own = _tables(model), _own(phase)
-    needed = [name for name, group in model.groups.items() if not group.optional]
+    needed = [name for name, group in model.groups.items() if not group.optional and not group.default]
     strict = {name: {"properties": dict.fromkeys(t["properties"], True), "additionalProperties": False}
               for name, t in tables.items()}  # fmt: skip
     return {
@@ -125,16 +125,20 @@ def _tables(model: build.Model) -> dict[str, Schema]:
     """A table per part of the model, with the keys of every term it can have."""
     tables: dict[str, dict[str, Schema]] = {}
     for name, group in model.groups.items():
-        tables.setdefault(name, {})[group.selector] = _selector(group)
+        tables.setdefault(group.table or name, {})[group.selector] = _selector(group)
     for row in build.all_rows(model):
         if row.causality in build.SETTABLE and row.section != SHARED:
             key = key_of(row)
-            tables.setdefault(row.section, {})[row.key] = _value(key.expected, key.description, key.starts)
+            value = _value(key.expected, key.description, key.starts)
+            tables.setdefault(row.section, {}).setdefault(row.key, value)
+    for table in build.all_tables(model):
+        home, _, name = table.name.partition(".")
+        tables.setdefault(home, {})[name] = {"type": "string", "description": f"path of a file: {table.description}"}
     found = {}
     for name, properties in tables.items():
         described: Schema = {"type": "object", "properties": properties}
         if name in model.groups:
-            if model.groups[name].follows is None:
+            if model.groups[name].follows is None and not model.groups[name].default:
                 described["required"] = [model.groups[name].selector]
             described["description"] = "; ".join(f"{term}: {text}" for term, text in _terms(model.groups[name]))
         found[name] = described

@@ -9,6 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path as File
+from types import MappingProxyType
 from typing import Any
 
 from dcone_cosim.errors import InputError
@@ -96,8 +97,17 @@ def name_changes(text: str, document: dict[str, Any], overrides: Sequence[Overri
         document["title"] = titled(title, changes)
 
 
-def as_run(text: str, document: dict[str, Any], overrides: Sequence[Override], folder: File) -> str:
-    """The text with the overrides and the title in it, and with the full paths of FMUs told relative to the scene."""
+def as_run(
+    text: str,
+    document: dict[str, Any],
+    overrides: Sequence[Override],
+    folder: File,
+    tables: Mapping[Path, File] = MappingProxyType({}),
+) -> str:
+    """The text with the overrides and the title in it, and with the full paths of files told relative to the scene.
+
+    tables    files of tables by the key that names each
+    """
     changes: dict[Path, Any] = {change.path: given_at(document, change.path) for change in overrides}
     if overrides and "title" in document:
         changes["title",] = document["title"]
@@ -105,13 +115,20 @@ def as_run(text: str, document: dict[str, Any], overrides: Sequence[Override], f
         full = str((folder / File(given).expanduser()).absolute())
         if full != given and "://" not in given and "\0" not in given:
             changes[path] = full
+    for path, file in tables.items():
+        if str(file.absolute()) != given_at(document, path):
+            changes[path] = str(file.absolute())
     return with_values(text, changes)
 
 
-def moved(text: str, places: Mapping[File, str]) -> str:
-    """The text with other paths for its FMUs: each FMU by its full path, and where a copy of it is."""
+def moved(text: str, places: Mapping[File, str], tables: Mapping[Path, str] = MappingProxyType({})) -> str:
+    """The text with other paths for its files.
+
+    places    where a copy of each FMU is, by its full path
+    tables    where a copy of each table is, by the key that names its file
+    """
     found = ((path, places.get(File(given))) for path, given in _fmu_paths(tomllib.loads(text)))
-    return with_values(text, {path: place for path, place in found if place is not None})
+    return with_values(text, {**{path: place for path, place in found if place is not None}, **tables})
 
 
 def with_values(text: str, changes: Mapping[Path, Any]) -> str:

@@ -1,26 +1,50 @@
 """The energy book of all bodies: what came in, what was taken, and what is there now."""
 
-from fmu_src.net_capture import environment
+from __future__ import annotations
+
+from typing import Any
+
+from fmu_src.net_capture.planes import MASS, SHOWN
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
 
-def make_balance(terms):
-    """Kernel `energy_balance(p, work) -> energy [J]` of the model built with these terms.
+def make_balance(composition: Any) -> Any:
+    """Kernel `energy_balance(p, work) -> energy [J]` of the model with the composition's parts, of the nodes as shown.
 
     It is constant but for the scheme's own error, and so the book's remainder is how far it has moved.
 
     Checked  tests/net_capture/test_energy_book.py
     """
-    has_target = "target" in terms
-    has_contact = "contact" in terms
-    has_closing = "closing" in terms
-    has_tether = "tether" in terms
-    is_hill = terms["gravity"] == "hill"
+    has_target = composition.target is not None
+    has_contact = composition.contact is not None
+    has_closing = composition.closing is not None
+    has_tether = composition.tether is not None
+    potential_at, bends, frame_rate = composition.gravity.potential, composition.gravity.bends, composition.gravity.rate
+    node_plane = composition.memory.node_plane
+
+    @kernel
+    def potential_of_nodes(p, work):
+        """Potential energy [J] of all nodes in the frame.
+
+        Checked  tests/net_capture/test_energy_book.py
+        """
+        mass = node_plane(p, work, MASS)
+        at = p.scratch[3:6]
+        total = 0.0
+        for i in range(p.node_slots):
+            if mass[i] > 0.0:
+                for axis in range(3):
+                    at[axis] = node_plane(p, work, SHOWN + axis)[i]
+                total += mass[i] * potential_at(p, at)
+        return total
 
     @kernel
     def energy_balance(p, work):
-        """Energy of all bodies now [J], with what contact and dashpots took and without what the winches gave."""
+        """Energy of all bodies now [J], with what contact and dashpots took and without what the winches gave.
+
+        Checked  tests/net_capture/test_energy_book.py
+        """
         energy = p.energy_total + p.thread_dissipated
         energy += 0.5 * p.chaser_mass * dot(p.chaser_velocity, p.chaser_velocity)
         if has_target:
@@ -31,12 +55,12 @@ def make_balance(terms):
             energy += p.cord_dissipated - p.closing_work
         if has_tether:
             energy -= p.tether_work
-        if is_hill:
-            potential = environment.potential_of_nodes(p, work)
-            potential += p.chaser_mass * environment.hill_potential(p, p.chaser_place)
+        if bends:
+            potential = potential_of_nodes(p, work)
+            potential += p.chaser_mass * potential_at(p, p.chaser_place)
             if has_target:
-                potential += p.target_mass * environment.hill_potential(p, p.target_place)
-                potential -= p.mean_motion * p.target_spin[2]
+                potential += p.target_mass * potential_at(p, p.target_place)
+                potential -= frame_rate(p) * p.target_spin[2]
             p.energy_potential = potential
             energy += potential
         return energy

@@ -6,6 +6,8 @@ import math
 from collections.abc import Collection, Iterator, Mapping
 
 from fmu_src.cautions import ARAMID, NYLON, Caution, Seen, fibre_of, heavily_damped, low, strained
+from fmu_src.net_capture.implied import open_loop, substeps, thread_section
+from fmu_src.net_capture.interface import TARGETS
 
 Values = Mapping[str, float]
 
@@ -20,30 +22,26 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
     yield from heavily_damped("net.damping_ratio", values.get("net.damping_ratio"), "a thread's going taut")
     yield from heavily_damped("closing.damping_ratio", values.get("closing.damping_ratio"), "the cord's going taut")
     if "closing" in terms and "target" in terms:
-        yield from _open_loops(values)
+        yield from _open_loops(values, terms)
     if values.get("solver.step_ratio", 0.0) > 0.0:
         yield from _long_steps(values, terms)
 
 
-def _open_loops(values: Values) -> Iterator[Caution]:
+def _open_loops(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
     """A mouth that stays open beside its cord: wider there than the target is round."""
-    from fmu_src.net_capture.implied import open_loop  # and with it numba
-
-    size = [values[f"target.size[{i}]"] for i in (1, 2, 3)]
-    girth, side, rings = 2.0 * (sum(size) - max(size)), values["net.side"], values["closing.rings"]
-    if open_loop(values) > girth:
-        needed = math.ceil((side + values["closing.lock_length"]) / girth) - 1
+    girth, rings = TARGETS[terms["target"]].checks.girth(values), values["closing.rings"]
+    loop = open_loop(values, terms)
+    if loop > girth:
+        needed = math.ceil(loop * (rings + 1) / girth) - 1
         yield Caution(
             "closing.rings",
-            f"with {rings:.0f} the closed mouth keeps loops of {open_loop(values):.3g} m, and {girth:.3g} m let this "
+            f"with {rings:.0f} the closed mouth keeps loops of {loop:.3g} m, and {girth:.3g} m let this "
             f"target pass: a capture may come to nothing within a minute; {needed} would hold it",
         )
 
 
 def _long_steps(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
     """A substep that the scene gives, longer than its damping allows."""
-    from fmu_src.net_capture.implied import substeps  # and with it numba
-
     bound, accurate = substeps(values, terms)
     ratio, enough = values["solver.step_ratio"], accurate / bound
     if ratio > enough * (1.0 + 1e-9):
@@ -59,16 +57,9 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     yield from _unbalanced(values, seen)
     yield from _taken_back(seen)
     thread, cord = seen("thread.tension_max"), seen("cord.tension_max")
-    if (
-        thread is not None
-        and {"net.side", "net.mesh", "net.mass", "net.density", "net.youngs_modulus"} <= values.keys()
-    ):
-        from fmu_src.net_capture.implied import (
-            thread_section,
-        )  # and with it numba, which a look at a scene does without
-
+    if thread is not None and "net" in terms:
         modulus = values["net.youngs_modulus"]
-        fibre, stiffness = fibre_of(modulus), modulus * thread_section(values)
+        fibre, stiffness = fibre_of(modulus), modulus * thread_section(values, terms)
         yield from strained("thread.tension_max", "a thread", thread.largest, stiffness, fibre.strain, fibre.name)
     if cord is not None and "closing.axial_stiffness" in values:
         name, stiffness = "closing.axial_stiffness", values["closing.axial_stiffness"]

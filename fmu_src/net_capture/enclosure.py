@@ -9,7 +9,11 @@ part of the net can pass them, and what tells one from another is the cap alone.
 target. Some inside: the target stands in the mouth. None: it is out.
 """
 
-from fmu_src.net_capture.topology import X, bullet_node, node_plane
+from __future__ import annotations
+
+from typing import Any
+
+from fmu_src.net_capture.planes import FACE_WORDS, SHOWN
 from orbital.kernel import kernel
 
 
@@ -53,68 +57,21 @@ def crossing(p, work, place, ax, ay, az, bx, by, bz, cx, cy, cz):
     return 1 if det > 0.0 else -1
 
 
-@kernel
-def knot_crossing(p, work, place, i, j, k):
-    """Signed crossing of the triangle of three knots."""
-    x = node_plane(p, work, X)
-    y = node_plane(p, work, X + 1)
-    z = node_plane(p, work, X + 2)
-    return crossing(p, work, place, x[i], y[i], z[i], x[j], y[j], z[j], x[k], y[k], z[k])
-
-
-@kernel
-def cap_crossing(p, work, place, i, j, cx, cy, cz):
-    """Signed crossing of the triangle of two knots of the rim and the middle of the mouth."""
-    x = node_plane(p, work, X)
-    y = node_plane(p, work, X + 1)
-    z = node_plane(p, work, X + 2)
-    return crossing(p, work, place, x[i], y[i], z[i], x[j], y[j], z[j], cx, cy, cz)
-
-
-@kernel
-def encloses(p, work, place):
-    """Whether the net, closed by a cap over its mouth, goes round a point: winding number by signed crossings.
-
-    The cap joins every piece of the rim to the middle of the bullets, so the surface is closed whatever its shape.
-
-    Checked  tests/net_capture/test_enclosure.py
-    """
-    k = p.knots
-    winding = 0
-    for i in range(k - 1):
-        for j in range(k - 1):
-            n = i * k + j
-            winding += knot_crossing(p, work, place, n, n + 1, n + k + 1)
-            winding += knot_crossing(p, work, place, n, n + k + 1, n + k)
-    cx = 0.0
-    cy = 0.0
-    cz = 0.0
-    for corner in range(4):
-        node = bullet_node(k, corner)
-        cx += 0.25 * node_plane(p, work, X)[node]
-        cy += 0.25 * node_plane(p, work, X + 1)[node]
-        cz += 0.25 * node_plane(p, work, X + 2)[node]
-    last = k * (k - 1)
-    for j in range(k - 1):
-        winding += cap_crossing(p, work, place, j + 1, j, cx, cy, cz)
-        winding += cap_crossing(p, work, place, last + j, last + j + 1, cx, cy, cz)
-        winding += cap_crossing(p, work, place, j * k, (j + 1) * k, cx, cy, cz)
-        winding += cap_crossing(p, work, place, (j + 1) * k + k - 1, j * k + k - 1, cx, cy, cz)
-    return winding != 0
-
-
-def make_share(sample, samples):
+def make_share(composition: Any) -> Any:
     """Kernel `share_inside(p, work)`: share of the target's sample points that net and mouth go round [1].
 
-    sample     kernel (p, out, number): out = one sample point of the target, in the frame
-    samples    how many there are
-
     Checked  tests/net_capture/test_enclosure.py
     """
+    sample, samples = composition.target.sample, composition.target.shape.samples
+    encloses = make_encloses(composition.memory)
 
     @kernel
     def share_inside(p, work):
-        point = p.scratch[0:3]
+        """Share of the target's sample points that net and mouth go round [1].
+
+        Checked  tests/net_capture/test_enclosure.py
+        """
+        point = p.enclosure_point
         inside = 0
         for number in range(samples):
             sample(p, point, number)
@@ -122,3 +79,57 @@ def make_share(sample, samples):
         return inside / samples
 
     return share_inside
+
+
+def make_encloses(memory: Any) -> Any:
+    """Kernel `encloses(p, work, place)`: whether the net, closed by a cap over its mouth, goes round a point.
+
+    By the winding number, in signed crossings. The cap joins every piece of the rim to the middle of the bullets, so
+    the surface is closed whatever its shape; faces and rim turn the same way round.
+
+    Checked  tests/net_capture/test_enclosure.py
+    """
+    node_plane, faces, rim, corners = memory.node_plane, memory.faces, memory.rim, memory.corners
+
+    @kernel
+    def node_crossing(p, work, place, i, j, k):
+        """Signed crossing of the triangle of three nodes.
+
+        Checked  tests/net_capture/test_enclosure.py
+        """
+        x = node_plane(p, work, SHOWN)
+        y = node_plane(p, work, SHOWN + 1)
+        z = node_plane(p, work, SHOWN + 2)
+        return crossing(p, work, place, x[i], y[i], z[i], x[j], y[j], z[j], x[k], y[k], z[k])
+
+    @kernel
+    def encloses(p, work, place):
+        """Whether the net, closed by a cap over its mouth, goes round a point.
+
+        Checked  tests/net_capture/test_enclosure.py
+        """
+        x = node_plane(p, work, SHOWN)
+        y = node_plane(p, work, SHOWN + 1)
+        z = node_plane(p, work, SHOWN + 2)
+        face = faces(p, work)
+        edge = rim(p, work)
+        winding = 0
+        for f in range(0, FACE_WORDS * p.net_faces, FACE_WORDS):
+            winding += node_crossing(p, work, place, face[f], face[f + 1], face[f + 2])
+            if face[f + 3] != face[f + 2]:
+                winding += node_crossing(p, work, place, face[f], face[f + 2], face[f + 3])
+        cx = 0.0
+        cy = 0.0
+        cz = 0.0
+        for corner in range(p.net_corners):
+            node = edge[corners(p, work)[corner]]
+            cx += x[node] / p.net_corners
+            cy += y[node] / p.net_corners
+            cz += z[node] / p.net_corners
+        for n in range(p.rim_nodes):
+            i = edge[n + 1 if n + 1 < p.rim_nodes else 0]
+            j = edge[n]
+            winding += crossing(p, work, place, x[i], y[i], z[i], x[j], y[j], z[j], cx, cy, cz)
+        return winding != 0
+
+    return encloses

@@ -4,9 +4,12 @@ Written once: the model's kernels use them, and so does whoever wants to know wh
 """
 
 import math
+from collections.abc import Callable
 
 from orbital.kernel import kernel
 from orbital.oscillators import explicit_step_limit
+
+Limit = Callable[[float, float], float]
 
 BREAKING_STRAIN = 0.2
 """Of nylon 66, the cord's default: beyond, no cord is."""
@@ -15,18 +18,17 @@ RINGS_SHARE = 0.2
 
 
 @kernel
-def square_net_length(side: float, mesh: float) -> float:
-    """Length of all threads of a square net of square meshes [m].
+def grid_length(along: float, across: float, mesh: float) -> float:
+    """Length of all threads of a rectangular net of square meshes [m].
 
-        2 (a/l) (a/l + 1) l
+        a (b/l + 1) + b (a/l + 1)
 
-    side          a      of the flat net                         [m]
+    along, across a, b   sides of the flat net                   [m]
     mesh          l      knot spacing                            [m]
 
-    Checked  tests/net_capture/test_formulas.py; 1200 m for 24 m at 1 m
+    Checked  tests/net_capture/test_formulas.py; 1200 m for 24 m x 24 m at 1 m
     """
-    meshes = side / mesh
-    return 2.0 * meshes * (meshes + 1.0) * mesh
+    return along * (across / mesh + 1.0) + across * (along / mesh + 1.0)
 
 
 @kernel
@@ -44,7 +46,10 @@ def thread_area(mass: float, density: float, length: float) -> float:
 
 @kernel
 def round_diameter(area: float) -> float:
-    """Diameter [m] of a solid round section: d = sqrt(4 A / pi)."""
+    """Diameter [m] of a solid round section: d = sqrt(4 A / pi).
+
+    Checked  tests/net_capture/test_formulas.py
+    """
     return math.sqrt(4.0 * area / math.pi)
 
 
@@ -69,13 +74,18 @@ def thread_dashpot(ratio: float, stiffness: float, knot_mass: float) -> float:
     ratio         xi     damping ratio                           [1]
     stiffness     k      of the whole thread                     [N/m]
     knot_mass     m      of an inner knot, two threads' worth    [kg]
+
+    Checked  tests/net_capture/test_formulas.py
     """
     return 2.0 * ratio * math.sqrt(stiffness * knot_mass)
 
 
 @kernel
 def cord_stiffness(axial_stiffness: float, length: float) -> float:
-    """Stiffness of the closing cord between two bullets [N/m]: k = EA / L."""
+    """Stiffness of the closing cord between two bullets [N/m]: k = EA / L.
+
+    Checked  tests/net_capture/test_formulas.py
+    """
     return axial_stiffness / length
 
 
@@ -99,6 +109,8 @@ def cord_damping(ratio: float, stiffness: float, mass: float) -> float:
     ratio         xi     damping ratio                           [1]
     stiffness     k      of the cord between them                [N/m]
     mass          m      that it moves, see `cord_mass`          [kg]
+
+    Checked  tests/net_capture/test_formulas.py
     """
     return 2.0 * ratio * math.sqrt(stiffness * mass)
 
@@ -106,13 +118,16 @@ def cord_damping(ratio: float, stiffness: float, mass: float) -> float:
 @kernel
 def ring_radius(lock_length: float, rings: int) -> float:
     """How near to the middle of a ring the closing cord passes [m]: a fifth of its length when locked, shared among its
-    stretches, so that it always has the length to go through them all."""
+    stretches, so that it always has the length to go through them all.
+
+    Checked  tests/net_capture/test_formulas.py
+    """
     return RINGS_SHARE * lock_length / (rings + 1) if rings > 0 else 0.0
 
 
 @kernel
 def longest_step(stiffness_rate: float, damping_rate: float) -> float:
-    """Longest step [s] at which the scheme is stable at a node.
+    """Longest step [s] at which the leapfrog is stable at a node.
 
     stiffness_rate       sum of the stiffnesses that meet at it, over its mass   [1/s2]
     damping_rate         sum of the dashpots that meet at it, over its mass      [1/s]
@@ -145,39 +160,50 @@ def accurate_step(stiffness_rate: float, damping_rate: float) -> float:
     return min((0.3 + 1.77 * zeta) / omega, 0.9 * longest_step(stiffness_rate, damping_rate))
 
 
-@kernel
-def substep_limits(
-    thread: float, dashpot: float, node_mass: float, cord: float, cord_dashpot: float, bullet_mass: float, rings: int
-) -> tuple[float, float]:
-    """Stability bound of a net and the step that is accurate [s], the least of an inner node's, a bullet's and a
-    ring's.
+def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[float, float]]:
+    """Kernel `substep_limits` of a scheme, by its limits at a node; see `longest_step` and `accurate_step`."""
 
-    thread, dashpot      of one piece of thread                                  [N/m], [N s/m]
-    node_mass            of an inner node, two pieces' worth                     [kg]
-    cord, cord_dashpot   of a closing cord at its lock length; 0 without one     [N/m], [N s/m]
-    bullet_mass          of each, without the thread that hangs on it            [kg]
-    rings                that each pair's cord runs through                      [1]
+    @kernel
+    def substep_limits(
+        thread: float,
+        dashpot: float,
+        node_mass: float,
+        cord: float,
+        cord_dashpot: float,
+        bullet_mass: float,
+        rings: int,
+    ) -> tuple[float, float]:
+        """Stability bound of a net and the step that is accurate [s], the least of an inner node's, a bullet's and a
+        ring's.
 
-    A cord of way s pulls its knots along ds/dx, of length 1 at a bullet and up to 2 at a ring, so through n rings a row
-    of its matrix sums to 2 (n + 1) k at a bullet and twice that at a ring; half of it counts here. A stretch that is no
-    longer than a ring's radius b turns, which adds T/b = k L/b times the strain, and BREAKING_STRAIN bounds that; of a
-    single ring's two stretches only one can be so short.
+        thread, dashpot      of one piece of thread                                  [N/m], [N s/m]
+        node_mass            of an inner node, two pieces' worth                     [kg]
+        cord, cord_dashpot   of a closing cord at its lock length; 0 without one     [N/m], [N s/m]
+        bullet_mass          of each, without the thread that hangs on it            [kg]
+        rings                that each pair's cord runs through                      [1]
 
-    Checked  tests/net_capture/test_formulas.py
-    """
-    stiffness_rate, damping_rate = 4.0 * thread / node_mass, 4.0 * dashpot / node_mass
-    bound, accurate = longest_step(stiffness_rate, damping_rate), accurate_step(stiffness_rate, damping_rate)
-    corner = bullet_mass + 0.5 * node_mass
-    held = (rings + 1) * cord
-    turning = held * BREAKING_STRAIN / RINGS_SHARE if rings > 0 else 0.0
-    damped = (rings + 1) * cord_dashpot
-    stiffness_rate, damping_rate = 2.0 * (thread + held + turning) / corner, 2.0 * (dashpot + damped) / corner
-    bound = min(bound, longest_step(stiffness_rate, damping_rate))
-    accurate = min(accurate, accurate_step(stiffness_rate, damping_rate))
-    if rings > 0 and cord > 0.0:
-        edge = 0.75 * node_mass
-        stiffness_rate = (3.0 * thread + 2.0 * held + min(rings, 2) * turning) / edge
-        damping_rate = (3.0 * dashpot + 2.0 * damped) / edge
-        bound = min(bound, longest_step(stiffness_rate, damping_rate))
-        accurate = min(accurate, accurate_step(stiffness_rate, damping_rate))
-    return bound, accurate
+        A cord of way s pulls its knots along ds/dx, of length 1 at a bullet and up to 2 at a ring, so through n rings a
+        row of its matrix sums to 2 (n + 1) k at a bullet and twice that at a ring; half of it counts here. A stretch
+        that is no longer than a ring's radius b turns, which adds T/b = k L/b times the strain, and BREAKING_STRAIN
+        bounds that; of a single ring's two stretches only one can be so short.
+
+        Checked  tests/net_capture/test_formulas.py
+        """
+        stiffness_rate, damping_rate = 4.0 * thread / node_mass, 4.0 * dashpot / node_mass
+        bound, enough = longest(stiffness_rate, damping_rate), accurate(stiffness_rate, damping_rate)
+        corner = bullet_mass + 0.5 * node_mass
+        held = (rings + 1) * cord
+        turning = held * BREAKING_STRAIN / RINGS_SHARE if rings > 0 else 0.0
+        damped = (rings + 1) * cord_dashpot
+        stiffness_rate, damping_rate = 2.0 * (thread + held + turning) / corner, 2.0 * (dashpot + damped) / corner
+        bound = min(bound, longest(stiffness_rate, damping_rate))
+        enough = min(enough, accurate(stiffness_rate, damping_rate))
+        if rings > 0 and cord > 0.0:
+            edge = 0.75 * node_mass
+            stiffness_rate = (3.0 * thread + 2.0 * held + min(rings, 2) * turning) / edge
+            damping_rate = (3.0 * dashpot + 2.0 * damped) / edge
+            bound = min(bound, longest(stiffness_rate, damping_rate))
+            enough = min(enough, accurate(stiffness_rate, damping_rate))
+        return bound, enough
+
+    return substep_limits

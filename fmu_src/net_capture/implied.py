@@ -7,39 +7,45 @@ from collections.abc import Iterator, Mapping
 
 from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.reach import opening_distance
-from orbital import oscillators, twobody
+from fmu_src.net_capture.interface import GROUPS, NETS
+from fmu_src.net_capture.shot import opening_distance
+from orbital import oscillators
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.plain import mean_motion
 
 Values = Mapping[str, float]
 
 
-def thread_section(values: Values) -> float:
+def thread_length(values: Values, terms: Mapping[str, str]) -> float:
+    """Length [m] of all threads."""
+    return float(NETS[terms["net"]].checks.total(values))
+
+
+def thread_section(values: Values, terms: Mapping[str, str]) -> float:
     """Area [m2] of a thread's section."""
-    length = formula(formulas.square_net_length)(values["net.side"], values["net.mesh"])
-    return formula(formulas.thread_area)(values["net.mass"], values["net.density"], length)
+    return formula(formulas.thread_area)(values["net.mass"], values["net.density"], thread_length(values, terms))
 
 
-def thread_mass(values: Values) -> float:
-    """Mass [kg] of a thread from knot to knot."""
-    length = formula(formulas.square_net_length)(values["net.side"], values["net.mesh"])
-    return values["net.mass"] * values["net.mesh"] / length
+def thread_mass(values: Values, terms: Mapping[str, str]) -> float:
+    """Mass [kg] of a thread as long as a mesh is wide."""
+    return values["net.density"] * thread_section(values, terms) * values["net.mesh"]
 
 
-def edge_mass(values: Values) -> float:
+def edge_mass(values: Values, terms: Mapping[str, str]) -> float:
     """Mass [kg] of a knot on the net's edge: half of the three pieces of thread that meet there."""
-    return 1.5 * thread_mass(values) / values["net.segments"]
+    return 1.5 * thread_mass(values, terms) / values["net.segments"]
 
 
-def cord_mass(values: Values) -> float:
+def cord_mass(values: Values, terms: Mapping[str, str]) -> float:
     """Mass [kg] that a cord between two bullets moves as it lengthens."""
-    return formula(formulas.cord_mass)(values["bullets.mass"], edge_mass(values), int(values["closing.rings"]))
+    return formula(formulas.cord_mass)(values["bullets.mass"], edge_mass(values, terms), int(values["closing.rings"]))
 
 
-def open_loop(values: Values) -> float:
+def open_loop(values: Values, terms: Mapping[str, str]) -> float:
     """Way [m] round the loop that a locked cord leaves open between two knots that it holds: the net's edge between
     them, and the cord's share."""
-    return (values["net.side"] + values["closing.lock_length"]) / (values["closing.rings"] + 1)
+    side = max(NETS[terms["net"]].checks.sides(values).values())
+    return float((side + values["closing.lock_length"]) / (values["closing.rings"] + 1))
 
 
 def catch_mass(values: Values) -> float:
@@ -51,37 +57,45 @@ def substeps(values: Values, terms: Mapping[str, str]) -> tuple[float, float]:
     """Stability bound, and the largest substep that keeps the mouth area within 0.3 % and the energy within 1 % [s]."""
     pieces = values["net.segments"]
     stiffness = formula(formulas.axial_stiffness)(
-        values["net.youngs_modulus"], thread_section(values), values["net.mesh"]
+        values["net.youngs_modulus"], thread_section(values, terms), values["net.mesh"]
     )
-    knot = 2.0 * thread_mass(values)
+    knot = 2.0 * thread_mass(values, terms)
     dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, knot)
     cord = cord_dashpot = 0.0
     rings = 0
     if "closing" in terms:
         rings = int(values["closing.rings"])
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
-        cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, cord_mass(values))
-    return formulas.substep_limits(
-        pieces * stiffness, pieces * dashpot, knot / pieces, cord, cord_dashpot, values["bullets.mass"], rings
+        cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, cord_mass(values, terms))
+    needs = GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks
+    limits = formulas.make_substep_limits(formula(needs.longest_step), formula(needs.accurate_step))
+    return formula(limits)(
+        pieces * stiffness,
+        pieces * dashpot,
+        knot / pieces,
+        cord,
+        cord_dashpot,
+        values["bullets.mass"],
+        rings,
     )
 
 
 def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Thread, nodes, shot, cord and orbit."""
-    yield from _of_thread(values)
-    yield from _of_nodes(values)
-    yield from _of_shot(values)
+    yield from _of_thread(values, terms)
+    yield from _of_nodes(values, terms)
+    yield from _of_shot(values, terms)
     if "closing" in terms:
-        yield from _of_cord(values)
+        yield from _of_cord(values, terms)
     if "orbit.altitude" in values:
-        rate = formula(twobody.mean_motion)(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
+        rate = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
         yield Implied("orbit.period", "period of the orbit", 2.0 * math.pi / rate, "s")
 
 
-def _of_thread(values: Values) -> Iterator[Implied]:
-    area, modulus = thread_section(values), values["net.youngs_modulus"]
+def _of_thread(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
+    area, modulus = thread_section(values, terms), values["net.youngs_modulus"]
     stiffness = formula(formulas.axial_stiffness)(modulus, area, values["net.mesh"])
-    knot = 2.0 * thread_mass(values)
+    knot = 2.0 * thread_mass(values, terms)
     yield Implied("thread.area", "section of a thread", area, "m2")
     yield Implied(
         "thread.diameter", "its diameter, were it solid and round", formula(formulas.round_diameter)(area), "m"
@@ -92,39 +106,41 @@ def _of_thread(values: Values) -> Iterator[Implied]:
     yield Implied("thread.dashpot", "dashpot of a thread from knot to knot", dashpot, "N.s/m")
 
 
-def _of_nodes(values: Values) -> Iterator[Implied]:
+def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Half of each piece of thread that ends at a node; a knot inside the net has four, on its edge three, two in a
     corner."""
-    piece = thread_mass(values) / values["net.segments"]
+    piece = thread_mass(values, terms) / values["net.segments"]
     yield Implied("knot.mass", "mass of a knot inside the net", 2.0 * piece, "kg")
-    yield Implied("edge.mass", "mass of a knot on its edge", edge_mass(values), "kg")
+    yield Implied("edge.mass", "mass of a knot on its edge", edge_mass(values, terms), "kg")
     yield Implied("corner.mass", "mass of a corner, with its bullet", piece + values["bullets.mass"], "kg")
     if values["net.segments"] > 1:
         yield Implied("thread_node.mass", "mass of a node within a thread", piece, "kg")
     yield Implied("catch.mass", "net, bullets and vertex together", catch_mass(values), "kg")
 
 
-def _of_shot(values: Values) -> Iterator[Implied]:
+def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the corners, which alone leave at the bullets' speed; relative to the chaser before the shot."""
-    corners = 4.0 * (thread_mass(values) / values["net.segments"] + values["bullets.mass"])
+    corners = 4.0 * (thread_mass(values, terms) / values["net.segments"] + values["bullets.mass"])
     speed, angle = values["bullets.speed"], values["bullets.angle"]
     momentum = corners * speed * math.cos(angle)
     yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")
     yield Implied("shot.energy", "energy of the shot", 0.5 * corners * speed * speed, "J")
     yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")
-    opening = opening_distance(values["net.side"], values["net.fold_side"], speed, angle)
+    sides = NETS[terms["net"]].checks.sides(values)
+    opening = opening_distance(max(sides.values()), values["net.fold_side"], speed, angle)
     if math.isfinite(opening):
         yield Implied("shot.opening", "bullets alone would have spread the net after", opening, "m")
 
 
-def _of_cord(values: Values) -> Iterator[Implied]:
+def _of_cord(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the cord between two bullets, which swing against each other with half a bullet's mass; and what it closes."""
+    sides = NETS[terms["net"]].checks.sides(values)
     for key, label, length in (
-        ("cord_open", "the cord between two bullets, net flat", values["net.side"]),
+        ("cord_open", "the cord between two bullets, net flat", max(sides.values())),
         ("cord_locked", "the cord between two bullets, locked", values["closing.lock_length"]),
     ):
         stiffness = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], length)
         frequency = formula(oscillators.natural_frequency)(stiffness, 0.5 * values["bullets.mass"])
         yield Implied(f"{key}.stiffness", f"stiffness of {label}", stiffness, "N/m")
         yield Implied(f"{key}.period", "its period, undamped", 2.0 * math.pi / frequency, "s")
-    yield Implied("cord.open_loop", "largest loop of the closed mouth", open_loop(values), "m")
+    yield Implied("cord.open_loop", "largest loop of the closed mouth", open_loop(values, terms), "m")

@@ -1,47 +1,36 @@
-"""The variables every net capture has, its terms, and its faults."""
+"""The variables every net capture has, the groups of its parts, and its faults."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 
-from fmu_src.interface import Fault, Group, Model, Variable
-from fmu_src.net_capture.reach import nodes_of
-from fmu_src.net_capture.terms import (
-    CLOSING,
-    CONTACT,
-    GRAVITY,
-    NET,
-    SETTLING,
-    TARGET,
-    TETHER,
-    NodeTerms,
-    at_least_zero,
-    count,
-    flag,
-    moving,
-    output,
-    peak,
-    positive,
-    state,
-    vector,
+from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
+from fmu_src.net_capture import shot, tether
+from fmu_src.net_capture.closing import closings
+from fmu_src.net_capture.contact import contacts
+from fmu_src.net_capture.folding import foldings
+from fmu_src.net_capture.gravity import gravities
+from fmu_src.net_capture.nets import LARGEST_MESH, nets
+from fmu_src.net_capture.nets.grid import nodes_of
+from fmu_src.net_capture.outcome import OUTCOMES
+from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.schemes import schemes
+from fmu_src.net_capture.shapes import shapes
+from fmu_src.net_capture.stepping import STEP_TOO_SMALL
+from fmu_src.rows import at_least_zero, count, flag, moving, output, peak, positive, state, vector
+
+MOST_NODES = (LARGEST_MESH + 1) ** 2
+"""Nodes of the largest net there is, one of uncut threads: each brings three outputs, so more would be of no use."""
+
+NOT_FINITE = fault(
+    "not_finite", "", "the state of the net is no longer finite: lower solver.step_ratio or the stiffness"
 )
-from fmu_src.net_capture.terms import LARGEST_MESH as LARGEST_MESH
-
-OUTCOMES = ("flying", "captured", "settled", "missed", "slipped_off", "not_closed", "tether_taut")
-
-(
-    NOT_FINITE,
-    NO_WHOLE_MESHES,
-    TOO_MANY_NODES,
-    TOO_FINE,
-    NO_AXIS,
-    FOLD_TOO_LARGE,
-    NO_QUATERNION,
-    NO_INERTIA,
-    INSIDE_TARGET,
-    STEP_TOO_SMALL,
-    TOO_MANY_RINGS,
-) = range(1, 12)
+TOO_MANY_NODES = fault(
+    "too_many_nodes",
+    "net.mesh",
+    "the net has more nodes than this FMU has outputs for; raise the capacity of nodes",
+)
 
 BASE = (
     positive("bullets.mass", "kg", "mass of each of the four bullets", 0.5),
@@ -156,6 +145,20 @@ BASE = (
     count("net.nodes", "nodes of the net"),
     count("net.threads", "threads of the net, after cutting into segments"),
     # what the kernels keep
+    count("net.corners", "corners of the mouth", "state"),
+    count("net.faces", "faces between the threads", "state"),
+    count("rim_nodes", "nodes of the mouth's rim", "state"),
+    count("apex_nodes", "nodes that share the vertex", "state"),
+    count("row_pitch", "slots of a row of nodes", "state"),
+    count("grid_columns", "knots along a row", "state"),
+    count("grid_rows", "rows of knots", "state"),
+    count("grid_split", "rows of nodes that a row of knots stands in", "state"),
+    count("grid_piece", "knots in each of them", "state"),
+    count("thread_peak_index", "thread that bears the largest tension of the macro step", "state"),
+    state("mouth_flat_area", "m2", "of the mouth as meant"),
+    state("mouth_side[#]", "m", "of the mouth as meant, from each corner to the next", shape=(4,)),
+    state("flight[#]", "1", "what a free flight needs of its time", shape=(10,)),
+    state("enclosure_point[#]", "m", "sample point of the target", shape=(3,)),
     count("grid", "substeps since the start", "state"),
     state("start_time", "s", "of the instance: the integer grid and all its times count from here"),
     state("thread_power", "W", "what the threads' dashpots take now"),
@@ -163,75 +166,126 @@ BASE = (
     state("energy_start", "J", "of all bodies at the start"),
     state("axes[#]", "1", "shot axes as rows: two transverse, then the axis itself", shape=(9,)),
     state("muzzle[#]", "m", "muzzle at the start, orbital frame", shape=(3,)),
-    state("thread_length", "m", "rest length of one segment"),
-    state("thread_stiffness", "N/m", "EA / l of one segment"),
-    state("thread_damping", "N.s/m", "dashpot of one segment"),
-    count("knots", "knots per side", "state"),
     count("strips", "rows of parallel threads", "state"),
     count("node_slots", "slots in each node plane", "state"),
-    count("thread_slots", "slots in each thread plane", "state"),
     count("measure_every", "substeps between two looks at mouth and capture", "state"),
     state("chaser_place[#]", "m", "chaser at the last substep", shape=(3,)),
     state("pull[#]", "m/s2", "acceleration of the chaser by a tension signal", shape=(3,)),
     state("rest[#]", "m/s2", "acceleration of a body that nothing pulls", shape=(3,)),
     state("chaser_drift[#]", "m/s", "velocity of the chaser half a substep back", shape=(3,)),
-    state("scratch[#]", "1", "small vectors of the kernels", shape=(28,)),
+    state("scratch[#]", "1", "small vectors of the kernels", shape=(9,)),
 )
 
-BLAMED = {
-    NO_WHOLE_MESHES: "net.side",
-    TOO_MANY_NODES: "net.mesh",
-    TOO_FINE: "net.segments",
-    NO_AXIS: "shot.axis[1]",
-    FOLD_TOO_LARGE: "net.fold_side",
-    NO_QUATERNION: "target.start_attitude[1]",
-    NO_INERTIA: "target.principal_inertia[1]",
-    INSIDE_TARGET: "chaser.start_position[1]",
-    STEP_TOO_SMALL: "net.youngs_modulus",
-    TOO_MANY_RINGS: "closing.rings",
+SETTLING = {
+    "speed": Term(
+        "when the net counts as settled",
+        (
+            positive("settling.speed", "m/s", "speed of the net's centre of mass relative to the target", 0.1),
+            positive("settling.time", "s", "how long it must stay below", 2.0),
+            state("calm_since", "s", "since when the net has been slow, from the shot"),
+        ),
+        make=lambda composition: None,
+    )
 }
-"""The variable a fault names, or its first component."""
 
-FAULTS = (
-    Fault(NOT_FINITE, "error", "the state of the net is no longer finite: lower solver.step_ratio or the stiffness"),
-    Fault(NO_WHOLE_MESHES, "error", "net.side must be a whole number of net.mesh, at least 2", True),
-    Fault(
-        TOO_MANY_NODES,
-        "error",
-        "the net has more nodes than this FMU has outputs for; raise the capacity of nodes",
-        True,
-    ),
-    Fault(TOO_FINE, "error", "the net has too many meshes times segments per side", True),
-    Fault(NO_AXIS, "error", "the chaser stands in the target's centre of mass, and shot.axis names no direction", True),
-    Fault(FOLD_TOO_LARGE, "error", "net.fold_side must be smaller than net.side", True),
-    Fault(NO_QUATERNION, "error", "target.start_attitude is not a quaternion of unit length (nor zero)", True),
-    Fault(NO_INERTIA, "error", "the principal inertias of the target break the triangle inequality", True),
-    Fault(INSIDE_TARGET, "error", "chaser.start_position: the folded net would begin inside the target", True),
-    Fault(
-        STEP_TOO_SMALL,
-        "error",
-        "the net is too stiff for its mass: the substep [s] it needs is below a nanosecond",
-        True,
-    ),
-    Fault(TOO_MANY_RINGS, "error", "closing.rings: a side of the mouth has fewer knots between its bullets", True),
-)
+PRECISION = {
+    "double": Term("of 53 bits, for positions and velocities of the nodes"),
+    "single": Term("of 24 bits, for positions and velocities of the nodes: faster, for campaigns"),
+}
+
+
+class NodeTerms(Mapping[str, Term]):
+    """A term for any number of nodes: `{"nodes": "625"}` gives an FMU with outputs for up to 625 nodes."""
+
+    def __getitem__(self, capacity: str) -> Term:
+        if capacity not in self:
+            raise KeyError(capacity)
+        position = Variable(
+            "node[#].position[#]",
+            "m",
+            "output",
+            "node of the net, orbital frame, row by row of the "
+            "flat net (knots first, then the inner nodes of the threads)",
+            shape=(int(capacity), 3),
+        )
+        return Term(f"position of every node, up to {capacity} nodes", (position,))
+
+    def __contains__(self, capacity: object) -> bool:
+        return (
+            isinstance(capacity, str)
+            and capacity.isascii()
+            and capacity.isdecimal()
+            and len(capacity) <= len(str(MOST_NODES))
+            and 1 <= int(capacity) <= MOST_NODES
+        )
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((f"a whole number of nodes, from 1 to {MOST_NODES}",))
+
+    def __len__(self) -> int:
+        return 1
+
+
+def capacity_of(parameters: Mapping[str, float]) -> str:
+    """The capacity that a net's mesh asks for, "1" where there is no such net."""
+    for part in NETS.values():
+        if all(row.name in parameters for row in part.variables):
+            return str(min(nodes_of(parameters, part.checks.sides(parameters)), MOST_NODES))
+    return "1"
+
+
+NETS, TARGETS, CONTACTS, CLOSINGS = nets(), shapes(), contacts(), closings()
+
+GROUPS = {
+    "net": Group(NETS, selector="shape"),
+    "folding": Group(foldings(), selector="pattern", default="flat"),
+    "gravity": Group(gravities()),
+    "solver": Group(schemes(), selector="scheme", default="leapfrog"),
+    "precision": Group(PRECISION, selector="precision", default="double", table="solver"),
+    "target": Group(TARGETS, selector="shape", optional=True),
+    "contact": Group(CONTACTS, optional=True),
+    "closing": Group(CLOSINGS, selector="drive", optional=True),
+    "tether": Group({"slack": tether.PART}, selector="state", optional=True),
+    "settling": Group(SETTLING, selector="by", optional=True),
+    "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=capacity_of),
+}
+
+
+def _faults() -> Iterator[Fault]:
+    """Those of the loop, then those of every part in the order of the groups."""
+    yield from (NOT_FINITE, TOO_MANY_NODES, shot.NO_AXIS, STEP_TOO_SMALL)
+    for name, group in GROUPS.items():
+        if name != "nodes":
+            for part in group.terms.values():
+                yield from part.faults
+
 
 MODEL = Model(
     name="net_capture",
     summary="A net is shot from a chaser, opens, wraps a free target and closes.",
     base=BASE,
-    groups={
-        "net": Group(NET, selector="shape"),
-        "gravity": Group(GRAVITY),
-        "target": Group(TARGET, selector="shape", optional=True),
-        "contact": Group(CONTACT, optional=True),
-        "closing": Group(CLOSING, selector="drive", optional=True),
-        "tether": Group(TETHER, selector="state", optional=True),
-        "settling": Group(SETTLING, selector="by", optional=True),
-        "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=nodes_of),
-    },
-    faults=FAULTS,
+    groups=GROUPS,
+    faults=numbered(_faults()),
     module="fmu_src.net_capture.model",
     stop_time=20.0,
     macro_step=0.05,
 )
+
+
+def refusals(terms: Mapping[str, str], values: Mapping[str, float], duration: float = math.inf) -> list[Refusal]:
+    """Why a shot can not work: empty if nothing speaks against it.
+
+    terms        of the model, by group
+    values       of every parameter by FMI name [SI]
+    duration     of the capture phase [s]
+    """
+    scene = Scene(terms, values, duration, {group: GROUPS[group].terms[term] for group, term in terms.items()})
+    found: list[Refusal] = []
+    for part in scene.parts.values():
+        if part.refuses is not None:
+            found += part.refuses(scene)
+    if "target" in terms:
+        found += shot.refuses_place(scene)
+        if not found:
+            found += shot.refuses_way(scene)
+    return found

@@ -7,9 +7,14 @@ any more, and a capture is taken back when less than half is. Both must last for
 a guess, and may cut through the target for a moment.
 """
 
-from fmu_src.net_capture import quality
-from fmu_src.net_capture.interface import OUTCOMES
+from __future__ import annotations
+
+from typing import Any
+
+from fmu_src.net_capture.enclosure import make_share
 from orbital.kernel import kernel
+
+OUTCOMES = ("flying", "captured", "settled", "missed", "slipped_off", "not_closed", "tether_taut")
 
 FLYING, CAPTURED, SETTLED, MISSED, SLIPPED_OFF, NOT_CLOSED, TETHER_TAUT = range(len(OUTCOMES))
 
@@ -26,7 +31,10 @@ OUT_TIME = 1.0
 
 @kernel
 def start_enclosure(p):
-    """Nothing looked at, nothing caught, nothing lost."""
+    """Nothing looked at, nothing caught, nothing lost.
+
+    Checked  tests/net_capture/test_outcome.py
+    """
     p.enclosure_share = -1.0
     p.enclosure_at_capture = -1.0
     p.enclosure_least = -1.0
@@ -34,21 +42,23 @@ def start_enclosure(p):
     p.t_lost = -1.0
 
 
-def make_judge(terms, towards_chaser, share_inside):
-    """Kernel `judge(p, work, time)` of the model built with these terms.
-
-    towards_chaser   kernel (p, work) -> distance from vertex to chaser [m]
-    share_inside     kernel (p, work) -> share of the target that net and mouth go round [1]
-    """
-    has_target = "target" in terms
-    has_contact = "contact" in terms
-    has_closing = "closing" in terms
-    has_tether = "tether" in terms
-    has_settling = "settling" in terms
+def make_judge(composition: Any, quality: Any) -> Any:
+    """Kernel `judge(p, work, time)` of the model with the composition's parts, of the nodes as shown."""
+    has_target = composition.target is not None
+    has_contact = composition.contact is not None
+    has_closing = composition.closing is not None
+    has_tether = composition.tether is not None
+    has_settling = "settling" in composition.terms
+    share_inside = make_share(composition) if has_target and has_closing else None
+    towards_chaser = composition.tether.reach if has_tether else None
+    beyond, measure_net = quality.beyond, quality.measure_net
 
     @kernel
     def judge_flight(p, work, time):
-        """Capture, or one of the ways to fail."""
+        """Capture, or one of the ways to fail.
+
+        Checked  tests/net_capture/test_outcome.py
+        """
         if has_target:
             if has_closing:
                 if p.closing_t_start >= 0.0 and p.mouth_cord_length < p.girth:
@@ -61,7 +71,7 @@ def make_judge(terms, towards_chaser, share_inside):
                         p.outcome = fail(p)
                 if p.outcome == FLYING and p.trigger_time >= 0.0 and time > p.trigger_time + p.closing_timeout:
                     p.outcome = NOT_CLOSED
-            elif quality.least_depth_beyond(p, work, p.target_place) > p.net_side:
+            elif beyond(p, work, p.target_place) > max(p.mouth_side[0], p.mouth_side[1]):
                 p.outcome = fail(p)
         if has_tether:
             if p.outcome == FLYING and towards_chaser(p, work) >= p.tether_length:
@@ -69,7 +79,10 @@ def make_judge(terms, towards_chaser, share_inside):
 
     @kernel
     def look_inside(p, work, time, out):
-        """Share of the target inside, and when it was last above `out`; the first look counts as if it were."""
+        """Share of the target inside, and when it was last above `out`; the first look counts as if it were.
+
+        Checked  tests/net_capture/test_outcome.py
+        """
         share = share_inside(p, work)
         if p.enclosure_share < 0.0:
             p.enclosure_since = time
@@ -79,12 +92,18 @@ def make_judge(terms, towards_chaser, share_inside):
 
     @kernel
     def is_out(p, time):
-        """Whether too little of the target has been inside for long enough."""
+        """Whether too little of the target has been inside for long enough.
+
+        Checked  tests/net_capture/test_outcome.py
+        """
         return time >= p.enclosure_last_in + OUT_TIME
 
     @kernel
     def catch(p, time):
-        """The target is caught: keep how that looked."""
+        """The target is caught: keep how that looked.
+
+        Checked  tests/net_capture/test_outcome.py
+        """
         p.outcome = CAPTURED
         p.captured = 1
         p.t_capture = time
@@ -96,15 +115,21 @@ def make_judge(terms, towards_chaser, share_inside):
 
     @kernel
     def fail(p):
-        """Missed, or slipped off after a touch."""
+        """Missed, or slipped off after a touch.
+
+        Checked  tests/net_capture/test_outcome.py
+        """
         if has_contact:
             return SLIPPED_OFF if p.contact_first_time >= 0.0 else MISSED
         return MISSED
 
     @kernel
     def judge_catch(p, work, time):
-        """Whether a catch holds, and whether it has settled."""
-        if has_target:
+        """Whether a catch holds, and whether it has settled; without a target or a cord nothing is ever caught.
+
+        Checked  tests/net_capture/test_outcome.py
+        """
+        if has_target and has_closing:
             if p.grid % (10 * p.measure_every) == 0:
                 look_inside(p, work, time, OUT)
                 if p.enclosure_share < p.enclosure_least:
@@ -115,7 +140,7 @@ def make_judge(terms, towards_chaser, share_inside):
                 p.settled = 0
                 p.t_lost = time
             elif has_settling:
-                quality.measure_net(p, work, 0.0)
+                measure_net(p, work)
                 squared = 0.0
                 for i in range(3):
                     relative = p.catch_velocity[i] - p.target_drift[i]
@@ -128,7 +153,10 @@ def make_judge(terms, towards_chaser, share_inside):
 
     @kernel
     def judge(p, work, time):
-        """Bring the outcome up to date; what has failed stays failed."""
+        """Bring the outcome up to date; what has failed stays failed.
+
+        Checked  tests/net_capture/test_outcome.py
+        """
         if p.outcome == FLYING:
             judge_flight(p, work, time)
         elif p.outcome == CAPTURED or p.outcome == SETTLED:

@@ -1,97 +1,46 @@
-"""Measures of a shot: mouth, energies and momenta.
+"""Measures of a shot, of the nodes as shown: mouth, energies and momenta."""
 
-Velocities are kept half a substep back; a measure uses those at the instant itself, v + h a / 2, and between two
-substeps positions on the straight line the next substep follows. All that accelerates a node must stand in the force
-planes.
-"""
+from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
-from fmu_src.net_capture.topology import (
-    FX,
-    INVERSE_MASS,
-    MASS,
-    PEAK,
-    U,
-    X,
-    bullet_node,
-    node_plane,
-    thread_plane,
-    vertex_node,
-)
+from fmu_src.net_capture.planes import MASS, SHOWN, SHOWN_BACK, SHOWN_RATE
 from orbital.kernel import kernel
 
 OPEN_ENOUGH = 0.8
 """Share of the flat net's area above which a mouth counts as open (t80, T80)."""
 
 
-@kernel
-def position(p, work, axis, node, ahead):
-    """A node's coordinate [m] `ahead` seconds after the last substep; forces must be in the force planes."""
-    index = axis
-    velocity = node_plane(p, work, U + index)[node]
-    force = node_plane(p, work, FX + index)[node]
-    inverse = node_plane(p, work, INVERSE_MASS)[node]
-    return node_plane(p, work, X + index)[node] + ahead * (velocity + p.solver_substep * force * inverse)
+class Quality(NamedTuple):
+    """Kernels of the measures.
 
+    start_mouth(p)                     nothing measured yet
+    mouth_area(p, work)                area of the polygon of the bullets, on the plane normal to the shot [m2]
+    watch_mouth(p, work, now, span)    follow the opening: largest area and when, first time above 80 %, time above
+    measure_mouth(p, work)             present area and depth
+    measure_net(p, work)               mass properties, kinetic energy and momenta of net, bullets and vertex
+    show_points(p, work)               bullets and vertex
+    carry(p, work, ahead)              the positions shown by a time on, less than a substep [s]
+    beyond(p, work, place)             how far the rearmost bullet is beyond a point, along the shot [m]
+    """
 
-@kernel
-def speed(p, work, axis, node):
-    """A node's velocity component [m/s] at the last substep's end; forces must be in the force planes."""
-    force = node_plane(p, work, FX + axis)[node]
-    inverse = node_plane(p, work, INVERSE_MASS)[node]
-    return node_plane(p, work, U + axis)[node] + 0.5 * p.solver_substep * force * inverse
-
-
-@kernel
-def mouth_area(p, work):
-    """Area [m2] of the quadrilateral of the bullets, projected on the plane normal to the shot (shoelace formula)."""
-    twice = 0.0
-    for i in range(4):
-        a = bullet_node(p.knots, i)
-        b = bullet_node(p.knots, (i + 1) % 4)
-        xa = 0.0
-        ya = 0.0
-        xb = 0.0
-        yb = 0.0
-        for axis in range(3):
-            at_a = node_plane(p, work, X + axis)[a]
-            at_b = node_plane(p, work, X + axis)[b]
-            xa += at_a * p.axes[axis]
-            ya += at_a * p.axes[3 + axis]
-            xb += at_b * p.axes[axis]
-            yb += at_b * p.axes[3 + axis]
-        twice += xa * yb - xb * ya
-    return 0.5 * abs(twice)
-
-
-@kernel
-def bullet_depth(p, work, corner):
-    """How far a bullet is from the muzzle along the shot [m]."""
-    node = bullet_node(p.knots, corner)
-    depth = 0.0
-    for axis in range(3):
-        depth += (node_plane(p, work, X + axis)[node] - p.muzzle[axis]) * p.axes[6 + axis]
-    return depth
-
-
-@kernel
-def least_depth_beyond(p, work, place):
-    """How far the rearmost bullet is beyond a point, along the shot [m]."""
-    at = 0.0
-    for axis in range(3):
-        at += (place[axis] - p.muzzle[axis]) * p.axes[6 + axis]
-    least = math.inf
-    for corner in range(4):
-        depth = bullet_depth(p, work, corner)
-        if depth < least:
-            least = depth
-    return least - at
+    start_mouth: Any
+    mouth_area: Any
+    watch_mouth: Any
+    measure_mouth: Any
+    measure_net: Any
+    show_points: Any
+    carry: Any
+    beyond: Any
 
 
 @kernel
 def start_mouth(p):
-    """Nothing measured yet."""
+    """Nothing measured yet.
+
+    Checked  tests/net_capture/test_quality.py
+    """
     p.mouth_t80 = -1.0
     p.mouth_t_max = 0.0
     p.mouth_area_max = 0.0
@@ -99,96 +48,11 @@ def start_mouth(p):
 
 
 @kernel
-def watch_mouth(p, work, now, interval):
-    """Follow the opening: largest area and when, first time above 80 %, time spent above."""
-    area = mouth_area(p, work)
-    if area > p.mouth_area_max:
-        p.mouth_area_max = area
-        p.mouth_t_max = now
-    if area > OPEN_ENOUGH * p.net_side * p.net_side:
-        if p.mouth_t80 < 0.0:
-            p.mouth_t80 = now
-        p.mouth_time_above_80 += interval
-
-
-@kernel
-def measure_net(p, work, ahead):
-    """Bullets, vertex, mass properties, kinetic energy and momenta of net, bullets and vertex.
-
-    ahead        seconds since the last substep, less than one substep
-
-    Fills `momentum` and `angular_momentum` with the net's share; forces must be in the force planes.
-    """
-    mass = node_plane(p, work, MASS)
-    total = 0.0
-    kinetic = 0.0
-    for i in range(3):
-        p.catch_position[i] = 0.0
-        p.catch_velocity[i] = 0.0
-        p.catch_spin[i] = 0.0
-    for i in range(6):
-        p.catch_inertia[i] = 0.0
-    for n in range(mass.size):
-        m = mass[n]
-        if m > 0.0:
-            x = position(p, work, 0, n, ahead)
-            y = position(p, work, 1, n, ahead)
-            z = position(p, work, 2, n, ahead)
-            u = speed(p, work, 0, n)
-            v = speed(p, work, 1, n)
-            w = speed(p, work, 2, n)
-            total += m
-            kinetic += 0.5 * m * (u * u + v * v + w * w)
-            p.catch_position[0] += m * x
-            p.catch_position[1] += m * y
-            p.catch_position[2] += m * z
-            p.catch_velocity[0] += m * u
-            p.catch_velocity[1] += m * v
-            p.catch_velocity[2] += m * w
-            p.catch_spin[0] += m * (y * w - z * v)
-            p.catch_spin[1] += m * (z * u - x * w)
-            p.catch_spin[2] += m * (x * v - y * u)
-            p.catch_inertia[0] += m * (y * y + z * z)
-            p.catch_inertia[1] += m * (z * z + x * x)
-            p.catch_inertia[2] += m * (x * x + y * y)
-            p.catch_inertia[3] -= m * x * y
-            p.catch_inertia[4] -= m * x * z
-            p.catch_inertia[5] -= m * y * z
-    p.catch_mass = total
-    p.energy_kinetic = kinetic
-    for i in range(3):
-        p.momentum[i] = p.catch_velocity[i]
-        p.angular_momentum[i] = p.catch_spin[i]
-        p.catch_position[i] /= total
-        p.catch_velocity[i] /= total
-    x = p.catch_position[0]
-    y = p.catch_position[1]
-    z = p.catch_position[2]
-    p.catch_spin[0] -= y * p.momentum[2] - z * p.momentum[1]
-    p.catch_spin[1] -= z * p.momentum[0] - x * p.momentum[2]
-    p.catch_spin[2] -= x * p.momentum[1] - y * p.momentum[0]
-    p.catch_inertia[0] -= total * (y * y + z * z)
-    p.catch_inertia[1] -= total * (z * z + x * x)
-    p.catch_inertia[2] -= total * (x * x + y * y)
-    p.catch_inertia[3] += total * x * y
-    p.catch_inertia[4] += total * x * z
-    p.catch_inertia[5] += total * y * z
-    for corner in range(4):
-        node = bullet_node(p.knots, corner)
-        for axis in range(3):
-            p.bullet_position[corner, axis] = position(p, work, axis, node, ahead)
-            p.bullet_velocity[corner, axis] = speed(p, work, axis, node)
-    for axis in range(3):
-        p.vertex_position[axis] = 0.0
-        p.vertex_velocity[axis] = 0.0
-        for i in range(4):
-            p.vertex_position[axis] += 0.25 * position(p, work, axis, vertex_node(p.knots, i), ahead)
-            p.vertex_velocity[axis] += 0.25 * speed(p, work, axis, vertex_node(p.knots, i))
-
-
-@kernel
 def add_body_momenta(p, mass, place, velocity):
-    """Add a body's linear and orbital angular momentum to the scene's."""
+    """Add a body's linear and orbital angular momentum to the scene's.
+
+    Checked  tests/net_capture/test_quality.py
+    """
     p.momentum[0] += mass * velocity[0]
     p.momentum[1] += mass * velocity[1]
     p.momentum[2] += mass * velocity[2]
@@ -198,35 +62,197 @@ def add_body_momenta(p, mass, place, velocity):
 
 
 @kernel
-def measure_mouth(p, work):
-    """Present mouth area and depth."""
-    p.mouth_area = mouth_area(p, work)
-    p.mouth_area_ratio = p.mouth_area / (p.net_side * p.net_side)
-    depth = 0.0
-    for corner in range(4):
-        depth += 0.25 * bullet_depth(p, work, corner)
-    p.mouth_depth = depth
+def collect_peaks(p):
+    """The largest thread tension since the start, and where.
+
+    Checked  tests/net_capture/test_quality.py
+    """
+    if p.thread_tension_peak > p.thread_tension_max:
+        p.thread_tension_max = p.thread_tension_peak
+        p.thread_tension_max_index = p.thread_peak_index
 
 
-@kernel
-def collect_peaks(p, work):
-    """Largest thread tension of the macro step and since the start, and where."""
-    peak = thread_plane(p, work, PEAK)
-    largest = 0.0
-    where = 0
-    for i in range(peak.size):
-        if peak[i] > largest:
-            largest = peak[i]
-            where = i
-    p.thread_tension_peak = largest
-    if largest > p.thread_tension_max:
-        p.thread_tension_max = largest
-        p.thread_tension_max_index = where + 1
+def make_quality(composition: Any) -> Quality:
+    """Kernels of the measures of the composition's net."""
+    memory = composition.memory
+    node_plane, rim, corners, apex = memory.node_plane, memory.rim, memory.corners, memory.apex
 
+    @kernel
+    def bullet(p, work, corner):
+        """Node that carries a bullet.
 
-@kernel
-def clear_peaks(p, work):
-    """Begin a new macro step."""
-    peak = thread_plane(p, work, PEAK)
-    for i in range(peak.size):
-        peak[i] = 0.0
+        Checked  tests/net_capture/test_quality.py
+        """
+        return rim(p, work)[corners(p, work)[corner]]
+
+    @kernel
+    def across(p, work, corner, axis):
+        """Coordinate of a bullet along one of the shot's axes, from the frame's origin [m].
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        node = bullet(p, work, corner)
+        at = 0.0
+        for i in range(3):
+            at += node_plane(p, work, SHOWN + i)[node] * p.axes[3 * axis + i]
+        return at
+
+    @kernel
+    def mouth_area(p, work):
+        """By the shoelace formula.
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        twice = 0.0
+        for i in range(p.net_corners):
+            j = i + 1 if i + 1 < p.net_corners else 0
+            twice += across(p, work, i, 0) * across(p, work, j, 1) - across(p, work, j, 0) * across(p, work, i, 1)
+        return 0.5 * abs(twice)
+
+    @kernel
+    def bullet_depth(p, work, corner):
+        """How far a bullet is from the muzzle along the shot [m].
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        node = bullet(p, work, corner)
+        depth = 0.0
+        for axis in range(3):
+            depth += (node_plane(p, work, SHOWN + axis)[node] - p.muzzle[axis]) * p.axes[6 + axis]
+        return depth
+
+    @kernel
+    def beyond(p, work, place):
+        """How far the rearmost bullet is beyond a point, along the shot [m].
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        at = 0.0
+        for axis in range(3):
+            at += (place[axis] - p.muzzle[axis]) * p.axes[6 + axis]
+        least = math.inf
+        for corner in range(p.net_corners):
+            least = min(least, bullet_depth(p, work, corner))
+        return least - at
+
+    @kernel
+    def watch_mouth(p, work, now, span):
+        """Follow the opening: largest area [m2] and when [s], first time above 80 % and time above it [s].
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        area = mouth_area(p, work)
+        if area > p.mouth_area_max:
+            p.mouth_area_max = area
+            p.mouth_t_max = now
+        if area > OPEN_ENOUGH * p.mouth_flat_area:
+            if p.mouth_t80 < 0.0:
+                p.mouth_t80 = now
+            p.mouth_time_above_80 += span
+
+    @kernel
+    def measure_mouth(p, work):
+        """Present area [m2], its share of the flat mouth [1], and depth [m].
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        p.mouth_area = mouth_area(p, work)
+        p.mouth_area_ratio = p.mouth_area / p.mouth_flat_area
+        depth = 0.0
+        for corner in range(p.net_corners):
+            depth += bullet_depth(p, work, corner) / p.net_corners
+        p.mouth_depth = depth
+
+    @kernel
+    def measure_net(p, work):
+        """Fills `momentum` and `angular_momentum` with the net's share.
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        mass = node_plane(p, work, MASS)
+        total = 0.0
+        kinetic = 0.0
+        for i in range(3):
+            p.catch_position[i] = 0.0
+            p.catch_velocity[i] = 0.0
+            p.catch_spin[i] = 0.0
+        for i in range(6):
+            p.catch_inertia[i] = 0.0
+        for n in range(p.node_slots):
+            m = 1.0 * mass[n]
+            if m > 0.0:
+                x = 1.0 * node_plane(p, work, SHOWN)[n]
+                y = 1.0 * node_plane(p, work, SHOWN + 1)[n]
+                z = 1.0 * node_plane(p, work, SHOWN + 2)[n]
+                u = 1.0 * node_plane(p, work, SHOWN_RATE)[n]
+                v = 1.0 * node_plane(p, work, SHOWN_RATE + 1)[n]
+                w = 1.0 * node_plane(p, work, SHOWN_RATE + 2)[n]
+                total += m
+                kinetic += 0.5 * m * (u * u + v * v + w * w)
+                p.catch_position[0] += m * x
+                p.catch_position[1] += m * y
+                p.catch_position[2] += m * z
+                p.catch_velocity[0] += m * u
+                p.catch_velocity[1] += m * v
+                p.catch_velocity[2] += m * w
+                p.catch_spin[0] += m * (y * w - z * v)
+                p.catch_spin[1] += m * (z * u - x * w)
+                p.catch_spin[2] += m * (x * v - y * u)
+                p.catch_inertia[0] += m * (y * y + z * z)
+                p.catch_inertia[1] += m * (z * z + x * x)
+                p.catch_inertia[2] += m * (x * x + y * y)
+                p.catch_inertia[3] -= m * x * y
+                p.catch_inertia[4] -= m * x * z
+                p.catch_inertia[5] -= m * y * z
+        p.catch_mass = total
+        p.energy_kinetic = kinetic
+        for i in range(3):
+            p.momentum[i] = p.catch_velocity[i]
+            p.angular_momentum[i] = p.catch_spin[i]
+            p.catch_position[i] /= total
+            p.catch_velocity[i] /= total
+        x = p.catch_position[0]
+        y = p.catch_position[1]
+        z = p.catch_position[2]
+        p.catch_spin[0] -= y * p.momentum[2] - z * p.momentum[1]
+        p.catch_spin[1] -= z * p.momentum[0] - x * p.momentum[2]
+        p.catch_spin[2] -= x * p.momentum[1] - y * p.momentum[0]
+        p.catch_inertia[0] -= total * (y * y + z * z)
+        p.catch_inertia[1] -= total * (z * z + x * x)
+        p.catch_inertia[2] -= total * (x * x + y * y)
+        p.catch_inertia[3] += total * x * y
+        p.catch_inertia[4] += total * x * z
+        p.catch_inertia[5] += total * y * z
+
+    @kernel
+    def show_points(p, work):
+        """Positions [m] and velocities [m/s] of bullets and vertex.
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        for corner in range(p.net_corners):
+            node = bullet(p, work, corner)
+            for axis in range(3):
+                p.bullet_position[corner, axis] = node_plane(p, work, SHOWN + axis)[node]
+                p.bullet_velocity[corner, axis] = node_plane(p, work, SHOWN_RATE + axis)[node]
+        for axis in range(3):
+            p.vertex_position[axis] = 0.0
+            p.vertex_velocity[axis] = 0.0
+            for i in range(p.apex_nodes):
+                node = apex(p, work)[i]
+                p.vertex_position[axis] += node_plane(p, work, SHOWN + axis)[node] / p.apex_nodes
+                p.vertex_velocity[axis] += node_plane(p, work, SHOWN_RATE + axis)[node] / p.apex_nodes
+
+    @kernel
+    def carry(p, work, ahead):
+        """On the straight line that the next substep follows.
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        for axis in range(3):
+            at = node_plane(p, work, SHOWN + axis)
+            onward = node_plane(p, work, SHOWN_BACK + axis)
+            for i in range(p.node_slots):
+                at[i] += ahead * onward[i]
+
+    return Quality(start_mouth, mouth_area, watch_mouth, measure_mouth, measure_net, show_points, carry, beyond)

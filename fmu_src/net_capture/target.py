@@ -1,59 +1,145 @@
-"""The target: a free rigid box. Its state is position, velocity, attitude and angular momentum in the frame's axes.
+"""The target: a free rigid body. Its state is position, velocity, attitude and angular momentum in the frame's axes.
 
 Between impulses the angular momentum about the centre of mass is constant (it only turns with the frame), and so it is
 the state, not the rate; the attitude follows by a midpoint step with a Cayley map, which needs no trigonometry and so
 gives the same bits on every platform.
 """
 
-from fmu_src.net_capture.interface import NO_INERTIA, NO_QUATERNION
-from fmu_src.net_capture.shapes import BOX_SAMPLES, box_girth, box_sample
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from fmu_src.interface import Term, Variable, fault
+from fmu_src.net_capture.refusal import Refusal, Scene, text
+from fmu_src.rows import moving, output, positive, state, vector
 from orbital.kernel import kernel
 from orbital.rotations import normalise, rotate, rotate_inverse
 from orbital.vectors import dot
 
-SAMPLES = BOX_SAMPLES
-"""How many sample points the target has."""
 BEYOND_REACH = 0.55
 """Depth of the sample points below the faces, in meshes: with all knots outside, a mesh reaches 0.535 at a corner."""
 
+NO_QUATERNION = fault(
+    "no_quaternion", "target.start_attitude[1]", "target.start_attitude is not a quaternion of unit length (nor zero)"
+)
+NO_INERTIA = fault(
+    "no_inertia",
+    "target.principal_inertia[1]",
+    "the principal inertias of the target break the triangle inequality",
+)
 
-@kernel
-def place_target(p):
-    """Put the target into its start attitude and rate at the origin; return a fault code or 0."""
-    size = p.target_size
-    principal = p.target_inertia
-    total = 0.0
-    for i in range(3):
-        total += abs(p.target_principal_inertia[i])
-    for i in range(3):
-        a = size[(i + 1) % 3]
-        b = size[(i + 2) % 3]
-        principal[i] = p.target_mass * (a * a + b * b) / 12.0 if total == 0.0 else p.target_principal_inertia[i]
-    for i in range(3):
-        if principal[i] <= 0.0 or principal[i] > (principal[(i + 1) % 3] + principal[(i + 2) % 3]) * (1.0 + 1e-12):
-            return NO_INERTIA
-    squared = 0.0
-    for i in range(4):
-        p.target_pose[i] = p.target_start_attitude[i]
-        squared += p.target_start_attitude[i] * p.target_start_attitude[i]
-    if squared == 0.0:
-        p.target_pose[0] = 1.0
-    elif abs(squared - 1.0) > 1e-6:
-        return NO_QUATERNION
-    normalise(p.target_pose, p.target_pose)
-    for i in range(3):
-        p.target_place[i] = 0.0
-        p.target_drift[i] = 0.0
-        p.target_rate[i] = p.target_start_rate[i]
-        p.scratch[i] = principal[i] * p.target_start_rate[i]
-    rotate(p.target_spin, p.target_pose, p.scratch[0:3])
-    p.girth = box_girth(size)
-    return 0
+ROWS = (
+    positive("target.mass", "kg", "mass of the target", 1000.0),
+    Variable(
+        "target.principal_inertia[#]",
+        "kg.m2",
+        "parameter",
+        "about the body axes; zero: of a uniform body of this shape",
+        0.0,
+        shape=(3,),
+        minimum=0.0,
+    ),
+    Variable(
+        "target.start_attitude[#]",
+        "1",
+        "parameter",
+        "quaternion from body to orbital frame, scalar first; zero: aligned",
+        0.0,
+        shape=(4,),
+    ),
+    Variable(
+        "target.start_rate[#]",
+        "rad/s",
+        "parameter",
+        "body rate in body axes, relative to inertial space",
+        0.0,
+        shape=(3,),
+        display_unit="deg/s",
+    ),
+    *moving("target", "centre of mass, orbital frame", "of the centre of mass, orbital frame"),
+    Variable("target.attitude[#]", "1", "output", "quaternion from body to orbital frame, scalar first", shape=(4,)),
+    Variable(
+        "target.rate[#]",
+        "rad/s",
+        "output",
+        "body rate in body axes, relative to inertial space",
+        shape=(3,),
+        display_unit="deg/s",
+    ),
+    Variable("target.inertia[#]", "kg.m2", "output", "about the body axes", shape=(3,)),
+    output("target.reach", "m", "farthest point of the target from its centre of mass", discrete=True),
+    vector("target.spin", "N.m.s", "angular momentum about the target's centre of mass, orbital axes"),
+    state("target_place[#]", "m", "centre of mass at the last substep", shape=(3,)),
+    state("target_drift[#]", "m/s", "velocity of the centre of mass half a substep back", shape=(3,)),
+    state("target_pose[#]", "1", "attitude at the last substep", shape=(4,)),
+    state("target_middle[#]", "1", "attitude half way through a substep", shape=(4,)),
+    state("target_turning[#]", "rad/s", "a body rate and the frame's, for the step", shape=(6,)),
+    state("half_size[#]", "m", "half the edges of the box around the target", shape=(3,)),
+    state("shape_half[#]", "m", "of the box that holds the sample points", shape=(3,)),
+    state("envelope_radius", "m", "of the sphere around the target"),
+    state("girth", "m", "smallest girth"),
+    output("target.energy", "J", "kinetic energy of translation and spin of the target"),
+)
+
+
+class Target(NamedTuple):
+    """Kernels of a free target.
+
+    shape                          those of its shape
+    place(p) -> fault              put it into its start attitude and rate at the origin
+    drift(p, frame_rate, h)        move and turn it by one substep with its momenta held
+    measure(p)                     rate and energy from its momenta
+    turn(out, attitude, rate, p, frame_rate, h)   out = attitude after a time
+    sample(p, out, number)         out = a sample point in the frame [m], below where any part of the net comes
+    """
+
+    shape: Any
+    place: Any
+    drift: Any
+    measure: Any
+    turn: Any
+    sample: Any
+
+
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """Inertia and attitude that no rigid body has."""
+    inertia = scene.vector("target.principal_inertia")
+    if any(inertia):
+        largest, others = max(inertia), sum(inertia) - max(inertia)
+        if min(inertia) <= 0.0 or largest > others * (1.0 + 1e-12):
+            expected = (
+                "none may be zero or exceed the sum of the other two "
+                f"(leave it out for a uniform {scene.terms['target']})"
+            )
+            yield Refusal("target.principal_inertia", text(inertia, " kg m2"), expected)
+    attitude = scene.vector("target.start_attitude", 4)
+    squared = sum(part * part for part in attitude)
+    if any(attitude) and not abs(squared - 1.0) <= 1e-6:
+        expected = f"must be a quaternion of unit length, scalar first; its length is {math.sqrt(squared):.6g}"
+        yield Refusal("target.start_attitude", text(attitude), expected)
+
+
+def free_body(name: str, shape: Term) -> Term:
+    """The term of a free target of a shape."""
+    return replace(
+        shape,
+        summary=f"free {name} that takes the reaction of every contact",
+        variables=(*shape.variables, *ROWS),
+        faults=(NO_QUATERNION, NO_INERTIA, *shape.faults),
+        make=lambda composition: make_target(composition, shape),
+        refuses=lambda scene: [*refuses(scene), *(shape.refuses(scene) if shape.refuses else ())],
+    )
 
 
 @kernel
 def rate_from_spin(p, out, attitude):
-    """out = body rate relative to inertial space, body axes [rad/s], from the angular momentum."""
+    """out = body rate relative to inertial space, body axes [rad/s], from the angular momentum.
+
+    Checked  tests/net_capture/test_contact.py
+    """
     rotate_inverse(out, attitude, p.target_spin)
     for i in range(3):
         out[i] /= p.target_inertia[i]
@@ -66,8 +152,9 @@ def turn(out, attitude, rate, p, frame_rate, h):
         q' = q (1, h w / 2) / sqrt(1 + |h w|^2 / 4),   w = rate - R^T (0, 0, frame_rate)
 
     Valid    |h w| well below 1; the angle is short of h w by its (h w)^2 / 12
+    Checked  tests/net_capture/test_contact.py
     """
-    frame = p.scratch[6:9]
+    frame = p.target_turning[3:6]
     frame[0] = 0.0
     frame[1] = 0.0
     frame[2] = frame_rate
@@ -88,11 +175,14 @@ def turn(out, attitude, rate, p, frame_rate, h):
 
 @kernel
 def drift_target(p, frame_rate, h):
-    """Move and turn the target by one substep with its momenta held."""
+    """Move and turn the target by one substep with its momenta held.
+
+    Checked  tests/net_capture/test_contact.py
+    """
     for i in range(3):
         p.target_place[i] += h * p.target_drift[i]
-    half = p.scratch[9:13]
-    rate = p.scratch[0:3]
+    half = p.target_middle
+    rate = p.target_turning[0:3]
     rate_from_spin(p, rate, p.target_pose)
     turn(half, p.target_pose, rate, p, frame_rate, 0.5 * h)
     rate_from_spin(p, rate, half)
@@ -108,7 +198,10 @@ def drift_target(p, frame_rate, h):
 
 @kernel
 def measure_target(p):
-    """Rate and energy of the target from its momenta."""
+    """Rate and energy of the target from its momenta.
+
+    Checked  tests/net_capture/test_contact.py
+    """
     rate_from_spin(p, p.target_rate, p.target_pose)
     energy = 0.5 * p.target_mass * dot(p.target_velocity, p.target_velocity)
     for i in range(3):
@@ -116,19 +209,63 @@ def measure_target(p):
     p.target_energy = energy
 
 
-@kernel
-def sample(p, out, number):
-    """out = sample point of the target in the frame [m], so far below its surface that no part of the net comes there.
+def make_target(composition: Any, part: Term) -> Target:
+    """Kernels of a free target of the shape that a part makes."""
+    assert part.make is not None
+    shape = part.make(composition)
+    uniform_inertia, measure_shape, shape_sample = shape.inertia, shape.measure, shape.sample
+    no_inertia, no_quaternion = composition.code(NO_INERTIA.name), composition.code(NO_QUATERNION.name)
 
-    Valid    a target thicker than 1.1 meshes; of a thinner one the points come together in its middle
-    Checked  tests/net_capture/test_enclosure.py
-    """
-    half = p.scratch[3:6]
-    for i in range(3):
-        half[i] = 0.5 * p.target_size[i] - BEYOND_REACH * p.net_mesh
-        if half[i] < 0.0:
-            half[i] = 0.0
-    box_sample(out, half, number)
-    rotate(out, p.target_pose, out)
-    for i in range(3):
-        out[i] += p.target_place[i]
+    @kernel
+    def place(p):
+        """Put the target into its start attitude and rate at the origin; a fault code or 0.
+
+        Checked  tests/net_capture/test_contact.py
+        """
+        principal = p.target_inertia
+        total = 0.0
+        for i in range(3):
+            total += abs(p.target_principal_inertia[i])
+        uniform_inertia(p, principal)
+        if total > 0.0:
+            for i in range(3):
+                principal[i] = p.target_principal_inertia[i]
+        for i in range(3):
+            if principal[i] <= 0.0 or principal[i] > (principal[(i + 1) % 3] + principal[(i + 2) % 3]) * (1.0 + 1e-12):
+                p.fault_value = p.target_principal_inertia[0]
+                return no_inertia
+        squared = 0.0
+        for i in range(4):
+            p.target_pose[i] = p.target_start_attitude[i]
+            squared += p.target_start_attitude[i] * p.target_start_attitude[i]
+        if squared == 0.0:
+            p.target_pose[0] = 1.0
+        elif abs(squared - 1.0) > 1e-6:
+            p.fault_value = p.target_start_attitude[0]
+            return no_quaternion
+        normalise(p.target_pose, p.target_pose)
+        spin = p.target_turning[0:3]
+        for i in range(3):
+            p.target_place[i] = 0.0
+            p.target_drift[i] = 0.0
+            p.target_rate[i] = p.target_start_rate[i]
+            spin[i] = principal[i] * p.target_start_rate[i]
+        rotate(p.target_spin, p.target_pose, spin)
+        measure_shape(p)
+        p.target_reach = p.envelope_radius
+        return 0
+
+    @kernel
+    def sample(p, out, number):
+        """out = sample point of the target in the frame [m], so far below its surface that no part of the net comes
+        there.
+
+        Valid    a target thicker than 1.1 meshes; of a thinner one the points come together in its middle
+        Checked  tests/net_capture/test_enclosure.py
+        """
+        shape_sample(p, out, number, BEYOND_REACH * p.net_mesh)
+        rotate(out, p.target_pose, out)
+        for i in range(3):
+            out[i] += p.target_place[i]
+
+    return Target(shape, place, drift_target, measure_target, turn, sample)

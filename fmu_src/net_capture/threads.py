@@ -1,31 +1,40 @@
-"""Threads that pull but never push, and the drift of the nodes they join.
+"""Threads that pull but never push.
 
-Most threads are slack at any time. So a first pass over a strip, free of branches, only asks by how much the squared
-length exceeds the squared rest length; the square root, the damping and the force are worked out where a thread is
-taut.
+Most threads are slack at any time. So a first pass over a strip, free of branches, only asks which of its squared
+lengths exceed the squared rest length; tension, damping and force are worked out for the groups of lanes in which one
+does, several lanes at once.
 """
 
+from __future__ import annotations
+
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from fmu_src.net_capture.topology import (
-    CHUNK,
+from fmu_src.net_capture.planes import (
+    DAMPING_PER_SQUARED,
+    FIRST,
     FX,
     INVERSE_MASS,
-    LENGTH_SQUARED,
-    PEAK,
-    U,
+    LANES,
+    LENGTH,
+    LONGEST_ROW,
+    PER_SQUARED,
+    SHOWN,
+    SHOWN_RATE,
+    SQUARED,
+    STIFFNESS,
+    STRIP_NUMBERS,
+    STRIP_WORDS,
+    A,
+    B,
     X,
-    Y,
-    Z,
-    chunk_scratch,
-    gather,
-    node_plane,
-    strip_table,
-    thread_plane,
 )
 from orbital.kernel import kernel
+
+SERIES_ENDS = 4e-3
+"""Excess r2/L2 - 1 up to which the shortening is summed: the series' own error is then below 4e-13 of it."""
 
 
 @kernel
@@ -48,185 +57,254 @@ def thread_tension(length, stretch_rate, rest_length, stiffness, damping):
     return tension if length > rest_length and tension > 0.0 else 0.0
 
 
-@kernel
-def find_taut(excess, xa, ya, za, xb, yb, zb, squared):
-    """Write by how much each squared length exceeds the squared rest length [m2]; return how many do."""
-    taut = 0
-    for j in range(excess.size):
-        dx = xb[j] - xa[j]
-        dy = yb[j] - ya[j]
-        dz = zb[j] - za[j]
-        e = dx * dx + dy * dy + dz * dz - squared[j]
-        excess[j] = e
-        taut += 1 if e > 0.0 else 0
-    return taut
+class Threads(NamedTuple):
+    """Kernels of the threads.
 
-
-@kernel
-def pull(lanes, nodes, slots, a, b, peak, length, stiffness, damping, h):
-    """Add the forces [N] of the taut lanes of a chunk to both their nodes; return what their dashpots take [W].
-
-        D = sum of (T - T_e) dL/dt,   T_e = k (L - L0)
-
-    lanes     numbers of the taut lanes within the chunk
-    nodes     the node planes, one after another, `slots` long each
-    a, b      nodes joined by the chunk's first lane
-    peak      largest tension so far of each lane of the chunk   [N]
-    h         substep                                            [s]
-
-    The rate of stretch is that of the predicted velocities, which belong to the same instant as the positions. Where
-    the tension is held at zero the dashpot takes what the shortening thread gives up. A thread that was slack a substep
-    ago gives its nodes a kick that no prediction knows of: there the rate is the mean of those before and after it.
-
-    Indices are unsigned, which spares the test for negative ones: at this place it costs a third.
-
-    Checked  tests/net_capture/test_threads.py, tests/net_capture/test_energy_book.py
+    taut(reals, slots, place, a, b, lanes, squared)      lanes that are stretched, a bit each
+    pull(p, reals, slots, numbers, q, a, b, first, taut, earlier)
+                                                         add their forces at the velocities predicted; what their
+                                                         dashpots take [W]
+    pull_now(p, work)                                    forces of all threads; counts those that are taut, sums what
+                                                         their dashpots take
+    pull_shown(p, work)                                  the same, at the positions and velocities shown
+    stored(p, work)                                      energy in the stretched threads as shown [J]
     """
-    n = np.uint64(slots)
-    taken = 0.0
-    for i in range(lanes.size):
-        lane = np.uint64(lanes[i])
-        ia = np.uint64(a) + lane
-        ib = np.uint64(b) + lane
-        dx = nodes[ib] - nodes[ia]
-        ua = ia + n
-        ub = ib + n
-        dy = nodes[ub] - nodes[ua]
-        ua += n
-        ub += n
-        dz = nodes[ub] - nodes[ua]
-        r = math.sqrt(dx * dx + dy * dy + dz * dz)
-        inverse = 1.0 / r
-        ua += n
-        ub += n
-        rate = (nodes[ub] - nodes[ua]) * dx
-        ua += n
-        ub += n
-        rate += (nodes[ub] - nodes[ua]) * dy
-        ua += n
-        ub += n
-        rate += (nodes[ub] - nodes[ua]) * dz
-        rate *= inverse
-        tension = thread_tension(r, rate, length, stiffness, damping)
-        ua = ia + np.uint64(U) * n
-        ub = ib + np.uint64(U) * n
-        before = (nodes[ub] - nodes[ua]) * dx
-        before += (nodes[ub + n] - nodes[ua + n]) * dy
-        before += (nodes[ub + n + n] - nodes[ua + n + n]) * dz
-        before *= inverse
-        if r - h * before <= length:
-            ua = ia + np.uint64(INVERSE_MASS) * n
-            ub = ib + np.uint64(INVERSE_MASS) * n
-            rate = before - 0.5 * h * tension * (nodes[ua] + nodes[ub])
-        taken += (tension - stiffness * (r - length)) * rate
-        peak[lane] = tension if tension > peak[lane] else peak[lane]
-        q = tension * inverse
-        ua = ia + np.uint64(FX) * n
-        ub = ib + np.uint64(FX) * n
-        nodes[ua] += q * dx
-        nodes[ub] -= q * dx
-        ua += n
-        ub += n
-        nodes[ua] += q * dy
-        nodes[ub] -= q * dy
-        ua += n
-        ub += n
-        nodes[ua] += q * dz
-        nodes[ub] -= q * dz
-    return taken
+
+    taut: Any
+    pull: Any
+    pull_now: Any
+    pull_shown: Any
+    stored: Any
 
 
-@kernel
-def add_thread_forces(p, work):
-    """Add the tension of every thread to its nodes; count those that are stretched, sum what their dashpots take."""
-    x = node_plane(p, work, X)
-    y = node_plane(p, work, Y)
-    z = node_plane(p, work, Z)
-    squared = thread_plane(p, work, LENGTH_SQUARED)
-    peak = thread_plane(p, work, PEAK)
-    table = strip_table(p, work)
-    scratch = chunk_scratch(p, work)
-    excess = scratch[0:CHUNK]
-    lanes = scratch[CHUNK : 2 * CHUNK]
-    taut = 0
-    taken = 0.0
-    for q in range(p.strips):
-        count = int(table[4 * q + 2])
-        for start in range(0, count, CHUNK):
-            a = int(table[4 * q]) + start
-            b = int(table[4 * q + 1]) + start
-            t = int(table[4 * q + 3]) + start
-            n = min(CHUNK, count - start)
-            e = excess[0:n]
-            found = find_taut(
-                e,
-                x[a : a + n],
-                y[a : a + n],
-                z[a : a + n],
-                x[b : b + n],
-                y[b : b + n],
-                z[b : b + n],
-                squared[t : t + n],
-            )
-            if found > 0:
-                taut += found
-                gather(lanes, e)
-                taken += pull(
-                    lanes[0:found],
-                    work,
-                    p.node_slots,
-                    a,
-                    b,
-                    peak[t : t + n],
-                    p.thread_length,
-                    p.thread_stiffness,
-                    p.thread_damping,
-                    p.solver_substep,
-                )
-    p.thread_taut = taut
-    p.thread_power = taken
+def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
+    """Kernel `pull` for positions and velocities in the planes from `place` and `rate` on.
 
+    before    planes of the velocities of half a substep back; negative: none are kept
+    """
+    lanes = composition.lanes
+    load, store, splat, where, root, bits, lane = (
+        lanes.load,
+        lanes.store,
+        lanes.splat,
+        lanes.where,
+        lanes.root,
+        lanes.bits,
+        lanes.lane,
+    )
+    from fmu_src.lanes import lowest, peek
 
-@kernel
-def elastic_energy(p, work):
-    """Energy stored in the stretched threads [J], sum of k (L - L0)^2 / 2."""
-    x = node_plane(p, work, X)
-    y = node_plane(p, work, Y)
-    z = node_plane(p, work, Z)
-    squared = thread_plane(p, work, LENGTH_SQUARED)
-    table = strip_table(p, work)
-    total = 0.0
-    for q in range(p.strips):
-        a = int(table[4 * q])
-        b = int(table[4 * q + 1])
-        t = int(table[4 * q + 3])
-        for j in range(int(table[4 * q + 2])):
-            dx = x[b + j] - x[a + j]
-            dy = y[b + j] - y[a + j]
-            dz = z[b + j] - z[a + j]
+    width, flags_of = lanes.width, lanes.flags
+    group = np.uint64((1 << width) - 1)
+    has_before = before >= 0
+    watches = has_before and "contact" in composition.terms
+
+    @kernel
+    def note_peak(p, tensions, first, above):
+        """Keep the largest tension of the macro step, and of which thread; `above` has a bit for each larger one.
+
+        Checked  tests/net_capture/test_threads.py
+        """
+        while above != np.uint64(0):
+            i = np.int64(lowest(above))
+            above &= above - np.uint64(1)
+            tension = lane(tensions, i)
+            if tension > p.thread_tension_peak:
+                p.thread_tension_peak = tension
+                p.thread_peak_index = first + i + 1
+
+    @kernel
+    def pull(p, reals, slots, numbers, q, a, b, first, taut, earlier):
+        """Add the forces [N] of the taut lanes of a strip to both their nodes; return what their dashpots take [W].
+
+            T / r = k s + d (w . r) (1 - s)^2 / L^2,   s = 1 - L / r,   r2 / L2 = 1 + e
+            s = e (1/2 - 3/8 e + 5/16 e2 - 35/128 e3 + 63/256 e4 - 231/1024 e5)     while e <= SERIES_ENDS
+            D = sum of (T - T_e) dL/dt,   T_e = k (r - L)
+
+        numbers, q    properties of the strips, and which strip this is
+        a, b          nodes of its lane 0
+        first         number of its first thread
+        taut          a bit for each lane that is stretched
+        earlier       the same a substep ago
+
+        The rate of stretch is that of the predicted velocities, which belong to the same instant as the positions.
+        Where the tension is held at zero the dashpot takes what the shortening thread gives up. A thread that was slack
+        a substep ago gives its nodes a kick that no prediction knows of: there the rate is the mean of those before and
+        after it.
+
+        Checked  tests/net_capture/test_threads.py, tests/net_capture/test_energy_book.py
+        """
+        squared = splat(peek(numbers, q + SQUARED))
+        per_squared = splat(peek(numbers, q + PER_SQUARED))
+        rest = splat(peek(numbers, q + LENGTH))
+        stiffness = splat(peek(numbers, q + STIFFNESS))
+        damping = splat(peek(numbers, q + DAMPING_PER_SQUARED))
+        zero = splat(0.0)
+        half = splat(0.5)
+        one = splat(1.0)
+        ends = splat(SERIES_ENDS)
+        half_step = splat(0.5 * p.solver_substep)
+        peak = splat(p.thread_tension_peak)
+        taken = zero
+        while taut != np.uint64(0):
+            j = lowest(taut) // np.uint64(width) * np.uint64(width)
+            here = (taut >> j) & group
+            taut -= here << j
+            on = flags_of(here)
+            m = a + np.int64(j)
+            n = b + np.int64(j)
+            x = m + place * slots
+            y = n + place * slots
+            dx = load(reals, y) - load(reals, x)
+            dy = load(reals, y + slots) - load(reals, x + slots)
+            dz = load(reals, y + 2 * slots) - load(reals, x + 2 * slots)
+            x = m + rate * slots
+            y = n + rate * slots
+            along = (load(reals, y) - load(reals, x)) * dx + (load(reals, y + slots) - load(reals, x + slots)) * dy
+            along = along + (load(reals, y + 2 * slots) - load(reals, x + 2 * slots)) * dz
             distance = dx * dx + dy * dy + dz * dz
-            if distance > squared[t + j]:
-                stretch = math.sqrt(distance) - p.thread_length
-                total += stretch * stretch
-    return 0.5 * p.thread_stiffness * total
+            over = distance - squared
+            e = over * per_squared
+            e2 = e * e
+            s = e * (
+                (half - splat(0.375) * e)
+                + e2 * ((splat(0.3125) - splat(0.2734375) * e) + e2 * (splat(0.24609375) - splat(0.2255859375) * e))
+            )
+            if bits(e > ends) != np.uint64(0):
+                s = where(e > ends, one - one / root(one + e), s)
+            g = one - s
+            elastic = stiffness * s
+            pulling = elastic + damping * along * (g * g)
+            pulling = where(on, where(pulling > zero, pulling, zero), zero)
+            tension = pulling * (rest * (one + e) * g)
+            above = bits(tension > peak)
+            if above != np.uint64(0):
+                note_peak(p, tension, first + np.int64(j), above)
+                peak = splat(p.thread_tension_peak)
+            if watches and bits(tension > splat(p.contact_force)) != np.uint64(0):
+                for i in range(width):
+                    p.contact_force = max(p.contact_force, 2.0 * lane(tension, np.int64(i)))
+            stretching = along
+            if has_before and here & ~(earlier >> j) != np.uint64(0):
+                x = m + before * slots
+                y = n + before * slots
+                back = (load(reals, y) - load(reals, x)) * dx + (load(reals, y + slots) - load(reals, x + slots)) * dy
+                back = back + (load(reals, y + 2 * slots) - load(reals, x + 2 * slots)) * dz
+                light = load(reals, m + INVERSE_MASS * slots) + load(reals, n + INVERSE_MASS * slots)
+                onset = flags_of(here & ~(earlier >> j))
+                stretching = where(onset, back - half_step * pulling * distance * light, along)
+            taken = taken + where(on, (pulling - elastic) * stretching, zero)
+            x = m + FX * slots
+            y = n + FX * slots
+            fx = pulling * dx
+            fy = pulling * dy
+            fz = pulling * dz
+            store(reals, x, load(reals, x) + fx)
+            store(reals, x + slots, load(reals, x + slots) + fy)
+            store(reals, x + 2 * slots, load(reals, x + 2 * slots) + fz)
+            store(reals, y, load(reals, y) - fx)
+            store(reals, y + slots, load(reals, y + slots) - fy)
+            store(reals, y + 2 * slots, load(reals, y + 2 * slots) - fz)
+        power = 0.0
+        for i in range(width):
+            power += lane(taken, np.int64(i))
+        return power
+
+    return pull
 
 
-@kernel
-def drift(position, velocity, force, h):
-    """Positions from velocities, and the forces cleared for the next substep."""
-    for j in range(position.size):
-        position[j] += h * velocity[j]
-        force[j] = 0.0
+def make_threads(composition: Any, rate: int, before: int) -> Threads:
+    """Kernels of the threads for a scheme.
 
+    rate      planes of the velocities at the instant of the positions, which the dashpots see
+    before    planes of the velocities of half a substep back; negative: none are kept
+    """
+    memory, lanes = composition.memory, composition.lanes
+    load, splat, bits, width = lanes.load, lanes.splat, lanes.bits, lanes.width
+    strips, properties, reals_of = memory.strips, memory.properties, memory.reals
+    from fmu_src.lanes import highest, population
 
-@kernel
-def drift_nodes(p, work, start, n, h):
-    """Drift one chunk of nodes, and clear their forces."""
-    stop = start + n
-    for axis in range(3):
-        drift(
-            node_plane(p, work, X + axis)[start:stop],
-            node_plane(p, work, U + axis)[start:stop],
-            node_plane(p, work, FX + axis)[start:stop],
-            h,
-        )
+    pull = make_pull(composition, X, rate, before)
+
+    @kernel
+    def taut_lanes(reals, slots, place, a, b, lanes, squared):
+        """Lanes of a strip that are longer than their rest length, a bit each.
+
+        place         planes of the positions, from which a and b count
+        lanes         those that are threads
+        squared       rest length squared [m2]
+
+        Checked  tests/net_capture/test_threads.py
+        """
+        x = a + place * slots
+        y = b + place * slots
+        limit = splat(squared)
+        found = np.uint64(0)
+        for j in range(0, np.int64(highest(np.uint64(lanes))) + 1, width):
+            dx = load(reals, y + j) - load(reals, x + j)
+            dy = load(reals, y + slots + j) - load(reals, x + slots + j)
+            dz = load(reals, y + 2 * slots + j) - load(reals, x + 2 * slots + j)
+            found |= bits(dx * dx + dy * dy + dz * dz > limit) << np.uint64(j)
+        return found & np.uint64(lanes)
+
+    def make_pull_all(place: int, rate: int) -> Any:
+        """Kernel that adds the forces of all threads at the positions and velocities in these planes."""
+        pull_there = make_pull(composition, place, rate, -1)
+
+        @kernel
+        def pull_all(p, work):
+            """Add the forces of all threads; count those that are taut, sum what their dashpots take [W].
+
+            Checked  tests/net_capture/test_threads.py
+            """
+            slots = p.node_slots
+            table = strips(p, work)
+            numbers = properties(p, work)
+            reals = reals_of(work)
+            power = 0.0
+            count = 0
+            for strip in range(p.strips):
+                s = STRIP_WORDS * strip
+                q = STRIP_NUMBERS * strip
+                squared = numbers[q + SQUARED]
+                found = taut_lanes(reals, slots, place, table[s + A], table[s + B], table[s + LANES], squared)
+                if found != np.uint64(0):
+                    count += population(found)
+                    power += pull_there(
+                        p, reals, slots, numbers, q, table[s + A], table[s + B], table[s + FIRST], found, found
+                    )
+            p.thread_taut = count
+            p.thread_power = power
+
+        return pull_all
+
+    @kernel
+    def stored(p, work):
+        """Energy in the stretched threads [J], sum of k (r - L)^2 / 2.
+
+        Checked  tests/net_capture/test_energy_book.py
+        """
+        slots = p.node_slots
+        table = strips(p, work)
+        numbers = properties(p, work)
+        reals = reals_of(work)
+        total = 0.0
+        for strip in range(p.strips):
+            s = STRIP_WORDS * strip
+            q = STRIP_NUMBERS * strip
+            length = numbers[q + LENGTH]
+            energy = 0.0
+            found = taut_lanes(reals, slots, SHOWN, table[s + A], table[s + B], table[s + LANES], length * length)
+            for lane in range(LONGEST_ROW):
+                if (found >> np.uint64(lane)) & np.uint64(1):
+                    squared = 0.0
+                    for axis in range(3):
+                        plane = (SHOWN + axis) * slots + lane
+                        d = np.float64(reals[plane + table[s + B]]) - np.float64(reals[plane + table[s + A]])
+                        squared += d * d
+                    stretch = math.sqrt(squared) - length
+                    energy += stretch * stretch
+            total += 0.5 * numbers[q + STIFFNESS] * energy
+        return total
+
+    return Threads(taut_lanes, pull, make_pull_all(X, rate), make_pull_all(SHOWN, SHOWN_RATE), stored)

@@ -5,11 +5,12 @@ deflated by the zlib that Python and Pillow were linked with, so the archive has
 too. The key leaves zlib out: what an FMU does, and so its GUID, does not depend on it.
 
 An FMU has two identities. The key is its library's: whatever values it starts with, it loads the saved states of all
-with that key. The GUID is the file's, values and experiment with it.
+with that key and its tables. The GUID is the file's, values, tables and experiment with it.
 
-The cache holds an FMU with the model's own values for each platform. One for several platforms, or with the values of
-a scene, is put together from those, without compiler or linker: platforms differ in their libraries alone, and values
-in what `described` makes. The IR is worked out once, since every FMU carries it among its sources.
+The cache holds an FMU with the model's own values for each platform, and without the tables of its parts, so that one
+with tables does not run from there. One for several platforms, or with the values of a scene, is put together from
+those, without compiler or linker: platforms differ in their libraries alone, values and tables in what `described`
+makes. The IR is worked out once, since every FMU carries it among its sources.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ from fmu_src.packaging import (
     picture,
     sources,
     start_values,
+    table_file,
     tools,
 )
 from fmu_src.packaging.description import Experiment
@@ -65,8 +67,8 @@ def fingerprint(interface: Interface) -> str:
     packaging = (p for p in (SOURCES / "packaging").rglob("*") if p.suffix in (".py", ".c", ".h", ".txt"))
     shared = sorted([*SOURCES.glob("*.py"), *packaging])
     formulas = sorted((SOURCES.parent / "orbital").glob("*.py"))
-    for path in [*shared, *formulas, *sorted(p for p in model.iterdir() if p.suffix in (".py", ".md"))]:
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    for path in [*shared, *formulas, *sorted(p for p in model.rglob("*") if p.suffix in (".py", ".md"))]:
+        digest.update(path.relative_to(SOURCES.parent).as_posix().encode() + b"\0" + path.read_bytes())
     tools = {name: version(name) for name in PACKAGES}
     digest.update(json.dumps([dict(interface.terms), tools]).encode())
     return digest.hexdigest()
@@ -83,9 +85,11 @@ def build(
 
     workplace    makes a folder in the cache for the time of the work, and removes it
 
-    A half-built FMU never has its final name, and two processes that build the same one do not disturb each other.
+    Its values are the model's own, whatever those of the interface, and tables it has none. A half-built FMU never has
+    its final name, and two processes that build the same one do not disturb each other.
     """
     platform = platform or host()
+    interface = interface.model.interface(interface.terms)
     key = fingerprint(interface)
     name = interface.model.name
     path = cache / kept.file_name(name, key, platform)
@@ -106,7 +110,7 @@ def build(
         if known is None:
             terms = ", ".join(interface.terms) or "no terms to choose"
             announce(f"building {name} with {terms} (once; kept in {cache})")
-            compile.emit(name, interface.terms, ir)
+            compile.emit(interface.model, interface.terms, ir)
         else:
             ir.write_bytes(known)
         header = folder / "model.h"
@@ -133,18 +137,21 @@ def build(
 
 
 def described(interface: Interface, library: str, experiment: Experiment) -> dict[str, bytes]:
-    """The files in which FMUs with one library differ: what they are, the values they start with, and what for.
+    """The files in which FMUs with one library differ: what they are, their values and tables, and what for.
 
     library    its key in the form of a GUID
     """
     name = interface.model.name
     what = [library, start_values.slots(interface).hex(), *map(str, astuple(experiment))]
+    tables = {table_file.PATH: table_file.content(interface)} if interface.given else {}
+    what += [hashlib.sha256(data).hexdigest() for data in tables.values()]
     guid = kept.as_guid(hashlib.sha256(json.dumps(what).encode()).hexdigest())
     package = version("dcone-cosim")
     return {
         "modelDescription.xml": description.model_description(interface, name, guid, package, experiment),
         start_values.PATH: start_values.content(interface, library, guid),
         "documentation/index.html": documentation.page(interface, SOURCES / name, experiment.scene).encode(),
+        **tables,
     }
 
 
@@ -203,12 +210,15 @@ def unite(fmus: Mapping[Path, Container[str]]) -> dict[str, bytes]:
 
 
 def furnish(fmus: Mapping[Path, Container[str]], interface: Interface, experiment: Experiment, path: Path) -> None:
-    """Write one FMU for all the platforms of several, which starts with the values of the interface.
+    """Write one FMU for all the platforms of several, which has the values and tables of the interface.
 
     fmus   as for `unite`
 
+    ValueError, and no file, if the interface was not given its tables.
+
     Checked  tests/packaging/test_start_values.py
     """
+    interface.demand_tables()
     files = unite(fmus)
     pack(files | described(interface, start_values.library_of(files[start_values.PATH]), experiment), path)
 

@@ -37,6 +37,7 @@ def header(interface: Interface, identifier: str, library: str) -> str:
         f"#define DCONE_RATES {len(pairs)}",
         f"#define DCONE_MOVING {len(moving)}",
         f"#define DCONE_PARTIALS {len(partial_table)}",
+        f"#define DCONE_TABLES {len(interface.tables)}",
         f"#define DCONE_DIFFERENTIABLE {int(interface.model.differentiable)}",
         "static const unsigned char slot_code[DCONE_SLOTS] = {" + ",".join(codes) + "};",
         *_table("struct row row_table[]", [_row(slot, v) for slot, v in first_slots(interface).values()]),

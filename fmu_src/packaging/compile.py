@@ -1,4 +1,4 @@
-"""LLVM IR of a model's entry, free of Python: `python -m fmu_src.packaging.compile MODEL TERMS OUT`.
+"""LLVM IR of a model's entry, free of Python: `python -m fmu_src.packaging.compile MODULE TERMS OUT`.
 
 Runs as a child process, since what numba emits is settled by the environment it is imported in: a generic processor
 and no vectoriser of its own, so that clang chooses both for each target. All but the entry becomes internal, what is
@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from fmu_src.interface import Model
 from fmu_src.packaging import tools
 
 ENTRY = "dcone_entry"
@@ -30,10 +31,10 @@ ENVIRONMENT = {
 }
 
 
-def emit(model: str, terms: Mapping[str, str], path: Path) -> None:
+def emit(model: Model, terms: Mapping[str, str], path: Path) -> None:
     """Write the IR of one model with its terms to `path`, in a child process."""
-    command = [sys.executable, "-m", "fmu_src.packaging.compile", model, json.dumps(dict(terms)), str(path)]
-    tools.run(f"compiling the kernels of {model}", command, {**os.environ, **ENVIRONMENT})
+    command = [sys.executable, "-m", "fmu_src.packaging.compile", model.module, json.dumps(dict(terms)), str(path)]
+    tools.run(f"compiling the kernels of {model.name}", command, {**os.environ, **ENVIRONMENT})
 
 
 def _keep_loops_whole(llvm: Any) -> None:
@@ -48,7 +49,7 @@ def _keep_loops_whole(llvm: Any) -> None:
     llvm.create_pipeline_tuning_options = options_without_unrolling
 
 
-def _lower(model: str, terms: Mapping[str, str]) -> str:
+def _lower(module: str, terms: Mapping[str, str]) -> str:
     import importlib
 
     import llvmlite.binding as llvm
@@ -56,33 +57,32 @@ def _lower(model: str, terms: Mapping[str, str]) -> str:
     _keep_loops_whole(llvm)
     from numba import njit
 
-    from fmu_src.catalogue import MODELS
     from orbital.kernel import OPTIONS
 
-    entry = importlib.import_module(MODELS[model].module).make_entry(dict(terms))
+    entry = importlib.import_module(module).make_entry(dict(terms))
     (signature,) = entry.nopython_signatures
     bare_options: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     bare = njit(signature, **bare_options)(entry.py_func)
     result = bare.overloads[signature.args]
     name = result.fndesc.llvm_func_name
-    module = llvm.parse_assembly(result.library.get_llvm_str())
-    for function in module.functions:
+    whole = llvm.parse_assembly(result.library.get_llvm_str())
+    for function in whole.functions:
         if not function.is_declaration and function.name != name:
             function.linkage = "internal"
-    module.get_function(name).visibility = "hidden"
+    whole.get_function(name).visibility = "hidden"
     machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine()
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
     passes = llvm.create_new_module_pass_manager()
     passes.add_global_dead_code_eliminate_pass()
-    passes.run(module, builder)
+    passes.run(whole, builder)
     host = re.compile(r'target (datalayout|triple)|source_filename|@"?_ZN08NumbaEnv')
-    text = "\n".join(line for line in str(module).splitlines() if not host.match(line))
+    text = "\n".join(line for line in str(whole).splitlines() if not host.match(line))
     text = text.replace(f'@"{name}"', f"@{ENTRY}").replace(f"@{name}", f"@{ENTRY}")
     foreign = sorted(set(re.findall(r"declare [^@]*@\"?((?:Py|_Py|NRT_|numba_|Numba)[\w.]*)", text)))
     if foreign:
-        raise tools.BuildError(f"the kernels of {model} still call Python: {', '.join(foreign)}")
+        raise tools.BuildError(f"the kernels of {module} still call Python: {', '.join(foreign)}")
     if "inttoptr (i64" in text:
-        raise tools.BuildError(f"the kernels of {model} hold an address of this process")
+        raise tools.BuildError(f"the kernels of {module} hold an address of this process")
     return text + "\n"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import html
 from collections.abc import Sequence
 from pathlib import Path
@@ -48,6 +49,7 @@ def page(interface: Interface, folder: Path, scene: str = "") -> str:
     sections = [
         _terms(interface),
         _values(interface, scene),
+        _tables(interface),
         text,
         _variables(interface),
         _faults(interface),
@@ -111,6 +113,26 @@ def _values(interface: Interface, scene: str) -> str:
         "instantiated, and after a reset. Where they differ from the model's own, those are told beside them."
     )
     return f"## Values this FMU starts with\n\n{text}\n\n" + _table(("name", "value", "unit", "model's own"), rows)
+
+
+def _tables(interface: Interface) -> str:
+    """The tables that its parts read, how large those are that it was given, and a digest of their numbers."""
+    rows = []
+    for table in interface.tables:
+        numbers = interface.given.get(table.name)
+        extents, digest = "not given", ""
+        if numbers is not None:
+            extents = " x ".join(map(str, numbers.shape))
+            digest = f"`{hashlib.sha256(numbers.tobytes()).hexdigest()[:16]}`"
+        rows.append((f"`{table.name}`", extents, table.unit, digest, table.description))
+    if not rows:
+        return ""
+    text = (
+        "They travel in `resources/tables.bin`, little-endian doubles, and all instances of one unpacked FMU read the "
+        "same copy. A saved state does not hold them, and goes with these tables alone. The digest is the beginning of "
+        "the SHA-256 of a table's numbers."
+    )
+    return f"## Tables of this FMU\n\n{text}\n\n" + _table(("name", "extents", "unit", "digest", "meaning"), rows)
 
 
 def _variables(interface: Interface) -> str:

@@ -3,7 +3,8 @@
    An instance is one block of 8-byte slots: first the record (parameters, inputs, state, outputs; a value reference is
    a slot), then the work memory, whose size the model tells once its parameters are known. Getting, setting and
    serialising the FMU state are copies of that block. The generated model.h tells slots, bounds, derivatives and
-   faults; the start values come with the FMU, in its resources.
+   faults; the start values come with the FMU, in its resources, and so do the tables that parts of the model read:
+   these are never in the block.
 
    This file holds the instance and the way into the model; the parts at its end hold the functions of FMI, by idea.
    Nothing is global but constants, so instances may live side by side, in one thread or in several. */
@@ -35,6 +36,7 @@ enum { HIDDEN = 0, OUTPUT = 1, PARAMETER = 2, INPUT = 3 };
 enum { SIZE = 0, INITIALISE = 1, STEP = 2, REFRESH = 3, DIFFERENTIATE = 4, GO_ON = 5 };
 enum { UNDER_WAY = -2 };   /* the entry's answer when a step is not done yet */
 enum { WORK_SIZE = 0, FAULT_CODE = 1, FAULT_INDEX = 2, FAULT_TIME = 3, FAULT_VALUE = 4 };
+enum { TABLES = 5, TABLES_AT = 6 };
 enum { SEVERITY_ERROR = 0, SEVERITY_DISCARD = 1, SEVERITY_END = 2 };
 
 /* Where an instance is in the state machine of FMI 2.0; each call is allowed in a set of these. */
@@ -55,13 +57,15 @@ typedef struct {
 } condition;
 
 typedef struct {
-    fmi2CallbackLogger logger;
-    fmi2ComponentEnvironment environment;
+    fmi2CallbackFunctions callbacks;
     char *name;
     unsigned logged;     /* categories that are told, one bit each */
     condition at;
-    slot *block;         /* record, then work */
+    slot *memory;        /* what was allocated */
+    slot *block;         /* in it: record, then work */
     slot *start;         /* record, as the FMU's resources have it */
+    const unsigned char *tables; /* their file in memory, read only; NULL where the model has none */
+    size_t tables_size;
 } instance;
 
 /* ---- the model's entry, one for each processor it was compiled for ------------------------------------------------ */
@@ -72,19 +76,25 @@ typedef int32_t entry_function(int32_t *result, void **exception, int64_t comman
 
 #include "processor.h"
 
+static intptr_t table_block(const instance *i);
+
 static int32_t run(instance *i, int64_t command, double time, double step) {
     int32_t result = 0;
     void *exception = NULL;
+    i->block[TABLES_AT].integer = table_block(i);
     int32_t status = entry(&result, &exception, command,
                            NULL, NULL, 1, DCONE_SLOTS * 8, i->block, 1, DCONE_SLOTS * 8,
                            NULL, NULL, i->at.work, 8, i->block + DCONE_SLOTS, i->at.work, 8, time, step);
+    i->block[TABLES_AT].integer = 0; /* so that no address is in a saved state */
     return status ? -1 : result;
 }
 
 static size_t block_size(int64_t work) { return (size_t)(DCONE_SLOTS + work) * sizeof(slot); }
 
+#include "fmi2_log.h"
 #include "fmi2_messages.h"
 #include "fmi2_start.h"
+#include "fmi2_tables.h"
 #include "fmi2_life.h"
 #include "fmi2_values.h"
 #include "fmi2_derivatives.h"

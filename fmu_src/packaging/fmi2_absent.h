@@ -1,6 +1,8 @@
-/* Part of fmi2.c: the functions of model exchange. They are there since some tools look every symbol up. */
+/* The functions of model exchange, of an FMU that has none. They are there since some tools look every symbol up. */
 
+#ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
 
 #define ABSENT(NAME, PARAMETERS)                                                                                       \
     fmi2Status NAME PARAMETERS { return say(c, fmi2Error, #NAME ": this FMU is for co-simulation only"); }

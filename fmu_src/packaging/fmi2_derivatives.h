@@ -87,7 +87,7 @@ static const double BESIDE = 1e-4; /* length of a step, of the value or of what 
 static int add_twin(const instance *i, fmi2ValueReference known, double value, double weight,
                     const fmi2ValueReference unknown[], size_t n, double sum[]) {
     instance twin = *i;
-    twin.logger = NULL;
+    twin.callbacks.logger = NULL;
     twin.block = malloc(block_size(i->at.work) + sizeof(slot));
     if (!twin.block) return 0;
     memcpy(twin.block, i->block, block_size(i->at.work));

@@ -1,22 +1,33 @@
 /* Part of fmi2.c: an instance from its making to its end. */
 
-static int take_start_values(instance *i) {
-    slot *block = calloc(DCONE_SLOTS + 1, sizeof(slot));
-    if (!block) return 0;
-    free(i->block);
+enum { LINE = 64 / sizeof(slot) };
+
+/* Give the instance a zeroed block for so much work, which begins at a multiple of 64 bytes: vectors that straddle such
+   a boundary are stored at half the speed. What the old block held is kept as far as it fits. */
+static int take_block(instance *i, int64_t work, size_t kept) {
+    slot *memory = calloc(DCONE_SLOTS + (size_t)work + 1 + LINE, sizeof(slot));
+    if (!memory) return 0;
+    size_t over = (uintptr_t)(memory + DCONE_SLOTS) / sizeof(slot) % LINE;
+    slot *block = memory + (over ? LINE - over : 0);
+    if (kept) memcpy(block, i->block, kept);
+    free(i->memory);
+    i->memory = memory;
     i->block = block;
+    return 1;
+}
+
+static int take_start_values(instance *i) {
+    if (!take_block(i, 0, 0)) return 0;
     memset(&i->at, 0, sizeof i->at);
     i->at.phase = INSTANTIATED;
     i->at.stale = 1;
-    memcpy(block, i->start, DCONE_SLOTS * sizeof(slot));
+    memcpy(i->block, i->start, DCONE_SLOTS * sizeof(slot));
     return 1;
 }
 
 static int resize(instance *i, int64_t work) {
     if (work == i->at.work) return 1;
-    slot *block = realloc(i->block, block_size(work) + sizeof(slot));
-    if (!block) return 0;
-    i->block = block;
+    if (!take_block(i, work, block_size(work < i->at.work ? work : i->at.work))) return 0;
     i->at.work = work;
     return 1;
 }
@@ -63,8 +74,9 @@ static fmi2Status settle(instance *i) {
 
 static void release(instance *i) {
     free(i->name);
-    free(i->block);
+    free(i->memory);
     free(i->start);
+    dcone_unmap(i->tables, i->tables_size);
     free(i);
 }
 
@@ -75,10 +87,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     (void)visible;
     instance *i = calloc(1, sizeof *i);
     if (!i) return NULL;
-    if (functions) {
-        i->logger = functions->logger;
-        i->environment = functions->componentEnvironment;
-    }
+    if (functions) i->callbacks = *functions;
     i->logged = logging ? ALL : ERRORS | DISCARDS;
     const char *given_name = name && *name ? name : DCONE_IDENTIFIER;
     i->name = malloc(strlen(given_name) + 1);
@@ -88,7 +97,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         say(i, fmi2Error, "this FMU is for co-simulation only");
         good = 0;
     }
-    if (good && read_start_values(i, resources, guid) && take_start_values(i)) return i;
+    if (good && read_start_values(i, resources, guid) && take_tables(i, resources) && take_start_values(i)) return i;
     release(i);
     return NULL;
 }
@@ -139,30 +148,6 @@ fmi2Status fmi2Reset(fmi2Component c) {
     if (!i) return fmi2Error;
     if (!take_start_values(i)) return say(i, fmi2Error, "no memory");
     return say(i, fmi2OK, "reset to the start values");
-}
-
-/* Bit of a category, all bits for logAll, 0 for one that is not known. */
-static unsigned category_bit(fmi2String name) {
-    if (name && !strcmp(name, "logAll")) return ALL;
-    for (int k = 0; name && k < 4; k++)
-        if (!strcmp(name, category_name[k])) return 1u << k;
-    return 0;
-}
-
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
-    instance *i = c;
-    unsigned named = 0;
-    if (!i || !given(i, n, categories, categories, "fmi2SetDebugLogging")) return fmi2Error;
-    for (size_t k = 0; k < n; k++) {
-        unsigned bit = category_bit(categories[k]);
-        if (!bit)
-            return say(i, fmi2Error, "there is no log category %s; there are %s, %s, %s, %s and logAll",
-                       categories[k] ? categories[k] : "(NULL)", category_name[0], category_name[1], category_name[2],
-                       category_name[3]);
-        named |= bit;
-    }
-    i->logged = !on ? 0 : n ? named : ALL;
-    return fmi2OK;
 }
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }

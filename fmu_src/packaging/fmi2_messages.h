@@ -1,6 +1,5 @@
-/* Part of fmi2.c: names, messages by category, faults of the kernel, and the order of calls. */
+/* Part of fmi2.c: names, faults of the kernel, and the order of calls. */
 
-enum { ERRORS = 1, DISCARDS = 2, WARNINGS = 4, EVENTS = 8, ALL = 15 }; /* bits in the order of category_name */
 enum { NAME_LENGTH = 160 };
 
 /* The row a slot belongs to: the last that begins at or before it. */
@@ -25,19 +24,6 @@ static const char *name_of(fmi2ValueReference reference, char text[NAME_LENGTH])
     }
     text[n] = 0;
     return text;
-}
-
-/* Give a message to the importer, if its category is asked for; returns the status. */
-static fmi2Status say(instance *i, fmi2Status status, const char *format, ...) {
-    int category = status >= fmi2Error ? 0 : status == fmi2Discard ? 1 : status == fmi2Warning ? 2 : 3;
-    if (!i || !i->logger || !(i->logged >> category & 1)) return status;
-    char text[1024];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    i->logger(i->environment, i->name, status, category_name[category], "%s", text);
-    return status;
 }
 
 /* Tell why the kernel stopped: the text of its fault, which, how much and when. */
@@ -73,12 +59,5 @@ static int allowed(instance *i, int phases, const char *call) {
                         : i->at.ended                 ? "at its own end"
                                                       : "left in a step that was discarded";
     say(i, fmi2Error, "%s is not allowed while the instance is %s, at %.9g s", call, where, i->at.time);
-    return 0;
-}
-
-/* Whether an array of n elements was really given. */
-static int given(instance *i, size_t n, const void *first, const void *second, const char *call) {
-    if (n == 0 || (first && second)) return 1;
-    say(i, fmi2Error, "%s: an array of %lu elements is NULL", call, (unsigned long)n);
     return 0;
 }

@@ -1,5 +1,5 @@
 /* Part of fmi2.c: the FMU state. It holds no pointer, so it is good in any process that has loaded an
-   FMU with this library, whatever start values that one has. */
+   FMU with this library and these tables, whatever start values that one has. */
 
 #define MAGIC "DCONEFMU"
 #define STATE_VERSION 3
@@ -60,13 +60,18 @@ static fmi2Status usable(instance *i, const saved *s, size_t size) {
     return fmi2OK;
 }
 
-/* Whether the work memory is as large as the record beside it says. */
+/* Whether the record in a state fits what it is put into: the work memory beside it, and the tables of this FMU. */
 static fmi2Status consistent(instance *i, const saved *s) {
-    slot told;
-    memcpy(&told, (const char *)(s + 1) + WORK_SIZE * sizeof told, sizeof told);
-    if (told.integer == s->at.work) return fmi2OK;
-    return say(i, fmi2Error, "the saved state is damaged: %lld numbers of memory, but its record needs %lld",
-               (long long)s->at.work, (long long)told.integer);
+    slot work, tables;
+    const char *record = (const char *)(s + 1);
+    memcpy(&work, record + WORK_SIZE * sizeof work, sizeof work);
+    memcpy(&tables, record + TABLES * sizeof tables, sizeof tables);
+    if (work.integer != s->at.work)
+        return say(i, fmi2Error, "the saved state is damaged: %lld numbers of memory, but its record needs %lld",
+                   (long long)s->at.work, (long long)work.integer);
+    if (tables.bits != i->start[TABLES].bits)
+        return say(i, fmi2Error, "the saved state belongs to other tables than those of this FMU");
+    return fmi2OK;
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {

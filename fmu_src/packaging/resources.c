@@ -3,11 +3,16 @@
 #ifndef _WIN32
 #define _GNU_SOURCE /* for dladdr */
 #include <dlfcn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #else
 #define WIN32_LEAN_AND_MEAN
 #include <windows.h>
+#include <io.h>
 #endif
 
+#include <errno.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "resources.h"
@@ -33,6 +38,20 @@ static int own_path(char path[PATH_LENGTH]) {
     if (length == 0 || length == PATH_LENGTH) return 0;
     return WideCharToMultiByte(CP_UTF8, 0, wide, -1, path, PATH_LENGTH, NULL, NULL) > 0;
 }
+
+static const void *map(FILE *file, size_t *size) {
+    HANDLE handle = (HANDLE)_get_osfhandle(_fileno(file));
+    LARGE_INTEGER length;
+    int known = GetFileSizeEx(handle, &length);
+    HANDLE mapping = known ? CreateFileMappingW(handle, NULL, PAGE_READONLY, 0, 0, NULL) : NULL;
+    const void *memory = mapping ? MapViewOfFile(mapping, FILE_MAP_READ, 0, 0, 0) : NULL;
+    if (mapping) CloseHandle(mapping);
+    if (!memory) errno = EIO;
+    else *size = (size_t)length.QuadPart;
+    return memory;
+}
+
+static void unmap(const void *memory, size_t size) { (void)size, UnmapViewOfFile(memory); }
 #else
 static const char separators[] = "/";
 
@@ -44,7 +63,31 @@ static int own_path(char path[PATH_LENGTH]) {
     strcpy(path, about.dli_fname);
     return 1;
 }
+
+static const void *map(FILE *file, size_t *size) {
+    struct stat about;
+    if (fstat(fileno(file), &about)) return NULL;
+    *size = (size_t)about.st_size;
+    void *memory = mmap(NULL, *size, PROT_READ, MAP_PRIVATE, fileno(file), 0);
+    return memory == MAP_FAILED ? NULL : memory;
+}
+
+static void unmap(const void *memory, size_t size) { munmap((void *)(uintptr_t)memory, size); }
 #endif
+
+const void *dcone_map(const char *path, size_t *size) {
+    FILE *file = dcone_open(path);
+    if (!file) return NULL;
+    const void *memory = map(file, size);
+    int reason = errno;
+    fclose(file);
+    errno = reason;
+    return memory;
+}
+
+void dcone_unmap(const void *memory, size_t size) {
+    if (memory) unmap(memory, size);
+}
 
 /* ---- URIs ---------------------------------------------------------------------------------------------------------- */
 

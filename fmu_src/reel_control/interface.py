@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from fmu_src.interface import Fault, Group, Model, Term, Variable
+from fmu_src.interface import Fault, Group, Model, Term
+from fmu_src.rows import at_least_zero, moving_input, output, partial, positive, rate, state
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
 STIFFNESS, DAMPING = 4.155e-3, 2.366
@@ -20,51 +21,36 @@ FAULTS = (
     Fault(NOT_FINITE, "error", "an input or the tension is not finite", True),
 )
 
-
-def _parameter(name: str, unit: str, description: str, start: float, high: float, zero: bool = True) -> Variable:
-    return Variable(name, unit, "parameter", description, start, minimum=0.0, open_minimum=not zero, maximum=high)
-
-
-def _input(
-    name: str, unit: str, description: str, nominal: float, low: float, high: float
-) -> tuple[Variable, Variable]:
-    """An input and where its rate is told."""
-    field = f"rate.{name}"
-    return (
-        Variable(name, unit, "input", description, minimum=low, maximum=high, nominal=nominal, rate=field),
-        Variable(field, f"{unit}/s" if unit == "m" else "m/s2", "state", "time derivative"),
-    )
-
-
 VARIABLES = (
-    *_input("length", "m", "measured length of the line; zero: nothing asked, the tension is zero", 10.0, 0.0, 1e6),
-    *_input("length_rate", "m/s", "measured rate of lengthening", 0.01, -1e6, 1e6),
-    _parameter("reel.length", "m", "commanded length l_c", 12.0, 1e6, zero=False),
-    _parameter("gain.proportional", "N/m", "k_p; default of Table 2's pair", STIFFNESS, 1e6),
-    _parameter("gain.derivative", "N.s/m", "k_d; default of Table 2's pair", DAMPING, 1e5),
-    _parameter("feed_forward", "N", "T_ff, the tension at rest; default of Table 2's pair on 12 m", FEED_FORWARD, 1e6),
-    Variable(
+    *moving_input("length", "m", "measured length of the line; zero: nothing asked, tension zero", 0.0, 1e6, 10.0),
+    *moving_input("length_rate", "m/s", "measured rate of lengthening", -1e6, 1e6, 0.01),
+    positive("reel.length", "m", "commanded length l_c", 12.0, 1e6),
+    at_least_zero("gain.proportional", "N/m", "k_p; default of Table 2's pair", STIFFNESS, 1e6),
+    at_least_zero("gain.derivative", "N.s/m", "k_d; default of Table 2's pair", DAMPING, 1e5),
+    at_least_zero(
+        "feed_forward", "N", "T_ff, the tension at rest; default of Table 2's pair on 12 m", FEED_FORWARD, 1e6
+    ),
+    output(
         "tension",
         "N",
-        "output",
         "to be given by the reel, never negative",
-        nominal=1.0,
-        rate="rate.tension",
+        1.0,
+        "rate.tension",
         partials=(("length", "partial.length"), ("length_rate", "partial.length_rate")),
     ),
-    Variable("rate.tension", "N/s", "state", "time derivative"),
-    Variable("partial.length", "N/m", "state", "direct derivative"),
-    Variable("partial.length_rate", "N.s/m", "state", "direct derivative"),
-    Variable("state.length", "m", "state", "input as the last step left it"),
-    Variable("state.length_rate", "m/s", "state", "input as the last step left it"),
-    Variable("state.drift[#]", "1", "state", "rates of the two inputs in that step", shape=(2,)),
+    rate("tension", "N/s"),
+    partial("length", "N/m"),
+    partial("length_rate", "N.s/m"),
+    state("state.length", "m", "input as the last step left it"),
+    state("state.length_rate", "m/s", "input as the last step left it"),
+    state("state.drift[#]", "1", "rates of the two inputs in that step", shape=(2,)),
 )
 
 MOTORS = Group(
     {
         "lag": Term(
             "a motor behind the law: dT/dt = (asked - T) / time_constant",
-            (_parameter("motor.time_constant", "s", "of the motor", 5.0, 1e6, zero=False),),
+            (positive("motor.time_constant", "s", "of the motor", 5.0, 1e6),),
             states=("tension",),
         ),
     },

@@ -10,6 +10,7 @@ import numba
 from numba import njit
 
 from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP, check_implemented
+from fmu_src.limits import make_limits
 from fmu_src.reel_control.interface import BAD_PARAMETER, MODEL, NO_COMMAND, NOT_FINITE
 from orbital.kernel import OPTIONS, kernel
 from orbital.vectors import Array
@@ -33,12 +34,20 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     check_implemented(MODEL, IMPLEMENTED, terms)
     interface = MODEL.interface(terms)
     has_lag = "motor" in terms
-    names = ("reel.length", "gain.proportional", "gain.derivative", "feed_forward", "motor.time_constant")
-    slots = tuple(interface.references[name] for name in names if name in interface.references)
+    limits = make_limits(
+        interface, "reel.length", "gain.proportional", "gain.derivative", "feed_forward", "motor.time_constant"
+    )
     length_slot = interface.references["length"]
 
     @kernel
     def fail(record: Any, code: int, index: int, value: float, time: float) -> int:
+        """The code, with what, its value and when [s] put in the record; a value that is no number is shown as zero.
+
+        index         value reference of what is at fault
+        value         SI
+
+        Checked  tests/reel_control/test_law.py: refusals
+        """
         r = record[0]
         r.fault_code = code
         r.fault_index = index
@@ -47,24 +56,13 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return code
 
     @kernel
-    def check(record: Any, time: float) -> int:
-        r = record[0]
-        if not 0.0 < r.reel_length < math.inf:
-            return fail(record, BAD_PARAMETER, slots[0], r.reel_length, time)
-        if not 0.0 <= r.gain_proportional < math.inf:
-            return fail(record, BAD_PARAMETER, slots[1], r.gain_proportional, time)
-        if not 0.0 <= r.gain_derivative < math.inf:
-            return fail(record, BAD_PARAMETER, slots[2], r.gain_derivative, time)
-        if not 0.0 <= r.feed_forward < math.inf:
-            return fail(record, BAD_PARAMETER, slots[3], r.feed_forward, time)
-        if has_lag:  # settled when compiled: without the term there is no such field
-            if not 0.0 < r.motor_time_constant < math.inf:
-                return fail(record, BAD_PARAMETER, slots[4], r.motor_time_constant, time)
-        return 0
-
-    @kernel
     def wanted(record: Any) -> float:
-        """What the law asks for [N], before it is held above zero."""
+        """What the law asks for [N], before it is held above zero.
+
+            T_ff + k_p (l - l_c) + k_d l'
+
+        Checked  tests/reel_control/test_law.py
+        """
         r = record[0]
         stretch = r.length - r.reel_length
         force: float = r.feed_forward + r.gain_proportional * stretch + r.gain_derivative * r.length_rate
@@ -72,13 +70,21 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def asked(record: Any) -> float:
-        """What the law asks for [N] with the inputs of now."""
+        """What the law asks for [N] with the inputs of now; nothing while no length is measured.
+
+        Checked  tests/reel_control/test_law.py
+        """
         r = record[0]
         return max(0.0, wanted(record)) if r.length != 0.0 else 0.0
 
     @kernel
     def publish(record: Any, time: float) -> int:
-        """The tension of a motor that gives what is asked at once; one with a lag has its tension already."""
+        """Write the tension [N] of a motor that gives what is asked at once; one with a lag has its tension already.
+
+        Returns 0 or a fault.
+
+        Checked  tests/reel_control/test_law.py: an output follows its inputs at once
+        """
         r = record[0]
         if not math.isfinite(wanted(record)):
             return fail(record, NOT_FINITE, length_slot, r.length, time)
@@ -92,9 +98,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
             T(t) = a + b (t - tau) + (T_0 - a + b tau) exp(-t / tau)
 
-        begin         a, asked at the begin                      [N]
-        slope         b, its rate                                [N/s]
-        step          t                                          [s]
+        begin         a, asked at the begin                          [N]
+        slope         b, its rate                                    [N/s]
+        step          t                                              [s]
+
+        Source   solution of tau dT/dt = a + b t - T
+        Checked  tests/reel_control/test_law.py: a motor follows held and moving inputs
         """
         r = record[0]
         lag = r.motor_time_constant
@@ -102,6 +111,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def remember(record: Any, drift: float, rate_drift: float) -> None:
+        """Keep the inputs as a step leaves them, and the rates it had [m/s], [m/s^2].
+
+        Checked  tests/reel_control/test_law.py: derivatives after a step
+        """
         r = record[0]
         r.state_length = r.length
         r.state_length_rate = r.length_rate
@@ -110,7 +123,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def follow_asked(record: Any, begin: float, slope: float, step: float, measured: bool) -> None:
-        """Follow what the law asks for over a step, cut where it crosses zero."""
+        """Follow what the law asks for over a step, cut where it crosses zero.
+
+        begin, slope  asked before it is held above zero, and its rate   [N], [N/s]
+        step                                                         [s]
+        measured      there is a length; else nothing is asked
+
+        Source   `follow` on either side of the zero
+        Checked  tests/reel_control/test_law.py: also where it comes to zero or leaves it within the step
+        """
         if not measured:
             follow(record, 0.0, 0.0, step)
             return
@@ -130,6 +151,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def step_by(record: Any, time: float, step: float) -> int:
+        """Advance by a step [s], the inputs moving at their rates; returns 0 or a fault.
+
+        Checked  tests/reel_control/test_law.py: moving inputs
+        """
         r = record[0]
         drift, rate_drift = r.rate_length, r.rate_length_rate
         begin, measured = wanted(record), r.length != 0.0
@@ -145,6 +170,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def differentiate(record: Any) -> None:
+        """Fill the rate of the tension [N/s] and its derivatives by the inputs [N/m], [N s/m].
+
+            T' = k_p l' + k_d l'',   with a motor's lag  (asked - T)/tau and no direct derivatives
+
+        Checked  tests/reel_control/test_law.py: derivatives
+        """
         r = record[0]
         drift, rate_drift = r.rate_length, r.rate_length_rate
         if drift == 0.0 and r.length == r.state_length:
@@ -166,6 +197,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @njit(signature, **OPTIONS)
     def entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
+        """The entry of `fmu_src.interface`, by command; returns a status.
+
+        Checked  tests/reel_control/test_law.py
+        """
         r = record[0]
         r.fault_code = 0
         if command == SIZE:
@@ -173,9 +208,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return 0
         if command == INITIALISE:
             remember(record, 0.0, 0.0)
-            code = check(record, time)
-            if code != 0:
-                return code
+            slot, value = limits(record)
+            if slot >= 0:
+                return fail(record, BAD_PARAMETER, slot, value, time)
             r.tension = asked(record)
             return publish(record, time)
         if command == STEP:

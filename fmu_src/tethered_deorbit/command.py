@@ -20,11 +20,19 @@ def make_command(field: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
 
     @kernel
     def asked(record: Any) -> tuple[float, float]:
+        """What the input says: its value and its rate [its unit, its unit/s].
+
+        Checked  tests/tethered_deorbit/test_ramps.py
+        """
         r = record[0]
         return r[field], r[rate_field]
 
     @kernel
     def leave(record: Any, value: float) -> None:
+        """Write the value the input has reached back to it.
+
+        Checked  tests/tethered_deorbit/test_ramps.py: a ramp leaves its last value
+        """
         record[0][field] = value
 
     return asked, leave
@@ -40,6 +48,14 @@ def make_shortest(slot: int) -> Callable[..., Any]:
 
     @kernel
     def shortest_on_the_way(record: Any, length: float, rate: float, duration: float) -> tuple[float, int]:
+        """Least length [m] on the way, and 0 or the fault of one that is no length.
+
+        length        as the step begins                             [m]
+        rate          of the length                                  [m/s]
+        duration      of the step                                    [s]
+
+        Checked  tests/tethered_deorbit/test_ramps.py: lines that would vanish on the way
+        """
         shortest = min(length, length + rate * duration)
         if not 0.0 < shortest < math.inf:
             return shortest, blame(record, NO_LENGTH, slot, shortest)

@@ -27,7 +27,7 @@ Signals = tuple[float, float, float, float, float, float, float]
 
 
 class Events(NamedTuple):
-    """Kernels that look into the current step.
+    """Kernels that search the current step.
 
     signals(record, state, rate, elapsed) -> (crossing, its rate, tension, its rate, separation, its rate, that one's)
                                                           of any state of the step, in its axes, `elapsed` [s] after its
@@ -55,6 +55,13 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def signals(record: Any, state: Array, rate: Array, elapsed: float) -> Signals:
+        """The seven signals of a state: see `Events`, and CROSSING to RATE_SLOPE for their places.
+
+        state, rate   R, V, rho, rho' and their rate, in the axes of the step   (13,)
+        elapsed       since the begin of the step                    [s]
+
+        Checked  tests/tethered_deorbit/test_turning.py: bits that no axes change; test_terms.py: the kinematics
+        """
         position, velocity, acceleration = state[6:9], state[9:12], rate[9:12]
         separation = norm(position)
         speed = length_rate(position, velocity, separation)
@@ -72,6 +79,10 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def ensure_dense(record: Any, work: Array) -> None:
+        """Work out the dense output of the current step, unless it is in the work memory.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py: the same bits whoever asks, and how often
+        """
         r = record[0]
         if r.state_dense_ready == 0:
             scheme.prepare_dense(
@@ -87,7 +98,10 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def at(record: Any, work: Array, fraction: float) -> Signals:
-        """Signals at a fraction of the step; the dense output must be there."""
+        """Signals at a fraction of the step [-]; the dense output must be there.
+
+        Checked  tests/tethered_deorbit/test_robust.py: a line that is touched for a moment within a step
+        """
         dense = work[layout.DENSE : layout.WORK]
         here = work[layout.HERE : layout.SLOPE]
         slope = work[layout.SLOPE : layout.LOW]
@@ -98,9 +112,15 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def root(record: Any, work: Array, low: float, high: float, which: int) -> float:
-        """Fraction of the step at which a signal changes sign between two fractions.
+        """Fraction of the step [-] at which a signal changes sign between two fractions.
 
         Regula falsi in the Illinois form, halved when it stalls; the step is redone afterwards to land exactly.
+
+        low, high     fractions with signals of different sign       [-]
+        which         place of the signal
+
+        Source   Dowell and Jarratt, BIT 11 (1971) 168
+        Checked  tests/tethered_deorbit/test_commanded.py: a ramp through zero; test_robust.py
         """
         at_low = at(record, work, low)[which]
         at_high = at(record, work, high)[which]
@@ -134,10 +154,13 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def find_change(record: Any, work: Array) -> float:
-        """Looked for only where the signal rises.
+        """Fraction of the step [-] at which slack and taut change, or -1. Searched only where the signal rises.
 
         At the begin of a step that follows a change the signal is zero to rounding, of either sign, and falls: taken by
         its sign alone, the change just made would be found once more.
+
+        Valid    signals that turn at most once in an eighth of the step
+        Checked  tests/tethered_deorbit/test_robust.py: a grazing line; test_tugs.py
         """
         ensure_dense(record, work)
         low = 0.0
@@ -160,6 +183,10 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def tension_range(record: Any, work: Array, first: float, last: float) -> tuple[float, float]:
+        """Least and largest tension [N] between two fractions of the step, also at its turns in between.
+
+        Checked  tests/tethered_deorbit/test_extremes.py: the range of a vibration
+        """
         ensure_dense(record, work)
         low, here = first, at(record, work, first)
         least = largest = here[TENSION]
@@ -177,6 +204,12 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
     @kernel
     def nearest(record: Any, work: Array, last: float) -> tuple[float, float]:
+        """Where the separation turns from less to more and is least: fraction of the step [-] and distance [m].
+
+        last          fraction up to which it counts                 [-]
+
+        Checked  tests/tethered_deorbit/test_extremes.py: two bodies that pass
+        """
         ensure_dense(record, work)
         found, distance = -1.0, math.inf
         low, rate_low = 0.0, at(record, work, 0.0)[RATE]

@@ -39,12 +39,16 @@ class Extremes(NamedTuple):
 def make_extremes(events: Events) -> Extremes:
     """The kernels for one law of the line and one integrator.
 
-    Checked  tests/tethered_deorbit/test_extremes.py, tests/tethered_deorbit/test_macro_step.py
+    Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
     """
     end_rate = layout.STAGES + DOP853_STAGES * layout.SIZE
 
     @kernel
     def begin_anew(record: Any) -> None:
+        """Carry on from what is published: the state the steps carry becomes that of the last communication point.
+
+        Checked  tests/tethered_deorbit/test_extremes.py: the closest approach is kept when the inputs change
+        """
         r = record[0]
         r.state_approach_distance = r.approach_distance
         r.state_approach_time = r.approach_time
@@ -53,6 +57,10 @@ def make_extremes(events: Events) -> Extremes:
 
     @kernel
     def start(record: Any) -> None:
+        """All extremes are those of the first instant.
+
+        Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py: nothing is left of an earlier run
+        """
         r = record[0]
         r.tether_tension_peak = r.tether_tension
         r.tether_tension_least = r.tether_tension
@@ -62,12 +70,20 @@ def make_extremes(events: Events) -> Extremes:
 
     @kernel
     def begin_macro_step(record: Any) -> None:
+        """The tension's range [N] begins empty.
+
+        Checked  tests/tethered_deorbit/test_extremes.py: the range is that of one macro step
+        """
         r = record[0]
         r.state_peak = 0.0
         r.state_least = math.inf
 
     @kernel
     def publish(record: Any) -> None:
+        """Write the extremes at a communication point, its own tension [N] and separation [m] among them.
+
+        Checked  tests/tethered_deorbit/test_extremes.py
+        """
         r = record[0]
         r.state_peak = max(r.state_peak, r.tether_tension)
         r.state_least = min(r.state_least, r.tether_tension)
@@ -79,7 +95,17 @@ def make_extremes(events: Events) -> Extremes:
 
     @kernel
     def note_tension(record: Any, work: Array, first: float, last: float, begin: Any, end: Any) -> None:
-        """Tension between two fractions of a taut step; the first of them is past zero after a communication point."""
+        """Take in the tension between two fractions of a taut step; the first is past zero after a communication point.
+
+        first, last   fractions of the step                          [-]
+        begin, end    signals at its begin and its end
+
+        The dense output is asked only where a turn of the tension may lie within the step: not where it stands still,
+        changes steadily, or the step is shorter than a quarter of the vibration.
+
+        Checked  tests/tethered_deorbit/test_extremes.py: the range of long steps is that of short ones;
+                 test_tugs.py: peaks
+        """
         r = record[0]
         complete = last == 1.0
         least, largest = min(begin[TENSION], end[TENSION]), max(begin[TENSION], end[TENSION])
@@ -100,8 +126,15 @@ def make_extremes(events: Events) -> Extremes:
 
     @kernel
     def note_approach(record: Any, work: Array, last: float, begin: Any, end: Any) -> None:
-        """Separation in a step: at its end, and at a turn in it, which is looked for where it may be nearer than all
-        before by more than the tolerance of the separation."""
+        """Take in the separation [m], at the end of a step and at a turn in it.
+
+        A turn is searched where it may be nearer than all before by more than the tolerance of the separation.
+
+        last          fraction of the step up to which it counts     [-]
+        begin, end    signals at its begin and its end
+
+        Checked  tests/tethered_deorbit/test_extremes.py: two bodies that pass
+        """
         r = record[0]
         r.approach_distance, r.approach_time = r.state_approach_distance, r.state_approach_time
         fastest = max(abs(begin[RATE]), abs(end[RATE]))
@@ -118,6 +151,10 @@ def make_extremes(events: Events) -> Extremes:
 
     @kernel
     def note(record: Any, work: Array, until: float) -> None:
+        """Take in the current step up to a time [s]: see `Extremes`.
+
+        Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py: nothing of the future
+        """
         r = record[0]
         if r.state_step == 0.0:
             return

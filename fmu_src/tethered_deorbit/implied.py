@@ -6,12 +6,13 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.implied import Implied, formula
-from orbital import oscillators, references, twobody
+from orbital import oscillators, references
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.plain import mean_motion
 
 line_stiffness, reduced_mass = formula(oscillators.line_stiffness), formula(oscillators.reduced_mass)
 natural_frequency, dashpot = formula(oscillators.natural_frequency), formula(oscillators.dashpot)
-equilibrium_tension, mean_motion = formula(references.equilibrium_tension), formula(twobody.mean_motion)
+equilibrium_tension = formula(references.equilibrium_tension)
 
 
 def axial_stiffness(values: Mapping[str, float]) -> float:

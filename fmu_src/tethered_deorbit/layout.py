@@ -20,7 +20,7 @@ BEGIN = 0
 END = BEGIN + SIZE
 """State at its end."""
 HERE = END + SIZE
-"""State at the point last looked at by dense output."""
+"""State at the point last asked of the dense output."""
 SLOPE = HERE + SIZE
 """Rate of that state."""
 LOW = SLOPE + SIZE

@@ -27,27 +27,30 @@ def make_locked() -> Reel:
 
     Valid    small strains; massless line
     Source   D-CoNe paper, eq. 1 and 3; the clamp at zero and the moving rest length are ours
-    Checked  tests/tethered_deorbit/test_snap.py, tests/tethered_deorbit/test_ramps.py
+    Checked  tests/tethered_deorbit/test_snap.py, test_ramps.py
     """
     own = REELS.terms["locked"].variables
-    modulus_slot, diameter_slot = own_slot("tether.youngs_modulus", own), own_slot("tether.diameter", own)
-    damping_slot, offset_slot = own_slot("tether.damping_ratio", own), own_slot("reel.length_offset", own)
+    diameter_slot, offset_slot = own_slot("tether.diameter", own), own_slot("reel.length_offset", own)
 
     asked, leave = make_command("reel_length_offset")
     shortest_on_the_way = make_shortest(offset_slot)
 
     @kernel
     def prepare(record: Any, value: float, rate: float, duration: float) -> int:
+        """Put a rest length in force; returns 0 or a fault. Formulas of k, c and l0 as in `make_locked`.
+
+        value, rate   offset of the rest length, and its rate        [m], [m/s]
+        duration      for which it moves                             [s]
+
+        Source   `line_stiffness`, `dashpot` and `natural_frequency` of `orbital.oscillators`
+        Checked  tests/tethered_deorbit/test_snap.py, test_ramps.py; test_robust.py: what is refused
+        """
         r = record[0]
         length = r.tether_rest_length + value
         shortest, fault = shortest_on_the_way(record, length, rate, duration)
         if fault != 0:
             return int(fault)
         stiffness = line_stiffness(r.tether_youngs_modulus, r.tether_diameter, length)
-        if not r.tether_damping_ratio >= 0.0:
-            return blame(record, BAD_PARAMETER, damping_slot, r.tether_damping_ratio)
-        if not r.tether_youngs_modulus > 0.0:
-            return blame(record, BAD_PARAMETER, modulus_slot, r.tether_youngs_modulus)
         if not stiffness > 0.0:
             return blame(record, BAD_PARAMETER, diameter_slot, r.tether_diameter)
         r.state_command = value
@@ -65,7 +68,15 @@ def make_locked() -> Reel:
 
     @kernel
     def line(record: Any, since: float) -> tuple[float, float, float]:
-        """Rest length [m], stiffness [N/m] and dashpot [N s/m] on the way."""
+        """Rest length [m], stiffness [N/m] and dashpot [N s/m] on the way.
+
+            l0 = l0(0) + l0' t,   k = k(0) l0(0)/l0,   c = c(0) sqrt(l0(0)/l0)
+
+        since         t      since the offset began to move          [s]
+
+        Source   k goes as 1/l0, and c as its root
+        Checked  tests/tethered_deorbit/test_ramps.py: hauling in a locked line
+        """
         r = record[0]
         length, stiffness, damping = r.state_length, r.state_stiffness, r.state_damping
         if r.state_command_rate != 0.0:
@@ -77,12 +88,26 @@ def make_locked() -> Reel:
 
     @kernel
     def tension(record: Any, length: float, rate: float, since: float) -> float:
+        """Tension before the clamp [N].
+
+            T = k (l - l0) + c (l' - l0')
+
+        Source   D-CoNe paper, eq. 1 and 3
+        Checked  tests/tethered_deorbit/test_snap.py, test_ramps.py
+        """
         rest, stiffness, damping = line(record, since)
         force: float = stiffness * (length - rest) + damping * (rate - record[0].state_command_rate)
         return force
 
     @kernel
     def tension_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
+        """Its time derivative [N/s].
+
+            T' = k (l' - l0') + c l'' - l0'/l0 (k (l - l0) + c (l' - l0')/2)
+
+        Source   derivative of `tension`, with those of k and c
+        Checked  tests/tethered_deorbit/test_derivatives.py, against differences
+        """
         moving = record[0].state_command_rate
         rest, stiffness, damping = line(record, since)
         slope: float = stiffness * (rate - moving) + damping * acceleration
@@ -93,6 +118,12 @@ def make_locked() -> Reel:
 
     @kernel
     def onset(record: Any, length: float, rate: float, since: float) -> float:
+        """Signal [m] that rises through zero when a slack line goes taut.
+
+            l - l0,   and while it shortens   l - l0 + c (l' - l0')/k
+
+        Checked  tests/tethered_deorbit/test_tugs.py, against an independent integration
+        """
         rest, stiffness, damping = line(record, since)
         stretch: float = length - rest
         stretching = rate - record[0].state_command_rate
@@ -102,6 +133,11 @@ def make_locked() -> Reel:
 
     @kernel
     def onset_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
+        """Its time derivative [m/s].
+
+        Source   derivative of `onset`, with those of k and c
+        Checked  tests/tethered_deorbit/test_tugs.py, against an independent integration
+        """
         moving = record[0].state_command_rate
         rest, stiffness, damping = line(record, since)
         stretching: float = rate - moving
@@ -114,16 +150,32 @@ def make_locked() -> Reel:
 
     @kernel
     def taut(record: Any, length: float, rate: float) -> bool:
+        """Whether a line met in this state pulls: stretched, and its dashpot does not push harder.
+
+        Checked  tests/tethered_deorbit/test_start.py: taut at the start; test_macro_step.py: a changed length
+        """
         return bool(onset(record, length, rate, 0.0) > 0.0 and tension(record, length, rate, 0.0) > 0.0)
 
     @kernel
     def energy(record: Any, length: float, since: float) -> float:
+        """Elastic energy of the stretched line [J].
+
+            k (l - l0)^2 / 2
+
+        Checked  tests/tethered_deorbit/test_snap.py, test_attachment.py: a swing keeps its energy
+        """
         rest, stiffness, _ = line(record, since)
         stored: float = 0.5 * stiffness * (length - rest) * (length - rest)
         return stored
 
     @kernel
     def energy_rate(record: Any, length: float, rate: float, since: float) -> float:
+        """Its time derivative [W].
+
+            k d (l' - l0') - k l0'/(2 l0) d^2,   d = l - l0
+
+        Checked  tests/tethered_deorbit/test_derivatives.py, against differences
+        """
         moving = record[0].state_command_rate
         rest, stiffness, _ = line(record, since)
         stretch = length - rest
@@ -132,6 +184,12 @@ def make_locked() -> Reel:
 
     @kernel
     def partials(record: Any, length: float, rate: float) -> tuple[float, float]:
+        """Derivatives of tension [N/m] and energy [J/m] by the offset of the rest length, at since = 0.
+
+            dT/dl0 = -k - (k d + c (l' - l0')/2)/l0,   dE/dl0 = -k d - k d^2/(2 l0),   d = l - l0
+
+        Checked  tests/tethered_deorbit/test_derivatives.py, against differences
+        """
         r = record[0]
         rest, stiffness, damping = line(record, 0.0)
         stretch = length - rest
@@ -141,20 +199,24 @@ def make_locked() -> Reel:
 
     @kernel
     def start_limit(record: Any) -> float:
+        """Longest line with which a pair may start [m]: it may not start stretched.
+
+        Checked  tests/tethered_deorbit/test_robust.py, test_attachment.py: what starts stretched is refused
+        """
         limit: float = record[0].tether_rest_length
         return limit
 
     return Reel(
-        asked,
-        leave,
-        prepare,
-        taut,
-        tension,
-        tension_rate,
-        onset,
-        onset_rate,
-        energy,
-        energy_rate,
-        partials,
-        start_limit,
+        asked=asked,
+        leave=leave,
+        prepare=prepare,
+        taut=taut,
+        tension=tension,
+        tension_rate=tension_rate,
+        onset=onset,
+        onset_rate=onset_rate,
+        energy=energy,
+        energy_rate=energy_rate,
+        partials=partials,
+        start_limit=start_limit,
     )

@@ -11,6 +11,7 @@ from numba import njit
 
 from fmu_src.integrators import make_dop853
 from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, STEP, UNDER_WAY, check_implemented
+from fmu_src.limits import make_limits
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.environment import add_gravity
@@ -22,8 +23,8 @@ from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish
 from fmu_src.tethered_deorbit.reel import LAWS, make_reel
 from fmu_src.tethered_deorbit.start import start_state
 from fmu_src.tethered_deorbit.tether import add_tension, length_rate, line_length
-from fmu_src.tethered_deorbit.thrust import DIRECTIONS, make_no_thrust, make_thrust
-from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_measure, make_trajectory
+from fmu_src.tethered_deorbit.thrust import DIRECTIONS, Thrust, make_thrust
+from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_squared_error, make_trajectory
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import OPTIONS, kernel
@@ -38,6 +39,25 @@ GAP, GAP_SHARE = 16.0 * 2.220446049250313e-16, 1e-6
 """By how much a communication point may miss the end of the last macro step, of the times and of the step: the rounding
 of times that a master adds up."""
 
+LIMITED = (
+    "chaser.mass",
+    "target.mass",
+    "target.attachment_distance",
+    "solver.tolerance_orbit",
+    "solver.tolerance_separation",
+    "solver.tolerance_stretch",
+    "start.condition",
+    "start.leading",
+    "tether.youngs_modulus",
+    "tether.diameter",
+    "tether.damping_ratio",
+    "reel.proportional_gain",
+    "reel.derivative_gain",
+    "thrust.level",
+    "thrust.specific_impulse",
+)
+"""Parameters whose limits the kernel minds too; out of theirs, others end in a fault of their own."""
+
 IMPLEMENTED = {"reel": tuple(LAWS), "thrust": tuple(DIRECTIONS)}
 """Terms that are composed here."""
 
@@ -51,19 +71,22 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     """
     check_implemented(MODEL, IMPLEMENTED, terms)
     reel = make_reel(terms["reel"])
-    references = MODEL.interface(terms).references
-    command_slot = references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
-    chaser_mass, target_mass = references["chaser.mass"], references["target.mass"]
-    attachment = references["target.attachment_distance"]
-    tolerance_orbit, tolerance_separation, tolerance_stretch = (
-        references[f"solver.tolerance_{what}"] for what in ("orbit", "separation", "stretch")
-    )
-    thrust = make_thrust(terms["thrust"], terms["reel"]) if "thrust" in terms else make_no_thrust()
+    interface = MODEL.interface(terms)
+    command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
+    limits = make_limits(interface, *LIMITED)
+    thrust = make_thrust(terms["thrust"], terms["reel"]) if "thrust" in terms else Thrust()
 
     # `derivative` is where the time goes: as a call of its own, which a second caller would make it, it costs 10 %.
     @njit(inline="always", **OPTIONS)  # type: ignore[untyped-decorator]
     def inertial(record: Any, state: Array, rate: Array, since: float) -> None:
-        """Rate of the state along inertial axes, or axes at rest in which it stands just now."""
+        """rate = rate of the state along inertial axes, or axes at rest in which it stands just now.
+
+        state, rate   R, V, rho, rho', J  of `layout`                (13,)
+        since         since the inputs in force began to move        [s]
+
+        Source   `add_gravity`, the thrust and `add_tension`; dJ/dt = T
+        Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_extremes.py: J
+        """
         add_gravity(record, state, rate)
         thrust.add(record, state, rate, since)
         rate[layout.IMPULSE] = 0.0
@@ -76,11 +99,18 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:
+        """rate = rate of the state along the axes of the step, which turn with a taut line.
+
+        elapsed       since the begin of the step                    [s]
+        The others as in `inertial`.
+
+        Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_turning.py
+        """
         inertial(record, state, rate, record[0].state_since + elapsed)
         if record[0].state_taut:
             add_turning(record, state, rate, -1.0)
 
-    scheme = make_dop853(derivative, make_measure(), layout.VECTORS, layout.SIZE - layout.VECTORS)
+    scheme = make_dop853(derivative, make_squared_error(), layout.VECTORS, layout.SIZE - layout.VECTORS)
     events = make_events(reel, scheme)
     extremes = make_extremes(events)
     trajectory = make_trajectory(derivative, scheme, events)
@@ -89,7 +119,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def fail(record: Any, code: int, time: float) -> int:
-        """`time` counts from the start of the instance, as everywhere below the entry; the importer is told its own."""
+        """The code, with when [s] put in the record.
+
+        `time` counts from the start of the instance, as everywhere below the entry; the importer is told its own.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py: at a late start; test_robust.py
+        """
         r = record[0]
         r.fault_code = code
         r.fault_time = r.state_start + time
@@ -97,7 +132,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def judge_line(record: Any, state: Array) -> float:
-        """Decide afresh whether the line is taut, from the law alone; returns its rate of lengthening [m/s]."""
+        """Decide afresh whether the line is taut, from the law alone; returns its rate of lengthening [m/s].
+
+        Checked  tests/tethered_deorbit/test_start.py, test_macro_step.py: a changed length
+        """
         r = record[0]
         separation = norm(state[6:9])
         speed: float = length_rate(state[6:9], state[9:12], separation)
@@ -106,35 +144,25 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def finite(state: Array) -> bool:
+        """Whether no component of a state is infinite or not a number.
+
+        Checked  tests/tethered_deorbit/test_robust.py
+        """
         total = 0.0
         for i in range(layout.SIZE):
             total += state[i]
         return math.isfinite(total)
 
     @kernel
-    def check(record: Any) -> int:
-        """Fault of the parameters that all laws share, or 0."""
-        r = record[0]
-        if not r.chaser_mass > 0.0:
-            return blame(record, BAD_PARAMETER, chaser_mass, r.chaser_mass)
-        if not r.target_mass > 0.0:
-            return blame(record, BAD_PARAMETER, target_mass, r.target_mass)
-        if not 0.0 <= r.target_attachment_distance < math.inf:
-            return blame(record, BAD_PARAMETER, attachment, r.target_attachment_distance)
-        if not r.solver_tolerance_orbit > 0.0:
-            return blame(record, BAD_PARAMETER, tolerance_orbit, r.solver_tolerance_orbit)
-        if not r.solver_tolerance_separation > 0.0:
-            return blame(record, BAD_PARAMETER, tolerance_separation, r.solver_tolerance_separation)
-        if not r.solver_tolerance_stretch > 0.0:
-            return blame(record, BAD_PARAMETER, tolerance_stretch, r.solver_tolerance_stretch)
-        return 0
-
-    @kernel
     def initialise(record: Any, work: Array) -> int:
+        """Fill state, work memory and outputs from the parameters; returns 0 or a fault.
+
+        Checked  tests/tethered_deorbit/test_start.py, test_macro_step.py: nothing is left of an earlier run
+        """
         r = record[0]
-        code = check(record)
-        if code != 0:
-            return fail(record, code, 0.0)
+        slot, value = limits(record)
+        if slot >= 0:
+            return fail(record, blame(record, BAD_PARAMETER, slot, value), 0.0)
         r.state_total_mass = r.chaser_mass + r.target_mass
         r.state_chaser_share = r.chaser_mass / r.state_total_mass
         r.state_target_share = r.target_mass / r.state_total_mass
@@ -178,7 +206,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     def begin_anew(record: Any, work: Array, duration: float) -> int:
         """Put what the inputs say in force, and begin the trajectory anew, at the last communication point.
 
-        What was published stands; the rest of the step did not happen.
+        What was published stands; the rest of the step did not happen. Returns 0 or a fault.
+
+        duration      for which the inputs move                      [s]
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py: a ramp does not see what ran ahead
         """
         r = record[0]
         here = work[layout.HERE : layout.SLOPE]
@@ -201,7 +233,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def take_inputs(record: Any, work: Array, duration: float) -> int:
-        """Begin anew when an input has changed, or moves, or has moved; then decide afresh whether the line is taut."""
+        """Begin anew when an input has changed, or moves, or has moved; then decide afresh whether the line is taut.
+
+        duration      of the macro step                              [s]
+
+        Returns 0 or a fault.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py; test_commanded.py: a changed command is
+                 one tug
+        """
         r = record[0]
         command, command_rate = reel.asked(record)
         force, force_rate = thrust.asked(record)
@@ -227,7 +267,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     def leave_inputs(record: Any, work: Array, duration: float) -> int:
         """After a step in which inputs moved: they stay where they have come to, as if they were to go on moving.
 
-        The line is judged only when it is known how the next step begins.
+        The line is judged only when it is known how the next step begins. Returns 0 or a fault.
+
+        duration      of the macro step                              [s]
+
+        Checked  tests/tethered_deorbit/test_ramps.py: two ramps make one; test_tugs.py: ramps that end at zero
         """
         r = record[0]
         command, command_rate = reel.asked(record)
@@ -242,7 +286,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def change_line(record: Any, work: Array) -> None:
-        """The step ended where the line changes between slack and taut: let it."""
+        """The step ended where the line changes between slack and taut: let it.
+
+        Checked  tests/consistency/test_table2.py: the first five tugs
+        """
         r = record[0]
         end = work[layout.END : layout.HERE]
         trajectory.state_at(record, work, r.state_end, end)
@@ -255,7 +302,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def step_to(record: Any, work: Array, time: float, step: float, anew: bool) -> int:
-        """Take a macro step, or go on with it; it is left after a slice of steps, and nothing is then half done."""
+        """Take a macro step, or go on with it; it is left after a slice of steps, and nothing is then half done.
+
+        time, step    communication point by the importer's clock, and size   [s]
+        anew          it begins; else it goes on
+
+        Returns 0, UNDER_WAY or a fault.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py; tests/packaging/test_long_steps.py: left and gone on with
+        """
         r = record[0]
         if not (math.isfinite(time) and math.isfinite(step) and step >= 0.0):
             return fail(record, blame(record, TIME_GAP, 0, step), r.state_published)
@@ -311,8 +366,16 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return 0
 
     @kernel
-    def look(record: Any, work: Array, differentiating: bool) -> int:
-        """Outputs that depend directly on inputs, or derivatives, for the inputs of now; the state stays."""
+    def answer(record: Any, work: Array, differentiating: bool) -> int:
+        """Outputs that depend directly on inputs, or derivatives, for the inputs of now; the state stays.
+
+        differentiating  which of the two
+
+        Returns 0 or a fault.
+
+        Checked  tests/tethered_deorbit/test_derivatives.py: asking changes nothing; test_macro_step.py: a changed
+                 length
+        """
         r = record[0]
         here = work[layout.HERE : layout.SLOPE]
         separation, speed = trajectory.state_at(record, work, r.state_published, here)
@@ -340,11 +403,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_taut = taut
         return 0
 
-    record_type = numba.from_dtype(MODEL.interface(terms).dtype)[::1]
+    record_type = numba.from_dtype(interface.dtype)[::1]
     signature = numba.int32(numba.int64, record_type, numba.float64[::1], numba.float64, numba.float64)
 
     @njit(signature, **OPTIONS)
     def entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
+        """The entry of `fmu_src.interface`, by command; returns a status.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, test_robust.py: no such command
+        """
         r = record[0]
         r.fault_code = 0
         r.fault_index = 0
@@ -359,9 +426,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if command in (STEP, GO_ON):
             return step_to(record, work, time, step, command == STEP)
         if command == REFRESH:
-            return look(record, work, False)
+            return answer(record, work, False)
         if command == DIFFERENTIATE:
-            return look(record, work, True)
+            return answer(record, work, True)
         return fail(record, blame(record, BAD_PARAMETER, 0, float(command)), r.state_published)
 
     return entry

@@ -56,7 +56,7 @@ def note_pull(record: Any, tension: float) -> None:
 
     The oldest tug then falls out of it.
 
-    Checked  tests/tethered_deorbit/test_tugs.py, tests/tethered_deorbit/test_macro_step.py
+    Checked  tests/tethered_deorbit/test_tugs.py, test_macro_step.py
     """
     r = record[0]
     if not tension > 0.0:

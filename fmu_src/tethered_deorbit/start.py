@@ -25,20 +25,20 @@ from orbital.vectors import Array, norm
 
 CHORD_ITERATIONS = 60
 
-ALTITUDE, CONDITION, LEADING, SEPARATION, RELATIVE_POSITION = (
-    base_slot(name)
-    for name in (
-        "orbit.altitude",
-        "start.condition",
-        "start.leading",
-        "start.separation",
-        "start.relative_position[1]",
-    )
+ALTITUDE, SEPARATION, RELATIVE_POSITION = (
+    base_slot(name) for name in ("orbit.altitude", "start.separation", "start.relative_position[1]")
 )
 
 
 @kernel
 def _orbit_state(record: Any, position: Array, velocity: Array, anomaly: float) -> None:
+    """Position [m] and velocity [m/s] of a point of the reference orbit, inertial; both are written.
+
+    anomaly       true                                           [rad]
+
+    Source   `orbital.kepler.elements_to_state`
+    Checked  tests/tethered_deorbit/test_start.py
+    """
     r = record[0]
     elements_to_state(
         position,
@@ -88,7 +88,15 @@ def _same_orbit(record: Any, state: Array) -> int:
         rho  = 2 p sin(d/2)/(w1 w2) (e sin nu cos(d/2), 1 + e cos nu cos(d/2))      radial, transverse
         rho' = -2 sqrt(mu/p) sin(d/2) (1, 0)
 
+    state         R, V, rho, rho'  of `layout`, written          (12,)
+
+    Returns 0 or a fault.
+
     On a circle that is at rest in the orbital frame, as the reference has it.
+
+    Valid    as `_half_angle`
+    Source   difference of two points of a conic, and of their velocities
+    Checked  tests/tethered_deorbit/test_start.py
     """
     r = record[0]
     half = _half_angle(record)
@@ -135,10 +143,6 @@ def start_state(record: Any, state: Array, longest: float) -> int:
     r = record[0]
     if not (EARTH_EQUATORIAL_RADIUS + r.orbit_altitude) * (1.0 - r.orbit_eccentricity) > EARTH_EQUATORIAL_RADIUS:
         return blame(record, BAD_ORBIT, ALTITUDE, r.orbit_altitude)
-    if r.start_condition < SAME_ORBIT or r.start_condition > HANDED_OVER:
-        return blame(record, BAD_PARAMETER, CONDITION, float(r.start_condition))
-    if r.start_leading < 0 or r.start_leading > 1:
-        return blame(record, BAD_PARAMETER, LEADING, float(r.start_leading))
     if r.start_condition == HANDED_OVER:
         if not norm(r.start_relative_position) > 0.0:
             return blame(record, NO_LINE, RELATIVE_POSITION, 0.0)

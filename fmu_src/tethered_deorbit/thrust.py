@@ -13,68 +13,61 @@ from orbital.kernel import kernel
 from orbital.vectors import Array
 
 
+@kernel
+def nothing(*arguments: Any) -> None:
+    """Does nothing, whatever it is given."""
+
+
+@kernel
+def no_force(record: Any) -> tuple[float, float]:
+    """A force of zero that does not move."""
+    return 0.0, 0.0
+
+
+@kernel
+def no_fault(record: Any) -> int:
+    """Nothing is wrong."""
+    return 0
+
+
 class Thrust(NamedTuple):
-    """Kernels of one direction.
+    """Kernels of one direction; as it stands, those of an FMU without a thruster, of which nothing is compiled.
 
     reset(record)                     nothing used yet
     add(record, state, rate, since)   add the thrust to the rate of the state, `since` [s] after its force was set
     asked(record) -> (force, rate)    what level and input say [N], [N/s]
     leave(record, duration)           write the value the input has reached after a time back to it
-    check(record) -> fault            whether that can be
+    check(record) -> fault            whether the input can be
     account(record, time)             book the propellant used up to `time`, before the force changes
     put(record, force, rate)          put a force in force, to move at a rate
     publish(record, time)             propellant used up to `time`
     publish_rate(record)              and how fast it is used
     """
 
-    reset: Callable[..., Any]
-    add: Callable[..., Any]
-    asked: Callable[..., Any]
-    leave: Callable[..., Any]
-    check: Callable[..., Any]
-    account: Callable[..., Any]
-    put: Callable[..., Any]
-    publish: Callable[..., Any]
-    publish_rate: Callable[..., Any]
-
-
-def make_no_thrust() -> Thrust:
-    """An FMU without a thruster: nothing of it is compiled."""
-
-    @kernel
-    def reset(record: Any) -> None:
-        pass
-
-    @kernel
-    def nothing(record: Any, time: float) -> None:
-        pass
-
-    @kernel
-    def add(record: Any, state: Array, rate: Array, since: float) -> None:
-        pass
-
-    @kernel
-    def asked(record: Any) -> tuple[float, float]:
-        return 0.0, 0.0
-
-    @kernel
-    def check(record: Any) -> int:
-        return 0
-
-    @kernel
-    def put(record: Any, force: float, rate: float) -> None:
-        pass
-
-    @kernel
-    def publish_rate(record: Any) -> None:
-        pass
-
-    return Thrust(reset, add, asked, nothing, check, nothing, put, nothing, publish_rate)
+    reset: Callable[..., Any] = nothing
+    add: Callable[..., Any] = nothing
+    asked: Callable[..., Any] = no_force
+    leave: Callable[..., Any] = nothing
+    check: Callable[..., Any] = no_fault
+    account: Callable[..., Any] = nothing
+    put: Callable[..., Any] = nothing
+    publish: Callable[..., Any] = nothing
+    publish_rate: Callable[..., Any] = nothing
 
 
 @kernel
 def _add_along(record: Any, rate: Array, since: float, x: float, y: float, z: float) -> None:
-    """Add the thrust along a direction of any length to centre of mass and relative vector."""
+    """Add the thrust along a direction of any length to the rates of centre of mass and relative vector [m/s^2].
+
+        V' += F u/M,   rho'' -= F u/m_c,   u = (x, y, z)/|(x, y, z)|
+
+    rate          of R, V, rho, rho'  of `layout`                (12,)
+    since         since the force was set                        [s]
+
+    Valid    any; without a direction there is no thrust
+    Source   Newton's second law
+    Checked  tests/tethered_deorbit/test_terms.py
+    """
     r = record[0]
     length = math.sqrt(x * x + y * y + z * z)
     if length > 0.0:
@@ -91,9 +84,15 @@ def _add_along(record: Any, rate: Array, since: float, x: float, y: float, z: fl
 
 @kernel
 def _add_along_track(record: Any, state: Array, rate: Array, since: float) -> None:
-    """Thrust along the chaser's along-track.
+    """Add the thrust along the chaser's along-track.
 
-    u = (h x r)/|h x r| with h = r x v, so h x r = v (r.r) - r (r.v);   R'' += F u/M,   rho'' -= F u/m_c
+        u = (h x r)/|h x r|,   h = r x v,   so h x r = v (r.r) - r (r.v)
+
+    state, rate   R, V, rho, rho'  of `layout`                   (12,)
+
+    Valid    r and v of the chaser not parallel
+    Source   as `_add_along`
+    Checked  tests/tethered_deorbit/test_terms.py; test_uncompiled.py: its work round an ellipse
     """
     share = record[0].state_target_share
     x, y, z = state[0] - share * state[6], state[1] - share * state[7], state[2] - share * state[8]
@@ -104,7 +103,15 @@ def _add_along_track(record: Any, state: Array, rate: Array, since: float) -> No
 
 @kernel
 def _add_along_velocity(record: Any, state: Array, rate: Array, since: float) -> None:
-    """Thrust along the chaser's inertial velocity: u = v/|v|."""
+    """Add the thrust along the chaser's inertial velocity.
+
+        u = v/|v|
+
+    state, rate   R, V, rho, rho'  of `layout`                   (12,)
+
+    Source   as `_add_along`
+    Checked  tests/tethered_deorbit/test_terms.py; test_uncompiled.py: its work round an ellipse
+    """
     share = record[0].state_target_share
     _add_along(
         record, rate, since, state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
@@ -113,7 +120,15 @@ def _add_along_velocity(record: Any, state: Array, rate: Array, since: float) ->
 
 @kernel
 def _add_along_tether(record: Any, state: Array, rate: Array, since: float) -> None:
-    """Thrust along the line, positive towards the target: u = rho/|rho|."""
+    """Add the thrust along the line, positive towards the target.
+
+        u = rho/|rho|
+
+    state, rate   R, V, rho, rho'  of `layout`                   (12,)
+
+    Source   as `_add_along`
+    Checked  tests/tethered_deorbit/test_terms.py, test_uncompiled.py
+    """
     _add_along(record, rate, since, state[6], state[7], state[8])
 
 
@@ -135,15 +150,17 @@ def make_thrust(direction: str, reel: str = "locked") -> Thrust:
 
     Valid    point masses: no torque, no plume on the target
     Source   fmu_src/tethered_deorbit/README.md, What is computed
-    Checked  tests/tethered_deorbit/test_terms.py, tests/tethered_deorbit/test_ramps.py
+    Checked  tests/tethered_deorbit/test_terms.py, test_ramps.py
     """
     add = DIRECTIONS[direction]
-    groups = REELS.terms[reel].variables, THRUST
-    level_slot, offset_slot = own_slot("thrust.level", *groups), own_slot("thrust.offset", *groups)
-    impulse_slot = own_slot("thrust.specific_impulse", *groups)
+    offset_slot = own_slot("thrust.offset", REELS.terms[reel].variables, THRUST)
 
     @kernel
     def reset(record: Any) -> None:
+        """No force, and nothing used yet.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py: nothing is left of an earlier run
+        """
         r = record[0]
         r.state_thrust = 0.0
         r.state_thrust_rate = 0.0
@@ -152,7 +169,15 @@ def make_thrust(direction: str, reel: str = "locked") -> Thrust:
 
     @kernel
     def used(record: Any, time: float) -> float:
-        """Propellant [kg] up to a time: what was booked, and since then the integral of |F| over a straight line."""
+        """Propellant [kg] up to a time: what was booked, and since then the integral of |F| over a straight line.
+
+            |F| t/(Isp g0),   |F1 + F2| t/(2 Isp g0),   or (F1^2 + F2^2)/(2 |F'| Isp g0) where F turns round
+
+        time                 t counts from the last change of the force   [s]
+
+        Source   area under a straight line, on either side of its zero
+        Checked  tests/tethered_deorbit/test_ramps.py: the propellant of a ramp
+        """
         r = record[0]
         since = time - r.state_propellant_since
         exhaust = r.thrust_specific_impulse * STANDARD_GRAVITY
@@ -170,44 +195,80 @@ def make_thrust(direction: str, reel: str = "locked") -> Thrust:
 
     @kernel
     def asked(record: Any) -> tuple[float, float]:
+        """What level and input say: force [N] and its rate [N/s].
+
+        Checked  tests/tethered_deorbit/test_ramps.py
+        """
         r = record[0]
         return r.thrust_level + r.thrust_offset, r.rate_thrust_offset
 
     @kernel
     def leave(record: Any, duration: float) -> None:
+        """Write the value the input has reached after a time [s] back to it.
+
+        Checked  tests/tethered_deorbit/test_ramps.py
+        """
         r = record[0]
         r.thrust_offset += r.rate_thrust_offset * duration
 
     @kernel
     def check(record: Any) -> int:
+        """Fault of an input that is not finite, or 0.
+
+        Checked  tests/tethered_deorbit/test_robust.py
+        """
         r = record[0]
-        if not math.isfinite(r.thrust_level):
-            return blame(record, BAD_PARAMETER, level_slot, r.thrust_level)
         if not math.isfinite(r.thrust_offset + r.rate_thrust_offset):
             return blame(record, BAD_PARAMETER, offset_slot, r.thrust_offset)
-        if not r.thrust_specific_impulse > 0.0:
-            return blame(record, BAD_PARAMETER, impulse_slot, r.thrust_specific_impulse)
         return 0
 
     @kernel
     def account(record: Any, time: float) -> None:
+        """Book the propellant used up to a time [s].
+
+        Checked  tests/tethered_deorbit/test_ramps.py: the propellant of a ramp, and then as ever
+        """
         r = record[0]
         r.state_propellant = used(record, time)
         r.state_propellant_since = time
 
     @kernel
     def put(record: Any, force: float, rate: float) -> None:
+        """Put a force [N] in force, to move at a rate [N/s].
+
+        Checked  tests/tethered_deorbit/test_ramps.py: the speed gained
+        """
         r = record[0]
         r.state_thrust = force
         r.state_thrust_rate = rate
 
     @kernel
     def publish(record: Any, time: float) -> None:
+        """Write the propellant used up to a time [s] to its output [kg].
+
+        Checked  tests/tethered_deorbit/test_ramps.py
+        """
         record[0].chaser_propellant = used(record, time)
 
     @kernel
     def publish_rate(record: Any) -> None:
+        """Write how fast propellant is used [kg/s].
+
+            |F|/(Isp g0)
+
+        Checked  tests/tethered_deorbit/test_derivatives.py, against differences
+        """
         r = record[0]
         r.rate_propellant = abs(r.state_thrust) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
 
-    return Thrust(reset, add, asked, leave, check, account, put, publish, publish_rate)
+    return Thrust(
+        reset=reset,
+        add=add,
+        asked=asked,
+        leave=leave,
+        check=check,
+        account=account,
+        put=put,
+        publish=publish,
+        publish_rate=publish_rate,
+    )

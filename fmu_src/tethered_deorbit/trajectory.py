@@ -39,17 +39,17 @@ SHORTEST = 32.0 * ROUNDING
 """Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
 
 
-def make_measure() -> Callable[..., Any]:
+def make_squared_error() -> Callable[..., Any]:
     """Size of an error of the state in units of the tolerances."""
 
     @kernel
-    def measure(record: Any, state: Array, error: Array) -> float:
+    def squared_error(record: Any, state: Array, error: Array) -> float:
         """Square of the error's size [-].
 
             sum of (e_R/tol_o)^2, (e_V/(tol_o n))^2, (e_rho/tol_s)^2, (e_rho'/(tol_s n))^2,
             and while taut, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2
 
-        Each tolerance is at least a few units in the last place of what it measures.
+        Each tolerance is at least a few units in the last place of what it bounds.
 
         state, error     R, V, rho, rho'  of `layout`            (12,)
 
@@ -79,7 +79,7 @@ def make_measure() -> Callable[..., Any]:
             square += dot(error[9:12], error[9:12]) / (apart_rate * apart_rate)
         return float(square)
 
-    return measure
+    return squared_error
 
 
 @kernel
@@ -107,7 +107,7 @@ class Trajectory(NamedTuple):
     advance(record, work, longest) -> fault   take the next step, up to a change of the line, but no longer [s]
     state_at(record, work, time, out) -> (separation [m], its rate [m/s])   state within the current step, inertial
                                               axes; the separation from before the axes are turned back: the bits of
-                                              the tension do not depend on who looks
+                                              the tension do not depend on who asks
     """
 
     restart: Callable[..., Any]
@@ -126,6 +126,10 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def restart(record: Any, work: Array, time: float) -> None:
+        """Begin anew at the state stored as END, at a time [s]: axes at rest, a short first step.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py: a ramp does not see what ran ahead
+        """
         r = record[0]
         for i in range(layout.SIZE):
             work[layout.BEGIN + i] = work[layout.END + i]
@@ -144,6 +148,10 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def attempt(record: Any, work: Array, step: float) -> None:
+        """One step of the integrator of a given size [s], from BEGIN to END.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, tests/consistency/test_table2.py
+        """
         scheme.attempt(
             record,
             work[layout.BEGIN : layout.END],
@@ -158,6 +166,10 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def end_signals(record: Any, work: Array) -> Signals:
+        """The signals at the end of the step: see `Events`.
+
+        Checked  tests/tethered_deorbit/test_tugs.py
+        """
         signals: Signals = events.signals(
             record, work[layout.END : layout.HERE], work[last : last + layout.SIZE], record[0].state_step
         )
@@ -165,7 +177,13 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def quiet(record: Any, work: Array) -> bool:
-        """A taut line whose tension cannot reach zero within the step, judged by its slope at both ends."""
+        """Whether a taut line's tension cannot reach zero within the step, judged by its slope at both ends.
+
+            2 h max|T'| < min T
+
+        Valid    a slope that is nowhere in the step twice that of its steeper end
+        Checked  tests/tethered_deorbit/test_tugs.py, against an independent integration: no change is lost
+        """
         r = record[0]
         begin = events.signals(
             record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE], 0.0
@@ -176,7 +194,13 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def land(record: Any, work: Array, fraction: float) -> None:
-        """Redo the step so that it ends on the change, to rounding: Newton on its size, from the dense output."""
+        """Redo the step so that it ends on the change, to rounding: Newton on its size, from the dense output.
+
+        fraction      of the step at which the change lies           [-]
+
+        Source   Newton's method, held within the step
+        Checked  tests/tethered_deorbit/test_tugs.py: the length at which a tug begins
+        """
         r = record[0]
         whole = r.state_step
         least = min(whole, SHORTEST_CONTACT / r.state_frequency)
@@ -198,6 +222,13 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def advance(record: Any, work: Array, longest: float) -> int:
+        """Take the next step; returns 0 or a fault. It ends early where the line changes.
+
+        longest       longest step allowed                           [s]
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, test_integrator.py: tolerances rule the error;
+                 test_robust.py
+        """
         r = record[0]
         r.state_since += r.state_step
         begin = work[layout.BEGIN : layout.END]
@@ -252,6 +283,13 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
 
     @kernel
     def state_at(record: Any, work: Array, time: float, out: Array) -> tuple[float, float]:
+        """Separation [m] and its rate [m/s] at a time; out becomes the state there, along inertial axes.
+
+        time          within the current step, or its end            [s]
+        out           R, V, rho, rho', J  of `layout`                (13,)
+
+        Checked  tests/tethered_deorbit/test_macro_step.py: the same bits whatever the macro step
+        """
         r = record[0]
         since = r.state_step
         if time >= r.state_end or r.state_step == 0.0:

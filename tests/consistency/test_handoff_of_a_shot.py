@@ -10,9 +10,10 @@ from scipy.spatial.transform import Rotation
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, mean_motion, prepare
 from dcone_cosim.ledger import ledger
 from dcone_cosim.line import line_of
-from fmu_src.net_capture.topology import MASS, NODE_PLANES, X
+from fmu_src.net_capture.planes import MASS
 from tests.conftest import CAPTURE_HILL
 from tests.cosim.raw_world import Points
+from tests.net_capture import memory
 
 pytestmark = pytest.mark.slow
 
@@ -30,10 +31,7 @@ SHOT = {
 
 def nodes(net):
     """Masses and positions of all nodes, bullets and vertex in them."""
-    slots = int(net.record["node_slots"][0])
-    planes = net.work[: NODE_PLANES * slots].reshape(NODE_PLANES, slots)
-    there = planes[MASS] > 0.0
-    return planes[MASS][there].copy(), planes[X : X + 3][:, there].T.copy()
+    return memory.planes(net)[MASS, memory.nodes(net)], memory.shown(net)
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +59,7 @@ def shot():
     def inertial(mass, place, seen_velocity):
         return Points(mass, place, seen_velocity + np.cross(TURNING, place))
 
-    a, b, c = (values[f"target.size[{i}]"] for i in (1, 2, 3))
+    a, b, c = net.array("target_size")
     # six points on the axes with the moments of a uniform box: m x^2 sums to M a^2 / 12
     arms = np.diag([a, b, c]) * math.sqrt(6.0 / 24.0)
     body = np.concatenate([arms, -arms])

@@ -115,7 +115,6 @@ class MockCapture(MockComponent):
         self.instant, self.reports, self.ends_as, self.fails_at = instant, reports, outcome, fails_at
         self.declare(["chaser.mass"], "parameter", 2000.0)
         self.declare(["target.mass"], "parameter", 1000.0)
-        self.declare(elements("target.size"), "parameter", 3.0)
         self.declare(elements("chaser.start_velocity"), "parameter")
         for name in ("chaser.position", "chaser.velocity", "target.position", "target.velocity", "target.rate"):
             self.declare(elements(name), "output")
@@ -123,6 +122,7 @@ class MockCapture(MockComponent):
         self.declare(elements("target.spin"), "output")
         self.declare(elements("target.attitude", 4), "output")
         self.declare(elements("vertex.position"), "output")
+        self.declare(["target.reach"], "output", 1.5 * np.sqrt(3.0))
         if line is not None:
             self.declare(["tether.length"], "parameter", line)
         self.declare(["catch.mass"], "output", 6.0)

@@ -73,6 +73,7 @@ class World:
     attitude: Rotation
     body_rate: Array
     principal: Array
+    reach: float
 
     @property
     def joint(self) -> Points:
@@ -114,6 +115,7 @@ class World:
             "target.mass": masses["target"],
             "catch.mass": float(net.mass.sum()),
             "energy.kinetic": net.energy(),
+            "target.reach": self.reach,
         }
 
 
@@ -150,4 +152,4 @@ def world(seed: int, spin: float = 2e-3) -> World:
     places = (generator.normal(0.0, 1.5, (40, 3)) + np.array([0.0, 0.8, 0.0])) @ axes.T
     net = Points(generator.uniform(0.05, 0.25, 40), places, moving(places, generator.normal(0.0, 0.5, (40, 3))))
     vertex = (np.array([0.1, -1.95, -0.05]) + 0.05 * generator.normal(size=3)) @ axes.T
-    return World(chaser, target, net, vertex, axes, attitude, body_rate, squares.sum() - squares)
+    return World(chaser, target, net, vertex, axes, attitude, body_rate, squares.sum() - squares, float(arms.max()))

@@ -13,8 +13,8 @@ from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.scene import Scene, find, load, parse
 from dcone_cosim.scenes.units import Expected, Unexpected
-from fmu_src.net_capture.reach import node_count, refusals
-from fmu_src.net_capture.terms import MOST_NODES, NodeTerms
+from fmu_src.net_capture.interface import MOST_NODES, NodeTerms, refusals
+from fmu_src.net_capture.nets.grid import node_count
 from tests.cosim.mock_components import MockCapture
 
 MUZZLE = 'start_position = ["0 m", "-12 m", "0 m"]'
@@ -158,16 +158,17 @@ def test_what_is_refused_is_close_to_what_is_not() -> None:
 
 def test_nodes_are_counted_as_the_kernel_counts_them() -> None:
     for meshes, segments, nodes in ((24, 1, 625), (24, 2, 625 + 2 * 25 * 24), (2, 3, 9 + 2 * 2 * 3 * 2)):
-        assert node_count(meshes, segments) == nodes
+        assert node_count(meshes, meshes, segments) == nodes
+    assert node_count(3, 2, 2) == 4 * 3 + 3 * 3 + 4 * 2
 
 
 def test_a_muzzle_is_judged_in_the_targets_own_axes() -> None:
     """3 m along y lie within a box 8 m long, and outside the same box turned by a quarter about z."""
     phase = load("table1-capture").phases[0]
     values = {**phase.main.defaults, **phase.main.parameters, "chaser.start_position[2]": -3.0}
-    assert [r.name for r in refusals(values)] == ["chaser.start_position"]
+    assert [r.name for r in refusals(phase.main.terms, values)] == ["chaser.start_position"]
     turned = values | {f"target.start_attitude[{i}]": part for i, part in ((1, 0.5**0.5), (4, 0.5**0.5))}
-    assert not refusals(turned)
+    assert not refusals(phase.main.terms, turned)
 
 
 @pytest.mark.parametrize("capacity", ["0", "-1", "²", "1.5", "", str(MOST_NODES + 1), "9" * 5000, 625])

@@ -24,6 +24,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import FmuError
 from dcone_cosim.scenes.scene import find
+from fmu_src.interface import Model
 from fmu_src.packaging import archive
 from tests.cosim.conftest import Dcone
 
@@ -235,8 +236,8 @@ def pretended(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     """An empty cache, and tools that only pretend; what they were called for."""
     called: list[str] = []
 
-    def emit(name: str, terms: Any, ir: Path) -> None:
-        called.append(f"compile {name}")
+    def emit(model: Model, terms: Any, ir: Path) -> None:
+        called.append(f"compile {model.name}")
         ir.write_text("; no kernels")
 
     def link(ir: Path, header: Path, library: Path, platform: Any) -> None:

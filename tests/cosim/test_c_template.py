@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,9 +14,11 @@ import pytest
 
 from dcone_cosim.fmu.archive import XML, Archive
 from dcone_cosim.fmu.component import CallError, Component
+from dcone_cosim.interface_kit import write_template
 from dcone_cosim.phases import CaptureLoop, CapturePlan
 from dcone_cosim.progress import Progress
-from tests.cosim.fmus.build import build
+from fmu_src.packaging.sources import SHIM
+from tests.cosim.fmus.build import HEADERS, build
 
 VERSION = 0
 """Where a serialised state has its version, a double."""
@@ -97,8 +100,28 @@ def test_it_says_what_was_asked_for(tow: Component, on: bool, categories: tuple[
 
 
 def test_an_unknown_category_is_refused(tow: Component) -> None:
-    with pytest.raises(CallError, match="there is no such log category"):
+    with pytest.raises(CallError, match="there is no log category logEverything"):
         heard(tow, True, "logEverything")
+
+
+def test_every_function_of_fmi_2_can_be_looked_up(tow: Component) -> None:
+    """Those of model exchange refuse, and say why."""
+    exported = set(re.findall(r"FMI2_Export fmi2\w+TYPE\s+(fmi2\w+);", (HEADERS / "fmi2Functions.h").read_text()))
+    assert len(exported) > 40
+    assert [name for name in sorted(exported) if not hasattr(tow._fmu.dll, name)] == []
+    said: list[str] = []
+    tow._messages.add = lambda status, text: said.append(text)  # type: ignore[method-assign]
+    refused = tow._fmu.dll.fmi2EnterEventMode
+    refused.argtypes = [ctypes.c_void_p]
+    assert refused(tow._fmu.component) == fmi2.fmi2Error
+    assert said == ["fmi2EnterEventMode: this FMU is for co-simulation only"]
+
+
+def test_what_it_shares_is_ours(tmp_path: Path) -> None:
+    write_template("removal", "c", tmp_path / "kit")
+    shared = [path for path in sorted((tmp_path / "kit").iterdir()) if (SHIM / path.name).is_file()]
+    assert [path.name for path in shared] == ["fmi2_absent.h", "fmi2_log.h"]
+    assert [path.read_bytes() for path in shared] == [(SHIM / path.name).read_bytes() for path in shared]
 
 
 def test_without_logging_errors_are_still_told(tmp_path: Path) -> None:

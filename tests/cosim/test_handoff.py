@@ -57,7 +57,7 @@ def capture_values(seed: int, cloud: bool = True) -> dict[str, float]:
     values |= {f"target.attitude[{i + 1}]": attitude[i] for i in range(4)}
     for i in range(3):
         values |= {f"target.inertia[{i + 1}]": inertia[i], f"target.rate[{i + 1}]": body_rate[i]}
-        values |= {f"target.spin[{i + 1}]": spin[i], f"target.size[{i + 1}]": 3.0}
+        values |= {f"target.spin[{i + 1}]": spin[i]}
         values |= {f"chaser.position[{i + 1}]": -20.0 * (i == 1) + 0.1 * values[f"chaser.position[{i + 1}]"]}
         values |= {f"{body}.velocity[{i + 1}]": 5e-3 * generator.normal() for body in ("chaser", "target")}
     values |= {"chaser.mass": 2000.0, "target.mass": 1000.0}
@@ -164,11 +164,11 @@ def test_a_fast_spin_is_refused_and_a_slow_one_is_not() -> None:
     values |= {f"target.attitude[{i}]": float(i == 1) for i in range(1, 5)}
     for i in range(3):
         values |= {f"target.inertia[{i + 1}]": inertia[i], f"target.spin[{i + 1}]": 0.0}
-    size = np.array([4.0, 8.0, 4.0])
+    values["target.reach"] = 24.0**0.5
     for rate, accepted in ((np.radians(5.0), False), (0.0, True)):
         values["target.spin[1]"] = inertia[0] * rate
         handed = prepare(values | cloud_outputs(np.ones(1), np.zeros((1, 3)), np.zeros((1, 3))), 0.0)
-        check = check_spin(handed, size, 22.0, -0.01, 0.1)
+        check = check_spin(handed, 22.0, -0.01, 0.1)
         assert check.accepted is accepted or rate == 0.0
         if rate:
             assert np.linalg.norm(handed.joint.spin) == pytest.approx(582.0, rel=0.01)

@@ -11,9 +11,9 @@ import pytest
 from dcone_cosim import build
 from dcone_cosim.scenes.scene import load
 from fmu_src.instance import Instance
-from fmu_src.net_capture.topology import MASS
+from fmu_src.net_capture.planes import MASS
 from tests.cosim.conftest import Dcone
-from tests.net_capture.taut_net import planes
+from tests.net_capture.memory import graph, nodes, planes
 
 
 def implied(scene: str, *settings: str, phase: int = 0) -> dict[str, float]:
@@ -91,10 +91,11 @@ def test_table_2_by_hand() -> None:
 def test_the_net_is_that_of_the_model(scene: str, settings: tuple[str, ...]) -> None:
     """Stiffness and dashpot to the bit; masses as the model lays them out; the energy that it measures at the shot."""
     rows, model = implied(scene, *settings), instance(scene, *settings)
-    record, segments = model.record[0], int(model["net.segments"])
-    assert record["thread_stiffness"] == rows["thread.stiffness"] * segments
-    assert record["thread_damping"] == rows["thread.dashpot"] * segments
-    mass, knots = planes(model)[MASS], int(record["knots"])
+    segments, knots = int(model["net.segments"]), round(model["net.side"] / model["net.mesh"]) + 1
+    threads = graph(model)
+    assert set(threads.stiffness) == {rows["thread.stiffness"] * segments}
+    assert set(threads.damping) == {rows["thread.dashpot"] * segments}
+    mass = planes(model)[MASS, nodes(model)]
     grid = mass[: knots * knots].reshape(knots, knots)
     laid_out = [grid[0, 0], grid[0, 1], grid[1, 1]]
     assert laid_out == pytest.approx([rows["corner.mass"], rows["edge.mass"], rows["knot.mass"]], rel=1e-12)

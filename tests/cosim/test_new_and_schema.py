@@ -170,7 +170,7 @@ class TestSchema:
 
     def test_every_parameter_is_described_with_its_default(self) -> None:
         net = schema()["properties"]["capture"]["properties"]["net"]["properties"]
-        assert net["side"]["description"] == "side of the flat net; greater than 0 m"
+        assert net["side"]["description"] == "side of the mouth; greater than 0 m"
         for phase, model in build.MODELS.items():
             tables = schema()["properties"][phase]["properties"]
             for row in build.all_rows(model):

@@ -158,12 +158,12 @@ def test_an_open_row_is_told_in_full(make_scene: Make) -> None:
 
 def spinning(make_scene: Make, spin: float, **handoff: float) -> RunResult:
     capture = MockCapture(INSTANT, reports=True, spin=spin)
-    capture.values |= {"target.size[1]": 2.0, "target.size[2]": 3.0, "target.size[3]": 6.0}
+    capture.values["target.reach"] = 3.5
     return run(make_scene("capture", "removal", **handoff), MockRemoval, capture)
 
 
 def test_the_spin_is_judged_at_the_scene_s_tolerance(make_scene: Make) -> None:
-    """By the mock's figures: 1500 kg m2 each way and a box of 2 x 3 x 6 m, whose half diagonal is 3.5 m."""
+    """By the mock's figures: 1500 kg m2 each way and a target that reaches 3.5 m from its centre of mass."""
     catch = -12.0 + 5.0 / 3.0 * INSTANT
     joining = 1000.0 * 6.0 / 1006.0 * catch**2
     slack = 20.0 + REACH_AND_ON - DISTANCE

@@ -5,7 +5,8 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from fmu_src.net_capture.topology import FX, INVERSE_MASS, MASS, NODE_PLANES, P, U, X
+from fmu_src.net_capture.planes import FX, INVERSE_MASS, MASS, P, U, X
+from tests.net_capture.memory import nodes, planes
 
 SIDE, MESH = 4.0, 1.0
 STRETCH = 1.02
@@ -21,12 +22,6 @@ PARAMETERS = {
     "vertex.mass": 0.001,
 }
 """Soft threads: omega is about 440 rad/s, so that a hundredth of a second, the grid's unit, is less than a swing."""
-
-
-def planes(net):
-    """The node planes of an instance, a view (planes, slots)."""
-    slots = int(net.record["node_slots"][0])
-    return net.work[: NODE_PLANES * slots].reshape(NODE_PLANES, slots)
 
 
 def threads_of(knots):
@@ -100,14 +95,14 @@ class Reference:
 def begin(net, reference):
     """Put the reference's start into the model: positions, velocities half a substep back, and those predicted."""
     x, v = reference.start()
-    nodes = planes(net)
+    memory, slots = planes(net), nodes(net)
     back = 0.5 * net["solver.substep"] * reference.acceleration(x, v)
-    nodes[X : X + 3] = x.T
-    nodes[P : P + 3] = v.T
-    nodes[U : U + 3] = (v - back).T
-    nodes[FX : FX + 3] = 0.0
-    np.testing.assert_allclose(nodes[MASS], reference.mass, rtol=1e-12)
-    np.testing.assert_allclose(nodes[INVERSE_MASS], 1.0 / reference.mass, rtol=1e-12)
+    memory[X : X + 3, slots] = x.T
+    memory[P : P + 3, slots] = v.T
+    memory[U : U + 3, slots] = (v - back).T
+    memory[FX : FX + 3] = 0.0
+    np.testing.assert_allclose(memory[MASS, slots], reference.mass, rtol=1e-12)
+    np.testing.assert_allclose(memory[INVERSE_MASS, slots], 1.0 / reference.mass, rtol=1e-12)
     net.record["thread_loss"] = -0.5 * net["solver.substep"] * reference.power(x, v)
     net.step(0.0)
     return net

@@ -9,6 +9,9 @@ from tests.net_capture.evidence.shots import RESULT, draw, follow, main, summari
 
 SHOTS = (60, 105)
 """Poorly aimed, 13 and 10 degrees."""
+SEEDS = (1, 2)
+"""Of the jitter: whether a shot so poorly aimed is caught is a sample. Of nine seeds each, 17 of 18 were, with the
+rounding of version 0.3.0 as with that of now, and none came out."""
 WITHOUT_RINGS = {"closing.rings": 0, "closing.stall_force": 10.0}
 """The closing of version 0.3.0."""
 
@@ -19,8 +22,10 @@ def stored():
 
 def test_a_cord_through_rings_holds_what_a_cord_around_four_bullets_loses():
     """The twins: that cord, and with it the rule of version 0.2.0, take what does not last."""
-    held = [follow(number, end=30.0) for number in SHOTS]
-    assert all(row["captured"] is not None and row["lost"] is None for row in held)
+    shots = [(number, seed) for number in SHOTS for seed in SEEDS]
+    held = [follow(number, end=30.0, changes={"solver.seed": seed}) for number, seed in shots]
+    assert all(row["lost"] is None for row in held)
+    assert sum(row["captured"] is not None for row in held) >= len(held) - 1
     twins = [follow(number, end=30.0, changes=WITHOUT_RINGS) for number in SHOTS]
     assert [row for row in twins if row["captured"] is None or row["lost"] is not None]
     assert [row for row in twins if row["centre_only"]["lost"] is not None]

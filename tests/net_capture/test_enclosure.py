@@ -6,19 +6,18 @@ import math
 import numpy as np
 import pytest
 
-from fmu_src.net_capture import enclosure, target
-from fmu_src.net_capture.enclosure import crossing
-from fmu_src.net_capture.interface import MODEL
-from fmu_src.net_capture.shapes import box_sample
-from fmu_src.net_capture.topology import node_slots, work_size
+from fmu_src.net_capture.enclosure import crossing, make_encloses, make_share
+from fmu_src.net_capture.planes import MASS, SHOWN
+from fmu_src.net_capture.shapes.box import box_sample
+from fmu_src.net_capture.target import BEYOND_REACH
 from orbital.rotations import to_matrix
 from tests.conftest import CAPTURE
+from tests.net_capture.memory import Bench
 
 CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
 GRID = np.array([(x, y, z) for z, y, x in itertools.product((-1.0, 0.0, 1.0), repeat=3)])
 HALF = np.array([2.0, 4.0, 2.0])
 RADIUS = 6.0
-share_inside = enclosure.make_share(target.sample, target.SAMPLES)
 
 
 def cube_triangles():
@@ -64,15 +63,15 @@ def test_a_box_is_sampled_at_centre_faces_edges_and_corners(function):
     assert np.bincount(outward.sum(axis=1).astype(int)).tolist() == [1, 6, 12, 8]
 
 
-def test_sample_points_are_those_of_the_turned_box_below_its_surface():
-    record = Net().record
+def test_sample_points_are_those_of_the_turned_box_below_its_surface(net):
+    record = net.record
     record.target_place[:] = (1.0, -2.0, 3.0)
     record.target_pose[:] = (0.6, 0.0, 0.8, 0.0)
     turn = np.zeros((3, 3))
     to_matrix(turn, np.array([0.6, 0.0, 0.8, 0.0]))
     point = np.zeros(3)
     for number, corner in enumerate(GRID):
-        target.sample(record, point, number)
+        net.parts.target.sample(record, point, number)
         assert point == pytest.approx(turn @ (corner * (HALF - 0.55)) + (1.0, -2.0, 3.0), abs=1e-12)
         if np.any(corner):
             assert point != pytest.approx(turn @ (corner * HALF) + (1.0, -2.0, 3.0), abs=0.1)
@@ -99,23 +98,22 @@ def test_no_mesh_reaches_the_sample_points():
         knots /= max(1.0, sides.max())
         shares = generator.dirichlet((1.0, 1.0, 1.0), size=400)
         best = max(best, (shares @ knots).min(axis=1).max())
-    assert 0.48 < best < 0.536 < target.BEYOND_REACH
+    assert 0.48 < best < 0.536 < BEYOND_REACH
 
 
 class Net:
-    """Record and memory of a net of 24 x 24 meshes, its knots where the test lays them, about a box at the origin."""
+    """A net of 24 x 24 meshes, its knots where the test lays them, about a box at the origin."""
 
     def __init__(self):
-        self.record = MODEL.interface(CAPTURE).make_record().view(np.recarray)[0]
-        self.record.knots = 25
-        self.record.node_slots = node_slots(25, 1)
-        self.record.target_pose[0] = 1.0
-        self.work = np.zeros(work_size(25, 1))
+        bench = Bench(CAPTURE)
+        self.record, self.work, self.parts = bench.p, bench.work, bench.parts
+        self.share_inside, self.encloses = make_share(self.parts), make_encloses(self.parts.memory)
         i, j = np.divmod(np.arange(625), 25)
         self.across, self.along = i / 12.0 - 1.0, j / 12.0 - 1.0
 
     def lay(self, knots):
-        self.work[: 3 * 625].reshape(3, 625)[:] = knots
+        planes = self.work[: self.parts.planes * self.record.node_slots].reshape(self.parts.planes, -1)
+        planes[SHOWN : SHOWN + 3, planes[MASS] > 0.0] = knots
 
     def bag(self, mouth):
         """Lay the knots on a sphere of 6 m about the origin, the vertex at -y, the rim at the angle `mouth` from it."""
@@ -126,7 +124,19 @@ class Net:
 
     def share_with_box_at(self, *place):
         self.record.target_place[:] = place
-        return share_inside(self.record, self.work)
+        return self.share_inside(self.record, self.work)
+
+
+@pytest.fixture(scope="module")
+def compiled():
+    return Net()
+
+
+@pytest.fixture
+def net(compiled):
+    """The net with its target anew in its place, turned as it starts."""
+    assert compiled.parts.target.place(compiled.record) == 0
+    return compiled
 
 
 def inside_of_bag(points, mouth):
@@ -134,26 +144,25 @@ def inside_of_bag(points, mouth):
     return (np.linalg.norm(points, axis=1) < RADIUS) & (points[:, 1] < -RADIUS * math.cos(mouth))
 
 
-def test_a_net_wrapped_round_the_box_has_all_of_it_inside():
-    net = Net().bag(math.radians(170.0))
+def test_a_net_wrapped_round_the_box_has_all_of_it_inside(net):
+    net.bag(math.radians(170.0))
     assert net.share_with_box_at(0.0, 0.0, 0.0) == 1.0
     assert net.share_with_box_at(14.0, 0.0, 0.0) == 0.0  # beside the net
     assert net.share_with_box_at(0.0, -14.0, 0.0) == 0.0  # the net flew past
 
 
-def test_an_open_net_goes_round_nothing():
+def test_an_open_net_goes_round_nothing(net):
     """A flat net is its own mouth, whether the target is before it, in it or behind it."""
-    net = Net()
     for y in (-6.0, 0.5, 6.0):
         net.lay(np.array([12.0 * net.across, np.full(625, y), 12.0 * net.along]))
         assert net.share_with_box_at(0.0, 0.0, 0.0) == 0.0
 
 
 @pytest.mark.parametrize("mouth", [110.0, 140.0, 165.0])
-def test_the_share_inside_is_that_of_a_sphere_cut_by_the_plane_of_its_rim(mouth):
+def test_the_share_inside_is_that_of_a_sphere_cut_by_the_plane_of_its_rim(net, mouth):
     """The box is drawn out through the mouth, turned about all axes: part by part its points are out."""
     mouth = math.radians(mouth)
-    net = Net().bag(mouth)
+    net.bag(mouth)
     attitude = np.array([1.0, 0.3, 0.3, 0.3])
     net.record.target_pose[:] = attitude / np.linalg.norm(attitude)
     turn = np.zeros((3, 3))
@@ -173,11 +182,11 @@ def test_the_share_inside_is_that_of_a_sphere_cut_by_the_plane_of_its_rim(mouth)
     assert any(14 < n < 24 for n in shares)  # in the mouth: neither caught nor out
 
 
-def test_a_corner_sticking_out_is_no_escape_and_no_capture_is_due_to_the_centre_alone():
+def test_a_corner_sticking_out_is_no_escape_and_no_capture_is_due_to_the_centre_alone(net):
     """The twin is the old test: it sees the centre inside while a third of the box is out in the mouth."""
-    net = Net().bag(math.radians(150.0))
+    net.bag(math.radians(150.0))
     net.record.target_pose[:] = np.array([math.cos(0.45), math.sin(0.45), 0.0, 0.0])
     assert 24 / 27 <= net.share_with_box_at(0.0, 2.2, 0.6) < 1.0
     net.bag(math.radians(120.0))
     assert net.share_with_box_at(0.0, 2.5, 0.0) < 0.7
-    assert enclosure.encloses(net.record, net.work, net.record.target_place)
+    assert net.encloses(net.record, net.work, net.record.target_place)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import CAPTURE
-from tests.net_capture.taut_net import planes
+from tests.net_capture.memory import shown
 
 WALL = {f"target.size[{i}]": size for i, size in ((1, 8.0), (2, 2.0), (3, 8.0))}
 LIGHT = {
@@ -34,7 +34,7 @@ def deepest(net):
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
         ]
     )
-    inside = (planes(net)[:3].T - net.array("target_position")) @ turn
+    inside = (shown(net) - net.array("target_position")) @ turn
     half = 0.5 * net.array("target_size")
     return float(np.max(np.min(half - np.abs(inside), axis=1)))
 

@@ -8,10 +8,12 @@ import pytest
 
 from fmu_src.net_capture import formulas
 
+LIMITS = formulas.make_substep_limits(formulas.longest_step, formulas.accurate_step)
+
 
 def test_table_1_thread():
     """0.33 kg of 1440 kg/m3 in 1200 m of thread, 70 GPa: 0.191 mm2, 0.493 mm, EA = 13.37 kN."""
-    length = formulas.square_net_length(24.0, 1.0)
+    length = formulas.grid_length(24.0, 24.0, 1.0)
     area = formulas.thread_area(0.33, 1440.0, length)
     assert length == 1200.0
     assert area == pytest.approx(0.191e-6, rel=1e-3)
@@ -83,7 +85,7 @@ def test_the_bound_holds_for_net_and_cord_together(ratio, cord, bullet, rings):
     damping = formulas.thread_dashpot(ratio, stiffness, knot)
     dashpot = formulas.cord_damping(0.106, cord, formulas.cord_mass(bullet, 0.75 * knot, rings))
     mass, k, c = matrices(5, stiffness, damping, knot, bullet, cord, dashpot, rings)
-    bound, accurate = formulas.substep_limits(stiffness, damping, knot, cord, dashpot, bullet, rings)
+    bound, accurate = LIMITS(stiffness, damping, knot, cord, dashpot, bullet, rings)
     assert accurate <= 0.9 * bound * (1.0 + 1e-12)
     assert largest(mass, k, c, bound) < 1.0 + 1e-5
     # and it is not far from the edge: half as much again diverges

@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from tests.net_capture.taut_net import Reference, begin, planes, with_substeps
+from fmu_src.net_capture.planes import P, U
+from tests.net_capture.memory import planes, shown
+from tests.net_capture.taut_net import Reference, begin, with_substeps
 
 COUNTS = (40, 80, 160)
 TIME = 0.004
@@ -28,7 +30,7 @@ def run(shoot, ratio, flaw=None):
             if flaw is not None:
                 flaw(net)
             net.step(0.01 / count)
-        errors.append(np.abs(planes(net)[0:3].T - exact).max())
+        errors.append(np.abs(shown(net) - exact).max())
         remainders.append(abs(net["energy.remainder"] - start))
     return errors, remainders
 
@@ -45,7 +47,7 @@ def test_a_dashpot_half_a_substep_late_is_of_first_order(shoot):
 
     def late(net):
         nodes = planes(net)
-        nodes[3:6] = nodes[9:12]
+        nodes[P : P + 3] = nodes[U : U + 3]
 
     errors, _ = run(shoot, 0.106, late)
     assert slope(errors) == pytest.approx(1.0, abs=0.2)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from fmu_src.net_capture.topology import MASS, NODE_PLANES
+from fmu_src.net_capture.planes import MASS
+from tests.net_capture.memory import nodes, planes, shown
 
 
 def test_mouth_area_of_the_folded_net_is_its_square(shoot):
@@ -17,12 +18,10 @@ def test_mouth_area_of_the_folded_net_is_its_square(shoot):
 def test_mass_properties_are_those_of_the_nodes(shoot):
     net = shoot({"net.mesh": 2.0})
     net.step(5.0)
-    slots = int(net.record["node_slots"][0])
-    planes = net.work[: NODE_PLANES * slots].reshape(NODE_PLANES, slots)
-    mass = planes[MASS]
-    centre = (planes[:3] * mass).sum(axis=1) / mass.sum()
+    mass, places = planes(net)[MASS, nodes(net)], shown(net)
+    centre = mass @ places / mass.sum()
     assert net.array("catch_position") == pytest.approx(centre, rel=1e-12)
-    arms = (planes[:3] - centre[:, None]).T
+    arms = places - centre
     tensor = sum(m * (np.dot(r, r) * np.eye(3) - np.outer(r, r)) for m, r in zip(mass, arms, strict=True))
     told = net.array("catch_inertia")
     assert told == pytest.approx([tensor[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], abs=1e-9)

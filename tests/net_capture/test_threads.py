@@ -5,48 +5,104 @@ import math
 import numpy as np
 import pytest
 
-from fmu_src.net_capture import threads
-from fmu_src.net_capture.environment import kick
-from fmu_src.net_capture.threads import drift, find_taut, pull, thread_tension
-from fmu_src.net_capture.topology import FX, INVERSE_MASS, MASS, NODE_PLANES, P, U, gather
+from fmu_src.net_capture.planes import (
+    DAMPING,
+    FX,
+    INVERSE_MASS,
+    LENGTH,
+    MASS,
+    NODE_PLANES,
+    STIFFNESS,
+    STRIP_NUMBERS,
+    P,
+    U,
+    X,
+    complete_strips,
+)
+from fmu_src.net_capture.threads import make_threads, thread_tension
+from tests.conftest import FREE
+from tests.net_capture.memory import Bench, graph, nodes, planes
 
 K, XI, L = 13740.0, 0.106, 1.0
+SLOTS = 8
+A, B = 0, 4
+"""Nodes of a strip of up to four lanes."""
 
 
-def two_masses(m, d, stretch_rate, h, steps, tension=thread_tension):
-    """Two masses on one thread along x, by the model's own kernels; returns lengths and tensions."""
-    slots = 2
-    nodes = np.zeros(NODE_PLANES * slots)
-    planes = nodes.reshape(NODE_PLANES, slots)
-    planes[0] = (0.0, L)
-    planes[U] = planes[P] = (-0.5 * stretch_rate, 0.5 * stretch_rate)
-    excess, lanes, peak = np.zeros(1), np.zeros(1), np.zeros(1)
-    inverse = planes[INVERSE_MASS] = np.full(slots, 1.0 / m)
+@pytest.fixture(scope="module")
+def bench():
+    return Bench(FREE)
+
+
+@pytest.fixture(scope="module")
+def kernels(bench):
+    """Kernels of the threads, as the leapfrog scheme has them, and the kick."""
+    return make_threads(bench.parts, P, U), bench.parts.gravity.kick_group
+
+
+class Strip:
+    """A strip of four threads between eight nodes of a memory of its own, driven by the model's own kernels."""
+
+    def __init__(self, bench, kernels, m, d, h):
+        self.threads, self.kick = kernels
+        self.p, self.h = bench.record.copy()[0], h
+        self.p.solver_substep = h
+        self.work = np.zeros(NODE_PLANES * SLOTS)
+        self.planes = self.work.reshape(NODE_PLANES, SLOTS)
+        self.planes[X, B:] = L
+        self.planes[INVERSE_MASS] = 1.0 / m
+        self.numbers = np.zeros(STRIP_NUMBERS)
+        self.numbers[[LENGTH, STIFFNESS, DAMPING]] = L, K, d
+        self.p.strips = 1
+        complete_strips(self.p, self.numbers)
+        self.earlier = 0
+
+    def taut(self, lanes=0b1111):
+        """Lanes longer than their rest length."""
+        return int(self.threads.taut(self.work, SLOTS, X, A, B, lanes, L * L))
+
+    def pull(self, taut):
+        """Add the forces of these lanes; what their dashpots take."""
+        self.p.thread_tension_peak = 0.0
+        lanes, earlier = np.uint64(taut), np.uint64(self.earlier)
+        return self.threads.pull(self.p, self.work, SLOTS, self.numbers, 0, A, B, 0, lanes, earlier)
+
+    def step(self):
+        """Forces, kick, drift; the largest tension."""
+        self.p.thread_tension_peak = 0.0
+        taut = self.taut(0b0001)
+        if taut:
+            self.pull(taut)
+        self.earlier = taut
+        self.planes[X : X + 3] += self.h * self.planes[U : U + 3]
+        for group in (A, B):
+            self.kick(self.work, group, SLOTS, self.h, 0.0)
+        return float(self.p.thread_tension_peak)
+
+
+def two_masses(bench, kernels, m, d, stretch_rate, h, steps):
+    """Two masses on one thread along x; returns lengths and tensions."""
+    strip = Strip(bench, kernels, m, d, h)
+    for plane in (U, P):
+        strip.planes[plane, [A, B]] = (-0.5 * stretch_rate, 0.5 * stretch_rate)
     lengths, tensions = [L], [0.0]
     for _ in range(steps):
-        peak[:] = 0.0
-        x, y, z = planes[0], planes[1], planes[2]
-        if find_taut(excess, x[:1], y[:1], z[:1], x[1:], y[1:], z[1:], np.array([L * L])):
-            gather(lanes, excess)
-            pull(lanes, nodes, slots, 0, 1, peak, L, K, d, h)
-        for axis in range(3):
-            kick(planes[U + axis], planes[P + axis], planes[FX + axis], inverse, h)
-            drift(planes[axis], planes[U + axis], planes[FX + axis], h)
-        lengths.append(x[1] - x[0])
-        tensions.append(peak[0])
+        tensions.append(strip.step())
+        lengths.append(strip.planes[X, B] - strip.planes[X, A])
     return np.array(lengths), np.array(tensions)
 
 
-def test_taut_frequency_is_that_of_the_reduced_mass():
+def test_taut_frequency_is_that_of_the_reduced_mass(bench, kernels):
     """A half swing lasts pi / omega with omega = sqrt(k / mu), mu = m / 2."""
     m = 5.5e-4
     omega = math.sqrt(K / (0.5 * m))
     h = 0.01 / omega
-    lengths, _ = two_masses(m, 0.0, 0.1, h, 400)
+    lengths, tensions = two_masses(bench, kernels, m, 0.0, 0.1, h, 400)
     taut = np.nonzero(lengths > L)[0]
     half_swing = (taut[-1] - taut[0] + 1) * h
     assert half_swing == pytest.approx(math.pi / omega, rel=5e-3)
     assert half_swing != pytest.approx(math.pi / math.sqrt(K / m), rel=5e-3)
+    assert tensions[1:] == pytest.approx(K * np.maximum(lengths[:-1] - L, 0.0), rel=1e-6)
 
 
 def test_logarithmic_decrement_gives_the_dashpot():
@@ -88,21 +144,67 @@ def test_compiled_and_uncompiled_tension_agree():
         assert thread_tension(length, rate, L, K, 0.3) == thread_tension.py_func(length, rate, L, K, 0.3)
 
 
+def test_only_stretched_threads_are_found(bench, kernels):
+    """A bit for each; a thread at its rest length, one without a length and one that is none are not among them."""
+    strip = Strip(bench, kernels, 1.0, 0.3, 1e-5)
+    strip.planes[X, B:] = (1.0 + 1e-12, 1.0, 0.999, 1.5)
+    assert strip.taut() == 0b1001
+    assert strip.taut(0b0111) == 0b0001
+    strip.planes[X, B] = math.nan
+    assert strip.taut() == 0b1000
+
+
+@pytest.mark.parametrize("stretch", [1e-9, 1e-6, 1e-4, 1.9e-3, 2.1e-3, 0.03, 0.2])
+def test_threads_pull_as_the_formula_says(bench, kernels, stretch):
+    """Along the thread, opposite on its ends, and never pushing; the shortening is summed up to 0.2 % of stretch.
+
+    Lane 2 is slack; lane 3 shortens so fast that its dashpot would push.
+    """
+    damping = 0.3
+    strip = Strip(bench, kernels, 1.0, damping, 1e-5)
+    generator = np.random.default_rng(4)
+    ways = generator.normal(size=(4, 3))
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    lengths = L * (1.0 + stretch * np.array([1.0, 0.5, -0.5, 0.9]))
+    rates = np.array([0.7, -0.4, 1.0, -1e6]) * min(1.0, 1e3 * stretch)
+    places, speeds = generator.normal(size=(2, 4, 3))
+    for axis in range(3):
+        strip.planes[X + axis, :4] = places[:, axis]
+        strip.planes[X + axis, 4:] = places[:, axis] + lengths * ways[:, axis]
+        for plane in (P + axis, U + axis):
+            strip.planes[plane, :4] = speeds[:, axis]
+            strip.planes[plane, 4:] = speeds[:, axis] + rates * ways[:, axis]
+    assert strip.taut() == 0b1011
+    strip.pull(0b1011)
+    # the length itself is rounded: 2e-16 of it in the stretch, of which the force is K times as large
+    close = {"rel": 1e-11, "abs": K * 2e-15}
+    largest = 0.0
+    for lane in range(4):
+        tension = thread_tension(lengths[lane], rates[lane], L, K, damping)
+        largest = max(largest, tension)
+        force = strip.planes[FX : FX + 3, lane]
+        assert force == pytest.approx(tension * ways[lane], **close)
+        assert np.array_equal(strip.planes[FX : FX + 3, lane + 4], -force)
+    assert largest > 0.0
+    assert not strip.planes[FX : FX + 3, [2, 3]].any()
+    assert strip.p.thread_tension_peak == pytest.approx(largest, **close)
+    assert strip.p.thread_peak_index == 1
+
+
 @pytest.mark.parametrize("segments", [1, 2, 5])
 def test_static_stretch_is_that_of_the_whole_thread(shoot, segments):
     """A side of the net of one mesh pulled by F stretches by F L / EA, whatever the number of segments: in series."""
     net = shoot({"net.side": 2.0, "net.mesh": 1.0, "net.segments": segments, "net.fold_side": 0.1})
-    stiffness = float(net.record["thread_stiffness"][0])
-    length = float(net.record["thread_length"][0])
+    threads = graph(net)
+    assert np.ptp(threads.stiffness) == np.ptp(threads.length) == 0.0
+    stiffness, length = threads.stiffness[0], threads.length[0]
     area = 0.33 / (1440.0 * 12.0)
     force = 1.0
     stretch = sum(force / stiffness for _ in range(segments))
     assert length * segments == pytest.approx(1.0, rel=1e-15)
     assert stretch == pytest.approx(force * 1.0 / (70e9 * area), rel=1e-6)
     assert stretch != pytest.approx(force * 1.01 / (70e9 * area), rel=1e-6)
-    assert threads.thread_tension(length + force / stiffness, 0.0, length, stiffness, 0.0) == pytest.approx(
-        force, rel=1e-6
-    )
+    assert thread_tension(length + force / stiffness, 0.0, length, stiffness, 0.0) == pytest.approx(force, rel=1e-6)
 
 
 @pytest.mark.parametrize(("segments", "mesh"), [(1, 2.0), (2, 2.0), (3, 2.0), (2, 8.0)])
@@ -112,9 +214,11 @@ def test_cutting_threads_keeps_mass_and_length(shoot, segments, mesh):
     assert net["net.threads"] == 2 * segments * knots * (knots - 1)
     assert net["net.nodes"] == knots * knots + 2 * (segments - 1) * knots * (knots - 1)
     assert net["catch.mass"] == pytest.approx(0.33 + 2.0 + 0.15, rel=1e-12)
-    slots = int(net.record["node_slots"][0])
-    mass = net.work[MASS * slots : (MASS + 1) * slots]
-    assert np.count_nonzero(mass) == net["net.nodes"]
+    assert len(nodes(net)) == net["net.nodes"]
+    assert planes(net)[MASS].sum() == pytest.approx(0.33 + 2.0 + 0.15, rel=1e-12)
+    threads = graph(net)
+    assert len(threads.length) == net["net.threads"]
+    assert threads.length.sum() == pytest.approx(2.0 * knots * 24.0, rel=1e-12)
 
 
 def test_cut_net_opens_like_the_whole_one(shoot):

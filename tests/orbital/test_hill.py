@@ -94,10 +94,117 @@ def test_jacobi_integral_is_kept_along_the_solution(run):
         assert abs(run(hill.hill_jacobi)(*state, 1.01 * N) - start) > 1e-9 * grown
 
 
-def test_angle_minus_sine_against_exact_arithmetic():
-    for angle in (1e-8, 1e-3, 0.5, 0.9999, -0.7, 1.0001, 3.0):
-        a = Fraction(angle)
-        exact = sum((-1) ** k * a ** (2 * k + 3) / math.factorial(2 * k + 3) for k in range(16))
-        assert abs(Fraction(hill.angle_minus_sine(angle)) / exact - 1) < 2e-15
-    assert hill.angle_minus_sine(0.0) == 0.0
-    assert math.isnan(hill.angle_minus_sine(math.nan))
+def exact_coefficients(rate, time):
+    """The eight of `hill_coefficients` as fractions, for the very numbers it is given."""
+    n, t = Fraction(rate), Fraction(time)
+    a = n * t
+    sine = sum((-1) ** k * a ** (2 * k + 1) / math.factorial(2 * k + 1) for k in range(60))
+    versine = -sum((-1) ** k * a ** (2 * k) / math.factorial(2 * k) for k in range(1, 60))
+    lag = a - sine
+    return [versine, sine / n, versine / n, lag, t - 4 * lag / n, n * sine, n * versine, sine]
+
+
+def times(rng, low, high, count=60):
+    """Mean motions [rad/s] and times [s], either way, whose product lies between two powers of ten."""
+    for _ in range(count):
+        rate = 10.0 ** rng.uniform(-4.0, -2.9)
+        yield rate, float(rng.choice([-1.0, 1.0])) * 10.0 ** rng.uniform(low, high) / rate
+
+
+@pytest.mark.parametrize(("low", "high"), [(-9.0, -6.0), (-6.0, -3.0), (-3.0, -1.0), (-1.0, math.log10(0.5))])
+def test_coefficients_of_a_short_flight_keep_their_last_digits(run, rng, low, high):
+    for rate, time in times(rng, low, high):
+        out = np.empty(8)
+        run(hill.hill_coefficients)(out, rate, time)
+        for found, exact in zip(out, exact_coefficients(rate, time), strict=True):
+            assert abs(Fraction(found) / exact - 1) < 8e-16
+    assert 1.0 - math.cos(1e-7) != pytest.approx(5e-15, rel=1e-4, abs=0.0), "the twin: the plain difference"
+
+
+def test_coefficients_of_a_long_flight(run, rng):
+    for rate, time in times(rng, math.log10(0.5), math.log10(20.0)):
+        out, angle = np.empty(8), abs(rate * time)
+        run(hill.hill_coefficients)(out, rate, time)
+        size = [2.0, 1 / rate, 2 / rate, angle, 3 * abs(time) + 4 / rate, rate, 2 * rate, 1.0]
+        for found, exact, largest in zip(out, exact_coefficients(rate, time), size, strict=True):
+            assert abs(Fraction(found) - exact) < 1e-15 * (1.0 + angle) * largest
+
+
+def test_coefficients_do_without_the_sine_of_the_platform(run):
+    """Every operation in them rounds correctly: in exact arithmetic, rounded after each, they come out the same."""
+    F = Fraction
+    rate, time = 1.0381289e-3, 20.0
+    out = np.empty(8)
+    run(hill.hill_coefficients)(out, rate, time)
+    a = rate * time
+    q = a * a
+
+    def series(*divisors):
+        value = 1.0
+        for divisor in reversed(divisors):
+            value = float(F(1) - F(float(F(float(F(q) / divisor)) * F(value))))
+        return value
+
+    versine = float(F(float(F(1, 2) * F(q))) * F(series(12, 30, 56, 90, 132, 182)))
+    lag = float(F(float(F(float(F(a) * F(q))) / 6)) * F(series(20, 42, 72, 110, 156, 210)))
+    assert (out[0], out[3]) == (versine, lag)
+    assert out[1] == float(F(float(F(a) - F(lag))) / F(rate))
+
+
+def test_coefficients_stay_loud(run):
+    out = np.empty(8)
+    for time in (math.nan, math.inf, -math.inf):
+        run(hill.hill_coefficients)(out, N, time)
+        assert not np.isfinite(out).any(), time
+    run(hill.hill_coefficients)(out, N, 0.0)
+    np.testing.assert_array_equal(out, 0.0)
+
+
+@pytest.mark.parametrize(("low", "high"), [(-9.0, -6.0), (-6.0, -3.0), (-3.0, -1.0), (-1.0, math.log10(0.5))])
+def test_flight_against_exact_arithmetic(run, rng, low, high):
+    flight, position, velocity = np.empty(8), np.empty(3), np.empty(3)
+    for rate, time in times(rng, low, high, 30):
+        start, moving = 30.0 * rng.normal(size=3), 10.0 ** rng.uniform(-3.0, 1.0) * rng.normal(size=3)
+        hill.hill_coefficients(flight, rate, time)
+        run(hill.hill_flight)(position, velocity, flight, start, moving)
+        versine, along, across, lag, drift, ns, nv, sine = exact_coefficients(rate, time)
+        x, y, z, u, v, w = (Fraction(value) for value in (*start, *moving))
+        added = [
+            (3 * versine * x, along * u, 2 * across * v),
+            (drift * v, -6 * lag * x, -2 * across * u),
+            (along * w, -versine * z),
+            (3 * ns * x, -versine * u, 2 * sine * v),
+            (-6 * nv * x, -2 * sine * u, -4 * versine * v),
+            (-ns * z, -versine * w),
+        ]
+        for found, begin, parts in zip((*position, *velocity), (x, y, z, u, v, w), added, strict=True):
+            error = abs(Fraction(found) - begin - sum(parts))
+            assert error < Fraction(math.ulp(found)) / 2 + Fraction(1e-15) * sum(abs(part) for part in parts)
+    hill.hill_coefficients(flight, 1.01 * rate, time)
+    run(hill.hill_flight)(position, velocity, flight, start, moving)
+    assert abs(Fraction(velocity[0]) - u - sum(added[3])) > Fraction(1e-3) * abs(sum(added[3])), "1 % of the rate"
+
+
+def test_flight_may_be_written_over_its_operands_and_component_by_component(run):
+    flight, position, velocity = np.empty(8), POSITION.copy(), VELOCITY.copy()
+    hill.hill_coefficients(flight, N, 20.0)
+    expected = run(hill.hill_flown)(flight, *POSITION, *VELOCITY)
+    run(hill.hill_flight)(position, velocity, flight, position, velocity)
+    np.testing.assert_array_equal([*position, *velocity], expected)
+
+
+def test_no_flight_bends_more_than_its_bound(run, rng):
+    flight, position, velocity = np.empty(8), np.empty(3), np.empty(3)
+    for _, time in times(rng, -3.0, 1.0, 300):
+        start, moving = rng.normal(size=3) * 10.0 ** rng.uniform(-3.0, 2.0), rng.normal(size=3)
+        hill.hill_coefficients(flight, N, abs(time))
+        hill.hill_flight(position, velocity, flight, start, moving)
+        bend = np.linalg.norm(position - (start + abs(time) * moving))
+        bound = run(hill.hill_bend)(np.linalg.norm(start), np.linalg.norm(moving), N, abs(time))
+        assert bend <= bound * (1.0 + 1e-12) + 1e-14 * np.linalg.norm(position)
+    for start, moving in ((np.array([9.0, 0.0, 0.0]), np.zeros(3)), (np.zeros(3), np.array([0.0, 1.0, 0.0]))):
+        hill.hill_coefficients(flight, N, 5.0)
+        hill.hill_flight(position, velocity, flight, start, moving)
+        bend = np.linalg.norm(position - (start + 5.0 * moving))
+        bound = run(hill.hill_bend)(np.linalg.norm(start), np.linalg.norm(moving), N, 5.0)
+        assert bend > 0.99 * bound, "it is reached, so half of it would be no bound"

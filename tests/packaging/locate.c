@@ -1,4 +1,5 @@
-/* Says where each location, a line of the input in UTF-8, leads: the path of the file "it" there, and what that holds. */
+/* Says where each location, a line of the input in UTF-8, leads: the path of the file "it" there, and what that holds,
+   which must be the same whether it is read or mapped. */
 
 #include <string.h>
 
@@ -13,6 +14,10 @@ int main(void) {
         FILE *file = found ? dcone_open(path) : NULL;
         if (file && fscanf(file, "%15s", word) != 1) strcpy(word, "empty");
         if (file) fclose(file);
+        size_t size = 0;
+        const void *mapped = found ? dcone_map(path, &size) : NULL;
+        if (!mapped != !file || (mapped && (size != strlen(word) || memcmp(mapped, word, size)))) strcpy(word, "differs");
+        dcone_unmap(mapped, size);
         printf("%d %s %s\n", found, word, path);
     }
     return 0;

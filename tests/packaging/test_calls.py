@@ -6,9 +6,17 @@ import re
 import pytest
 
 from fmu_src.packaging import link
+from tests.packaging import toy
 from tests.packaging.raw import ERROR, OK, WARNING, Count, Raw, doubles, integers, references
 
 NULL = ctypes.c_void_p()
+
+
+def at(name):
+    """The value reference of a variable of the toy, as an array of one."""
+    return references(toy.INTERFACE.references[name])
+
+
 PHASES = ("instantiated", "initialising", "stepping", "discarded", "terminated", "broken")
 """Columns of the table of allowed calls in section 4.2.4 of the standard: a letter for each phase it is allowed in."""
 CALLS = {
@@ -18,19 +26,19 @@ CALLS = {
     "Terminate": ("sd", ()),
     "Reset": ("insdtb", ()),
     "SetDebugLogging": ("insdtb", (True, Count(0), None)),
-    "GetReal": ("nsdtb", (references(13), Count(1), doubles(0.0))),
-    "GetInteger": ("nsdtb", (references(21), Count(1), integers(0))),
-    "GetBoolean": ("nsdtb", (references(19), Count(1), integers(0))),
+    "GetReal": ("nsdtb", (at("x"), Count(1), doubles(0.0))),
+    "GetInteger": ("nsdtb", (at("steps"), Count(1), integers(0))),
+    "GetBoolean": ("nsdtb", (at("lit"), Count(1), integers(0))),
     "GetString": ("nsdtb", (None, Count(0), None)),
-    "SetReal": ("ins", (references(9), Count(1), doubles(0.0))),
-    "SetBoolean": ("ins", (references(12), Count(1), integers(0))),
-    "SetInteger": ("in", (references(8), Count(1), integers(2))),
+    "SetReal": ("ins", (at("push"), Count(1), doubles(0.0))),
+    "SetBoolean": ("ins", (at("go"), Count(1), integers(0))),
+    "SetInteger": ("in", (at("room"), Count(1), integers(2))),
     "SetString": ("ins", (None, Count(0), None)),
-    "SetRealInputDerivatives": ("ins", (references(9), Count(1), integers(1), doubles(0.0))),
-    "GetRealOutputDerivatives": ("sdt", (references(13), Count(1), integers(1), doubles(0.0))),
+    "SetRealInputDerivatives": ("ins", (at("push"), Count(1), integers(1), doubles(0.0))),
+    "GetRealOutputDerivatives": ("sdt", (at("x"), Count(1), integers(1), doubles(0.0))),
     "GetDirectionalDerivative": (
         "nsdt",
-        (references(15), Count(1), references(9), Count(1), doubles(1.0), doubles(0.0)),
+        (at("y"), Count(1), at("push"), Count(1), doubles(1.0), doubles(0.0)),
     ),
     "GetFMUstate": ("insdtb", (ctypes.byref(ctypes.c_void_p()),)),
     "DoStep": ("s", (0.0, 0.0, True)),
@@ -87,12 +95,12 @@ def test_everything_is_there_and_takes_a_null_instance(library, make):
 def test_null_arrays_are_refused(running):
     for name, arguments in {
         "GetReal": (None, Count(1), doubles(0.0)),
-        "SetReal": (references(9), Count(1), None),
-        "GetBoolean": (references(19), Count(1), None),
+        "SetReal": (at("push"), Count(1), None),
+        "GetBoolean": (at("lit"), Count(1), None),
         "SetDebugLogging": (True, Count(1), None),
-        "SetRealInputDerivatives": (references(9), Count(1), None, doubles(0.0)),
-        "GetRealOutputDerivatives": (references(13), Count(1), integers(1), None),
-        "GetDirectionalDerivative": (references(15), Count(1), None, Count(1), doubles(0.0), doubles(0.0)),
+        "SetRealInputDerivatives": (at("push"), Count(1), None, doubles(0.0)),
+        "GetRealOutputDerivatives": (at("x"), Count(1), integers(1), None),
+        "GetDirectionalDerivative": (at("y"), Count(1), None, Count(1), doubles(0.0), doubles(0.0)),
         "GetFMUstate": (None,),
         "SetFMUstate": (None,),
         "GetRealStatus": (2, None),
@@ -127,7 +135,7 @@ def provoke(raw):
     raw.call("Reset")
     raw.start({"pull": 6.0})
     raw.step(0.0, 1.0)
-    raw.call("GetReal", references(13), Count(1), doubles(0.0))
+    raw.call("GetReal", at("x"), Count(1), doubles(0.0))
     return {category for _, category, _ in raw.said}
 
 

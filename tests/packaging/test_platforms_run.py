@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fmu_src.instance import Instance
 from fmu_src.packaging import link, platforms
-from tests.packaging import platform_cases
+from tests.packaging import lookup, platform_cases
 from tests.packaging.platform_cases import CASES
 
 pytestmark = [pytest.mark.release, pytest.mark.slow]
@@ -171,6 +172,35 @@ def test_state_crosses_platforms(saved, cache, tmp_path):
     assert here[:16] == there[:16]  # what kind of state
     assert here[24:72] == there[24:72]  # of which library; between them stands the check word of all that follows
     assert difference(run_tow(*arm, tmp_path / "loading", f"+{path}"), rows) < SPREAD
+
+
+ELSEWHERE = {"linux-aarch64": "aarch64", "win64": "wine", "linux64": "here"}
+
+
+@pytest.mark.parametrize("name", ELSEWHERE)
+def test_tables_are_read_on_every_platform(name, request, tmp_path):
+    """Mapped there as here, and the same bits, since the lookup has no mathematics library between."""
+    launcher, environment = (), None
+    if name == "win64":
+        launcher, environment = request.getfixturevalue("wine")
+    elif name == "linux-aarch64":
+        if not ARM_LIBRARIES.is_dir():
+            pytest.skip(f"no arm64 libraries in {ARM_LIBRARIES} (Debian: libc6-arm64-cross)")
+        launcher = (qemu("aarch64"), "-L", str(ARM_LIBRARIES))
+    (target,) = platforms.PLATFORMS[name].places[0].targets
+    library = lookup.build(tmp_path / "fmu", lookup.BOTH, target)
+    lookup.furnish(tmp_path / "fmu", lookup.given(lookup.BOTH))
+    host = platform_cases.compile_host(target.triple, tmp_path)
+    references = lookup.MODEL.interface(lookup.BOTH).references
+    asked = [f"?{references[n]}" for n in ("y", "sum", "corner", "total")]
+    command = [*launcher, host, library, lookup.GUID, "0.5", "2", f"={references['u']}:0.25", *asked]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env=environment)
+    assert done.returncode == 0, done.stderr
+    here = Instance(lookup.MODEL, lookup.BOTH, {"u": 0.25}, lookup.named()).initialise()
+    for line in done.stdout.splitlines():
+        here.step(0.5)
+        assert [float(x) for x in line.split()] == [here[n] for n in ("y", "sum", "corner", "total")]
+    assert here["sum"] == pytest.approx(3.0 * here["y"])
 
 
 @pytest.fixture(scope="module")

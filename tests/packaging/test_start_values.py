@@ -15,6 +15,8 @@ import pytest
 from fmu_src.catalogue import MODELS
 from fmu_src.packaging import archive, kept, start_values
 from fmu_src.packaging.description import Experiment
+from orbital import kernel
+from tests.conftest import FREE
 from tests.packaging import toy
 from tests.packaging.raw import ERROR, OK, Library
 
@@ -118,7 +120,7 @@ def test_no_length_and_no_flipped_bit_is_taken_for_the_values(make, folder, at):
     """Nothing but the file as it was written gives an instance."""
     file = folder / start_values.PATH
     whole = file.read_bytes()
-    assert len(whole) == 128 + 8 * 29
+    assert len(whole) == 128 + 8 * 31
     damaged = [whole[:size] for size in range(len(whole))] + [whole + b"\0"]
     damaged += [whole[:k] + bytes([whole[k] ^ 1 << n]) + whole[k + 1 :] for k in range(len(whole)) for n in range(8)]
     for data in damaged:
@@ -137,7 +139,7 @@ def test_no_length_and_no_flipped_bit_is_taken_for_the_values(make, folder, at):
         (lambda file, whole: file.unlink(), "No such file"),
         (lambda file, whole: shutil.rmtree(file.parent), "No such file"),
         (lambda file, whole: (file.unlink(), file.mkdir()), "Is a directory"),
-        (lambda file, whole: file.write_bytes(whole[:-8]), "cut short or too long: it must have 360 bytes"),
+        (lambda file, whole: file.write_bytes(whole[:-8]), "cut short or too long: it must have 376 bytes"),
         (lambda file, whole: file.write_bytes(whole[:127]), "holds no start values"),
         (lambda file, whole: file.write_bytes(b"PK" + whole[2:]), "holds no start values"),
         (lambda file, whole: file.write_bytes(whole[:200] + b"\1" + whole[201:]), "check word does not fit"),
@@ -179,7 +181,7 @@ def test_the_layout_is_what_the_module_says(folder):
     assert data[:8] == b"DCONEVAL"
     assert data[16:64] == toy.KEY.encode().ljust(48, b"\0")
     assert data[64:112] == b"{toy}".ljust(48, b"\0")
-    assert struct.unpack_from("<qq", data, 112) == (1, 29)
+    assert struct.unpack_from("<qq", data, 112) == (1, 31)
     r = toy.INTERFACE.references
     assert struct.unpack_from("<d", data, 128 + 8 * r["push"]) == (-2.5,)
     assert struct.unpack_from("<q", data, 128 + 8 * r["room"]) == (9,)
@@ -286,7 +288,7 @@ def build(monkeypatch, tmp_path):
     """Write a reel control's FMU with values; compiler and linker only pretend, and are counted."""
     called = []
 
-    def emit(name, terms, ir):
+    def emit(model, terms, ir):
         called.append("compiled")
         ir.write_text("; no kernels")
 
@@ -332,6 +334,21 @@ def test_the_guid_is_that_of_the_values_and_the_key_that_of_the_library(build):
     assert key == kept.as_guid(archive.fingerprint(MODELS["reel_control"].interface({})))
     assert key not in guids
     assert f'DCONE_LIBRARY "{key}"'.encode() in files[0]["sources/model.h"]
+
+
+def test_the_key_covers_every_file_of_the_model(monkeypatch, tmp_path):
+    """Those of its parts too, each in a folder of its own: a changed part is another library."""
+    folder = shutil.copytree(archive.SOURCES, tmp_path / "fmu_src", ignore=shutil.ignore_patterns("__pycache__"))
+    interface = MODELS["net_capture"].interface(FREE)
+    own = archive.fingerprint(interface)
+    monkeypatch.setattr(archive, "SOURCES", folder)
+    shutil.copytree(Path(kernel.__file__).parent, tmp_path / "orbital")
+    assert archive.fingerprint(interface) == own
+    for part in ("model.py", "nets/square.py", "contact/search.py"):
+        with (folder / "net_capture" / part).open("a") as file:
+            file.write("\n")
+        assert archive.fingerprint(interface) != own, part
+        own = archive.fingerprint(interface)
 
 
 def test_the_bytes_depend_on_the_values_alone(build, monkeypatch, tmp_path):

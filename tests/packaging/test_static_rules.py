@@ -197,7 +197,7 @@ TWINS = (
     (head, put("CoSimulation", "modelIdentifier", "reel-control")),
     (names, put(PARAMETER, "name", "length")),
     (names, put(PARAMETER, "name", "reel length")),
-    (references, put(PARAMETER, "valueReference", "6")),
+    (references, put(PARAMETER, "valueReference", str(INTERFACES["reel control"].references["length"]))),
     (combinations, put(PARAMETER, "variability", "continuous")),
     (combinations, put(OUTPUT, "variability", "fixed")),
     (combinations, put(INPUT, "initial", "exact")),

@@ -48,7 +48,7 @@ def test_a_call_sets_all_or_nothing(running, built_toy):
     assert running.get("push") == 0.0
 
 
-@pytest.mark.parametrize("reference", [0, 5, 10, 29, 10**6, 2**32 - 1])
+@pytest.mark.parametrize("reference", [0, 5, 6, 7, 12, 31, 10**6, 2**32 - 1])
 def test_hidden_and_unknown_references_are_refused(running, reference):
     value = doubles(0.0)
     assert running.call("GetReal", references(reference), Count(1), value) == ERROR

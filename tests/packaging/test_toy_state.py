@@ -43,7 +43,7 @@ def test_a_damaged_state_is_refused_wherever_it_is_damaged(make):
     raw.start({"room": 7})
     state = raw.save()
     data = raw.serialise(state)
-    assert len(data) == 152 + 8 * (29 + 7)
+    assert len(data) == 152 + 8 * (31 + 7)
     for at in range(0, len(data), 3):
         status, other = raw.deserialise(damaged(data, at, bytes([data[at] ^ 0x41])))
         assert status == ERROR, at

@@ -93,11 +93,13 @@ def test_derivatives(length: float, pulls: bool) -> None:
         (BAD_PARAMETER, "gain.proportional", -1e-3),
         (BAD_PARAMETER, "gain.derivative", math.nan),
         (BAD_PARAMETER, "feed_forward", math.inf),
+        (BAD_PARAMETER, "motor.time_constant", 0.0),
         (NOT_FINITE, "length", math.nan),
     ],
 )
 def test_refusals(code: int, name: str, value: float) -> None:
-    i = Instance(MODEL, {}, {"length": 12.0, name: value})
+    terms = {"motor": "lag"} if name.startswith("motor.") else {}
+    i = Instance(MODEL, terms, {"length": 12.0, name: value})
     with pytest.raises(ModelFault, match=name.replace(".", r"\.")):
         i.initialise()
     assert i.record["fault_code"][0] == code
@@ -189,3 +191,13 @@ def test_a_motor_follows_moving_inputs(begin: float, drift: float) -> None:
     twin.step(8.0)
     both_slack = asked(12.0, begin) == asked(12.0, begin + drift * 8.0) == 0.0
     assert both_slack or twin["tension"] != pytest.approx(held["tension"], abs=1e-6)
+
+
+def test_a_motor_is_asked_for_nothing_while_no_length_is_measured() -> None:
+    """However fast the line is said to lengthen; once there is a length, it follows."""
+    i = Instance(MODEL, {"motor": "lag"}, {"length_rate": 1.0}).initialise()
+    i.step(1.0)
+    assert i["tension"] == 0.0
+    i["length"] = 12.0
+    i.step(1.0)
+    assert i["tension"] > 0.0

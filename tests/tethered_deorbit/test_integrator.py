@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import DOP853
 
 from fmu_src import integrators
 from fmu_src.instance import Instance
@@ -178,6 +179,20 @@ def test_step_control(scheme: AdaptiveScheme) -> None:
         errors.append(scheme.error(np.zeros(1), end, step, stages, low, high))
     assert slope(steps, errors) == pytest.approx(8.0, abs=0.3)
     assert DOP853_STAGES == 12
+
+
+def test_size_of_the_estimated_error(scheme: AdaptiveScheme) -> None:
+    """That of another implementation of the scheme, which takes the mean over the components where `squared` sums."""
+    peer = DOP853(lambda _, state: state, 0.0, START, 1.0)
+    stages, end = np.zeros(DOP853_ROWS * SIZE), np.zeros(SIZE)
+    kepler(np.zeros(1), START, stages[:SIZE], 0.0)
+    for step in (0.4, 0.2):
+        scheme.attempt(np.zeros(1), START, step, stages, end)
+        error = scheme.error(np.zeros(1), end, step, stages, np.zeros(SIZE), np.zeros(SIZE))
+        rows = stages[: (DOP853_STAGES + 1) * SIZE].reshape(-1, SIZE)
+        assert error == pytest.approx(
+            math.sqrt(SIZE) * peer._estimate_error_norm(rows, step, np.ones(SIZE)), rel=1e-9, abs=0.0
+        )
 
 
 def test_tolerances_rule_the_error() -> None:

@@ -118,9 +118,12 @@ def test_saved_in_the_middle_of_a_tug() -> None:
 
 
 def test_initialised_anew() -> None:
-    """Nothing of an earlier run is left."""
+    """Nothing of an earlier run is left, in which there were tugs and another thrust."""
     i = tow()
     i.step(5000.0)
+    i["thrust.offset"] = 1e-3
+    i.step(10.0)
+    i["thrust.offset"] = 0.0
     i.initialise(0.0).step(2000.0)
     fresh = tow()
     fresh.step(2000.0)

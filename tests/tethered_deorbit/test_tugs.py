@@ -75,6 +75,18 @@ def test_against_an_independent_integration(name: str) -> None:
 
 
 @pytest.mark.slow
+def test_a_tug_begins_at_the_rest_length_to_rounding() -> None:
+    """Read off the dense output, without the step being redone, that is right to a tenth of a picometre only."""
+    hard = {"thrust.level": -0.3}
+    i = Instance(MODEL, LOCKED, hard).initialise()
+    i.step(700.0)
+    assert i["tether.tug_count"] >= 3
+    for k in range(1, 4):
+        j = Instance(MODEL, LOCKED, hard).initialise()
+        j.step(i[f"tug[{k}].time"])
+        assert abs(j["separation"] - 12.0) < 1e-14
+
+
 def test_forty_tugs_of_table_2_with_the_chaser_ahead() -> None:
     i, found, reference = compared({"start.leading": 1}, 8000.0)
     agree(i, found, reference)

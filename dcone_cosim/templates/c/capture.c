@@ -3,9 +3,9 @@
 const size_t model_states = 0;
 
 static const double catch_mass = 6.0, speed = 3.0, distance = 16.0; /* [kg], [m/s], [m] */
+static const double size[3] = {4.0, 8.0, 4.0}, reach = 4.89897949; /* edges of the target, half its diagonal [m] */
 
 fmi2Status model_start(model *m) {
-    const double *size = &m->values[TARGET_SIZE_1];
     int k;
     for (k = 0; k < 3; k++) {
         double a = size[(k + 1) % 3], b = size[(k + 2) % 3];
@@ -13,6 +13,7 @@ fmi2Status model_start(model *m) {
         m->values[CATCH_INERTIA_1 + k] = 1.0;
         m->values[CHASER_VELOCITY_1 + k] = m->values[CHASER_START_VELOCITY_1 + k];
     }
+    m->values[TARGET_REACH] = reach;
     m->values[TARGET_ATTITUDE_1] = 1.0;
     m->values[CHASER_VELOCITY_2] -= catch_mass * speed / m->values[CHASER_MASS];
     m->values[CATCH_MASS] = catch_mass;

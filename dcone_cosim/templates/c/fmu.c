@@ -5,15 +5,19 @@
 
 #include "model.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum phase { INSTANTIATED, INITIALISING, STEPPING, OVER, BROKEN };
 
 typedef struct {
-    model m;
+    model m; /* first, so that a model's address is its instance's */
     enum phase phase;
     fmi2CallbackFunctions callbacks;
+    char *name;
+    unsigned logged; /* categories of messages that the importer wants */
 } instance;
 
 /* What a saved state begins with; the block follows. Count STATE_VERSION up when you change what a state means. */
@@ -33,27 +37,12 @@ static int is_ours(const saved *s) {
            !strncmp(s->guid, model_guid, sizeof s->guid - 1) && s->phase >= INSTANTIATED && s->phase <= BROKEN;
 }
 
-/* The categories of messages, as modelDescription.xml lists them; "logAll" is all of them. */
-enum { ERRORS, DISCARDS, WARNINGS, EVENTS, CATEGORIES };
-static const char *const category_name[CATEGORIES] = {"logStatusError", "logStatusDiscard", "logStatusWarning",
-                                                      "logEvents"};
-#define ALL ((1u << CATEGORIES) - 1)
+/* The categories of messages, as modelDescription.xml lists them. */
+static const char *const category_name[] = {"logStatusError", "logStatusDiscard", "logStatusWarning", "logEvents"};
 
-static int category_of(fmi2Status status) {
-    switch (status) {
-        case fmi2OK: return EVENTS;
-        case fmi2Warning: return WARNINGS;
-        case fmi2Discard: return DISCARDS;
-        default: return ERRORS;
-    }
-}
+#include "fmi2_log.h"
 
-fmi2Status model_say(model *m, fmi2Status status, const char *text) {
-    int category = category_of(status);
-    if (m->callbacks->logger && m->logged & 1u << category)
-        m->callbacks->logger(m->callbacks->componentEnvironment, m->name, status, category_name[category], "%s", text);
-    return status;
-}
+fmi2Status model_say(model *m, fmi2Status status, const char *text) { return say((instance *)m, status, "%s", text); }
 
 /* After an error nothing but reset and free is to be called. */
 static fmi2Status done(instance *i, fmi2Status status) {
@@ -61,7 +50,7 @@ static fmi2Status done(instance *i, fmi2Status status) {
     return status;
 }
 
-static fmi2Status refuse(instance *i, const char *text) { return done(i, model_say(&i->m, fmi2Error, text)); }
+static fmi2Status refuse(instance *i, const char *text) { return done(i, say(i, fmi2Error, "%s", text)); }
 
 static void take_start_values(instance *i) {
     size_t n;
@@ -86,7 +75,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     if (!callbacks || !name) return NULL;
     if (type != fmi2CoSimulation || !guid || strcmp(guid, model_guid)) {
         if (callbacks->logger)
-            callbacks->logger(callbacks->componentEnvironment, name, fmi2Error, category_name[ERRORS],
+            callbacks->logger(callbacks->componentEnvironment, name, fmi2Error, category_name[0],
                               type != fmi2CoSimulation ? "this FMU is for co-simulation only"
                                                        : "the guid given is %s, that of this binary is %s",
                               guid ? guid : "(NULL)", model_guid);
@@ -102,11 +91,11 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         return NULL;
     }
     strcpy(copy, name);
-    i->m.name = copy;
+    i->name = copy;
     i->m.states = i->m.values + model_variables;
     i->callbacks = *callbacks;
     i->m.callbacks = &i->callbacks;
-    i->m.logged = logging ? ALL : 1u << ERRORS | 1u << DISCARDS;
+    i->logged = logging ? ALL : ERRORS | DISCARDS;
     take_start_values(i);
     return i;
 }
@@ -114,27 +103,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 void fmi2FreeInstance(fmi2Component c) {
     instance *i = c;
     if (!i) return;
-    free((char *)i->m.name);
+    free(i->name);
     free(i->m.values);
     free(i);
-}
-
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
-    instance *i = c;
-    unsigned named = 0;
-    size_t k;
-    for (k = 0; k < n; k++) {
-        int category = 0;
-        const char *name = categories[k] ? categories[k] : "";
-        while (category < CATEGORIES && strcmp(name, category_name[category])) category++;
-        if (category == CATEGORIES && strcmp(name, "logAll")) {
-            model_say(&i->m, fmi2Error, "fmi2SetDebugLogging: there is no such log category");
-            return fmi2Error;
-        }
-        named |= category == CATEGORIES ? ALL : 1u << category;
-    }
-    i->m.logged = !on ? 0 : n ? named : ALL;
-    return fmi2OK;
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_given, fmi2Real tolerance, fmi2Real start,
@@ -382,3 +353,7 @@ fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2S
     *value = "";
     return fmi2Discard;
 }
+
+/* ---- model exchange: none is offered --------------------------------------------------------------------------------- */
+
+#include "fmi2_absent.h"

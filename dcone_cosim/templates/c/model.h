@@ -26,8 +26,6 @@ typedef struct model {
     double time;    /* reached, since the begin [s]: every instant the model takes or tells counts from there */
     int ended;      /* the model is over for good: set it, set time to when, and return fmi2Discard */
     const fmi2CallbackFunctions *callbacks;
-    const char *name;
-    unsigned logged; /* categories of messages that the importer wants */
 } model;
 
 extern const struct variable model_table[];

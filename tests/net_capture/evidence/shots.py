@@ -16,6 +16,7 @@ import math
 import sys
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -25,8 +26,10 @@ from scipy.stats import binomtest
 
 from fmu_src.instance import Instance
 from fmu_src.interface import Value
-from fmu_src.net_capture import enclosure, quality, target
+from fmu_src.net_capture.composition import Composition
+from fmu_src.net_capture.enclosure import make_encloses, make_share
 from fmu_src.net_capture.interface import MODEL, OUTCOMES
+from fmu_src.net_capture.quality import make_quality
 
 RESULT = Path(__file__).with_name("captures.json")
 COMMAND = "python -m tests.net_capture.evidence.shots"
@@ -55,7 +58,12 @@ MISSION_VALUES: Mapping[str, Value] = {
 
 NOTHING: Mapping[str, Value] = {}
 
-share_inside = enclosure.make_share(target.sample, target.SAMPLES)
+
+@cache
+def make_looks(gravity: str) -> tuple[Any, Any, Any]:
+    """Kernels that say how much of the target is inside, whether a point is, and how far the bullets are beyond one."""
+    parts = Composition(MODEL, MODEL.interface(MISSION if gravity == "hill" else TABLE_1).terms)
+    return make_share(parts), make_encloses(parts.memory), make_quality(parts).beyond
 
 
 def draw(number: int, seed: int = SEED) -> tuple[dict[str, str], dict[str, Value], dict[str, Any]]:
@@ -95,6 +103,7 @@ def follow(number: int, seed: int = SEED, end: float = END, changes: Mapping[str
     shot = Instance(MODEL, terms, {**values, **changes}).initialise()
     row |= {"number": number, "cord_short": None, "held_at_end": None}
     old: dict[str, Any] = {"captured": None, "lost": None}
+    share_inside, encloses, beyond = make_looks(terms["gravity"])
     failed, empty, share, looks = False, 0, math.nan, 0
     while shot.time < end - 1e-9:
         looks += 1
@@ -102,10 +111,10 @@ def follow(number: int, seed: int = SEED, end: float = END, changes: Mapping[str
         if not (shot["closing.t_start"] >= 0.0 and shot["mouth.cord_length"] < shot["mouth.girth"]):
             continue
         record, centre = shot.record.view(np.recarray)[0], shot.array("target_place")
-        inside = enclosure.encloses(record, shot.work, centre)
+        inside = encloses(record, shot.work, centre)
         if row["cord_short"] is None:
             row["cord_short"] = round(shot.time, 2)
-            failed = not (inside and quality.least_depth_beyond(record, shot.work, centre) > 0.0)
+            failed = not (inside and beyond(record, shot.work, centre) > 0.0)
             old["captured"] = None if failed else round(shot.time, 2)
         elif not inside and not failed:
             failed, old["lost"] = True, round(shot.time, 2)

@@ -1,0 +1,438 @@
+"""The closing cord: four winches at the bullets draw the mouth together and never pay out.
+
+Each winch runs at its no-load speed less the share of the tension in its stall force:
+
+    dL/dt = -v0 (1 - T / T_stall)   while 0 <= T < T_stall, otherwise 0
+
+so the cord is ratcheted: its length out is a bound on the mouth's perimeter that only falls. No winch winds its pair
+shorter than the lock length, so no cord is ever shorter, and none is stiffer than the stability bound reckons with.
+
+The book of the cord, T_e = EA (s - L)/L the elastic part of its tension T:
+
+    by the winches   [T + T_e^2 / (2 EA)] (-dL)        by the trapezoidal rule over the substep
+    to the dashpots  (T - T_e) (ds - dL)
+    stored           EA (s - L)^2 / (2 L)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from fmu_src.interface import Term, Variable, fault
+from fmu_src.net_capture.closing import Closing
+from fmu_src.net_capture.formulas import cord_damping, cord_stiffness, ring_radius
+from fmu_src.net_capture.planes import FX, SHOWN, SHOWN_RATE, P, X
+from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.rows import at_least_zero, count, output, peak, positive, state
+from orbital.kernel import kernel
+
+TRIGGERS = ("time", "first_contact", "distance", "command")
+TRIGGER_TIME, TRIGGER_CONTACT, TRIGGER_DISTANCE = range(3)
+NEWTON_STEPS = 4
+"""Of the winding law, from a start that is right to second order: the last changes nothing above rounding."""
+
+
+TOO_MANY_RINGS = fault(
+    "too_many_rings", "closing.rings", "closing.rings: a side of the mouth has fewer knots between its bullets"
+)
+
+
+@kernel
+def cord_energy(p, distance, length):
+    """Energy [J] in a cord of this length between points this far apart: EA (s - L)^2 / (2 L).
+
+    Checked  tests/net_capture/test_closing.py
+    """
+    stretch = distance - length
+    return 0.5 * p.closing_axial_stiffness * stretch * stretch / length if stretch > 0.0 else 0.0
+
+
+@kernel
+def cord_tension(stiffness, damping, stretch, rate, speed, stall):
+    """Tension [N] of a stretched cord that a winch may be drawing in.
+
+        T = k (s - L) + d (ds/dt - dL/dt),   dL/dt = -v0 (1 - T / T_stall) while the winch turns
+
+    The dashpot works on the cord's own stretch rate, so the winch's law and the tension are solved together.
+
+    stiffness  k        EA / L                                     [N/m]
+    damping    d        dashpot of the cord                        [N s/m]
+    stretch    s - L    distance of the bullets less cord out      [m]
+    rate       ds/dt    of their distance                          [m/s]
+    speed      v0       of the winch without load; 0 once locked   [m/s]
+    stall      T_stall  tension at which it stands still           [N]
+
+    Checked  tests/net_capture/test_closing.py
+    """
+    tension = stiffness * stretch + damping * rate
+    if tension < stall:
+        tension = (tension + damping * speed) / (1.0 + damping * speed / stall)
+    return tension if tension > 0.0 else 0.0
+
+
+@kernel
+def pull_of_cord(p, distance, rate, length):
+    """Tension of one pair's cord [N], and the rate of its length [m/s] as the winch turns under it.
+
+    Checked  tests/net_capture/test_closing.py
+    """
+    speed = p.closing_speed if length > p.closing_lock_length else 0.0
+    tension = 0.0
+    if distance > length:
+        stiffness = cord_stiffness(p.closing_axial_stiffness, length)
+        damping = cord_damping(p.closing_damping_ratio, stiffness, p.cord_mass)
+        tension = cord_tension(stiffness, damping, distance - length, rate, speed, p.closing_stall_force)
+    turning = speed * (1.0 - tension / p.closing_stall_force)
+    return tension, -turning if turning > 0.0 else 0.0
+
+
+@kernel
+def winch_force(p, distance, rate, length):
+    """What a winch works against per length wound [N]: T + T_e^2 / (2 EA).
+
+    Checked  tests/net_capture/test_closing.py
+    """
+    tension, _ = pull_of_cord(p, distance, rate, length)
+    stretch = distance - length
+    elastic = p.closing_axial_stiffness * stretch / length if stretch > 0.0 else 0.0
+    return tension + 0.5 * elastic * elastic / p.closing_axial_stiffness
+
+
+@kernel
+def wound(p, distance, rate, length, winding, h):
+    """Length of a pair's cord one substep on [m], and how fast it then changes [m/s].
+
+        L' = L + h/2 (dL/dt + dL'/dt),   dL'/dt by the winch's law at L'
+
+    distance, rate   of the bullets at the end of the substep    [m], [m/s]
+    length, winding  L, dL/dt at its begin                       [m], [m/s]
+
+    The trapezoidal rule, solved by Newton's method: a short cord makes the law stiff, and this bounds no step.
+
+    Checked  tests/net_capture/test_closing.py
+    """
+    known = length + 0.5 * h * winding
+    shorter = max(length + h * winding, p.closing_lock_length)
+    for _ in range(NEWTON_STEPS):
+        _, then = pull_of_cord(p, distance, rate, shorter)
+        slope = 1.0
+        if distance > shorter and then < 0.0:
+            stiffness = cord_stiffness(p.closing_axial_stiffness, shorter)
+            damping = cord_damping(p.closing_damping_ratio, stiffness, p.cord_mass)
+            yielding = p.closing_speed / (p.closing_stall_force + damping * p.closing_speed)
+            slope += 0.5 * h * yielding * stiffness * distance / shorter
+        shorter -= (shorter - known - 0.5 * h * then) / slope
+        shorter = min(max(shorter, p.closing_lock_length), length)
+    _, then = pull_of_cord(p, distance, rate, shorter)
+    return shorter, then
+
+
+@kernel
+def stops(p):
+    """Stretches of one pair's cord: from bullet to ring to bullet.
+
+    Checked  tests/net_capture/test_closing.py
+    """
+    return p.closing_rings + 1
+
+
+def make(composition: Any) -> Closing:
+    """Kernels of the cord along the rim of the composition's net."""
+    memory, rouse = composition.memory, composition.rouse
+    node_plane, rim, corners = memory.node_plane, memory.rim, memory.corners
+    too_many_rings = composition.code(TOO_MANY_RINGS.name)
+
+    @kernel
+    def pieces(p, work, i):
+        """Pieces of thread on the rim from bullet i to the next [1].
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        last = corners(p, work)[i + 1] if i + 1 < p.net_corners else p.rim_nodes
+        return last - corners(p, work)[i]
+
+    @kernel
+    def cord_stop(p, work, i, stop):
+        """Node at which a stretch of the i-th pair's cord begins: stop 0 is bullet i, the last is the next bullet.
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        at = corners(p, work)[i] + (2 * stop * pieces(p, work, i) + stops(p)) // (2 * stops(p))
+        return rim(p, work)[at if at < p.rim_nodes else 0]
+
+    @kernel
+    def start(p, work):
+        """Nothing is triggered yet, the cord lies along the mouth.
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        p.trigger_time = -1.0
+        p.closing_t_start = -1.0
+        p.closing_work = 0.0
+        p.cord_dissipated = 0.0
+        p.cord_power = 0.0
+        p.cord_tension_max = 0.0
+        p.cord_tension_peak = 0.0
+        p.mouth_locked_pairs = 0
+        p.mouth_cord_length = 0.0
+        for i in range(4):
+            p.cord_length[i] = max(p.mouth_side[i], p.closing_lock_length)
+            p.cord_rate[i] = 0.0
+            p.mouth_cord_length += p.cord_length[i]
+            if p.closing_rings >= pieces(p, work, i):
+                p.fault_value = p.closing_rings
+                return too_many_rings
+        return 0
+
+    def make_way(place: int, velocity: int) -> Any:
+        """Kernel `along_cord` of the positions and velocities in the planes from these on."""
+
+        @kernel
+        def along_cord(p, work, i):
+            """Way of the i-th pair's cord from bullet through the rings to bullet [m], and its rate [m/s].
+
+                s = sum over the stretches of sqrt(d^2 + b^2)
+
+            d  between two stops, b  how near to a ring's middle it passes: a stretch pulls with T d / sqrt(d^2 + b^2),
+            so its direction does not jump where a ring meets the next.
+
+            Checked  tests/net_capture/test_closing.py
+            """
+            radius = ring_radius(p.closing_lock_length, p.closing_rings)
+            way = 0.0
+            change = 0.0
+            for stop in range(stops(p)):
+                a = cord_stop(p, work, i, stop)
+                b = cord_stop(p, work, i, stop + 1)
+                squared = radius * radius
+                product = 0.0
+                for axis in range(3):
+                    at = node_plane(p, work, place + axis)
+                    rate = node_plane(p, work, velocity + axis)
+                    d = at[b] - at[a]
+                    squared += d * d
+                    product += d * (rate[b] - rate[a])
+                root = math.sqrt(squared)
+                way += root
+                change += product / root if root > 0.0 else 0.0
+            return way, change
+
+        return along_cord
+
+    def make_pull(place: int, along_cord: Any, wake: bool) -> Any:
+        """Kernel that draws neighbouring bullets together; `wake`: they stand in rows that may sleep."""
+
+        @kernel
+        def pull_along_cord(p, work, i, tension):
+            """The same tension in every stretch: rings have no friction.
+
+            Checked  tests/net_capture/test_closing.py
+            """
+            radius = ring_radius(p.closing_lock_length, p.closing_rings)
+            for stop in range(stops(p)):
+                a = cord_stop(p, work, i, stop)
+                b = cord_stop(p, work, i, stop + 1)
+                squared = radius * radius
+                for axis in range(3):
+                    at = node_plane(p, work, place + axis)
+                    d = at[b] - at[a]
+                    squared += d * d
+                share = tension / math.sqrt(squared)
+                for axis in range(3):
+                    at = node_plane(p, work, place + axis)
+                    force = node_plane(p, work, FX + axis)
+                    drawn = share * (at[b] - at[a])
+                    force[a] += drawn
+                    force[b] -= drawn
+
+        @kernel
+        def pull(p, work):
+            """Pull neighbouring bullets together; sum what the cord's dashpots take [W].
+
+            Checked  tests/net_capture/test_closing.py
+            """
+            p.cord_power = 0.0
+            if p.closing_t_start < 0.0:
+                return
+            if wake:
+                for i in range(4):
+                    for stop in range(stops(p)):
+                        rouse(p, work, cord_stop(p, work, i, stop))
+            for i in range(4):
+                distance, rate = along_cord(p, work, i)
+                length = p.cord_length[i]
+                tension, winding = pull_of_cord(p, distance, rate, length)
+                p.cord_force[i] = winch_force(p, distance, rate, length)
+                if tension > p.cord_tension_peak:
+                    p.cord_tension_peak = tension
+                if distance > length:
+                    elastic = cord_stiffness(p.closing_axial_stiffness, length) * (distance - length)
+                    p.cord_power += (tension - elastic) * (rate - winding)
+                    pull_along_cord(p, work, i, tension)
+
+        return pull
+
+    along_now, along_shown = make_way(X, P), make_way(SHOWN, SHOWN_RATE)
+
+    @kernel
+    def trigger(p, work, now, touched, beyond):
+        """Start the winches when their trigger has fallen and its delay has passed; what is loose of the cord is taken
+        in.
+
+        A pair that stands closer than the lock length has its cord slack, at that length.
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        if p.trigger_time < 0.0 and (
+            p.close_command != 0
+            or (p.closing_trigger == TRIGGER_TIME and now >= p.closing_time)
+            or (p.closing_trigger == TRIGGER_CONTACT and touched >= 0.0)
+            or (p.closing_trigger == TRIGGER_DISTANCE and beyond >= p.closing_distance)
+        ):
+            p.trigger_time = now
+        if p.closing_t_start < 0.0 and p.trigger_time >= 0.0 and now >= p.trigger_time + p.closing_delay:
+            p.closing_t_start = now
+            for i in range(4):
+                distance, rate = along_shown(p, work, i)
+                p.cord_length[i] = max(distance, p.closing_lock_length)
+                _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i])
+
+    @kernel
+    def wind(p, work):
+        """Wind the winches by the substep at whose end the bullets now are.
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        if p.closing_t_start < 0.0:
+            return
+        locked = 0
+        total = 0.0
+        for i in range(4):
+            if p.cord_length[i] > p.closing_lock_length:
+                distance, rate = along_now(p, work, i)
+                length = p.cord_length[i]
+                shorter, p.cord_rate[i] = wound(p, distance, rate, length, p.cord_rate[i], p.solver_substep)
+                against = 0.5 * (p.cord_force[i] + winch_force(p, distance, rate, shorter))
+                p.closing_work += against * (length - shorter)
+                p.cord_length[i] = shorter
+            if p.cord_length[i] <= p.closing_lock_length:
+                locked += 1
+            total += p.cord_length[i]
+        p.mouth_locked_pairs = locked
+        p.mouth_cord_length = total
+
+    @kernel
+    def stored(p, work):
+        """Elastic energy of the cord [J].
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        if p.closing_t_start < 0.0:
+            return 0.0
+        energy = 0.0
+        for i in range(4):
+            distance, _ = along_shown(p, work, i)
+            energy += cord_energy(p, distance, p.cord_length[i])
+        return energy
+
+    return Closing(start, make_pull(X, along_now, True), make_pull(SHOWN, along_shown, False), wind, trigger, stored)
+
+
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """More rings than the shortest side of the mouth has knots."""
+    sides, mesh = scene.parts["net"].checks.sides(scene.values), scene.values["net.mesh"]
+    most = round(min(sides.values()) / mesh) - 1
+    if scene.values["closing.rings"] > most >= 1:
+        expected = f"must be at most {most}: a side of this net has so many knots between its bullets"
+        yield Refusal("closing.rings", f"{int(scene.values['closing.rings'])}", expected)
+
+
+PART = Term(
+    "cord between neighbouring bullets, drawn by winches that stall and never pay out",
+    (
+        Variable(
+            "closing.trigger",
+            "1",
+            "parameter",
+            "what starts the winches; close.command always does",
+            0,
+            kind="Integer",
+            minimum=0,
+            maximum=len(TRIGGERS) - 1,
+            choices=TRIGGERS,
+        ),
+        at_least_zero("closing.time", "s", "when the winches start, since the shot, for trigger time", 11.2),
+        Variable(
+            "closing.distance",
+            "m",
+            "parameter",
+            "bullets this far beyond the target's centre of mass, along "
+            "the shot axis, start the winches, for trigger distance",
+            0.0,
+        ),
+        at_least_zero("closing.delay", "s", "from the trigger to the start of the winches", 0.0),
+        positive("closing.speed", "m/s", "no-load speed of each winch: a 24 m side in 5 s", 5.0),
+        positive("closing.stall_force", "N", "tension at which a winch stands still", 5.0),
+        Variable(
+            "closing.rings",
+            "1",
+            "parameter",
+            "on each side of the mouth, evenly spaced, through which the cord between two bullets runs without "
+            "friction; without any the sides stay open loops",
+            1,
+            kind="Integer",
+            minimum=0,
+            maximum=64,
+        ),
+        positive("closing.axial_stiffness", "N", "EA of the cord: 0.5 mm nylon", 903.0),
+        at_least_zero("closing.damping_ratio", "1", "of the cord between two bullets", 0.106),
+        positive("closing.lock_length", "m", "a pair is locked when its cord is shorter than this", 0.25),
+        positive(
+            "closing.timeout",
+            "s",
+            "after this long since the trigger a mouth that is not closed behind the target counts as not closed",
+            20.0,
+        ),
+        Variable("close.command", "1", "input", "start the winches", False, kind="Boolean"),
+        output(
+            "mouth.cord_length",
+            "m",
+            "length of cord still out: the way round the bullets can not be longer, the net's slack sides can",
+        ),
+        output("mouth.girth", "m", "smallest girth of the target, which the mouth would have to pass"),
+        peak(
+            "mouth.margin_at_capture",
+            "m",
+            "girth of the target less cord out, at the instant of capture; -1 before",
+        ),
+        peak(
+            "enclosure.share",
+            "1",
+            "share of the target's sample points that net and mouth go round, at the last look; "
+            "-1 until the cord is shorter than the girth",
+        ),
+        peak("enclosure.at_capture", "1", "that share at the instant of capture; -1 before"),
+        peak("enclosure.least", "1", "least share since the capture; -1 before"),
+        peak("t_lost", "s", "instant at which the target was out of the net again after a capture; -1 before"),
+        state("enclosure_since", "s", "since when enough of the target to count as caught has been inside"),
+        state("enclosure_last_in", "s", "when enough of the target was last inside"),
+        count("mouth.locked_pairs", "pairs of bullets whose cord is shorter than the lock length"),
+        peak("cord.tension_max", "N", "largest tension of the cord since the start"),
+        peak("cord.tension_peak", "N", "largest tension of the cord over the last macro step"),
+        output("closing.work", "J", "work done by the winches so far"),
+        output("cord.dissipated", "J", "taken by the cord's dashpots so far"),
+        peak("closing.t_start", "s", "when the winches started, since the shot; -1 before"),
+        state("cord_length[#]", "m", "cord out between neighbouring bullets", shape=(4,)),
+        state("cord_rate[#]", "m/s", "rate of that length", shape=(4,)),
+        state("cord_force[#]", "N", "what each winch works against per length wound", shape=(4,)),
+        state("cord_mass", "kg", "that a pair's cord moves as it lengthens"),
+        state("cord_power", "W", "what the cord's dashpots take now"),
+        state("cord_loss", "J", "taken by the cord's dashpots up to half a substep back"),
+        state("trigger_time", "s", "when the trigger fell, since the shot; -1 before"),
+    ),
+    faults=(TOO_MANY_RINGS,),
+    make=make,
+    refuses=refuses,
+)

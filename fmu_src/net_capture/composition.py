@@ -1,0 +1,117 @@
+"""The parts of one model as they come together: each is made with what was made before it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from fmu_src import tables
+from fmu_src.interface import Model, Term
+from fmu_src.net_capture.planes import NODE_PLANES, make_memory
+from orbital.kernel import kernel
+
+
+@dataclass(frozen=True)
+class Pulls:
+    """Kernels of all that pulls single nodes.
+
+    pull(p, work)         add its forces, for a substep
+    pull_shown(p, work)   the same for the positions and velocities shown
+    book(p, duration)     what its dashpots took in a time at their present power [s]
+    """
+
+    pull: Any
+    pull_shown: Any
+    book: Any
+
+
+class Composition:
+    """What the kernels of a part are made from.
+
+    terms        of the model, by group
+    lanes        vectors of its precision (`fmu_src.lanes`)
+    memory       kernels that find what lies in the work memory
+    rouse        of the scheme, see `schemes.Needs`
+    gravity, net, folding, target, contact, closing, tether, pulls, scheme
+                 kernels of these parts; None for what the scene leaves out
+    """
+
+    def __init__(self, model: Model, terms: Mapping[str, str]) -> None:
+        from fmu_src.lanes import of
+
+        self.model, self.terms = model, terms
+        self._tables = model.interface(terms).tables
+        self._codes = {fault.name: fault.code for fault in model.faults}
+        self.needs = needs = self._term("solver").checks
+        self.planes = NODE_PLANES + needs.planes
+        self.lanes = of(terms["precision"])
+        self.per_double = self.lanes.width // 4
+        self.memory = make_memory(terms["precision"], self.planes)
+        self.gravity = self._make("gravity")
+        self.rouse = needs.make_rouse(self)
+        self.net, self.folding = self._make("net"), self._make("folding")
+        self.target = self._make("target")
+        self.contact = self._make("contact")
+        self.closing, self.tether = self._make("closing"), self._make("tether")
+        self.pulls = _make_pulls(self.closing, self.tether)
+        self.scheme = self._make("solver")
+
+    def _term(self, group: str) -> Term:
+        return self.model.groups[group].terms[self.terms[group]]
+
+    def _make(self, group: str) -> Any:
+        if group not in self.terms:
+            return None
+        term = self._term(group)
+        if term.make is None:
+            raise ValueError(f"{self.model.name}: no kernel implements {group} = {self.terms[group]!r}")
+        return term.make(self)
+
+    def code(self, name: str) -> int:
+        """Code of a fault, by its name."""
+        return self._codes[name]
+
+    def table(self, name: str) -> Any:
+        """Kernel `table(p) -> array`: a table that a part of this model brings, to be read only."""
+        return tables.make_reader(self._tables, name)
+
+
+def _make_pulls(closing: Any, tether: Any) -> Pulls:
+    """The pulls of cord and tether together."""
+    has_closing, has_tether = closing is not None, tether is not None
+    pull_mouth, pull_mouth_shown = (closing.pull, closing.pull_shown) if has_closing else (None, None)
+    pull_vertex, pull_vertex_shown = (tether.pull, tether.pull_shown) if has_tether else (None, None)
+
+    @kernel
+    def pull(p, work):
+        """Pulls of the closing cord and of the tether, for a substep.
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        if has_closing:
+            pull_mouth(p, work)
+        if has_tether:
+            pull_vertex(p, work)
+
+    @kernel
+    def pull_shown(p, work):
+        """The same for the positions and velocities shown.
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        if has_closing:
+            pull_mouth_shown(p, work)
+        if has_tether:
+            pull_vertex_shown(p, work)
+
+    @kernel
+    def book(p, duration):
+        """What the cord's dashpots took in a time at their present power [J].
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        if has_closing:
+            p.cord_loss += duration * p.cord_power
+
+    return Pulls(pull, pull_shown, book)

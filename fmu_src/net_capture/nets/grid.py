@@ -1,0 +1,420 @@
+"""Nets of straight rows and columns of knots: the generator that square, rectangle and pyramid share.
+
+K columns and M rows of knots, each thread cut into s pieces, in this order of nodes:
+
+    knots                                                            row by row
+    p-th inner nodes of the threads along rows, p = 1 .. s - 1       row by row for each p
+    p-th inner nodes of the threads across rows                      likewise
+
+A row of more than `LONGEST_ROW` nodes stands in several pieces. A strip runs along a row of nodes or from one to the
+next, and ends where the rest length changes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from fmu_src.interface import Variable, fault
+from fmu_src.net_capture import formulas
+from fmu_src.net_capture.nets import LARGEST_MESH, Net
+from fmu_src.net_capture.planes import (
+    DAMPING,
+    FACE_WORDS,
+    FIRST,
+    LANES,
+    LENGTH,
+    LONGEST_ROW,
+    MASS,
+    SHOWN,
+    STIFFNESS,
+    STRIP_NUMBERS,
+    STRIP_WORDS,
+    THREAD_MASS,
+    A,
+    B,
+)
+from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.rows import at_least_zero, positive
+from orbital.kernel import kernel
+
+WHOLE = 1e-6
+"""Share of a mesh by which a side may miss a whole number of them."""
+
+NO_WHOLE_MESHES = "no_whole_meshes"
+TOO_FINE = fault("too_fine", "net.segments", "the net has too many meshes times segments per side")
+FOLD_TOO_LARGE = fault("fold_too_large", "net.fold_side", "net.fold_side must be smaller than the sides of the net")
+
+THREAD = (
+    positive("net.mesh", "m", "knot spacing: a design choice; the net keeps its mass", 1.0),
+    Variable(
+        "net.segments",
+        "1",
+        "parameter",
+        "pieces each thread is cut into: a numerical choice",
+        1,
+        kind="Integer",
+        minimum=1,
+        maximum=64,
+    ),
+    positive("net.mass", "kg", "mass of all threads", 0.33),
+    positive("net.youngs_modulus", "Pa", "of the thread", 70e9, display_unit="GPa"),
+    positive("net.density", "kg/m3", "of the thread", 1440.0),
+    at_least_zero("net.damping_ratio", "1", "xi in d = 2 xi sqrt(k m) of a thread and an inner node", 0.106),
+    positive("net.fold_side", "m", "side of the flat square the net is folded into", 0.5),
+)
+"""Rows that every net of a grid has."""
+
+
+class Checks(NamedTuple):
+    """What a net of a grid says before any build or run, of values by FMI name.
+
+    sides(values)      lengths of the mouth by the name of their variable, along the rows first [m]; one name if equal
+    total(values)      length of all threads [m]
+    """
+
+    sides: Callable[[Mapping[str, float]], dict[str, float]]
+    total: Callable[[Mapping[str, float]], float]
+
+    def drawing(self, values: Mapping[str, float]) -> tuple[list[list[int]], list[int]]:
+        """The threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs count them."""
+        columns, rows = (round(side / values["net.mesh"]) + 1 for side in (list(self.sides(values).values()) * 2)[:2])
+        along = [[i * columns + j for j in range(columns)] for i in range(rows)]
+        across = [[i * columns + j for i in range(rows)] for j in range(columns)]
+        rim = [*along[0], *across[-1][1:], *along[-1][-2::-1], *across[0][-2::-1]]
+        return [*along, *across], rim
+
+
+class Grid(NamedTuple):
+    """What makes one such net of the grid.
+
+    sides(p)              lengths of the mouth along the rows and across them [m]
+    blames                variables of these lengths
+    total(p)              length of all threads [m]
+    length(p, i, j, d)    unloaded length of the thread from knot (row i, column j) along the row (d = 0) or to the next
+                          row (d = 1) [m]
+    depth(p, i, j)        how far a knot lies behind the mouth in the net as meant [m]
+    """
+
+    sides: Any
+    blames: tuple[str, str]
+    total: Any
+    length: Any
+    depth: Any
+
+
+def whole_meshes(name: str) -> Any:
+    """The fault of a side that is no whole number of meshes."""
+    return fault(f"{NO_WHOLE_MESHES}_{name}", name, f"{name} must be a whole number of net.mesh, at least 2")
+
+
+def make_grid(composition: Any, grid: Grid) -> Net:
+    """Kernels of a net of that grid."""
+    memory, width = composition.memory, composition.lanes.width
+    node_plane, strips, properties = memory.node_plane, memory.strips, memory.properties
+    rim, corners, apex, faces = memory.rim, memory.corners, memory.apex, memory.faces
+    sides, total, length, depth = grid.sides, grid.total, grid.length, grid.depth
+    across_fault, along_fault = (composition.code(f"{NO_WHOLE_MESHES}_{name}") for name in grid.blames)
+    too_fine, fold_too_large = composition.code(TOO_FINE.name), composition.code(FOLD_TOO_LARGE.name)
+
+    @kernel
+    def is_whole(meshes):
+        """Whether a side holds a whole number of meshes, at least two.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        return abs(meshes - round(meshes)) <= WHOLE * round(meshes) and round(meshes) >= 2
+
+    @kernel
+    def count(p, work):
+        """Counts of the graph and size of the mouth into the record; a fault code or 0.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        along, across = sides(p)
+        if not is_whole(along / p.net_mesh):
+            p.fault_value = along / p.net_mesh
+            return across_fault
+        if not is_whole(across / p.net_mesh):
+            p.fault_value = across / p.net_mesh
+            return along_fault
+        columns = round(along / p.net_mesh) + 1
+        rows = round(across / p.net_mesh) + 1
+        pieces = p.net_segments
+        if (max(columns, rows) - 1) * pieces > LARGEST_MESH:
+            p.fault_value = (max(columns, rows) - 1) * pieces
+            return too_fine
+        if p.net_fold_side >= min(along, across):
+            p.fault_value = p.net_fold_side
+            return fold_too_large
+        p.grid_columns = columns
+        p.grid_rows = rows
+        p.grid_split = (columns + LONGEST_ROW - 1) // LONGEST_ROW
+        p.grid_piece = (columns + p.grid_split - 1) // p.grid_split
+        p.row_pitch = (p.grid_piece + width - 1) // width * width
+        whole = rows * (columns - 1) + (rows - 1) * columns
+        p.net_nodes = rows * columns + (pieces - 1) * whole
+        p.net_threads = pieces * whole
+        lines = rows + (pieces - 1) * (rows + rows - 1)
+        p.node_slots = lines * p.grid_split * p.row_pitch
+        p.rim_nodes = 2 * (rows + columns) - 4
+        p.net_corners = 4
+        p.apex_nodes = 4
+        p.net_faces = (rows - 1) * (columns - 1)
+        p.mouth_flat_area = along * across
+        for i in range(4):
+            p.mouth_side[i] = along if i % 2 == 0 else across
+        p.strips = lay_strips(p, strips(p, work), properties(p, work), False)
+        return 0
+
+    @kernel
+    def line_node(p, line, j):
+        """Slot of the j-th node of a line of nodes.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        return (line * p.grid_split + j // p.grid_piece) * p.row_pitch + j % p.grid_piece
+
+    @kernel
+    def line_of(p, i, direction, piece):
+        """Line of the nodes that begin the piece-th pieces of the threads of row i along a direction.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        if piece == 0:
+            return i
+        if direction == 0:
+            return p.grid_rows + (piece - 1) * p.grid_rows + i
+        first = p.grid_rows + (p.net_segments - 1) * p.grid_rows
+        return first + (piece - 1) * (p.grid_rows - 1) + i
+
+    @kernel
+    def end_node(p, i, j, direction, piece):
+        """Node where the piece-th piece of the thread from knot (i, j) ends.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        if piece < p.net_segments - 1:
+            return line_node(p, line_of(p, i, direction, piece + 1), j)
+        return line_node(p, i, j + 1) if direction == 0 else line_node(p, i + 1, j)
+
+    @kernel
+    def lay_strips(p, table, numbers, write):
+        """Write all strips, ordered by the rows they begin in; return how many there are [1].
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        found = 0
+        thread = 0
+        pieces = p.net_segments
+        area = formulas.thread_area(p.net_mass, p.net_density, total(p))
+        for i in range(p.grid_rows):
+            for direction in range(2):
+                columns = p.grid_columns - 1 if direction == 0 else p.grid_columns
+                if direction == 1 and i == p.grid_rows - 1:
+                    columns = 0
+                for piece in range(pieces):
+                    line = line_of(p, i, direction, piece)
+                    j = 0
+                    while j < columns:
+                        a = line_node(p, line, j)
+                        b = end_node(p, i, j, direction, piece)
+                        unloaded = length(p, i, j, direction)
+                        lanes = 1
+                        while (
+                            j + lanes < columns
+                            and line_node(p, line, j + lanes) == a + lanes
+                            and end_node(p, i, j + lanes, direction, piece) == b + lanes
+                            and (a + lanes) // p.row_pitch == a // p.row_pitch
+                            and (b + lanes) // p.row_pitch == b // p.row_pitch
+                            and length(p, i, j + lanes, direction) == unloaded
+                        ):
+                            lanes += 1
+                        if write:
+                            table[STRIP_WORDS * found + A] = a
+                            table[STRIP_WORDS * found + B] = b
+                            table[STRIP_WORDS * found + LANES] = -1 if lanes == LONGEST_ROW else (1 << lanes) - 1
+                            table[STRIP_WORDS * found + FIRST] = thread
+                            numbers[STRIP_NUMBERS * found + LENGTH] = unloaded / pieces
+                            stiffness = formulas.axial_stiffness(p.net_youngs_modulus, area, unloaded)
+                            mass = p.net_density * area * unloaded
+                            dashpot = formulas.thread_dashpot(p.net_damping_ratio, stiffness, 2.0 * mass)
+                            numbers[STRIP_NUMBERS * found + STIFFNESS] = stiffness * pieces
+                            numbers[STRIP_NUMBERS * found + DAMPING] = dashpot * pieces
+                            numbers[STRIP_NUMBERS * found + THREAD_MASS] = mass / pieces
+                        found += 1
+                        thread += lanes
+                        j += lanes
+        return found
+
+    @kernel
+    def thread(p):
+        """Stiffness [N/m] and dashpot [N s/m] of a piece of thread, mass of a node between two of them [kg].
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        area = formulas.thread_area(p.net_mass, p.net_density, total(p))
+        mass = 2.0 * p.net_density * area * p.net_mesh
+        stiffness = formulas.axial_stiffness(p.net_youngs_modulus, area, p.net_mesh)
+        dashpot = formulas.thread_dashpot(p.net_damping_ratio, stiffness, mass)
+        return stiffness * p.net_segments, dashpot * p.net_segments, mass / p.net_segments
+
+    @kernel
+    def lay_out(p, work):
+        """Write strips, masses, rim, apex and faces, and every place in the net as meant.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        lay_strips(p, strips(p, work), properties(p, work), True)
+        lay_masses(p, work)
+        lay_rim(p, work)
+        last = p.grid_columns - 1
+        for i in range(4):
+            row = (p.grid_rows - 1 + i // 2) // 2 if p.grid_rows % 2 == 0 else p.grid_rows // 2
+            column = (last + i % 2) // 2 if p.grid_columns % 2 == 0 else p.grid_columns // 2
+            apex(p, work)[i] = line_node(p, row, column)
+        face = 0
+        for i in range(p.grid_rows - 1):
+            for j in range(last):
+                faces(p, work)[face] = line_node(p, i, j)
+                faces(p, work)[face + 1] = line_node(p, i, j + 1)
+                faces(p, work)[face + 2] = line_node(p, i + 1, j + 1)
+                faces(p, work)[face + 3] = line_node(p, i + 1, j)
+                face += FACE_WORDS
+        place(p, work)
+
+    @kernel
+    def lay_masses(p, work):
+        """Half of every thread to each of its nodes [kg].
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        mass = node_plane(p, work, MASS)
+        table = strips(p, work)
+        numbers = properties(p, work)
+        for q in range(p.strips):
+            half = 0.5 * numbers[STRIP_NUMBERS * q + THREAD_MASS]
+            for lane in range(LONGEST_ROW):
+                if (table[STRIP_WORDS * q + LANES] >> lane) & 1:
+                    mass[table[STRIP_WORDS * q + A] + lane] += half
+                    mass[table[STRIP_WORDS * q + B] + lane] += half
+
+    @kernel
+    def lay_rim(p, work):
+        """The edge of the grid, once round from knot (0, 0) along its row.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        nodes = rim(p, work)
+        columns = p.grid_columns - 1
+        rows = p.grid_rows - 1
+        for n in range(p.rim_nodes):
+            if n < columns:
+                nodes[n] = line_node(p, 0, n)
+            elif n < columns + rows:
+                nodes[n] = line_node(p, n - columns, columns)
+            elif n < 2 * columns + rows:
+                nodes[n] = line_node(p, rows, 2 * columns + rows - n)
+            else:
+                nodes[n] = line_node(p, 2 * (columns + rows) - n, 0)
+        for i in range(4):
+            corners(p, work)[i] = (i + 1) // 2 * columns + i // 2 * rows
+
+    @kernel
+    def put(p, work, node, row, column, behind):
+        """Place of a node in the net as meant, by its row and column [m].
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        along, across = sides(p)
+        node_plane(p, work, SHOWN)[node] = along * (column / (p.grid_columns - 1) - 0.5)
+        node_plane(p, work, SHOWN + 1)[node] = across * (row / (p.grid_rows - 1) - 0.5)
+        node_plane(p, work, SHOWN + 2)[node] = -behind
+
+    @kernel
+    def place(p, work):
+        """Every node's place in the net as meant.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        pieces = p.net_segments
+        for i in range(p.grid_rows):
+            for j in range(p.grid_columns):
+                here = depth(p, i, j)
+                put(p, work, line_node(p, i, j), i, j, here)
+                for s in range(1, pieces):
+                    share = s / pieces
+                    if j < p.grid_columns - 1:
+                        there = depth(p, i, j + 1)
+                        node = line_node(p, line_of(p, i, 0, s), j)
+                        put(p, work, node, i, j + share, here + share * (there - here))
+                    if i < p.grid_rows - 1:
+                        there = depth(p, i + 1, j)
+                        node = line_node(p, line_of(p, i, 1, s), j)
+                        put(p, work, node, i + share, j, here + share * (there - here))
+
+    return Net(count, lay_out, thread)
+
+
+@kernel
+def flat_length(p, i, j, direction):
+    """Every thread is as long as a mesh is wide [m].
+
+    Checked  tests/net_capture/test_nets.py
+    """
+    return p.net_mesh
+
+
+@kernel
+def no_depth(p, i, j):
+    """A flat net lies in its mouth [m]."""
+    return 0.0
+
+
+def node_count(columns: int, rows: int, segments: int) -> int:
+    """Nodes of a grid of so many meshes along and across: its knots, and the inner nodes of every thread."""
+    threads = (rows + 1) * columns + rows * (columns + 1)
+    return (rows + 1) * (columns + 1) + (segments - 1) * threads
+
+
+def meshes(side: float, mesh: float) -> int | None:
+    """Meshes along a side [m]; None where they are no whole number of at least two."""
+    count = side / mesh
+    whole = round(count) if math.isfinite(count) else 0
+    return whole if whole >= 2 and abs(count - whole) <= WHOLE * whole else None
+
+
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """Why a net of a grid makes none with these values."""
+    sides = scene.parts["net"].checks.sides(scene.values)
+    mesh, segments = float(scene.values["net.mesh"]), int(scene.values["net.segments"])
+    fold = float(scene.values["net.fold_side"])
+    shortest = min(sides, key=lambda name: sides[name])
+    if fold >= sides[shortest]:
+        yield Refusal("net.fold_side", f"{fold:g} m", f"must be smaller than {shortest}, {sides[shortest]:g} m")
+    cut = f", each cut into {segments} segments" if segments > 1 else ""
+    for name, side in sides.items():
+        if side / mesh * segments > LARGEST_MESH + 0.5:
+            expected = (
+                f"{name} = {side:g} m holds {side / mesh:.4g} meshes{cut}; at most {LARGEST_MESH} pieces per side"
+            )
+            yield Refusal("net.mesh", f"{mesh:g} m", expected)
+            return
+        if meshes(side, mesh) is None:
+            expected = f"must be a whole number of net.mesh, {mesh:g} m, and at least 2; it is {side / mesh:.6g}"
+            yield Refusal(name, f"{side:g} m", expected)
+            return
+    nodes = nodes_of(scene.values, sides)
+    if int(scene.terms.get("nodes", nodes)) < nodes:
+        yield Refusal("nodes.capacity", scene.terms["nodes"], f"must be at least {nodes}, the nodes of this net")
+
+
+def nodes_of(parameters: Mapping[str, float], sides: Mapping[str, float]) -> int:
+    """Nodes of a grid with these sides [m]; 1 where there is no such net."""
+    mesh, segments = float(parameters["net.mesh"]), int(parameters["net.segments"])
+    counts = [meshes(side, mesh) for side in (list(sides.values()) * 2)[:2]]
+    if any(count is None or count > LARGEST_MESH for count in counts):
+        return 1
+    columns, rows = (count or 0 for count in counts)
+    return node_count(columns, rows, segments)

@@ -1,0 +1,53 @@
+"""The schemes that advance the nodes, by the name a scene gives them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from fmu_src.net_capture.formulas import accurate_step, longest_step
+
+
+class Needs(NamedTuple):
+    """What a scheme wants before it is made.
+
+    make_rouse(composition)   kernel `rouse(p, work, node)`: called before something other than a thread pulls a node,
+                              whose positions in X and velocities in P are those of now afterwards
+    planes                    node planes of its own, behind NODE_PLANES
+    longest_step, accurate_step   kernels (stiffness_rate, damping_rate) -> the longest stable step at a node, and the
+                              step that is accurate [s], see `formulas`; `solver.stability_bound`, the default substep
+                              and what `inspect` tells follow from them
+    """
+
+    make_rouse: Any
+    planes: int
+    longest_step: Any = longest_step
+    accurate_step: Any = accurate_step
+
+
+class Scheme(NamedTuple):
+    """Kernels of one scheme; nodes have positions in the planes X, and F is clear between substeps.
+
+    lag                      share of a substep by which the losses that `step` books end before now
+    own_words(p)             whole numbers of work memory it wants for itself
+    begin(p, work)           take over the positions in X and the velocities in U, which belong to the same instant
+    step(p, work)            all nodes one substep on, and what the dashpots took
+    place(p, work)           positions of now, and velocities as the dashpots see them, into SHOWN and SHOWN_RATE
+    stored(p, work)          energy in the stretched threads as shown [J]
+    show(p, work)            positions and velocities of now into SHOWN and SHOWN_RATE, and into SHOWN_BACK the
+                             velocities with which the next substep begins; power of the dashpots now; the state stays
+    """
+
+    lag: float
+    own_words: Any
+    begin: Any
+    step: Any
+    place: Any
+    stored: Any
+    show: Any
+
+
+def schemes() -> dict[str, Any]:
+    """Every scheme's term, by name."""
+    from fmu_src.net_capture.schemes import leapfrog, rk4
+
+    return {"leapfrog": leapfrog.PART, "rk4": rk4.PART}

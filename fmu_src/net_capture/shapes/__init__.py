@@ -1,0 +1,55 @@
+"""Shapes of the target, by the name a scene gives them: each an entry in this table.
+
+A shape is given in body axes, from the centre of mass. Inside a kernel it reads its sizes from the record; before any
+build or run it says the same of a scene's values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+Values = Mapping[str, float]
+Point = Sequence[float]
+
+
+class Shape(NamedTuple):
+    """Kernels of one shape.
+
+    samples                         how many sample points it has
+    measure(p)                      its box and sphere, `half_size` and `envelope_radius`, and its smallest girth [m]
+    inertia(p, out)                 principal moments of a uniform body [kg m2], (3,)
+    distance(p, normal, point)      signed distance from its surface [m], negative inside; outward normal into `normal`
+    sample(p, out, number, depth)   out = a sample point so far below the surface [m]
+    """
+
+    samples: int
+    measure: Any
+    inertia: Any
+    distance: Any
+    sample: Any
+
+
+class Checks(NamedTuple):
+    """What a shape says of a scene's values, by FMI name [SI].
+
+    half(values)              half the edges of the box around it [m], (3,)
+    radius(values)            of the sphere around it [m]
+    girth(values)             the shortest closed cord that can be passed over it [m]
+    distance(values, point)   from its surface, negative inside [m]
+    surface(values)           corners [m] (n, 3) and faces, as numbers of their corners, to draw it by
+    """
+
+    half: Callable[[Values], list[float]]
+    radius: Callable[[Values], float]
+    girth: Callable[[Values], float]
+    distance: Callable[[Values, Point], float]
+    surface: Callable[[Values], tuple[list[Point], list[list[int]]]]
+
+
+def shapes() -> dict[str, Any]:
+    """The term of a free target of every shape, by name."""
+    from fmu_src.net_capture.shapes import box, cylinder
+    from fmu_src.net_capture.target import free_body
+
+    return {name: free_body(name, part) for name, part in (("box", box.PART), ("cylinder", cylinder.PART))}

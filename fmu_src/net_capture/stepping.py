@@ -1,0 +1,62 @@
+"""The grid of substeps: what stiffness and damping allow, and when the net is looked at."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from fmu_src.interface import fault
+from fmu_src.net_capture import formulas
+from orbital.kernel import kernel
+
+MEASURE_INTERVAL = 0.01
+"""Seconds between two looks at mouth and capture: a whole number of substeps fits."""
+LONGEST_SLEEP = 2000
+"""Substeps for which a row of nodes may be left alone."""
+SMALLEST_SUBSTEP = 1e-9
+"""Seconds: below, no run would end."""
+
+STEP_TOO_SMALL = fault(
+    "step_too_small",
+    "net.youngs_modulus",
+    "the net is too stiff for its mass: the substep [s] it needs is below a nanosecond",
+)
+
+
+def make_choose_substep(composition: Any) -> Any:
+    """Kernel `choose_substep(p) -> fault` of the model with the composition's net and closing.
+
+    Checked  tests/net_capture/test_step.py, tests/net_capture/test_formulas.py
+    """
+    has_closing = "closing" in composition.terms
+    thread, needs = composition.net.thread, composition.needs
+    substep_limits = formulas.make_substep_limits(needs.longest_step, needs.accurate_step)
+    step_too_small = composition.code(STEP_TOO_SMALL.name)
+
+    @kernel
+    def choose_substep(p):
+        """The stability bound, and a substep that divides the grid.
+
+        Checked  tests/net_capture/test_step.py
+        """
+        stiffness, damping, node = thread(p)
+        cord = 0.0
+        dashpot = 0.0
+        rings = 0
+        if has_closing:
+            rings = p.closing_rings
+            p.cord_mass = formulas.cord_mass(p.bullets_mass, 0.75 * node, rings)
+            cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
+            dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.cord_mass)
+        bound, step = substep_limits(stiffness, damping, node, cord, dashpot, p.bullets_mass, rings)
+        if p.solver_step_ratio > 0.0:
+            step = p.solver_step_ratio * bound
+        p.solver_stability_bound = bound
+        if not step > SMALLEST_SUBSTEP:
+            p.fault_value = step
+            return step_too_small
+        p.measure_every = math.ceil(MEASURE_INTERVAL / step - 1e-9)
+        p.solver_substep = MEASURE_INTERVAL / p.measure_every
+        return 0
+
+    return choose_substep

@@ -1,0 +1,117 @@
+"""What stands in an instance's work memory, as numpy views: node planes, the graph, and the leapfrog's words."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fmu_src.net_capture.composition import Composition
+from fmu_src.net_capture.interface import MODEL
+from fmu_src.net_capture.planes import (
+    FACE_WORDS,
+    MASS,
+    NODE_PLANES,
+    SHOWN,
+    SQUARED,
+    STRIP_NUMBERS,
+    STRIP_WORDS,
+    work_size,
+)
+from fmu_src.net_capture.schemes.leapfrog import ROW_WORDS
+from fmu_src.net_capture.schemes.rk4 import OWN_PLANES
+
+
+def planes(net):
+    """The node planes, a view (planes, slots)."""
+    return planes_of(net.record[0], net.work, net.interface.terms)
+
+
+def planes_of(p, work, terms):
+    """The same of a record and its work memory."""
+    slots = int(p["node_slots"])
+    count = NODE_PLANES + (OWN_PLANES if terms["solver"] == "rk4" else 0)
+    reals = work.view(np.float32 if terms["precision"] == "single" else np.float64)
+    return reals[: count * slots].reshape(count, slots)
+
+
+def nodes(net):
+    """Slots of the nodes, in the order of the outputs."""
+    return np.flatnonzero(planes(net)[MASS] > 0.0)
+
+
+def shown(net, first=SHOWN):
+    """Vectors of all nodes (n, 3), copied: positions of now, or what the three planes from `first` on hold."""
+    return planes(net)[first : first + 3, nodes(net)].T.copy()
+
+
+class Bench:
+    """Parts of a model without the model: a record with its start values, and the memory of a net laid out in it."""
+
+    def __init__(self, terms):
+        interface = MODEL.interface(terms)
+        self.parts = Composition(MODEL, interface.terms)
+        self.record = interface.make_record().view(np.recarray)
+        self.p = self.record[0]
+        assert self.parts.net.count(self.p, np.zeros(0)) == 0
+        own = self.parts.scheme.own_words(self.p)
+        self.work = np.zeros(work_size(self.p, self.parts.planes, self.parts.per_double, own))
+        self.p.work_size = self.work.size
+        self.parts.net.lay_out(self.p, self.work)
+
+
+class Graph(NamedTuple):
+    """The graph of a net; nodes by their slots.
+
+    ends         of every thread (n, 2), in the order of their numbers
+    length, stiffness, damping, mass   of every thread (n,)
+    strips       how many threads each strip has
+    rim, corners, apex                 nodes of the rim, the rim's numbers of the bullets, the nodes of the vertex
+    faces        (n, 4)
+    rest         what follows: words of the scheme
+    """
+
+    ends: np.ndarray
+    length: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    mass: np.ndarray
+    strips: np.ndarray
+    rim: np.ndarray
+    corners: np.ndarray
+    apex: np.ndarray
+    faces: np.ndarray
+    rest: np.ndarray
+
+
+def graph(net):
+    return graph_of(net.record[0], net.work, net.interface.terms)
+
+
+def graph_of(p, work, terms):
+    """The graph in a record's work memory, strips taken apart into threads."""
+    at = planes_of(p, work, terms).nbytes // 8
+    parts = []
+    counts = ("strips", "strips", "rim_nodes", "net_corners", "apex_nodes", "net_faces")
+    widths = (STRIP_WORDS, STRIP_NUMBERS, 1, 1, 1, FACE_WORDS)
+    for name, width in zip(counts, widths, strict=True):
+        parts.append(work[at : at + width * int(p[name])].reshape(-1, width))
+        at += parts[-1].size
+    words = [part.view(np.int64) for part in parts]
+    ends, numbers, lengths, first = [], [], [], []
+    for (a, b, lanes, number), row in zip(words[0].tolist(), parts[1], strict=True):
+        here = [lane for lane in range(64) if lanes >> lane & 1]
+        ends += [(a + lane, b + lane) for lane in here]
+        numbers += [row] * len(here)
+        lengths.append(len(here))
+        first.append(number)
+    assert first == [0, *np.cumsum(lengths)[:-1]]
+    pieces = (part.ravel() for part in words[2:5])
+    return Graph(
+        np.array(ends), *np.array(numbers).T[:SQUARED], np.array(lengths), *pieces, words[5], work[at:].view(np.int64)
+    )
+
+
+def stamps(net):
+    """The substep to which the positions of each row belong, with the leapfrog."""
+    p = net.record[0]
+    rows = int(p["node_slots"]) // int(p["row_pitch"])
+    return graph(net).rest[: ROW_WORDS * rows].reshape(rows, ROW_WORDS)[:, 0]

@@ -1,0 +1,153 @@
+"""Two schemes of one net: each has the order it declares, they agree on the opening, and the book of each closes."""
+
+import numpy as np
+import pytest
+
+from dcone_cosim.scenes.mistakes import SceneError
+from dcone_cosim.scenes.scene import load
+from fmu_src.instance import Instance
+from fmu_src.net_capture.interface import MODEL
+from fmu_src.net_capture.planes import SHOWN, P, U, X
+from fmu_src.net_capture.schemes import rk4
+from tests.conftest import CAPTURE, FREE
+from tests.net_capture.memory import nodes, planes
+from tests.net_capture.taut_net import PARAMETERS, Reference
+
+RK4 = FREE | {"solver": "rk4"}
+ORDERS = {
+    "leapfrog": (FREE, 2.0, (40, 80, 160)),
+    "rk4": (RK4, 4.0, (40, 80, 160)),
+}
+"""Terms, the order declared, and substeps in a hundredth of a second."""
+TIME = 0.004
+"""Seconds: the edges are pulled inward, and after a quarter of their swing threads would go slack."""
+
+
+def with_substeps(terms, count, ratio):
+    """An instance of so many substeps in a hundredth of a second."""
+    values = PARAMETERS | {"net.damping_ratio": ratio}
+    probe = Instance(MODEL, terms, values).initialise()
+    share = 0.01 / count / probe["solver.stability_bound"] * (1.0 + 1e-6)
+    net = Instance(MODEL, terms, values | {"solver.step_ratio": share}).initialise()
+    assert net["solver.substep"] == 0.01 / count
+    return net
+
+
+def begin(net, reference):
+    """Put the reference's start into the model: for the leapfrog velocities half a substep back, and its book's."""
+    x, v = reference.start()
+    leaps = net.interface.terms["solver"] == "leapfrog"
+    half = 0.5 * net["solver.substep"] if leaps else 0.0
+    kept, slots = planes(net), nodes(net)
+    kept[X : X + 3, slots] = x.T
+    kept[P : P + 3, slots] = v.T
+    kept[U : U + 3, slots] = (v - half * reference.acceleration(x, v)).T
+    net.record["thread_loss"] = -half * reference.power(x, v)
+    net.step(0.0)
+    return net
+
+
+def slope(counts, errors):
+    return -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.106, 0.5])
+@pytest.mark.parametrize("scheme", ORDERS)
+def test_the_error_falls_with_the_order_declared(scheme, ratio):
+    terms, order, counts = ORDERS[scheme]
+    reference = Reference(ratio)
+    exact, speeds = reference.at(TIME)
+    errors, late, remainders = [], [], []
+    for count in counts:
+        net = begin(with_substeps(terms, count, ratio), reference)
+        start = net["energy.remainder"]
+        net.step(TIME)
+        shown = planes(net)[:, nodes(net)]
+        errors.append(np.abs(shown[SHOWN : SHOWN + 3].T - exact).max())
+        late.append(np.abs(shown[SHOWN + 3 : SHOWN + 6].T - speeds).max())
+        remainders.append(abs(net["energy.remainder"] - start))
+    assert slope(counts, errors) == pytest.approx(order, abs=0.1)
+    assert slope(counts, late) == pytest.approx(order, abs=0.1)
+    assert slope(counts, remainders) > order - 0.1
+
+
+def test_a_dashpot_a_hundredth_off_would_be_seen():
+    """The twin: what is solved is then not quite what the reference solves, and no step mends it."""
+    terms, _, counts = ORDERS["rk4"]
+    reference = Reference(0.106)
+    exact, _ = reference.at(TIME)
+    errors = []
+    for count in counts:
+        net = begin(with_substeps(terms, count, 0.106 * 1.01), reference)
+        net.step(TIME)
+        errors.append(np.abs(planes(net)[SHOWN : SHOWN + 3, nodes(net)].T - exact).max())
+    assert slope(counts, errors) < 1.0
+
+
+@pytest.fixture(scope="module")
+def opened():
+    """Table 1's net after 6 s by either scheme, at the default step."""
+    found = {}
+    for name, terms in (("leapfrog", FREE), ("rk4", RK4)):
+        found[name] = Instance(MODEL, terms).initialise()
+        found[name].step(6.0)
+    return found
+
+
+def test_both_open_the_net_alike(opened):
+    leapfrog, rk4 = opened["leapfrog"], opened["rk4"]
+    assert rk4["mouth.area"] == pytest.approx(leapfrog["mouth.area"], rel=1e-3)
+    assert rk4["mouth.area"] > 200.0
+    assert rk4["mouth.area"] != leapfrog["mouth.area"]
+    np.testing.assert_allclose(rk4.array("bullet_position"), leapfrog.array("bullet_position"), atol=0.01)
+    np.testing.assert_allclose(rk4.array("catch_position"), leapfrog.array("catch_position"), atol=1e-9)
+    # each within 1 % of the shot's energy of what the threads take
+    assert rk4["thread.dissipated"] == pytest.approx(leapfrog["thread.dissipated"], abs=0.01 * 9.0)
+    assert rk4["thread.dissipated"] > 1.0
+
+
+def test_the_book_of_both_closes(opened):
+    for net in opened.values():
+        assert abs(net["energy.remainder"]) < 0.01 * 9.0
+        assert np.abs(net.array("momentum")).max() < 1e-11
+        np.testing.assert_allclose(net.array("angular_momentum"), 0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize(("other", "terms"), [("contact", CAPTURE), ("closing", CAPTURE)])
+def test_rk4_goes_without_impulses(other, terms):
+    """Contact and closing are each refused alone."""
+    alone = {name: term for name, term in terms.items() if name not in {"contact", "closing", "settling"} - {other}}
+    with pytest.raises(ValueError, match=f"solver = 'rk4' cannot go together with {other}"):
+        MODEL.interface(alone | {"solver": "rk4"})
+    assert MODEL.interface(alone).terms["solver"] == "leapfrog"
+
+
+def test_a_scene_that_asks_for_both_is_told_so():
+    with pytest.raises(SceneError) as caught:
+        load("table1-capture", ['capture.solver.scheme="rk4"'])
+    told = str(caught.value)
+    assert "capture.solver.scheme" in told
+    assert "cannot go together with [capture.contact] and [capture.closing]" in told
+
+
+def test_a_scheme_that_is_none_is_named():
+    with pytest.raises(SceneError, match=r"capture\.solver\.scheme") as caught:
+        load("table1-capture", ['capture.solver.scheme="rk5"'])
+    assert "leapfrog" in str(caught.value)
+    assert "rk4" in str(caught.value)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.03, 0.3, 0.9, 1.5, 5.0])
+def test_rk4_is_stable_up_to_its_bound(zeta):
+    """Of x'' = -w2 x - 2 zeta w x', by the scheme's own growth factor; a few per cent beyond it can be unstable."""
+    omega = 440.0
+    eigenvalues = np.roots([1.0, 2.0 * zeta * omega, omega * omega])
+    step = rk4.longest_step(0.5 * omega * omega, zeta * omega)
+
+    def growth(h):
+        z = h * eigenvalues
+        return np.abs(1.0 + z + z**2 / 2.0 + z**3 / 6.0 + z**4 / 24.0).max()
+
+    assert growth(step) <= 1.0 + 1e-12
+    assert growth(1.13 * step) > 1.0
+    assert rk4.accurate_step(0.5 * omega * omega, zeta * omega) < step
