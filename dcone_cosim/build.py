@@ -20,7 +20,7 @@ from dcone_cosim.scratch import clear_left, workplace
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.implied import Implied
-from fmu_src.interface import Group, Interface, Model, Value, Variable
+from fmu_src.interface import Group, Interface, Model, Term, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.net_capture.interface import NETS, TARGETS
@@ -41,6 +41,10 @@ CAUTIONS = {"capture": net_capture_cautions, "removal": tethered_deorbit_caution
 
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
+
+
+Drawing = tuple[list[list[int]], list[int]]
+Surface = tuple[list[Sequence[float]], list[list[int]]]
 
 
 @dataclass(frozen=True)
@@ -184,21 +188,30 @@ def implied(phase: str, values: Mapping[str, float], terms: Mapping[str, str]) -
     return list(models[phase].rows(values, terms)) if phase in models else []
 
 
-def net_drawing(values: Mapping[str, float]) -> tuple[list[list[int]], list[int]] | None:
+def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:
     """Lines of threads and closed rim of the net with these values, as numbers of nodes; None for none of ours."""
-    for part in NETS.values():
-        if all(v.name in values for v in part.variables):
-            return part.checks.drawing(values)  # type: ignore[no-any-return]
-    return None
+    part = _part(NETS, terms.get("net"), values) if "net.mesh" in values else None
+    return None if part is None else part.checks.drawing(values)
 
 
-def target_surface(values: Mapping[str, float]) -> tuple[list[Any], list[list[int]]] | None:
+def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Surface | None:
     """Corners (n, 3) [m] and faces of the target with these values, body axes; None for none of ours."""
-    for part in TARGETS.values():
-        names = [n for v in part.variables if v.causality == "parameter" for n in v.element_names()]
-        if all(name in values for name in names):
-            return part.checks.surface(values)  # type: ignore[no-any-return]
-    return None
+    part = _part(TARGETS, terms.get("target"), values)
+    return None if part is None else part.checks.surface(values)
+
+
+def _part(parts: Mapping[str, Term], term: str | None, values: Mapping[str, float]) -> Term | None:
+    """The part that a scene names; of a capture FMU in a file, which names none, that with the most parameters of its
+    own among those all of whose own it has."""
+    if term is not None:
+        return parts[term]
+    names = {
+        key: {n for v in part.variables if v.causality == "parameter" for n in v.element_names()}
+        for key, part in parts.items()
+    }
+    shared = set.intersection(*names.values())
+    known = [key for key, wanted in names.items() if wanted - shared <= values.keys()]
+    return parts[max(known, key=lambda key: len(names[key]))] if known else None
 
 
 def masses_after(capture: Mapping[str, float]) -> dict[str, float]:

@@ -194,13 +194,14 @@ class Group:
     optional     the scene may leave the group out; then nothing of it is in the FMU
     default      the term that is taken where the scene names none; then the table may be left out
     table        of the scene that has the selector; empty: that of the group's own name
-    follows      the term that follows from the values, SI by FMI name, where the scene has the table and names none
+    follows      `follows(terms, values)`: the term that follows from the other terms and the values, SI by FMI name,
+                 where the scene has the table and names none
     """
 
     terms: Mapping[str, Term]
     selector: str = "law"
     optional: bool = False
-    follows: Callable[[Mapping[str, float]], str] | None = None
+    follows: Callable[[Mapping[str, str], Mapping[str, float]], str] | None = None
     default: str = ""
     table: str = ""
 

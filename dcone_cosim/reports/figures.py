@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from dcone_cosim import build
 from dcone_cosim.master import RunResult
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.reports import net_view, side_by_side, style
@@ -58,8 +59,10 @@ def _figures(run: RunResult) -> Iterator[Figure]:
     if capture is not None and len(capture.recorder) > 1:
         if capture.snapshots.times:
             asked = any(p.options.get("snapshots") for p in run.scene.phases)
-            parameters = run.parameters.get("capture", {})
-            yield "capture_in_space.png", partial(net_view.draw, capture, parameters, asked, title)
+            values = run.parameters.get("capture", {})
+            terms = next(phase for phase in run.scene.phases if phase.name == "capture").main.terms
+            shapes = build.net_drawing(values, terms), build.target_surface(values, terms)
+            yield "capture_in_space.png", partial(net_view.draw, capture, *shapes, asked, title)
         if "mouth.area" in capture.recorder:
             yield "mouth_and_energies.png", partial(_mouth_and_energy, capture, title)
     if removal is not None and len(removal.recorder) > 1:

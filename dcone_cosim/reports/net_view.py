@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim import build
+from dcone_cosim.build import Drawing, Surface
 from dcone_cosim.handoff import rotation_matrix
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.reports import style
@@ -40,8 +40,15 @@ def grid(panels: int) -> tuple[int, int]:
     return rows, -(-panels // rows)
 
 
-def draw(result: PhaseResult, parameters: dict[str, float], asked: bool, title: str, path: Path) -> None:
-    """PNG of the capture at up to eight times."""
+def draw(
+    result: PhaseResult,
+    drawing: Drawing | None,
+    surface: Surface | None,
+    asked: bool,
+    title: str,
+    path: Path,
+) -> None:
+    """PNG of the capture at up to eight times; net and target as far as their shapes are known."""
     shots = result.snapshots
     chosen = choose(shots.times, asked, result.located)
     row_of = {i: int(np.argmin(np.abs(result.recorder["time"] - shots.times[i]))) for i in chosen}
@@ -53,10 +60,10 @@ def draw(result: PhaseResult, parameters: dict[str, float], asked: bool, title: 
     figure.subplots_adjust(
         left=side + 0.02, right=0.97 - side, bottom=0.45 / height, top=1.0 - 0.55 / height, wspace=0.06, hspace=0.1
     )
-    least, most = _limits(result, chosen, row_of, parameters)
+    least, most = _limits(result, chosen, row_of, surface)
     for panel, i in enumerate(chosen):
         axes = figure.add_subplot(rows, columns, panel + 1, projection="3d", computed_zorder=False)
-        _panel(axes, result, i, row_of[i], parameters)
+        _panel(axes, result, i, row_of[i], drawing, surface)
         _frame(axes, least, most)
         mark = "  (hand-over)" if result.located is not None and shots.times[i] == result.located else ""
         axes.set_title(f"t = {shots.times[i]:.2f} s{mark}", y=0.99)
@@ -65,12 +72,14 @@ def draw(result: PhaseResult, parameters: dict[str, float], asked: bool, title: 
     style.save(figure, path)
 
 
-def _panel(axes: Any, result: PhaseResult, shot: int, row: int, parameters: dict[str, float]) -> None:
+def _panel(
+    axes: Any, result: PhaseResult, shot: int, row: int, drawing: Drawing | None, surface: Surface | None
+) -> None:
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
     nodes = result.snapshots.nodes[shot][:, SHOWN]
-    _target(axes, result, row, parameters)
-    lines, rim = _thread_lines(nodes, parameters)
+    _target(axes, result, row, surface)
+    lines, rim = _thread_lines(nodes, drawing)
     if lines:
         axes.add_collection3d(Line3DCollection(lines, colors=style.NET, linewidths=0.35, alpha=0.75, zorder=3))
     else:
@@ -90,9 +99,8 @@ def _bullets(result: PhaseResult, row: int) -> Array:
     return np.array([[recorder[f"bullet[{b}].position[{i}]"][row] for i in (1, 2, 3)] for b in (1, 2, 3, 4)])
 
 
-def _thread_lines(nodes: Array, parameters: dict[str, float]) -> tuple[list[Array], Array | None]:
+def _thread_lines(nodes: Array, drawing: Drawing | None) -> tuple[list[Array], Array | None]:
     """The threads as lines of knots, (knots, 3) each, and the rim; nothing when the net's shape is not known."""
-    drawing = build.net_drawing(parameters)
     if drawing is None:
         return [], None
     lines, rim = drawing
@@ -101,36 +109,35 @@ def _thread_lines(nodes: Array, parameters: dict[str, float]) -> tuple[list[Arra
     return [nodes[line] for line in lines], nodes[rim]
 
 
-def _target(axes: Any, result: PhaseResult, row: int, parameters: dict[str, float]) -> None:
+def _target(axes: Any, result: PhaseResult, row: int, surface: Surface | None) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    corners, faces = _surface(result, row, parameters)
-    if corners is None:
+    corners = _corners(result, row, surface)
+    if corners is None or surface is None:
         return
-    corners = corners[:, SHOWN]
-    polygons = [corners[face] for face in faces]
+    polygons = [corners[face][:, SHOWN] for face in surface[1]]
     axes.add_collection3d(
         Poly3DCollection(polygons, facecolors=style.TARGET, edgecolors="#4d3b1c", linewidths=0.5, alpha=0.45, zorder=2)
     )
 
 
-def _surface(result: PhaseResult, row: int, parameters: dict[str, float]) -> tuple[Array | None, list[list[int]]]:
-    """Corners of the target turned by its attitude, (n, 3) [m], and its faces; None where its shape is not known."""
-    recorder, surface = result.recorder, build.target_surface(parameters)
+def _corners(result: PhaseResult, row: int, surface: Surface | None) -> Array | None:
+    """Corners of the target turned by its attitude, (n, 3) [m]; None where they are not known."""
+    recorder = result.recorder
     if "target.attitude[1]" not in recorder or surface is None:
-        return None, []
+        return None
     turn = rotation_matrix(recorder.vector("target.attitude", 4)[row])
     corners: Array = recorder.vector("target.position")[row] + np.array(surface[0]) @ turn.T
-    return corners, surface[1]
+    return corners
 
 
 def _limits(
-    result: PhaseResult, chosen: list[int], rows: dict[int, int], parameters: dict[str, float]
+    result: PhaseResult, chosen: list[int], rows: dict[int, int], surface: Surface | None
 ) -> tuple[Array, Array]:
     """Bounds of everything shown, one for all panels so that they compare."""
     clouds = [result.snapshots.nodes[i] for i in chosen] + [_bullets(result, rows[i]) for i in chosen]
     for i in chosen:
-        corners, _ = _surface(result, rows[i], parameters)
+        corners = _corners(result, rows[i], surface)
         if corners is not None:
             clouds.append(corners)
     points = np.concatenate(clouds)[:, SHOWN]

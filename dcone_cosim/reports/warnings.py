@@ -70,7 +70,8 @@ def _reach(run: RunResult) -> float | None:
     """How far the target reaches from its centre [m], as handed over or by its shape; None where neither is known."""
     if run.handoff is not None:
         return run.handoff.handed.reach
-    surface = build.target_surface(run.parameters.get("capture", {}))
+    terms = next((phase.main.terms for phase in run.scene.phases if phase.name == "capture"), {})
+    surface = build.target_surface(run.parameters.get("capture", {}), terms)
     return None if surface is None else max(math.hypot(*corner) for corner in surface[0])
 
 

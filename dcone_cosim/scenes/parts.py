@@ -141,7 +141,7 @@ def follow(part: Part, values: Mapping[str, float]) -> None:
     for group_name in part.following:
         follows = part.model.groups[group_name].follows
         assert follows is not None
-        part.terms[group_name] = follows({**part.defaults(), **values})
+        part.terms[group_name] = follows(part.terms, {**part.defaults(), **values})
     _offer_slots(part, part.model)
 
 

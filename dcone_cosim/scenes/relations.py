@@ -132,7 +132,7 @@ def about_line(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
     if not all(name in capture for name in start):
         return
     distance, speed = (math.hypot(*(capture[name] for name in names)) for names in (start[:3], start[3:]))
-    corners, _ = build.target_surface(capture) or ([], [])
+    corners, _ = build.target_surface(capture, scene.phases[0].main.terms) or ([], [])
     nearest = distance - max((math.hypot(*corner) for corner in corners), default=0.0)
     if length <= nearest - speed * scene.phases[0].duration:
         text = f"must exceed {nearest:.6g} m, the distance from the chaser to the target's nearest point at the shot: "

@@ -226,12 +226,9 @@ class NodeTerms(Mapping[str, Term]):
         return 1
 
 
-def capacity_of(parameters: Mapping[str, float]) -> str:
+def capacity_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
     """The capacity that a net's mesh asks for, "1" where there is no such net."""
-    for part in NETS.values():
-        if all(row.name in parameters for row in part.variables):
-            return str(min(nodes_of(parameters, part.checks.sides(parameters)), MOST_NODES))
-    return "1"
+    return str(min(nodes_of(parameters, NETS[terms["net"]].checks.sides(parameters)), MOST_NODES))
 
 
 NETS, TARGETS, CONTACTS, CLOSINGS = nets(), shapes(), contacts(), closings()

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from dcone_cosim import build
 from dcone_cosim.fmu.component import VariableInfo
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.phases import PhaseResult
@@ -282,3 +283,32 @@ class TestSideBySide:
             side_by_side.halves(work, "a", "b")
         with pytest.raises(ChildProcessError):
             os.waitpid(-1, os.WNOHANG)
+
+
+SQUARE = {"net.side": 4.0, "net.mesh": 2.0}
+BOX = {f"target.size[{i}]": edge for i, edge in ((1, 2.0), (2, 4.0), (3, 6.0))}
+
+
+class TestShapesDrawn:
+    """Net and target are drawn by the terms a scene names; of a file, which names none, by what it tells."""
+
+    def test_the_term_decides(self) -> None:
+        """A pyramid has all keys of a square, and a cylinder beside a box's keys is still a cylinder."""
+        values = SQUARE | BOX | {"net.depth": 1.0, "target.radius": 1.0, "target.length": 4.0}
+        surface = build.target_surface(values, {"target": "cylinder"})
+        assert surface is not None
+        assert np.abs(surface[0]).max() == 2.0
+        assert build.target_surface(values, {"target": "box"})[0] != surface[0]  # type: ignore[index]
+        lines, rim = build.net_drawing(values, {"net": "square"}) or ([], [])
+        assert lines == [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 3, 6], [1, 4, 7], [2, 5, 8]]
+        assert rim == [0, 1, 2, 5, 8, 7, 6, 3, 0]
+
+    def test_a_file_is_drawn_by_its_own_parameters(self) -> None:
+        corners, faces = build.target_surface(BOX, {}) or ([], [])
+        assert sorted(map(tuple, np.abs(corners))) == [(1.0, 2.0, 3.0)] * 8
+        assert len(faces) == 6
+        assert build.target_surface({"target.mass": 1.0}, {}) is None
+        assert build.net_drawing({"net.side": 4.0}, {}) is None
+        wide = {"net.width": 6.0, "net.height": 2.0, "net.mesh": 1.0}
+        lines, _ = build.net_drawing(wide, {}) or ([], [])
+        assert sorted(map(len, lines)) == [3] * 7 + [7] * 3
