@@ -18,7 +18,7 @@ from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.schemes import schemes
 from fmu_src.net_capture.shapes import shapes
 from fmu_src.net_capture.stepping import STEP_TOO_SMALL
-from fmu_src.rows import at_least_zero, count, flag, moving, output, peak, positive, state, vector
+from fmu_src.rows import angle, at_least_zero, count, flag, moving, output, parameter, peak, positive, state, vector
 
 MOST_NODES = (LARGEST_MESH + 1) ** 2
 """Nodes of the largest net there is, one of uncut threads: each brings three outputs, so more would be of no use."""
@@ -35,15 +35,12 @@ TOO_MANY_NODES = fault(
 BASE = (
     positive("bullets.mass", "kg", "mass of each of the four bullets", 0.5),
     at_least_zero("bullets.speed", "m/s", "speed at which the bullets leave", 3.0),
-    Variable(
+    angle(
         "bullets.angle",
-        "rad",
-        "parameter",
         "angle of the bullets from the shot axis, outward along the diagonals",
         math.radians(40.0),
-        minimum=0.0,
-        maximum=math.pi / 2,
-        display_unit="deg",
+        0.0,
+        math.pi / 2,
     ),
     at_least_zero("vertex.mass", "kg", "mass at the centre of the net, where the tether is made fast", 0.15),
     positive("chaser.mass", "kg", "mass of the chaser, which takes the recoil", 2000.0),
@@ -56,16 +53,15 @@ BASE = (
     ),
     vector("chaser.start_velocity", "m/s", "velocity of the chaser before the shot, orbital frame", "parameter"),
     vector("shot.axis", "1", "direction of the shot, orbital frame; zero: from the chaser to the target", "parameter"),
-    Variable("shot.roll", "rad", "parameter", "turn of the net about the shot axis", 0.0, display_unit="deg"),
-    Variable(
+    angle("shot.roll", "turn of the net about the shot axis", 0.0),
+    parameter(
         "solver.step_ratio",
         "1",
-        "parameter",
         "substep as a share of the guaranteed stability bound; zero: as large as keeps the mouth area within 0.3 % and "
         "the energy within 1 %, by the damping",
         0.0,
-        minimum=0.0,
-        maximum=1.3,
+        0.0,
+        1.3,
     ),
     vector(
         "solver.jitter", "m", "amplitude of the deterministic jitter of the folded nodes, per shot axis", "parameter"

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.refusal import Refusal, Scene, text
-from fmu_src.rows import moving, output, positive, state, vector
+from fmu_src.rows import at_least_zero, moving, output, parameter, positive, state, vector
 from orbital.kernel import kernel
 from orbital.rotations import normalise, rotate, rotate_inverse
 from orbital.vectors import dot
@@ -33,27 +33,23 @@ NO_INERTIA = fault(
 
 ROWS = (
     positive("target.mass", "kg", "mass of the target", 1000.0),
-    Variable(
+    at_least_zero(
         "target.principal_inertia[#]",
         "kg.m2",
-        "parameter",
         "about the body axes; zero: of a uniform body of this shape",
         0.0,
         shape=(3,),
-        minimum=0.0,
     ),
-    Variable(
+    parameter(
         "target.start_attitude[#]",
         "1",
-        "parameter",
         "quaternion from body to orbital frame, scalar first; zero: aligned",
         0.0,
         shape=(4,),
     ),
-    Variable(
+    parameter(
         "target.start_rate[#]",
         "rad/s",
-        "parameter",
         "body rate in body axes, relative to inertial space",
         0.0,
         shape=(3,),

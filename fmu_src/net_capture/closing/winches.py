@@ -25,7 +25,7 @@ from fmu_src.net_capture.closing import Closing
 from fmu_src.net_capture.formulas import cord_damping, cord_stiffness, ring_radius
 from fmu_src.net_capture.planes import FX, SHOWN, SHOWN_RATE, P, X
 from fmu_src.net_capture.refusal import Refusal, Scene
-from fmu_src.rows import at_least_zero, count, output, peak, positive, state
+from fmu_src.rows import at_least_zero, choice, count, output, parameter, peak, positive, state
 from orbital.kernel import kernel
 
 TRIGGERS = ("time", "first_contact", "distance", "command")
@@ -352,22 +352,11 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
 PART = Term(
     "cord between neighbouring bullets, drawn by winches that stall and never pay out",
     (
-        Variable(
-            "closing.trigger",
-            "1",
-            "parameter",
-            "what starts the winches; close.command always does",
-            0,
-            kind="Integer",
-            minimum=0,
-            maximum=len(TRIGGERS) - 1,
-            choices=TRIGGERS,
-        ),
+        choice("closing.trigger", "what starts the winches; close.command always does", TRIGGERS),
         at_least_zero("closing.time", "s", "when the winches start, since the shot, for trigger time", 11.2),
-        Variable(
+        parameter(
             "closing.distance",
             "m",
-            "parameter",
             "bullets this far beyond the target's centre of mass, along "
             "the shot axis, start the winches, for trigger distance",
             0.0,
@@ -375,16 +364,15 @@ PART = Term(
         at_least_zero("closing.delay", "s", "from the trigger to the start of the winches", 0.0),
         positive("closing.speed", "m/s", "no-load speed of each winch: a 24 m side in 5 s", 5.0),
         positive("closing.stall_force", "N", "tension at which a winch stands still", 5.0),
-        Variable(
+        parameter(
             "closing.rings",
             "1",
-            "parameter",
             "on each side of the mouth, evenly spaced, through which the cord between two bullets runs without "
             "friction; without any the sides stay open loops",
             1,
+            0,
+            64,
             kind="Integer",
-            minimum=0,
-            maximum=64,
         ),
         positive("closing.axial_stiffness", "N", "EA of the cord: 0.5 mm nylon", 903.0),
         at_least_zero("closing.damping_ratio", "1", "of the cord between two bullets", 0.106),

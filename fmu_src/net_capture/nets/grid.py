@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from fmu_src.interface import Variable, fault
+from fmu_src.interface import fault
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.nets import LARGEST_MESH, Net
 from fmu_src.net_capture.planes import (
@@ -36,7 +36,7 @@ from fmu_src.net_capture.planes import (
     B,
 )
 from fmu_src.net_capture.refusal import Refusal, Scene
-from fmu_src.rows import at_least_zero, positive
+from fmu_src.rows import at_least_zero, parameter, positive
 from orbital.kernel import kernel
 
 WHOLE = 1e-6
@@ -48,16 +48,7 @@ FOLD_TOO_LARGE = fault("fold_too_large", "net.fold_side", "net.fold_side must be
 
 THREAD = (
     positive("net.mesh", "m", "knot spacing: a design choice; the net keeps its mass", 1.0),
-    Variable(
-        "net.segments",
-        "1",
-        "parameter",
-        "pieces each thread is cut into: a numerical choice",
-        1,
-        kind="Integer",
-        minimum=1,
-        maximum=64,
-    ),
+    parameter("net.segments", "1", "pieces each thread is cut into: a numerical choice", 1, 1, 64, kind="Integer"),
     positive("net.mass", "kg", "mass of all threads", 0.33),
     positive("net.youngs_modulus", "Pa", "of the thread", 70e9, display_unit="GPa"),
     positive("net.density", "kg/m3", "of the thread", 1440.0),
