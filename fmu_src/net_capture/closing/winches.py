@@ -16,14 +16,13 @@ The book of the cord, T_e = EA (s - L)/L the elastic part of its tension T:
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
 from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.closing import Closing
-from fmu_src.net_capture.formulas import cord_damping, cord_stiffness, ring_radius
-from fmu_src.net_capture.planes import FX, SHOWN, SHOWN_RATE, P, X
+from fmu_src.net_capture.closing.cord import make_cord
+from fmu_src.net_capture.formulas import cord_damping, cord_stiffness
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import at_least_zero, choice, count, output, parameter, peak, positive, state
 from orbital.kernel import kernel
@@ -129,38 +128,11 @@ def wound(p, distance, rate, length, winding, h):
     return shorter, then
 
 
-@kernel
-def stops(p):
-    """Stretches of one pair's cord: from bullet to ring to bullet.
-
-    Checked  tests/net_capture/test_closing.py
-    """
-    return p.closing_rings + 1
-
-
 def make(composition: Any) -> Closing:
-    """Kernels of the cord along the rim of the composition's net."""
-    memory, rouse = composition.memory, composition.rouse
-    node_plane, rim, corners = memory.node_plane, memory.rim, memory.corners
+    """Kernels of the winches on the cord along the rim of the composition's net."""
+    cord = make_cord(composition)
+    pieces, rouse, along_now, along_shown = cord.pieces, cord.rouse, cord.along, cord.along_shown
     too_many_rings = composition.code(TOO_MANY_RINGS.name)
-
-    @kernel
-    def pieces(p, work, i):
-        """Pieces of thread on the rim from bullet i to the next [1].
-
-        Checked  tests/net_capture/test_closing.py
-        """
-        last = corners(p, work)[i + 1] if i + 1 < p.net_corners else p.rim_nodes
-        return last - corners(p, work)[i]
-
-    @kernel
-    def cord_stop(p, work, i, stop):
-        """Node at which a stretch of the i-th pair's cord begins: stop 0 is bullet i, the last is the next bullet.
-
-        Checked  tests/net_capture/test_closing.py
-        """
-        at = corners(p, work)[i] + (2 * stop * pieces(p, work, i) + stops(p)) // (2 * stops(p))
-        return rim(p, work)[at if at < p.rim_nodes else 0]
 
     @kernel
     def start(p, work):
@@ -186,66 +158,8 @@ def make(composition: Any) -> Closing:
                 return too_many_rings
         return 0
 
-    def make_way(place: int, velocity: int) -> Any:
-        """Kernel `along_cord` of the positions and velocities in the planes from these on."""
-
-        @kernel
-        def along_cord(p, work, i):
-            """Way of the i-th pair's cord from bullet through the rings to bullet [m], and its rate [m/s].
-
-                s = sum over the stretches of sqrt(d^2 + b^2)
-
-            d  between two stops, b  how near to a ring's middle it passes: a stretch pulls with T d / sqrt(d^2 + b^2),
-            so its direction does not jump where a ring meets the next.
-
-            Checked  tests/net_capture/test_closing.py
-            """
-            radius = ring_radius(p.closing_lock_length, p.closing_rings)
-            way = 0.0
-            change = 0.0
-            for stop in range(stops(p)):
-                a = cord_stop(p, work, i, stop)
-                b = cord_stop(p, work, i, stop + 1)
-                squared = radius * radius
-                product = 0.0
-                for axis in range(3):
-                    at = node_plane(p, work, place + axis)
-                    rate = node_plane(p, work, velocity + axis)
-                    d = at[b] - at[a]
-                    squared += d * d
-                    product += d * (rate[b] - rate[a])
-                root = math.sqrt(squared)
-                way += root
-                change += product / root if root > 0.0 else 0.0
-            return way, change
-
-        return along_cord
-
-    def make_pull(place: int, along_cord: Any, wake: bool) -> Any:
+    def make_pull(along_cord: Any, draw_cord: Any, wake: bool) -> Any:
         """Kernel that draws neighbouring bullets together; `wake`: they stand in rows that may sleep."""
-
-        @kernel
-        def pull_along_cord(p, work, i, tension):
-            """The same tension in every stretch: rings have no friction.
-
-            Checked  tests/net_capture/test_closing.py
-            """
-            radius = ring_radius(p.closing_lock_length, p.closing_rings)
-            for stop in range(stops(p)):
-                a = cord_stop(p, work, i, stop)
-                b = cord_stop(p, work, i, stop + 1)
-                squared = radius * radius
-                for axis in range(3):
-                    at = node_plane(p, work, place + axis)
-                    d = at[b] - at[a]
-                    squared += d * d
-                share = tension / math.sqrt(squared)
-                for axis in range(3):
-                    at = node_plane(p, work, place + axis)
-                    force = node_plane(p, work, FX + axis)
-                    drawn = share * (at[b] - at[a])
-                    force[a] += drawn
-                    force[b] -= drawn
 
         @kernel
         def pull(p, work):
@@ -257,9 +171,7 @@ def make(composition: Any) -> Closing:
             if p.closing_t_start < 0.0:
                 return
             if wake:
-                for i in range(4):
-                    for stop in range(stops(p)):
-                        rouse(p, work, cord_stop(p, work, i, stop))
+                rouse(p, work)
             for i in range(4):
                 distance, rate = along_cord(p, work, i)
                 length = p.cord_length[i]
@@ -270,11 +182,9 @@ def make(composition: Any) -> Closing:
                 if distance > length:
                     elastic = cord_stiffness(p.closing_axial_stiffness, length) * (distance - length)
                     p.cord_power += (tension - elastic) * (rate - winding)
-                    pull_along_cord(p, work, i, tension)
+                    draw_cord(p, work, i, tension)
 
         return pull
-
-    along_now, along_shown = make_way(X, P), make_way(SHOWN, SHOWN_RATE)
 
     @kernel
     def trigger(p, work, now, touched, beyond):
@@ -337,7 +247,8 @@ def make(composition: Any) -> Closing:
             energy += cord_energy(p, distance, p.cord_length[i])
         return energy
 
-    return Closing(start, make_pull(X, along_now, True), make_pull(SHOWN, along_shown, False), wind, trigger, stored)
+    pull, pull_shown = make_pull(along_now, cord.draw, True), make_pull(along_shown, cord.draw_shown, False)
+    return Closing(start, pull, pull_shown, wind, trigger, stored)
 
 
 def refuses(scene: Scene) -> Iterator[Refusal]:

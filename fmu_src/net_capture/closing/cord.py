@@ -1,0 +1,145 @@
+"""A cord between neighbouring bullets, which runs along the mouth's rim through rings: its way, and how it draws.
+
+Whatever shortens it: its length, and so its tension, is the drive's.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from fmu_src.net_capture.formulas import ring_radius
+from fmu_src.net_capture.planes import FX, SHOWN, SHOWN_RATE, P, X
+from orbital.kernel import kernel
+
+
+class Cord(NamedTuple):
+    """Kernels of the cord of pair i, from bullet i to the next.
+
+    pieces(p, work, i)               pieces of thread on the rim between the two [1]
+    rouse(p, work)                   all nodes that it draws stand where they are now, and are kicked in this substep
+    along, along_shown (p, work, i)  its way [m] and the rate of that [m/s], now and of what is shown
+    draw, draw_shown (p, work, i, tension)   the same tension in every stretch: rings have no friction
+    """
+
+    pieces: Any
+    rouse: Any
+    along: Any
+    along_shown: Any
+    draw: Any
+    draw_shown: Any
+
+
+@kernel
+def stops(p):
+    """Stretches of one pair's cord: from bullet to ring to bullet.
+
+    Checked  tests/net_capture/test_closing.py
+    """
+    return p.closing_rings + 1
+
+
+def make_cord(composition: Any) -> Cord:
+    """Kernels of the cord along the rim of the composition's net."""
+    memory, rouse_node = composition.memory, composition.rouse
+    node_plane, rim, corners = memory.node_plane, memory.rim, memory.corners
+
+    @kernel
+    def pieces(p, work, i):
+        """Pieces of thread on the rim from bullet i to the next [1].
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        last = corners(p, work)[i + 1] if i + 1 < p.net_corners else p.rim_nodes
+        return last - corners(p, work)[i]
+
+    @kernel
+    def cord_stop(p, work, i, stop):
+        """Node at which a stretch of the i-th pair's cord begins: stop 0 is bullet i, the last is the next bullet.
+
+        Checked  tests/net_capture/test_closing.py
+        """
+        at = corners(p, work)[i] + (2 * stop * pieces(p, work, i) + stops(p)) // (2 * stops(p))
+        return rim(p, work)[at if at < p.rim_nodes else 0]
+
+    @kernel
+    def rouse(p, work):
+        """Every node that the cord draws stands where it is now, and is kicked in this substep.
+
+        Checked  tests/net_capture/test_sleep.py
+        """
+        for i in range(p.net_corners):
+            for stop in range(stops(p)):
+                rouse_node(p, work, cord_stop(p, work, i, stop))
+
+    def make_way(place: int, velocity: int) -> Any:
+        """Kernel `along_cord` of the positions and velocities in the planes from these on."""
+
+        @kernel
+        def along_cord(p, work, i):
+            """Way of the i-th pair's cord from bullet through the rings to bullet [m], and its rate [m/s].
+
+                s = sum over the stretches of sqrt(d^2 + b^2)
+
+            d  between two stops, b  how near to a ring's middle it passes: a stretch pulls with T d / sqrt(d^2 + b^2),
+            so its direction does not jump where a ring meets the next.
+
+            Checked  tests/net_capture/test_closing.py
+            """
+            radius = ring_radius(p.closing_lock_length, p.closing_rings)
+            way = 0.0
+            change = 0.0
+            for stop in range(stops(p)):
+                a = cord_stop(p, work, i, stop)
+                b = cord_stop(p, work, i, stop + 1)
+                squared = radius * radius
+                product = 0.0
+                for axis in range(3):
+                    at = node_plane(p, work, place + axis)
+                    rate = node_plane(p, work, velocity + axis)
+                    d = at[b] - at[a]
+                    squared += d * d
+                    product += d * (rate[b] - rate[a])
+                root = math.sqrt(squared)
+                way += root
+                change += product / root if root > 0.0 else 0.0
+            return way, change
+
+        return along_cord
+
+    def make_draw(place: int) -> Any:
+        """Kernel `draw_cord` at the positions in the planes from this on."""
+
+        @kernel
+        def draw_cord(p, work, i, tension):
+            """The same tension in every stretch: rings have no friction.
+
+            Checked  tests/net_capture/test_closing.py
+            """
+            radius = ring_radius(p.closing_lock_length, p.closing_rings)
+            for stop in range(stops(p)):
+                a = cord_stop(p, work, i, stop)
+                b = cord_stop(p, work, i, stop + 1)
+                squared = radius * radius
+                for axis in range(3):
+                    at = node_plane(p, work, place + axis)
+                    d = at[b] - at[a]
+                    squared += d * d
+                share = tension / math.sqrt(squared)
+                for axis in range(3):
+                    at = node_plane(p, work, place + axis)
+                    force = node_plane(p, work, FX + axis)
+                    drawn = share * (at[b] - at[a])
+                    force[a] += drawn
+                    force[b] -= drawn
+
+        return draw_cord
+
+    return Cord(
+        pieces,
+        rouse,
+        make_way(X, P),
+        make_way(SHOWN, SHOWN_RATE),
+        make_draw(X),
+        make_draw(SHOWN),
+    )
