@@ -18,7 +18,7 @@ class Pulls:
 
     pull(p, work)         add its forces, for a substep
     pull_shown(p, work)   the same for the positions and velocities shown
-    book(p, duration)     what its dashpots took in a time at their present power [s]
+    book(p, duration)     what it gave and took in a time at its present forces [s]: dashpots, the tether's impulse
     """
 
     pull: Any
@@ -81,7 +81,9 @@ def _make_pulls(closing: Any, tether: Any) -> Pulls:
     """The pulls of cord and tether together."""
     has_closing, has_tether = closing is not None, tether is not None
     pull_mouth, pull_mouth_shown = (closing.pull, closing.pull_shown) if has_closing else (None, None)
-    pull_vertex, pull_vertex_shown = (tether.pull, tether.pull_shown) if has_tether else (None, None)
+    pull_vertex, pull_vertex_shown, book_impulse = (
+        (tether.pull, tether.pull_shown, tether.book) if has_tether else [None] * 3
+    )
 
     @kernel
     def pull(p, work):
@@ -107,11 +109,13 @@ def _make_pulls(closing: Any, tether: Any) -> Pulls:
 
     @kernel
     def book(p, duration):
-        """What the cord's dashpots took in a time at their present power [J].
+        """What the cord's dashpots took in a time at their present power [J], and the tether's impulse.
 
         Checked  tests/net_capture/test_closing.py
         """
         if has_closing:
             p.cord_loss += duration * p.cord_power
+        if has_tether:
+            book_impulse(p, duration)
 
     return Pulls(pull, pull_shown, book)

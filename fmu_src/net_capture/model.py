@@ -87,10 +87,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             gravity.kick_body(p, p.target_place, p.target_drift, p.rest, h)
         scheme.step(p, work)
         if has_tether:
-            tether.pull_chaser(p)
+            tether.kick_chaser(p)
+        before = p.scratch[0:3]
+        for axis in range(3):
+            before[axis] = p.chaser_drift[axis]
         gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, h)
         for axis in range(3):
-            p.chaser_place[axis] += h * p.chaser_drift[axis]
+            # staggered by half a substep, or at one instant with the place: then the mean of before and after counts
+            change = p.chaser_drift[axis] - before[axis]
+            p.chaser_place[axis] += h * (p.chaser_drift[axis] - (0.5 - lag) * change)
         if has_target:
             target.drift(p, frame_rate(p), h)
         p.grid += 1
@@ -184,11 +189,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def place_bodies(p, ahead):
-        """Places `ahead` seconds on and velocities now of chaser and target: half a kick after those they keep.
+        """Places `ahead` seconds on and velocities now of chaser and target: those they keep lie back by the scheme's
+        `lag`.
 
         Checked  tests/net_capture/test_free_flight.py
         """
-        half = 0.5 * p.solver_substep
+        late = lag * p.solver_substep
         for axis in range(3):
             p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_drift[axis]
             p.chaser_velocity[axis] = p.chaser_drift[axis]
@@ -197,9 +203,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 p.target_velocity[axis] = p.target_drift[axis]
         if has_tether:
             tether.pull_chaser(p)
-        gravity.kick_body(p, p.chaser_place, p.chaser_velocity, p.pull, half)
+        gravity.kick_body(p, p.chaser_place, p.chaser_velocity, p.pull, late)
         if has_target:
-            gravity.kick_body(p, p.target_place, p.target_velocity, p.rest, half)
+            gravity.kick_body(p, p.target_place, p.target_velocity, p.rest, late)
 
     @kernel
     def write_nodes(p, work):
@@ -268,7 +274,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             outcome.start_enclosure(p)
             p.cord_loss = 0.0
         if has_tether:
-            p.tether_work = 0.0
+            tether.start(p)
         measures.start_mouth(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
@@ -286,11 +292,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def start_bodies(p, work):
-        """Give the chaser the recoil of the shot, and take both bodies' velocities half a substep back.
+        """Give the chaser the recoil of the shot, and take both bodies' velocities back by the scheme's `lag`.
 
         Checked  tests/net_capture/test_free_flight.py
         """
-        half = 0.5 * p.solver_substep
+        late = lag * p.solver_substep
         scheme.show(p, work)
         measures.measure_net(p, work)
         for axis in range(3):
@@ -298,9 +304,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             p.chaser_drift[axis] -= recoil / p.chaser_mass
         if has_tether:
             tether.pull_chaser(p)
-        gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, -half)
+        gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, -late)
         if has_target:
-            gravity.kick_body(p, p.target_place, p.target_drift, p.rest, -half)
+            gravity.kick_body(p, p.target_place, p.target_drift, p.rest, -late)
 
     @kernel
     def advance(p, work, end, anew):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.interface import Term, Variable
 from fmu_src.net_capture.planes import FX, SHOWN, X
-from fmu_src.rows import output, positive, state
+from fmu_src.rows import count, output, positive, state
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
@@ -17,7 +17,10 @@ class Tether(NamedTuple):
 
     pull(p, work)          add the tension at the vertex, for a substep
     pull_shown(p, work)    the same for the positions shown
-    pull_chaser(p)         acceleration of the chaser under the tension, as of the last `pull`, into `p.pull` [m/s2]
+    start(p)               nothing pulled yet
+    book(p, duration)      impulse that the vertex takes in a time at the tension of the last `pull` [s]
+    kick_chaser(p)         acceleration of the chaser over a substep, from what is booked, into `p.pull` [m/s2]
+    pull_chaser(p)         the same at an instant, from the last `pull` alone
     reel_in(p, work)       book the work of the reel over the substep just taken
     reach(p, work)         distance from the chaser to the vertex as shown [m]
     measure(p)             what is reported
@@ -25,10 +28,47 @@ class Tether(NamedTuple):
 
     pull: Any
     pull_shown: Any
+    start: Any
+    book: Any
+    kick_chaser: Any
     pull_chaser: Any
     reel_in: Any
     reach: Any
     measure: Any
+
+
+@kernel
+def start(p):
+    """Nothing pulled yet.
+
+    Checked  tests/net_capture/test_schemes.py
+    """
+    p.tether_work = 0.0
+    p.tether_grid = -1
+    for axis in range(3):
+        p.tether_impulse[axis] = 0.0
+
+
+@kernel
+def book(p, duration):
+    """Impulse [N s] that the vertex takes in a time at the present tension [s]: the chaser takes the same at the end of
+    the substep, however many stages it has.
+
+    Checked  tests/net_capture/test_schemes.py
+    """
+    for axis in range(3):
+        p.tether_impulse[axis] += duration * p.tether_pull[axis]
+
+
+@kernel
+def kick_chaser(p):
+    """Acceleration of the chaser over the substep whose impulse is booked, into `p.pull` [m/s2].
+
+    Checked  tests/net_capture/test_schemes.py
+    """
+    for axis in range(3):
+        p.pull[axis] = -p.tether_impulse[axis] / (p.solver_substep * p.chaser_mass)
+        p.tether_impulse[axis] = 0.0
 
 
 @kernel
@@ -95,7 +135,9 @@ def make(composition: Any) -> Tether:
                 for i in range(p.apex_nodes):
                     rouse(p, work, apex(p, work)[i])
             away = towards_chaser(p, work)
-            p.tether_reach = away
+            if wake and p.tether_grid != p.grid:
+                p.tether_reach = away
+                p.tether_grid = p.grid
             if away > 0.0:
                 for axis in range(3):
                     p.tether_pull[axis] = p.tether_vertex_tension * p.tether_way[axis] / away
@@ -116,9 +158,11 @@ def make(composition: Any) -> Tether:
         if p.tether_vertex_tension != 0.0:
             before = p.tether_reach
             p.tether_reach = now(p, work)
+            p.tether_grid = p.grid
             p.tether_work += p.tether_vertex_tension * (before - p.tether_reach)
 
-    return Tether(make_pull(now, True), make_pull(shown, False), pull_chaser, reel_in, shown, measure)
+    pull, pull_shown = make_pull(now, True), make_pull(shown, False)
+    return Tether(pull, pull_shown, start, book, kick_chaser, pull_chaser, reel_in, shown, measure)
 
 
 PART = Term(
@@ -128,7 +172,9 @@ PART = Term(
         Variable("tether.vertex_tension", "N", "input", "tension at the vertex, towards the chaser", nominal=1.0),
         output("tether.paid_out", "m", "distance from the chaser to the vertex"),
         output("tether.work", "J", "work done by the tension signal so far"),
-        state("tether_reach", "m", "distance from the chaser to the vertex at the last substep"),
+        state("tether_reach", "m", "distance from the chaser to the vertex at the begin of a substep that is pulled"),
+        count("tether_grid", "which substep that is", "state"),
+        state("tether_impulse[#]", "N.s", "what the vertex has taken in this substep", shape=(3,)),
         state("tether_way[#]", "m", "from the vertex to the chaser", shape=(3,)),
         state("tether_pull[#]", "N", "tension at the vertex, towards the chaser", shape=(3,)),
     ),

@@ -151,3 +151,21 @@ def test_rk4_is_stable_up_to_its_bound(zeta):
     assert growth(step) <= 1.0 + 1e-12
     assert growth(1.13 * step) > 1.0
     assert rk4.accurate_step(0.5 * omega * omega, zeta * omega) < step
+
+
+@pytest.mark.parametrize("scheme", ["leapfrog", "rk4"])
+def test_the_tether_pulls_net_and_chaser_alike(scheme):
+    """A constant tension does T (s0 - s1), s the distance from vertex to chaser; whatever the scheme's stages, net and
+    chaser take the same impulse."""
+    net = Instance(MODEL, FREE | {"solver": scheme, "tether": "slack"}, {"net.mesh": 2.0}).initialise()
+    net.step(9.0)
+    before, left = net["tether.paid_out"], net["energy.remainder"]
+    assert before > 1.0
+    net["tether.vertex_tension"] = 0.2
+    for _ in range(20):
+        net.step(0.1)
+    done = 0.2 * (before - net["tether.paid_out"])
+    assert abs(done) > 1.0
+    assert net["tether.work"] == pytest.approx(done, rel=1e-9)
+    assert abs(net["energy.remainder"] - left) < 5e-3
+    assert np.abs(net.array("momentum")).max() < 1e-11

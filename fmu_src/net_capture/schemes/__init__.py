@@ -27,7 +27,8 @@ class Needs(NamedTuple):
 class Scheme(NamedTuple):
     """Kernels of one scheme; nodes have positions in the planes X, and F is clear between substeps.
 
-    lag                      share of a substep by which the losses that `step` books end before now
+    lag                      share of a substep by which velocities lie before positions, and the losses that `step`
+                             books end before now
     own_words(p)             whole numbers of work memory it wants for itself
     begin(p, work)           take over the positions in X and the velocities in U, which belong to the same instant
     step(p, work)            all nodes one substep on, and what the dashpots took
