@@ -16,7 +16,7 @@ from fmu_src.net_capture.planes import (
     STRIP_WORDS,
     work_size,
 )
-from fmu_src.net_capture.schemes.leapfrog import ROW_WORDS
+from fmu_src.net_capture.schemes.asleep import ROW_WORDS
 from fmu_src.net_capture.schemes.rk4 import OWN_PLANES
 
 

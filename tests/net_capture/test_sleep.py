@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.planes import INVERSE_MASS, SHOWN, SHOWN_BACK, P, U, X
-from fmu_src.net_capture.schemes.leapfrog import ROW_WORDS
+from fmu_src.net_capture.schemes.asleep import ROW_WORDS
 from tests.conftest import CAPTURE, FREE
 from tests.net_capture.memory import graph, nodes, planes, stamps
 

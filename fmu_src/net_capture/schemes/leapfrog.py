@@ -8,11 +8,7 @@ back they would make the scheme one of first order.
 Order 2 with damping, where no thread changes between slack and taut. Stable up to `explicit_step_limit` of
 `orbital.oscillators`.
 
-Rows asleep. A node that nothing pulls flies freely, so of a strip that is slack the instant is known before which none
-of its threads can be taut. Until then the strip is not looked at, and its rows stay where they are in memory, each with
-the substep to which its positions belong (`STAMP`); they are flown there when next needed. A kick wakes the strips of
-the row, and so do the cord and a tension at the vertex; a row that may be within reach of the target is flown and
-looked at in every substep. What is shown is flown in a copy, so that the bits do not depend on when outputs are read.
+Rows that nothing pulls are left alone, see `asleep`.
 
 Rows are taken in order. Each strip belongs to the first of its two rows, so when a row's turn has come all its forces
 are there: it is kicked and drifted at once, while it is still in the first cache.
@@ -20,7 +16,6 @@ are there: it is kicked and drifted at once, while it is still in the first cach
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -45,23 +40,31 @@ from fmu_src.net_capture.planes import (
     X,
 )
 from fmu_src.net_capture.schemes import Needs, Scheme
+from fmu_src.net_capture.schemes.asleep import (
+    CLEAR,
+    KICKED,
+    NEXT,
+    OWN_END,
+    QUIET,
+    QUIET_LOOKS,
+    ROW_A,
+    ROW_B,
+    ROW_WORDS,
+    SLEEP_WORDS,
+    STAMP,
+    STRIPS,
+    TAUT,
+    TOUCHED,
+    WAKE,
+    make_asleep,
+    make_rouse,
+)
 from fmu_src.net_capture.stepping import LONGEST_SLEEP
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
 
-STAMP, NEXT, KICKED, TOUCHED, CLEAR, STRIPS, OWN_END, STRIPS_END, ROW_WORDS = range(9)
-"""Columns of the rows: substep that its positions belong to; when it is next looked at; lanes that the last kick moved;
-lanes that something pulls now; until when the target is out of its reach; its strips in the list of neighbours, those
-that belong to it first."""
-WAKE, QUIET, TAUT, ROW_A, ROW_B, SLEEP_WORDS = range(6)
-"""Columns of a strip's sleep: when it is next looked at; for how many looks on end it has been slack; lanes that were
-taut a substep ago; rows of its two ends."""
-
-QUIET_LOOKS = 8
-"""Slack looks on end before it is worth working out how long a strip may sleep: that costs as much as four looks."""
 LAG = 0.5
-SURE = 0.999
-"""Share of the sleep worked out that is slept: more than all rounding."""
+"""Velocities lie half a substep before positions."""
 
 
 def make(composition: Any) -> Scheme:
@@ -70,80 +73,24 @@ def make(composition: Any) -> Scheme:
     contact, pulls = composition.contact, composition.pulls
     threads = make_threads(composition, P, U)
     taut_lanes, pull, pull_shown = threads.taut, threads.pull, threads.pull_shown
-    load, store, splat, where, root, lane = lanes.load, lanes.store, lanes.splat, lanes.where, lanes.root, lanes.lane
+    load, store, splat = lanes.load, lanes.store, lanes.splat
     strips, properties, own, reals_of = memory.strips, memory.properties, memory.own, memory.reals
-    node_plane = memory.node_plane
-    width, ramp = lanes.width, lanes.ramp
-    from fmu_src.lanes import highest, lowest, peek, poke
+    node_plane, width = memory.node_plane, lanes.width
+    asleep = make_asleep(composition)
+    find_neighbours, fly_row, bring, sleep = asleep.find_neighbours, asleep.fly_row, asleep.bring, asleep.sleep
+    mark, wake_strips = asleep.mark, asleep.wake_strips
+    from fmu_src.lanes import lowest, peek, poke
 
     group = np.uint64((1 << width) - 1)
 
     kick_group, coast_group, fly_group = gravity.kick_group, gravity.coast_group, gravity.fly_group
-    begin_flight, stray, accelerate = gravity.begin_flight, gravity.stray, gravity.accelerate
+    begin_flight, accelerate = gravity.begin_flight, gravity.accelerate
     bends, rate_of = gravity.bends, gravity.rate
     has_contact = contact is not None
     begin_step, touch_row, clear_steps, hurries = (
         (contact.begin_step, contact.touch_row, contact.clear_steps, contact.hurries) if has_contact else [None] * 4
     )
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
-
-    @kernel
-    def own_words(p):
-        """Whole numbers that rows, strips and their lists take [1].
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        return (
-            ROW_WORDS * (p.node_slots // p.row_pitch) + (SLEEP_WORDS + 2) * p.strips
-        )  # a strip is listed twice at most
-
-    @kernel
-    def find_neighbours(p, work):
-        """List the strips of every row, those that begin in it first; all awake.
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        table = strips(p, work)
-        words = own(p, work)
-        rows = p.node_slots // p.row_pitch
-        listed = ROW_WORDS * rows + SLEEP_WORDS * p.strips
-        at = 0
-        for row in range(rows):
-            words[ROW_WORDS * row + TOUCHED] = 0
-            words[ROW_WORDS * row + STRIPS_END] = 0
-            words[ROW_WORDS * row + OWN_END] = 0
-        for q in range(p.strips):
-            a = table[STRIP_WORDS * q + A] // p.row_pitch
-            b = table[STRIP_WORDS * q + B] // p.row_pitch
-            words[ROW_WORDS * min(a, b) + OWN_END] += 1
-            words[ROW_WORDS * max(a, b) + STRIPS_END] += 1 if a != b else 0
-        for row in range(rows):
-            r = ROW_WORDS * row
-            words[r + STAMP] = 0
-            words[r + NEXT] = 0
-            words[r + KICKED] = -1
-            words[r + CLEAR] = 0
-            words[r + STRIPS] = at
-            of_it, others = words[r + OWN_END], words[r + STRIPS_END]
-            words[r + OWN_END] = at
-            words[r + STRIPS_END] = at + of_it
-            at += of_it + others
-        for q in range(p.strips):
-            a = table[STRIP_WORDS * q + A] // p.row_pitch
-            b = table[STRIP_WORDS * q + B] // p.row_pitch
-            z = ROW_WORDS * rows + SLEEP_WORDS * q
-            words[z + WAKE] = 0
-            words[z + QUIET] = 0
-            words[z + TAUT] = 0
-            words[z + ROW_A] = a
-            words[z + ROW_B] = b
-            r = ROW_WORDS * min(a, b)
-            words[listed + words[r + OWN_END]] = q
-            words[r + OWN_END] += 1
-            if a != b:
-                r = ROW_WORDS * max(a, b)
-                words[listed + words[r + STRIPS_END]] = q
-                words[r + STRIPS_END] += 1
 
     @kernel
     def begin(p, work):
@@ -187,97 +134,6 @@ def make(composition: Any) -> Scheme:
                     node_plane(p, work, FX + axis)[i] += out[axis] / inverse[i]
 
     @kernel
-    def fly_row(p, reals, row, steps):
-        """A row's positions so many substeps on, through which nothing pulls it.
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        begin_flight(p, p.flight, steps)
-        for i in range(row * p.row_pitch, (row + 1) * p.row_pitch, width):
-            fly_group(reals, i, p.node_slots, p.flight, X, P, U)
-
-    @kernel
-    def bring(p, reals, words, row):
-        """A row's positions to the present substep.
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        late = p.grid - peek(words, ROW_WORDS * row + STAMP)
-        if late != 0:
-            fly_row(p, reals, row, late)
-            poke(words, ROW_WORDS * row + STAMP, p.grid)
-
-    @kernel
-    def sleep(p, reals, a, b, lanes, length):
-        """Substeps for which a strip that is slack stays so [1], at least 1.
-
-            |d + w t| = L,   t = (sqrt((d.w)^2 + w^2 (L^2 - d^2)) - d.w) / w^2
-
-        L is shorter by how far a free flight may leave the straight line in the longest sleep.
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        slots = p.node_slots
-        end = np.int64(highest(np.uint64(lanes))) + 1
-        count = splat(np.float64(end))
-        zero = splat(0.0)
-        tiny = splat(1e-30)
-        reach = length
-        if bends:
-            fastest = zero
-            for j in range(0, end, width):
-                m = a + j + P * slots
-                n = b + j + P * slots
-                u = load(reals, n) - load(reals, m)
-                v = load(reals, n + slots) - load(reals, m + slots)
-                w = load(reals, n + 2 * slots) - load(reals, m + 2 * slots)
-                speed = u * u + v * v + w * w
-                fastest = where(ramp() + splat(np.float64(j)) < count, where(speed > fastest, speed, fastest), fastest)
-            largest = 0.0
-            for i in range(width):
-                largest = max(largest, lane(fastest, np.int64(i)))
-            reach -= stray(p, length, math.sqrt(largest), LONGEST_SLEEP * p.solver_substep)
-            if reach <= 0.0:
-                return 1
-        squared = splat(reach * reach)
-        soonest = splat(1e9)
-        for j in range(0, end, width):
-            m = a + j
-            n = b + j
-            x = load(reals, n) - load(reals, m)
-            y = load(reals, n + slots) - load(reals, m + slots)
-            z = load(reals, n + 2 * slots) - load(reals, m + 2 * slots)
-            m += P * slots
-            n += P * slots
-            u = load(reals, n) - load(reals, m)
-            v = load(reals, n + slots) - load(reals, m + slots)
-            w = load(reals, n + 2 * slots) - load(reals, m + 2 * slots)
-            left = squared - (x * x + y * y + z * z)
-            along = x * u + y * v + z * w
-            speed = u * u + v * v + w * w
-            speed = where(speed > tiny, speed, tiny)
-            under = along * along + speed * left
-            time = (root(where(under > zero, under, zero)) - along) / speed
-            time = where(time < soonest, time, soonest)
-            soonest = where(ramp() + splat(np.float64(j)) < count, time, soonest)
-        least = 1e9
-        for i in range(width):
-            least = min(least, lane(soonest, np.int64(i)))
-        steps = SURE * least / p.solver_substep
-        return max(int(min(steps, LONGEST_SLEEP)), 1)
-
-    @kernel
-    def mark(p, words, row, node, lanes):
-        """Something pulls these lanes of a row, counted from a node: its turn is in this substep.
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        r = ROW_WORDS * row
-        here = np.int64(lanes << np.uint64(node - row * p.row_pitch))
-        poke(words, r + TOUCHED, peek(words, r + TOUCHED) | here)
-        poke(words, r + NEXT, p.grid)
-
-    @kernel
     def look_at_strip(p, reals, table, numbers, words, z, strip):
         """Forces of one strip [W taken by its dashpots], and when to look at it again.
 
@@ -308,24 +164,6 @@ def make(composition: Any) -> Scheme:
             steps = sleep(p, reals, a, b, peek(table, s + LANES), peek(numbers, q + LENGTH))
             poke(words, z + WAKE, p.grid + steps)
         return 0.0
-
-    @kernel
-    def wake_strips(p, words, rows, row):
-        """Look at all strips of a row in the next substep: its nodes fly otherwise than was reckoned.
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        following = p.grid + 1
-        sleeps = ROW_WORDS * rows
-        listed = sleeps + SLEEP_WORDS * p.strips
-        for n in range(peek(words, ROW_WORDS * row + STRIPS), peek(words, ROW_WORDS * row + STRIPS_END)):
-            z = sleeps + SLEEP_WORDS * peek(words, listed + n)
-            poke(words, z + QUIET, 0)
-            if peek(words, z + WAKE) > following:
-                poke(words, z + WAKE, following)
-            owner = ROW_WORDS * min(peek(words, z + ROW_A), peek(words, z + ROW_B)) + NEXT
-            if peek(words, owner) > following:
-                poke(words, owner, following)
 
     @kernel
     def drift(p, reals, first, end):
@@ -475,34 +313,7 @@ def make(composition: Any) -> Scheme:
                 node_plane(p, work, SHOWN_BACK + axis)[i] = now + change
                 node_plane(p, work, FX + axis)[i] = 0.0
 
-    return Scheme(LAG, own_words, begin, step, place, threads.stored, show)
-
-
-def make_rouse(composition: Any) -> Any:
-    """Kernel `rouse(p, work, node)`: a node that is to be pulled stands where it is now, and is kicked in this step."""
-    memory, lanes, gravity = composition.memory, composition.lanes, composition.gravity
-    own, reals_of, width = memory.own, memory.reals, lanes.width
-    begin_flight, fly_group = gravity.begin_flight, gravity.fly_group
-
-    @kernel
-    def rouse(p, work, node):
-        """A node that is to be pulled stands where it is now, and is kicked in this substep.
-
-        Checked  tests/net_capture/test_sleep.py
-        """
-        words = own(p, work)
-        row = node // p.row_pitch
-        r = ROW_WORDS * row
-        late = p.grid - words[r + STAMP]
-        if late != 0:
-            begin_flight(p, p.flight, late)
-            for i in range(row * p.row_pitch, (row + 1) * p.row_pitch, width):
-                fly_group(reals_of(work), i, p.node_slots, p.flight, X, P, U)
-            words[r + STAMP] = p.grid
-        words[r + TOUCHED] |= np.int64(1) << np.int64(node - row * p.row_pitch)
-        words[r + NEXT] = p.grid
-
-    return rouse
+    return Scheme(LAG, asleep.own_words, begin, step, place, threads.stored, show)
 
 
 PART = Term(
