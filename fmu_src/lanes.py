@@ -7,7 +7,8 @@
 `+ - * /` and `< <= >` work lane by lane, and so do the functions below. What is written is what is computed: nothing is
 reassociated, fused or approximated, so the bits are those of the same sums and products taken one by one, on every
 processor; a vector wider than the machine's becomes several. Loads and stores want no alignment, but stores that cross
-32 bytes take twice as long.
+32 bytes take twice as long. With NUMBA_BOUNDSCHECK=1 in the environment they are held to the array, like numba's own
+indexing: IndexError.
 
 Checked  tests/net_capture/test_lanes.py
 """
@@ -119,9 +120,18 @@ class Lanes(NamedTuple):
     lane: Any
 
 
-def _pointer(context: Any, builder: Any, array_type: Any, array: Any, index: Any, precision: str) -> Any:
-    data = context.make_array(array_type)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), _vector(precision).as_pointer())
+def _element(context: Any, builder: Any, array_type: Any, array: Any, index: Any, count: int = 1) -> Any:
+    """Pointer to the first of `count` elements."""
+    made = context.make_array(array_type)(context, builder, array)
+    if context.enable_boundscheck:
+        for i in (0, count - 1):
+            cgutils.do_boundscheck(context, builder, builder.add(index, index.type(i)), made.nitems)
+    return builder.gep(made.data, [index])
+
+
+def _vector_at(context: Any, builder: Any, sig: Any, args: Any, precision: str) -> Any:
+    first = _element(context, builder, sig.args[0], args[0], args[1], REALS[precision][3])
+    return builder.bitcast(first, _vector(precision).as_pointer())
 
 
 @cache
@@ -134,15 +144,14 @@ def of(precision: str) -> Lanes:
     @intrinsic
     def load(context: Any, reals: Any, index: Any) -> Any:
         def emit(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            return builder.load(_pointer(context, builder, sig.args[0], args[0], args[1], precision), align=size)
+            return builder.load(_vector_at(context, builder, sig, args, precision), align=size)
 
         return lanes(reals, types.int64), emit
 
     @intrinsic
     def store(context: Any, reals: Any, index: Any, value: Any) -> Any:
         def emit(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            pointer = _pointer(context, builder, sig.args[0], args[0], args[1], precision)
-            builder.store(args[2], pointer, align=size)
+            builder.store(args[2], _vector_at(context, builder, sig, args, precision), align=size)
             return context.get_dummy_value()
 
         return types.void(reals, types.int64, lanes), emit
@@ -269,8 +278,7 @@ def peek(context: Any, array: Any, index: Any) -> Any:
     """One element, without the test for an index that counts from the end: in a loop it costs as much as the load."""
 
     def emit(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        data = context.make_array(sig.args[0])(context, builder, args[0]).data
-        return builder.load(builder.gep(data, [args[1]]))
+        return builder.load(_element(context, builder, sig.args[0], *args))
 
     return array.dtype(array, types.int64), emit
 
@@ -280,8 +288,7 @@ def poke(context: Any, array: Any, index: Any, value: Any) -> Any:
     """Write one element, see `peek`."""
 
     def emit(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        data = context.make_array(sig.args[0])(context, builder, args[0]).data
-        builder.store(args[2], builder.gep(data, [args[1]]))
+        builder.store(args[2], _element(context, builder, sig.args[0], *args[:2]))
         return context.get_dummy_value()
 
     return types.void(array, types.int64, array.dtype), emit

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from fmu_src.lanes import lowest, of, whole
+from fmu_src.lanes import lowest, of, peek, poke, whole
 from orbital.kernel import kernel
 
 REALS = {"double": np.float64, "single": np.float32}
@@ -226,7 +226,7 @@ def test_views_share_the_memory(precision):
         counts[1] = whole(memory).size
         reals(memory)[3] = 2.5
         whole(memory)[5] = -7
-        part = reals(memory)[12:14]
+        part = reals(memory)[reals(memory).size - 2 :]
         part[1] = 9.0
 
     memory, counts = np.zeros(8), np.zeros(2, dtype=np.int64)
@@ -235,9 +235,42 @@ def test_views_share_the_memory(precision):
     expected = np.zeros(8)
     expected.view(kind)[3] = 2.5
     expected.view(np.int64)[5] = -7
-    if precision == "single":
-        expected.view(kind)[13] = 9.0
-        assert counts.tolist() == [16, 8]
-    else:
-        assert counts.tolist() == [8, 8]
+    expected.view(kind)[-1] = 9.0
+    assert counts.tolist() == [16 if precision == "single" else 8, 8]
     np.testing.assert_array_equal(memory.view(np.uint64), expected.view(np.uint64))
+
+
+@pytest.mark.parametrize("access", ["load", "store", "peek", "poke"])
+def test_under_numbas_bounds_check_nothing_beyond_the_array_is_touched(precision, access, monkeypatch):
+    """The first and the last place are allowed, one further at either end is an IndexError."""
+    monkeypatch.setattr("numba.core.config.BOUNDSCHECK", 1)
+    lanes = of(precision)
+    reals, load, store, splat, lane = lanes.reals, lanes.load, lanes.store, lanes.splat, lanes.lane
+
+    @kernel
+    def loads(memory, i):
+        return lane(load(reals(memory), i), 0)
+
+    @kernel
+    def stores(memory, i):
+        store(reals(memory), i, splat(2.5))
+
+    @kernel
+    def peeks(memory, i):
+        return peek(reals(memory), i)
+
+    @kernel
+    def pokes(memory, i):
+        poke(reals(memory), i, 2.5)
+
+    run = {"load": loads, "store": stores, "peek": peeks, "poke": pokes}[access]
+    whole_memory = np.zeros(24)
+    memory = whole_memory[8:16]
+    last = 64 // np.dtype(REALS[precision]).itemsize - (lanes.width if access in ("load", "store") else 1)
+    run(memory, 0)
+    run(memory, last)
+    for i in (-1, last + 1):
+        with pytest.raises(IndexError):
+            run(memory, i)
+    assert not whole_memory[:8].any()
+    assert not whole_memory[16:].any()
