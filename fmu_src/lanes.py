@@ -199,7 +199,14 @@ def of(precision: str) -> Lanes:
     @intrinsic
     def flags_of(context: Any, value: Any) -> Any:
         def emit(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            return builder.bitcast(builder.trunc(args[0], ir.IntType(width)), ir.VectorType(ir.IntType(1), width))
+            # one bit kept in each lane, as wide as its number: cheaper for a processor than bits strewn over lanes
+            whole = ir.IntType(256 // width)
+            place, word = ir.IntType(32), ir.VectorType(whole, width)
+            unknown = ir.Constant(word, ir.Undefined)
+            first = builder.insert_element(unknown, builder.trunc(args[0], whole), ir.Constant(place, 0))
+            spread = builder.shuffle_vector(first, unknown, ir.Constant(ir.VectorType(place, width), [0] * width))
+            kept = builder.and_(spread, ir.Constant(word, [1 << i for i in range(width)]))
+            return builder.icmp_unsigned("!=", kept, ir.Constant(word, [0] * width))
 
         return flags(types.uint64), emit
 

@@ -172,10 +172,11 @@ def make(composition: Any) -> Scheme:
         Checked  tests/net_capture/test_sleep.py
         """
         step = splat(p.solver_substep)
+        slots = p.node_slots
         for i in range(first, end, width):
             for axis in range(3):
-                at = i + axis * p.node_slots
-                store(reals, at, load(reals, at) + step * load(reals, at + U * p.node_slots))
+                at = i + axis * slots
+                store(reals, at, load(reals, at) + step * load(reals, at + U * slots))
 
     @kernel
     def kick_row(p, reals, row, lanes, n):
@@ -184,17 +185,18 @@ def make(composition: Any) -> Scheme:
 
         Checked  tests/net_capture/test_sleep.py
         """
-        first = row * p.row_pitch
+        pitch, slots, substep = p.row_pitch, p.node_slots, p.solver_substep
+        first = row * pitch
         if bends:
-            for i in range(first, first + p.row_pitch, width):
-                kick_group(reals, i, p.node_slots, p.solver_substep, n)
+            for i in range(first, first + pitch, width):
+                kick_group(reals, i, slots, substep, n)
         else:
-            drift(p, reals, first, first + p.row_pitch)
-            here = lanes & (np.uint64(0xFFFFFFFFFFFFFFFF) >> np.uint64(64 - p.row_pitch))
+            drift(p, reals, first, first + pitch)
+            here = lanes & (np.uint64(0xFFFFFFFFFFFFFFFF) >> np.uint64(64 - pitch))
             while here != np.uint64(0):
                 j = lowest(here) // np.uint64(width) * np.uint64(width)
                 here &= ~(group << j)
-                kick_group(reals, first + np.int64(j), p.node_slots, p.solver_substep, n)
+                kick_group(reals, first + np.int64(j), slots, substep, n)
 
     @kernel
     def step(p, work):
