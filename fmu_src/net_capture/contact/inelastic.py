@@ -60,7 +60,7 @@ def make(composition: Any) -> Contact:
     memory, distance_to = composition.memory, composition.target.shape.distance
     node_plane, reals_of = memory.node_plane, memory.reals
     search = make_search(composition, LONGEST_SLEEP)
-    near, close, largest_pull = search.near, search.close, search.largest_pull
+    meet, largest_pull = search.meet, search.largest_pull
     inside_target = composition.code(INSIDE_TARGET.name)
     from fmu_src.lanes import lowest
 
@@ -82,13 +82,15 @@ def make(composition: Any) -> Contact:
         Checked  tests/net_capture/test_contact.py
         """
         reals = reals_of(work)
-        if not near(p, reals, first, p.envelope_radius + p.contact_margin):
+        near, found = meet(p, reals, first, p.target_turn, p.contact_margin)
+        if not near:
             return -1
-        found = close(p, reals, first, p.target_turn, p.contact_margin)
         touched = 0
         while found != np.uint64(0):
             touched += touch(p, work, first + np.int64(lowest(found)), rate, p.solver_substep)
             found &= found - np.uint64(1)
+        if touched > 0:
+            p.contact_margin = max(p.contact_margin, largest_way(p, p.solver_substep))
         return touched
 
     @kernel
@@ -158,7 +160,6 @@ def make(composition: Any) -> Contact:
             p.target_drift[i] -= impulse / p.target_mass * normal[i]
             p.target_spin[i] -= impulse * lever[i]
         take_rate(p, frame_rate)
-        p.contact_margin = max(p.contact_margin, largest_way(p, h))
         if p.contact_first_time < 0.0:
             p.contact_first_time = p.grid * p.solver_substep
         return 1

@@ -22,15 +22,14 @@ HASTE = 0.05
 class Search(NamedTuple):
     """Kernels of the search.
 
-    near(p, reals, first, radius)         whether a node of a row may have been within a sphere round the target [m]
-    close(p, reals, first, turn, margin)  nodes of a row whose way lies partly in the box round the target, widened by
-                                          a margin [m]; a bit each
+    meet(p, reals, first, turn, margin)   whether a node of a row may have been in the target's envelope, widened by a
+                                          margin [m]; and those whose way lies partly in the widened box round it, a
+                                          bit each
     largest_pull(p, work)                 acceleration that threads of 1 N may give the lightest node [1/kg]
     clear_steps, hurries                  as in `Contact`
     """
 
-    near: Any
-    close: Any
+    meet: Any
     largest_pull: Any
     clear_steps: Any
     hurries: Any
@@ -52,61 +51,46 @@ def make_search(composition: Any, longest: int) -> Search:
     has_closing, has_tether = "closing" in composition.terms, "tether" in composition.terms
 
     @kernel
-    def near(p, reals, first, radius):
+    def meet(p, reals, first, turn, margin):
         """The way's middle is within radius + |h u|/2 if any of it is within the radius; (a + b)^2 <= 2 a^2 + 2 b^2
-        spares the root.
-
-        Checked  tests/net_capture/test_fast_nodes.py
-        """
-        slots = p.node_slots
-        half = splat(0.5 * p.solver_substep)
-        two = splat(2.0)
-        within = splat(2.0 * radius * radius)
-        cx = splat(p.target_place[0])
-        cy = splat(p.target_place[1])
-        cz = splat(p.target_place[2])
-        found = np.uint64(0)
-        for i in range(first, first + p.row_pitch, width):
-            a = half * load(reals, i + U * slots)
-            b = half * load(reals, i + (U + 1) * slots)
-            c = half * load(reals, i + (U + 2) * slots)
-            dx = load(reals, i) - a - cx
-            dy = load(reals, i + slots) - b - cy
-            dz = load(reals, i + 2 * slots) - c - cz
-            found |= bits(dx * dx + dy * dy + dz * dz - two * (a * a + b * b + c * c) < within)
-        return found != np.uint64(0)
-
-    @kernel
-    def close(p, reals, first, turn, margin):
-        """The way's extent along each axis of the box counts, so a way past a corner may be taken for one through
-        it.
+        spares the root. In the box the way's extent along each axis counts, so a way past a corner may be taken for one
+        through it.
 
         Checked  tests/net_capture/test_fast_nodes.py
         """
         slots = p.node_slots
         half = splat(0.5 * p.solver_substep)
         zero = splat(0.0)
+        two = splat(2.0)
+        radius = p.envelope_radius + margin
+        within = splat(2.0 * radius * radius)
+        cx = splat(p.target_place[0])
+        cy = splat(p.target_place[1])
+        cz = splat(p.target_place[2])
+        near = np.uint64(0)
         found = np.uint64(0)
         for j in range(0, p.row_pitch, width):
             i = first + j
             sx = half * load(reals, i + U * slots)
             sy = half * load(reals, i + (U + 1) * slots)
             sz = half * load(reals, i + (U + 2) * slots)
-            dx = load(reals, i) - sx - splat(p.target_place[0])
-            dy = load(reals, i + slots) - sy - splat(p.target_place[1])
-            dz = load(reals, i + 2 * slots) - sz - splat(p.target_place[2])
-            all_in = bits(zero < splat(1.0))
-            for axis in range(3):
-                a = splat(turn[0, axis])
-                b = splat(turn[1, axis])
-                c = splat(turn[2, axis])
-                way = a * sx + b * sy + c * sz
-                middle = a * dx + b * dy + c * dz
-                way = where(way > zero, way, zero - way)
-                middle = where(middle > zero, middle, zero - middle)
-                all_in &= bits(middle - way < splat(p.half_size[axis] + margin))
-            found |= all_in << np.uint64(j)
-        return found
+            dx = load(reals, i) - sx - cx
+            dy = load(reals, i + slots) - sy - cy
+            dz = load(reals, i + 2 * slots) - sz - cz
+            here = bits(dx * dx + dy * dy + dz * dz - two * (sx * sx + sy * sy + sz * sz) < within)
+            near |= here
+            if here != np.uint64(0):
+                for axis in range(3):
+                    a = splat(turn[0, axis])
+                    b = splat(turn[1, axis])
+                    c = splat(turn[2, axis])
+                    way = a * sx + b * sy + c * sz
+                    middle = a * dx + b * dy + c * dz
+                    way = where(way > zero, way, zero - way)
+                    middle = where(middle > zero, middle, zero - middle)
+                    here &= bits(middle - way < splat(p.half_size[axis] + margin))
+                found |= here << np.uint64(j)
+        return near != np.uint64(0), found
 
     @kernel
     def clear_steps(p, work, first, pulled):
@@ -210,7 +194,7 @@ def make_search(composition: Any, longest: int) -> Search:
             return True
         return tauter
 
-    return Search(near, close, largest_pull, clear_steps, hurries)
+    return Search(meet, largest_pull, clear_steps, hurries)
 
 
 @kernel
