@@ -102,6 +102,7 @@ class Lanes(NamedTuple):
     ramp()              0, 1, 2, ...
     where(flags, x, y)  x where true, otherwise y
     root(x)             square root
+    slide(x, y)         the last of y, then all but the last of x
     bits(flags)         bit i is lane i, as uint64
     flags(bits)         lane i is bit i
     lane(x, i)          one of them, as float64
@@ -115,6 +116,7 @@ class Lanes(NamedTuple):
     ramp: Any
     where: Any
     root: Any
+    slide: Any
     bits: Any
     flags: Any
     lane: Any
@@ -190,6 +192,14 @@ def of(precision: str) -> Lanes:
         return lanes(lanes), emit
 
     @intrinsic
+    def slide(context: Any, value: Any, before: Any) -> Any:
+        def emit(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+            places = [2 * width - 1, *range(width - 1)]
+            return builder.shuffle_vector(args[0], args[1], ir.Constant(ir.VectorType(ir.IntType(32), width), places))
+
+        return lanes(lanes, lanes), emit
+
+    @intrinsic
     def bits(context: Any, value: Any) -> Any:
         def emit(context: Any, builder: Any, sig: Any, args: Any) -> Any:
             return builder.zext(builder.bitcast(args[0], ir.IntType(width)), ir.IntType(64))
@@ -218,7 +228,7 @@ def of(precision: str) -> Lanes:
 
         return types.float64(lanes, types.int64), emit
 
-    return Lanes(width, _viewed_as(real), load, store, splat, ramp, where, root, bits, flags_of, lane)
+    return Lanes(width, _viewed_as(real), load, store, splat, ramp, where, root, slide, bits, flags_of, lane)
 
 
 def _viewed_as(kind: Any) -> Any:

@@ -34,7 +34,8 @@ from fmu_src.net_capture.planes import (
 from orbital.kernel import kernel
 
 SERIES_ENDS = 4e-3
-"""Excess r2/L2 - 1 up to which the shortening is summed: the series' own error is then below 4e-13 of it."""
+"""Excess r2/L2 - 1 up to which the shortening is summed: the series' own error is then below 4e-13 of it, or 4e-8 in
+single precision, which keeps 6e-8."""
 
 
 @kernel
@@ -63,7 +64,8 @@ class Threads(NamedTuple):
     taut(reals, slots, place, a, b, lanes, squared)      lanes that are stretched, a bit each
     pull(p, reals, slots, numbers, q, a, b, first, taut, earlier)
                                                          add their forces at the velocities predicted; what their
-                                                         dashpots take [W]
+                                                         dashpots take [W], in lanes
+    total(x)                                             sum over the lanes
     pull_now(p, work)                                    forces of all threads; counts those that are taut, sums what
                                                          their dashpots take
     pull_shown(p, work)                                  the same, at the positions and velocities shown
@@ -72,6 +74,7 @@ class Threads(NamedTuple):
 
     taut: Any
     pull: Any
+    total: Any
     pull_now: Any
     pull_shown: Any
     stored: Any
@@ -92,12 +95,13 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
         lanes.bits,
         lanes.lane,
     )
-    from fmu_src.lanes import lowest, peek
+    from fmu_src.lanes import lowest, peek, poke
 
-    width, flags_of = lanes.width, lanes.flags
+    width, flags_of, slide = lanes.width, lanes.flags, lanes.slide
     group = np.uint64((1 << width) - 1)
     has_before = before >= 0
     watches = has_before and "contact" in composition.terms
+    is_double = composition.terms["precision"] == "double"
 
     @kernel
     def note_peak(p, tensions, first, above):
@@ -114,11 +118,25 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
                 p.thread_peak_index = first + i + 1
 
     @kernel
+    def end_chain(reals, slots, node, fx, fy, fz):
+        """The last thread of a vector of them pulls the node after it.
+
+        Checked  tests/net_capture/test_threads.py
+        """
+        last = np.int64(width - 1)
+        at = node + FX * slots
+        poke(reals, at, peek(reals, at) - lane(fx, last))
+        poke(reals, at + slots, peek(reals, at + slots) - lane(fy, last))
+        poke(reals, at + 2 * slots, peek(reals, at + 2 * slots) - lane(fz, last))
+
+    @kernel
     def pull(p, reals, slots, numbers, q, a, b, first, taut, earlier):
-        """Add the forces [N] of the taut lanes of a strip to both their nodes; return what their dashpots take [W].
+        """Add the forces [N] of the taut lanes of a strip to both their nodes; return what their dashpots take [W], in
+        lanes.
 
             T / r = k s + d (w . r) (1 - s)^2 / L^2,   s = 1 - L / r,   r2 / L2 = 1 + e
-            s = e (1/2 - 3/8 e + 5/16 e2 - 35/128 e3 + 63/256 e4 - 231/1024 e5)     while e <= SERIES_ENDS
+            s = e (1/2 - 3/8 e + 5/16 e2 - 35/128 e3 + 63/256 e4 - 231/1024 e5)     while e <= SERIES_ENDS;
+        in single precision three terms of it
             D = sum of (T - T_e) dL/dt,   T_e = k (r - L)
 
         numbers, q    properties of the strips, and which strip this is
@@ -130,7 +148,7 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
         The rate of stretch is that of the predicted velocities, which belong to the same instant as the positions.
         Where the tension is held at zero the dashpot takes what the shortening thread gives up. A thread that was slack
         a substep ago gives its nodes a kick that no prediction knows of: there the rate is the mean of those before and
-        after it.
+        after it. Of a strip along a row, whose lanes are a chain, a node gets the forces of both its threads at once.
 
         Checked  tests/net_capture/test_threads.py, tests/net_capture/test_energy_book.py
         """
@@ -146,6 +164,11 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
         half_step = splat(0.5 * p.solver_substep)
         peak = splat(p.thread_tension_peak)
         taken = zero
+        chained = b == a + 1
+        following = np.int64(0)
+        fx = zero
+        fy = zero
+        fz = zero
         while taut != np.uint64(0):
             j = lowest(taut) // np.uint64(width) * np.uint64(width)
             here = (taut >> j) & group
@@ -166,10 +189,14 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
             over = distance - squared
             e = over * per_squared
             e2 = e * e
-            s = e * (
-                (half - splat(0.375) * e)
-                + e2 * ((splat(0.3125) - splat(0.2734375) * e) + e2 * (splat(0.24609375) - splat(0.2255859375) * e))
-            )
+            s = half - splat(0.375) * e
+            if is_double:
+                s = s + e2 * (
+                    (splat(0.3125) - splat(0.2734375) * e) + e2 * (splat(0.24609375) - splat(0.2255859375) * e)
+                )
+            else:
+                s = s + e2 * splat(0.3125)
+            s = e * s
             if bits(e > ends) != np.uint64(0):
                 s = where(e > ends, one - one / root(one + e), s)
             g = one - s
@@ -194,21 +221,34 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
                 onset = flags_of(here & ~(earlier >> j))
                 stretching = where(onset, back - half_step * pulling * distance * light, along)
             taken = taken + where(on, (pulling - elastic) * stretching, zero)
-            x = m + FX * slots
-            y = n + FX * slots
+            if chained and np.int64(j) != following:
+                end_chain(reals, slots, a + following, fx, fy, fz)
+                fx = zero
+                fy = zero
+                fz = zero
+            following = np.int64(j) + width
+            before_x = fx
+            before_y = fy
+            before_z = fz
             fx = pulling * dx
             fy = pulling * dy
             fz = pulling * dz
-            store(reals, x, load(reals, x) + fx)
-            store(reals, x + slots, load(reals, x + slots) + fy)
-            store(reals, x + 2 * slots, load(reals, x + 2 * slots) + fz)
-            store(reals, y, load(reals, y) - fx)
-            store(reals, y + slots, load(reals, y + slots) - fy)
-            store(reals, y + 2 * slots, load(reals, y + 2 * slots) - fz)
-        power = 0.0
-        for i in range(width):
-            power += lane(taken, np.int64(i))
-        return power
+            x = m + FX * slots
+            if chained:
+                store(reals, x, load(reals, x) + (fx - slide(fx, before_x)))
+                store(reals, x + slots, load(reals, x + slots) + (fy - slide(fy, before_y)))
+                store(reals, x + 2 * slots, load(reals, x + 2 * slots) + (fz - slide(fz, before_z)))
+            else:
+                y = n + FX * slots
+                store(reals, x, load(reals, x) + fx)
+                store(reals, x + slots, load(reals, x + slots) + fy)
+                store(reals, x + 2 * slots, load(reals, x + 2 * slots) + fz)
+                store(reals, y, load(reals, y) - fx)
+                store(reals, y + slots, load(reals, y + slots) - fy)
+                store(reals, y + 2 * slots, load(reals, y + 2 * slots) - fz)
+        if chained:
+            end_chain(reals, slots, a + following, fx, fy, fz)
+        return taken
 
     return pull
 
@@ -224,7 +264,19 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
     strips, properties, reals_of = memory.strips, memory.properties, memory.reals
     from fmu_src.lanes import highest, population
 
+    lane = lanes.lane
     pull = make_pull(composition, X, rate, before)
+
+    @kernel
+    def total(x):
+        """Sum over the lanes.
+
+        Checked  tests/net_capture/test_energy_book.py
+        """
+        found = 0.0
+        for i in range(width):
+            found += lane(x, np.int64(i))
+        return found
 
     @kernel
     def taut_lanes(reals, slots, place, a, b, lanes, squared):
@@ -261,7 +313,7 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
             table = strips(p, work)
             numbers = properties(p, work)
             reals = reals_of(work)
-            power = 0.0
+            power = splat(0.0)
             count = 0
             for strip in range(p.strips):
                 s = STRIP_WORDS * strip
@@ -270,11 +322,11 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
                 found = taut_lanes(reals, slots, place, table[s + A], table[s + B], table[s + LANES], squared)
                 if found != np.uint64(0):
                     count += population(found)
-                    power += pull_there(
+                    power = power + pull_there(
                         p, reals, slots, numbers, q, table[s + A], table[s + B], table[s + FIRST], found, found
                     )
             p.thread_taut = count
-            p.thread_power = power
+            p.thread_power = total(power)
 
         return pull_all
 
@@ -288,23 +340,23 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
         table = strips(p, work)
         numbers = properties(p, work)
         reals = reals_of(work)
-        total = 0.0
+        whole = 0.0
         for strip in range(p.strips):
             s = STRIP_WORDS * strip
             q = STRIP_NUMBERS * strip
             length = numbers[q + LENGTH]
             energy = 0.0
             found = taut_lanes(reals, slots, SHOWN, table[s + A], table[s + B], table[s + LANES], length * length)
-            for lane in range(LONGEST_ROW):
-                if (found >> np.uint64(lane)) & np.uint64(1):
+            for i in range(LONGEST_ROW):
+                if (found >> np.uint64(i)) & np.uint64(1):
                     squared = 0.0
                     for axis in range(3):
-                        plane = (SHOWN + axis) * slots + lane
+                        plane = (SHOWN + axis) * slots + i
                         d = np.float64(reals[plane + table[s + B]]) - np.float64(reals[plane + table[s + A]])
                         squared += d * d
                     stretch = math.sqrt(squared) - length
                     energy += stretch * stretch
-            total += 0.5 * numbers[q + STIFFNESS] * energy
-        return total
+            whole += 0.5 * numbers[q + STIFFNESS] * energy
+        return whole
 
-    return Threads(taut_lanes, pull, make_pull_all(X, rate), make_pull_all(SHOWN, SHOWN_RATE), stored)
+    return Threads(taut_lanes, pull, total, make_pull_all(X, rate), make_pull_all(SHOWN, SHOWN_RATE), stored)

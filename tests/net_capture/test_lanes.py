@@ -274,3 +274,19 @@ def test_under_numbas_bounds_check_nothing_beyond_the_array_is_touched(precision
             run(memory, i)
     assert not whole_memory[:8].any()
     assert not whole_memory[16:].any()
+
+
+def test_slide_moves_the_lanes_on_by_one(precision):
+    """The last of the vector before comes first."""
+    lanes = of(precision)
+    reals, load, store, slide, width = lanes.reals, lanes.load, lanes.store, lanes.slide, lanes.width
+
+    @kernel
+    def run(memory, out):
+        a = load(reals(memory), width)
+        store(reals(out), 0, slide(a, load(reals(memory), 0)))
+
+    values = numbers(precision, 32)[: 2 * width]
+    out = np.zeros(8)
+    run(memory_of(values), out)
+    assert_same_bits(out.view(REALS[precision])[:width], values[width - 1 : 2 * width - 1])

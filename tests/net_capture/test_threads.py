@@ -20,6 +20,7 @@ from fmu_src.net_capture.planes import (
     complete_strips,
 )
 from fmu_src.net_capture.threads import make_threads, thread_tension
+from orbital.kernel import kernel
 from tests.conftest import FREE
 from tests.net_capture.memory import Bench, graph, nodes, planes
 
@@ -36,15 +37,22 @@ def bench():
 
 @pytest.fixture(scope="module")
 def kernels(bench):
-    """Kernels of the threads, as the leapfrog scheme has them, and the kick."""
-    return make_threads(bench.parts, P, U), bench.parts.gravity.kick_group
+    """Taut lanes and pull of the threads, as the leapfrog scheme has them, and the kick."""
+    threads = make_threads(bench.parts, P, U)
+    pull_lanes, total = threads.pull, threads.total
+
+    @kernel
+    def pull(p, reals, slots, numbers, a, b, taut, earlier):
+        return total(pull_lanes(p, reals, slots, numbers, 0, a, b, 0, taut, earlier))
+
+    return threads.taut, pull, bench.parts.gravity.kick_group
 
 
 class Strip:
     """A strip of four threads between eight nodes of a memory of its own, driven by the model's own kernels."""
 
     def __init__(self, bench, kernels, m, d, h):
-        self.threads, self.kick = kernels
+        self.taut_lanes, self.pull_lanes, self.kick = kernels
         self.p, self.h = bench.record.copy()[0], h
         self.p.solver_substep = h
         self.work = np.zeros(NODE_PLANES * SLOTS)
@@ -59,13 +67,13 @@ class Strip:
 
     def taut(self, lanes=0b1111):
         """Lanes longer than their rest length."""
-        return int(self.threads.taut(self.work, SLOTS, X, A, B, lanes, L * L))
+        return int(self.taut_lanes(self.work, SLOTS, X, A, B, lanes, L * L))
 
     def pull(self, taut):
         """Add the forces of these lanes; what their dashpots take."""
         self.p.thread_tension_peak = 0.0
         lanes, earlier = np.uint64(taut), np.uint64(self.earlier)
-        return self.threads.pull(self.p, self.work, SLOTS, self.numbers, 0, A, B, 0, lanes, earlier)
+        return self.pull_lanes(self.p, self.work, SLOTS, self.numbers, A, B, lanes, earlier)
 
     def step(self):
         """Forces, kick, drift; the largest tension."""
@@ -189,6 +197,37 @@ def test_threads_pull_as_the_formula_says(bench, kernels, stretch):
     assert not strip.planes[FX : FX + 3, [2, 3]].any()
     assert strip.p.thread_tension_peak == pytest.approx(largest, **close)
     assert strip.p.thread_peak_index == 1
+
+
+@pytest.mark.parametrize("taut", [0b1111, 0b11111111, 0b000100010001, 0b1_0000_0000_1000, 0b1_1111_0111_1110])
+def test_in_a_chain_every_knot_gets_both_its_threads(bench, kernels, taut):
+    """A strip along a row: vectors that follow one another, gaps between them, and an end in the midst of one."""
+    _, pull, _ = kernels
+    count, slots = 13, 16
+    generator = np.random.default_rng(taut)
+    planes = np.zeros((NODE_PLANES, slots))
+    planes[X, : count + 1] = 1.001 * np.arange(count + 1)
+    planes[X : X + 3, : count + 1] += generator.normal(size=(3, count + 1)) * 2e-4
+    planes[P : P + 3, : count + 1] = generator.normal(size=(3, count + 1)) * 1e-3
+    planes[U : U + 3] = planes[P : P + 3]
+    numbers = np.zeros(STRIP_NUMBERS)
+    damping = 0.3
+    numbers[[LENGTH, STIFFNESS, DAMPING]] = L, K, damping
+    p = bench.record.copy()[0]
+    p.strips, p.thread_tension_peak = 1, 0.0
+    complete_strips(p, numbers)
+    pull(p, planes.reshape(-1), slots, numbers, 0, 1, np.uint64(taut), np.uint64(taut))
+    expected = np.zeros((3, slots))
+    for lane in range(count):
+        if taut >> lane & 1:
+            way = planes[X : X + 3, lane + 1] - planes[X : X + 3, lane]
+            length = np.linalg.norm(way)
+            rate = (planes[P : P + 3, lane + 1] - planes[P : P + 3, lane]) @ way / length
+            force = thread_tension(length, rate, L, K, damping) * way / length
+            expected[:, lane] += force
+            expected[:, lane + 1] -= force
+    np.testing.assert_allclose(planes[FX : FX + 3], expected, rtol=1e-9, atol=K * 4e-15)
+    assert np.abs(planes[FX : FX + 3].sum(1)).max() < 1e-13
 
 
 @pytest.mark.parametrize("segments", [1, 2, 5])

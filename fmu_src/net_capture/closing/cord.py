@@ -89,8 +89,9 @@ def make_cord(composition: Any) -> Cord:
             radius = ring_radius(p.closing_lock_length, p.closing_rings)
             way = 0.0
             change = 0.0
+            b = cord_stop(p, work, i, 0)
             for stop in range(stops(p)):
-                a = cord_stop(p, work, i, stop)
+                a = b
                 b = cord_stop(p, work, i, stop + 1)
                 squared = radius * radius
                 product = 0.0
@@ -117,8 +118,9 @@ def make_cord(composition: Any) -> Cord:
             Checked  tests/net_capture/test_closing.py
             """
             radius = ring_radius(p.closing_lock_length, p.closing_rings)
+            b = cord_stop(p, work, i, 0)
             for stop in range(stops(p)):
-                a = cord_stop(p, work, i, stop)
+                a = b
                 b = cord_stop(p, work, i, stop + 1)
                 squared = radius * radius
                 for axis in range(3):

@@ -30,7 +30,9 @@ from orbital.kernel import kernel
 TRIGGERS = ("time", "first_contact", "distance", "command")
 TRIGGER_TIME, TRIGGER_CONTACT, TRIGGER_DISTANCE = range(3)
 NEWTON_STEPS = 4
-"""Of the winding law, from a start that is right to second order: the last changes nothing above rounding."""
+"""Of the winding law at most, from a start that is right to second order."""
+NEWTON_ENDS = 1e-9
+"""Share of the length by which a step may still change it for the last: the error that is left is its square."""
 
 
 TOO_MANY_RINGS = fault(
@@ -122,8 +124,11 @@ def wound(p, distance, rate, length, winding, h):
             damping = cord_damping(p.closing_damping_ratio, stiffness, p.cord_mass)
             yielding = p.closing_speed / (p.closing_stall_force + damping * p.closing_speed)
             slope += 0.5 * h * yielding * stiffness * distance / shorter
+        before = shorter
         shorter -= (shorter - known - 0.5 * h * then) / slope
         shorter = min(max(shorter, p.closing_lock_length), length)
+        if abs(shorter - before) <= NEWTON_ENDS * shorter:
+            break
     _, then = pull_of_cord(p, distance, rate, shorter)
     return shorter, then
 

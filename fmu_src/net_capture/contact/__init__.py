@@ -10,7 +10,7 @@ class Contact(NamedTuple):
 
     start(p, work) -> fault               nothing touched yet; the nodes as shown
     begin_step(p, rate)                   what all rows of a substep need of the target
-    touch_row(p, work, first, rate)       contact of a row of nodes that have just drifted, before the target moves; how
+    touch_row(p, work, first)             contact of a row of nodes that have just drifted, before the target moves; how
                                           many were touched [count], -1 if none was near the target
     clear_steps(p, work, first, pulled)   substeps for which no node of a row comes near, flying freely or pulled by its
                                           threads [count]

@@ -60,7 +60,7 @@ def make(composition: Any) -> Contact:
     memory, distance_to = composition.memory, composition.target.shape.distance
     node_plane, reals_of = memory.node_plane, memory.reals
     search = make_search(composition, LONGEST_SLEEP)
-    meet, largest_pull = search.meet, search.largest_pull
+    near, close, largest_pull = search.near, search.close, search.largest_pull
     inside_target = composition.code(INSIDE_TARGET.name)
     from fmu_src.lanes import lowest
 
@@ -76,28 +76,32 @@ def make(composition: Any) -> Contact:
         p.contact_margin = largest_way(p, p.solver_substep)
 
     @kernel
-    def touch_row(p, work, first, rate):
+    def touch_row(p, work, first):
         """Contact of a row of nodes that have just drifted; how many were touched [1], -1 if none was near.
 
         Checked  tests/net_capture/test_contact.py
         """
         reals = reals_of(work)
-        near, found = meet(p, reals, first, p.target_turn, p.contact_margin)
-        if not near:
-            return -1
+        found = close(p, reals, first, p.target_turn, p.contact_margin)
+        if found == np.uint64(0):
+            return 0 if near(p, reals, first, p.contact_margin) else -1
         touched = 0
         while found != np.uint64(0):
-            touched += touch(p, work, first + np.int64(lowest(found)), rate, p.solver_substep)
+            touched += touch(p, work, first + np.int64(lowest(found)), p.solver_substep)
             found &= found - np.uint64(1)
         if touched > 0:
             p.contact_margin = max(p.contact_margin, largest_way(p, p.solver_substep))
         return touched
 
     @kernel
-    def touch(p, work, node, frame_rate, h):
+    def touch(p, work, node, h):
         """Impulse between one node and the target, if it would otherwise end the substep below the surface; 1 if so.
 
-        Gap and normal are those of its place before the drift, for which the target stands still.
+        Gap and normal are those of its place before the drift, for which the target stands still. With the lever
+        l = r x n of the impulse J about the target's centre of mass:
+
+            v_n = n . (v - v_c) - w . l,   1/m = 1/m_node + 1/m_target + l . I^-1 l
+            J = m (wanted - v_n),   m_target dv_c = -J n,   dw = -J I^-1 l
 
         Checked  tests/net_capture/test_contact.py
         """
@@ -113,7 +117,6 @@ def make(composition: Any) -> Contact:
         normal = p.contact_normal
         lever = p.contact_lever
         turn = p.target_turn
-        omega = p.target_omega
         arm[0] = node_plane(p, work, X)[node] - h * u[node] - p.target_place[0]
         arm[1] = node_plane(p, work, X + 1)[node] - h * v[node] - p.target_place[1]
         arm[2] = node_plane(p, work, X + 2)[node] - h * w[node] - p.target_place[2]
@@ -122,11 +125,9 @@ def make(composition: Any) -> Contact:
         gap = distance_to(p, local, body)
         for i in range(3):
             normal[i] = turn[i, 0] * local[0] + turn[i, 1] * local[1] + turn[i, 2] * local[2]
-        approach = (
-            normal[0] * (u[node] - p.target_drift[0] - (omega[1] * arm[2] - omega[2] * arm[1]))
-            + normal[1] * (v[node] - p.target_drift[1] - (omega[2] * arm[0] - omega[0] * arm[2]))
-            + normal[2] * (w[node] - p.target_drift[2] - (omega[0] * arm[1] - omega[1] * arm[0]))
-        )
+        cross(lever, arm, normal)
+        own = normal[0] * u[node] + normal[1] * v[node] + normal[2] * w[node]
+        approach = own - dot(normal, p.target_drift) - dot(lever, p.target_omega)
         if gap + h * approach >= 0.0:
             return 0
         wanted = -gap / h
@@ -136,11 +137,12 @@ def make(composition: Any) -> Contact:
             wanted = -p.contact_restitution * approach
         if wanted <= approach:
             return 0
-        # inverse of the mass the impulse feels: node, target, and the target's turning
-        cross(lever, body, local)
+        turned = p.contact_turned
+        cross(local, body, local)
         feel = inverse + 1.0 / p.target_mass
         for i in range(3):
-            feel += lever[i] * lever[i] / p.target_inertia[i]
+            turned[i] = local[i] / p.target_inertia[i]
+            feel += local[i] * turned[i]
         impulse = (wanted - approach) / feel
         p.contact_impulse += impulse
         # work of the impulse over the mean of the relative normal velocities before the kick of this substep and after
@@ -155,11 +157,10 @@ def make(composition: Any) -> Contact:
             node_plane(p, work, X + axis)[node] += h * change
             node_plane(p, work, U + axis)[node] += change
             node_plane(p, work, P + axis)[node] += change - 0.5 * kicked * normal[axis]
-        cross(lever, arm, normal)
-        for i in range(3):
-            p.target_drift[i] -= impulse / p.target_mass * normal[i]
-            p.target_spin[i] -= impulse * lever[i]
-        take_rate(p, frame_rate)
+            p.target_drift[axis] -= impulse / p.target_mass * normal[axis]
+            p.target_spin[axis] -= impulse * lever[axis]
+            gain = turn[axis, 0] * turned[0] + turn[axis, 1] * turned[1] + turn[axis, 2] * turned[2]
+            p.target_omega[axis] -= impulse * gain
         if p.contact_first_time < 0.0:
             p.contact_first_time = p.grid * p.solver_substep
         return 1
@@ -254,9 +255,10 @@ PART = Term(
             for name, unit, text in (
                 ("arm", "m", "of a node from the target's centre of mass, frame axes"),
                 ("point", "m", "the same, body axes"),
-                ("local", "1", "outward normal, body axes"),
-                ("normal", "1", "the same, frame axes"),
-                ("lever", "m", "arm times normal"),
+                ("local", "1", "outward normal, body axes; then arm times normal"),
+                ("normal", "1", "outward normal, frame axes"),
+                ("lever", "m", "arm times normal, frame axes"),
+                ("turned", "1/(kg.m)", "rate that an impulse gives, body axes"),
             )
         ),
     ),

@@ -22,14 +22,16 @@ HASTE = 0.05
 class Search(NamedTuple):
     """Kernels of the search.
 
-    meet(p, reals, first, turn, margin)   whether a node of a row may have been in the target's envelope, widened by a
-                                          margin [m]; and those whose way lies partly in the widened box round it, a
-                                          bit each
+    near(p, reals, first, margin)         whether a node of a row may have been in the target's envelope, widened by a
+                                          margin [m]
+    close(p, reals, first, turn, margin)  nodes of a row whose way lies partly in the box round the target, so widened;
+                                          a bit each
     largest_pull(p, work)                 acceleration that threads of 1 N may give the lightest node [1/kg]
     clear_steps, hurries                  as in `Contact`
     """
 
-    meet: Any
+    near: Any
+    close: Any
     largest_pull: Any
     clear_steps: Any
     hurries: Any
@@ -51,23 +53,60 @@ def make_search(composition: Any, longest: int) -> Search:
     has_closing, has_tether = "closing" in composition.terms, "tether" in composition.terms
 
     @kernel
-    def meet(p, reals, first, turn, margin):
+    def within_axis(turn, axis, half, sx, sy, sz, dx, dy, dz):
+        """Whether ways of half-length s about their middles d come within half an edge of the middle of the box, along
+        one of its axes.
+
+        Checked  tests/net_capture/test_fast_nodes.py
+        """
+        zero = splat(0.0)
+        a = splat(turn[0, axis])
+        b = splat(turn[1, axis])
+        c = splat(turn[2, axis])
+        way = a * sx + b * sy + c * sz
+        middle = a * dx + b * dy + c * dz
+        way = where(way > zero, way, zero - way)
+        middle = where(middle > zero, middle, zero - middle)
+        return middle - way < splat(half)
+
+    @kernel
+    def near(p, reals, first, margin):
         """The way's middle is within radius + |h u|/2 if any of it is within the radius; (a + b)^2 <= 2 a^2 + 2 b^2
-        spares the root. In the box the way's extent along each axis counts, so a way past a corner may be taken for one
-        through it.
+        spares the root.
 
         Checked  tests/net_capture/test_fast_nodes.py
         """
         slots = p.node_slots
         half = splat(0.5 * p.solver_substep)
-        zero = splat(0.0)
         two = splat(2.0)
         radius = p.envelope_radius + margin
         within = splat(2.0 * radius * radius)
         cx = splat(p.target_place[0])
         cy = splat(p.target_place[1])
         cz = splat(p.target_place[2])
-        near = np.uint64(0)
+        found = np.uint64(0)
+        for i in range(first, first + p.row_pitch, width):
+            a = half * load(reals, i + U * slots)
+            b = half * load(reals, i + (U + 1) * slots)
+            c = half * load(reals, i + (U + 2) * slots)
+            dx = load(reals, i) - a - cx
+            dy = load(reals, i + slots) - b - cy
+            dz = load(reals, i + 2 * slots) - c - cz
+            found |= bits(dx * dx + dy * dy + dz * dz - two * (a * a + b * b + c * c) < within)
+        return found != np.uint64(0)
+
+    @kernel
+    def close(p, reals, first, turn, margin):
+        """The way's extent along each axis of the box counts, so a way past a corner may be taken for one through
+        it.
+
+        Checked  tests/net_capture/test_fast_nodes.py
+        """
+        slots = p.node_slots
+        half = splat(0.5 * p.solver_substep)
+        cx = splat(p.target_place[0])
+        cy = splat(p.target_place[1])
+        cz = splat(p.target_place[2])
         found = np.uint64(0)
         for j in range(0, p.row_pitch, width):
             i = first + j
@@ -77,20 +116,11 @@ def make_search(composition: Any, longest: int) -> Search:
             dx = load(reals, i) - sx - cx
             dy = load(reals, i + slots) - sy - cy
             dz = load(reals, i + 2 * slots) - sz - cz
-            here = bits(dx * dx + dy * dy + dz * dz - two * (sx * sx + sy * sy + sz * sz) < within)
-            near |= here
-            if here != np.uint64(0):
-                for axis in range(3):
-                    a = splat(turn[0, axis])
-                    b = splat(turn[1, axis])
-                    c = splat(turn[2, axis])
-                    way = a * sx + b * sy + c * sz
-                    middle = a * dx + b * dy + c * dz
-                    way = where(way > zero, way, zero - way)
-                    middle = where(middle > zero, middle, zero - middle)
-                    here &= bits(middle - way < splat(p.half_size[axis] + margin))
-                found |= here << np.uint64(j)
-        return near != np.uint64(0), found
+            inside = within_axis(turn, 0, p.half_size[0] + margin, sx, sy, sz, dx, dy, dz)
+            inside = inside & within_axis(turn, 1, p.half_size[1] + margin, sx, sy, sz, dx, dy, dz)
+            inside = inside & within_axis(turn, 2, p.half_size[2] + margin, sx, sy, sz, dx, dy, dz)
+            found |= bits(inside) << np.uint64(j)
+        return found
 
     @kernel
     def clear_steps(p, work, first, pulled):
@@ -102,6 +132,8 @@ def make_search(composition: Any, longest: int) -> Search:
 
         Checked  tests/net_capture/test_sleep.py
         """
+        if pulled and pulls_besides(p):
+            return 0
         reals = reals_of(work)
         slots = p.node_slots
         zero = splat(0.0)
@@ -139,8 +171,6 @@ def make_search(composition: Any, longest: int) -> Search:
         speed += p.contact_haste
         time = free / speed
         if pulled:
-            if pulls_besides(p):
-                return 0
             pull = p.contact_pull * p.contact_force
             time = 2.0 * free / (speed + math.sqrt(speed * speed + 2.0 * pull * free))
         return max(int(min(time / p.solver_substep - 2.0, longest)), 0)
@@ -194,7 +224,7 @@ def make_search(composition: Any, longest: int) -> Search:
             return True
         return tauter
 
-    return Search(meet, largest_pull, clear_steps, hurries)
+    return Search(near, close, largest_pull, clear_steps, hurries)
 
 
 @kernel

@@ -72,7 +72,7 @@ def make(composition: Any) -> Scheme:
     memory, lanes, gravity = composition.memory, composition.lanes, composition.gravity
     contact, pulls = composition.contact, composition.pulls
     threads = make_threads(composition, P, U)
-    taut_lanes, pull, pull_shown = threads.taut, threads.pull, threads.pull_shown
+    taut_lanes, pull, pull_shown, total = threads.taut, threads.pull, threads.pull_shown, threads.total
     load, store, splat = lanes.load, lanes.store, lanes.splat
     strips, properties, own, reals_of = memory.strips, memory.properties, memory.own, memory.reals
     node_plane, width = memory.node_plane, lanes.width
@@ -135,7 +135,7 @@ def make(composition: Any) -> Scheme:
 
     @kernel
     def look_at_strip(p, reals, table, numbers, words, z, strip):
-        """Forces of one strip [W taken by its dashpots], and when to look at it again.
+        """Forces of one strip, and when to look at it again; what its dashpots take [W], in lanes.
 
         z         where the words of its sleep stand
 
@@ -163,7 +163,7 @@ def make(composition: Any) -> Scheme:
         if quiet > QUIET_LOOKS:
             steps = sleep(p, reals, a, b, peek(table, s + LANES), peek(numbers, q + LENGTH))
             poke(words, z + WAKE, p.grid + steps)
-        return 0.0
+        return splat(0.0)
 
     @kernel
     def drift(p, reals, first, end):
@@ -211,7 +211,7 @@ def make(composition: Any) -> Scheme:
         rows = p.node_slots // p.row_pitch
         listed = ROW_WORDS * rows + SLEEP_WORDS * p.strips
         n = rate_of(p)
-        power = 0.0
+        power = splat(0.0)
         pull_nodes(p, work)
         book(p, p.solver_substep)
         hurried = False
@@ -229,7 +229,7 @@ def make(composition: Any) -> Scheme:
                 strip = peek(words, listed + m)
                 z = ROW_WORDS * rows + SLEEP_WORDS * strip
                 if peek(words, z + WAKE) <= p.grid:
-                    power += look_at_strip(p, reals, table, numbers, words, z, strip)
+                    power = power + look_at_strip(p, reals, table, numbers, words, z, strip)
                 following = min(following, peek(words, z + WAKE))
             touched = words[r + TOUCHED]
             near = False
@@ -255,7 +255,7 @@ def make(composition: Any) -> Scheme:
                     fly_row(p, reals, row, p.grid + 1 - words[r + STAMP])
                     words[r + STAMP] = p.grid + 1
                 clear = 0
-                hit = touch_row(p, work, row * p.row_pitch, n)
+                hit = touch_row(p, work, row * p.row_pitch)
                 if hit > 0:
                     words[r + KICKED] = -1
                     wake_strips(p, words, rows, row)
@@ -264,7 +264,7 @@ def make(composition: Any) -> Scheme:
                     clear = clear_steps(p, work, row * p.row_pitch, touched != 0)
                 words[r + CLEAR] = p.grid + 1 + clear
             words[r + NEXT] = following
-        p.thread_loss += p.solver_substep * power
+        p.thread_loss += p.solver_substep * total(power)
 
     @kernel
     def place(p, work):

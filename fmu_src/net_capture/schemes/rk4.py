@@ -16,6 +16,7 @@ import math
 from typing import Any
 
 from fmu_src.interface import Term
+from fmu_src.net_capture.formulas import onset_step
 from fmu_src.net_capture.planes import (
     FX,
     INVERSE_MASS,
@@ -55,13 +56,11 @@ def longest_step(stiffness_rate, damping_rate):
 
 @kernel
 def accurate_step(stiffness_rate, damping_rate):
-    """That of the leapfrog, which is set by the onset of each pull, as far as it is stable [s].
+    """The onset of each pull sets it, as for the leapfrog, as far as the scheme is stable [s].
 
     Checked  tests/net_capture/test_schemes.py
     """
-    omega = math.sqrt(2.0 * stiffness_rate)
-    onset = (0.3 + 1.77 * damping_rate / omega) / omega
-    return min(onset, 0.9 * longest_step(stiffness_rate, damping_rate))
+    return min(onset_step(stiffness_rate, damping_rate), 0.9 * longest_step(stiffness_rate, damping_rate))
 
 
 def make(composition: Any) -> Scheme:
