@@ -24,6 +24,7 @@ from fmu_src.interface import Group, Interface, Model, Term, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.net_capture.interface import NETS, TARGETS
+from fmu_src.packaging.c_header import STATE_HEAD
 from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.sources import SHIM
 from fmu_src.tables import Table
@@ -31,7 +32,19 @@ from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
-__all__ = ["CATALOGUE", "MODELS", "Experiment", "Group", "Implied", "Interface", "Model", "Range", "Table", "Variable"]
+__all__ = [
+    "CATALOGUE",
+    "MODELS",
+    "STATE_HEAD",
+    "Experiment",
+    "Group",
+    "Implied",
+    "Interface",
+    "Model",
+    "Range",
+    "Table",
+    "Variable",
+]
 
 MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
 """The model of each phase."""

@@ -200,9 +200,6 @@ def _terms(component: ComponentScene) -> Iterator[tuple[str, str, str]]:
             yield "left out", "nodes", "position of every node"
 
 
-STATE_HEAD = 96
-"""What a serialised state begins with, before record and work memory (`saved` in fmu_src/packaging/fmi2.c) [bytes]."""
-
 STEPS = {"solver.stability_bound": "longest step that is sure to be stable", "solver.substep": "substep"}
 """Outputs of a model that tell how it will step."""
 
@@ -228,7 +225,7 @@ def _sizes(
     rows = [(name, str(number)) for name, number in found.items()]
     if size is not None:
         slots = sum(v.size for v in interface.variables)
-        work = (size - STATE_HEAD) // 8 - slots
+        work = (size - build.STATE_HEAD) // 8 - slots
         text = f"{hidden + work:,} numbers kept from step to step: {work:,} of work memory, {hidden} others"
         if "nodes" in found:
             text += f"; among them position and velocity of every node, {6 * found['nodes']:,}"

@@ -12,6 +12,8 @@ from fmu_src.packaging.description import LOG_CATEGORIES
 KINDS = {"Real": 1, "Integer": 2, "Boolean": 3}
 ACCESS = {"state": 0, "output": 1, "parameter": 2, "input": 3}
 SEVERITY = {"error": 0, "discard": 1, "end": 2}
+STATE_HEAD = 152
+"""What a saved state begins with, before record and work memory [bytes]."""
 UNKNOWN = Fault(0, "error", "the kernel gave a fault that is not in its table")
 
 
@@ -32,6 +34,7 @@ def header(interface: Interface, identifier: str, library: str) -> str:
         "/* generated from the model's table of variables */",
         f"#define DCONE_IDENTIFIER {_string(identifier)}",
         f"#define DCONE_LIBRARY {_string(library)}",
+        f"#define DCONE_STATE_HEAD {STATE_HEAD}",
         f"#define DCONE_SLOTS {len(scalars)}",
         f"#define DCONE_ROWS {len(interface.variables)}",
         f"#define DCONE_RATES {len(pairs)}",

@@ -14,6 +14,8 @@ typedef struct {
     condition at;
 } saved;
 
+typedef char state_head_as_told[sizeof(saved) == DCONE_STATE_HEAD ? 1 : -1];
+
 static size_t state_size(int64_t work) { return sizeof(saved) + block_size(work); }
 
 static uint64_t check_of(const void *state, int64_t work) {

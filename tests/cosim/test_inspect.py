@@ -145,6 +145,8 @@ def test_it_is_shown_with_units_and_told_to_machines(dcone: Dcone) -> None:
     assert "section of a thread 0.190972 mm2" in lines
     assert "stiffness of a thread from knot to knot 13368.1 N/m" in lines
     assert "momentum of the shot 4.59879 N s" in lines
+    work = instance("table1-capture").work.size
+    assert f": {work:,} of work memory," in " ".join(out.split())
     code, out, _ = dcone("inspect", "table1-capture", "--json")
     (component,) = json.loads(out)["components"]
     rows = component["implied"]
