@@ -8,7 +8,10 @@ Numba is imported when a kernel is first used, so that a module may hold kernels
 """
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, TypeVar
+
+import numpy as np
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -16,25 +19,44 @@ OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
 
 
 class Kernel:
-    """A function that numba compiles once it is called, or met in another kernel; all else is its dispatcher's."""
+    """A function that numba compiles once it is called, or met in another kernel; all else is its dispatcher's.
 
-    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+    signature    of an entry: what it is compiled for; a kernel is compiled for what it first meets
+    """
+
+    def __init__(self, function: Callable[..., Any], signature: Any = None, **options: Any) -> None:
         self.py_func = function
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
-        self._options = options
-        self._dispatcher: Any = None
+        self.signature = signature
+        self._options = options | OPTIONS
 
-    @property
+    @cached_property
     def dispatcher(self) -> Any:
-        if self._dispatcher is None:
-            from numba import njit
+        """For Python."""
+        from orbital.linking import whole
 
-            self._dispatcher = njit(**self._options, **OPTIONS)(self.py_func)
-        return self._dispatcher
+        made = whole(self.py_func, self._options)
+        if self.signature is not None:
+            made.compile(self.signature)
+            made.disable_compile()
+        return made
+
+    @cached_property
+    def _part(self) -> Any:
+        """For other kernels."""
+        from orbital.linking import part
+
+        return part(self.py_func, self._options)
 
     @property
     def _numba_type_(self) -> Any:
-        return self.dispatcher._numba_type_
+        return self._part._numba_type_
+
+    def module_text(self) -> tuple[str, str]:
+        """Name of an entry's function in LLVM IR, and that IR with all kernels below it."""
+        from orbital.linking import module_text
+
+        return module_text(self.py_func, self.signature, self._options)
 
     def __call__(self, *arguments: Any) -> Any:
         return self.dispatcher(*arguments)
@@ -56,3 +78,15 @@ def view(function: Function) -> Function:
     Without the numba runtime a compiled function cannot return an array, only an inlined one can.
     """
     return Kernel(function, inline="always")  # type: ignore[return-value]
+
+
+def entry(dtype: Any) -> Callable[[Function], Function]:
+    """Compile a model's `entry(command, records, work, time, step) -> status`, for the shim of an FMU or from Python.
+
+    dtype    of a record; `work` holds doubles
+    """
+    from numba import from_dtype, types
+
+    records = from_dtype(np.dtype(dtype))[::1]
+    signature = types.int32(types.int64, records, types.float64[::1], types.float64, types.float64)
+    return lambda function: Kernel(function, signature)  # type: ignore[return-value]

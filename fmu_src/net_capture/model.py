@@ -19,8 +19,6 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.net_capture import outcome, quality
 from fmu_src.net_capture.book import make_balance
@@ -30,7 +28,7 @@ from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
 from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
-from orbital.kernel import OPTIONS, kernel
+from orbital.kernel import entry, kernel
 from orbital.twobody import mean_motion
 
 ON_GRID = 1e-3
@@ -40,7 +38,6 @@ times."""
 
 def make_entry(terms: Mapping[str, str]) -> Any:
     """Entry of the model built with these terms, `entry(command, record, work, time, step) -> status`."""
-    from numba import from_dtype, njit, types
 
     model_interface = MODEL.interface(terms)
     terms = model_interface.terms
@@ -338,11 +335,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     # slot of the variable that each fault names, by its code
     blamed = (0, *(slots.get(fault.blames, 0) for fault in MODEL.faults))
 
-    record = from_dtype(np.dtype(model_interface.dtype))
-    signature = types.int32(types.int64, record[::1], types.float64[::1], types.float64, types.float64)
-
-    @njit(signature, **OPTIONS)
-    def entry(command, instance, work, time, step):
+    @entry(model_interface.dtype)
+    def model_entry(command, instance, work, time, step):
         """One command of the FMU's shim; a fault code, UNDER_WAY or 0.
 
         Checked  tests/cosim/test_kernel_fmu_and_fmpy.py
@@ -364,4 +358,4 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             p.fault_index = blamed[fault]
         return fault
 
-    return entry
+    return model_entry

@@ -55,17 +55,8 @@ def _lower(module: str, terms: Mapping[str, str]) -> str:
     import llvmlite.binding as llvm
 
     _keep_loops_whole(llvm)
-    from numba import njit
-
-    from orbital.kernel import OPTIONS
-
-    entry = importlib.import_module(module).make_entry(dict(terms))
-    (signature,) = entry.nopython_signatures
-    bare_options: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    bare = njit(signature, **bare_options)(entry.py_func)
-    result = bare.overloads[signature.args]
-    name = result.fndesc.llvm_func_name
-    whole = llvm.parse_assembly(result.library.get_llvm_str())
+    name, ir = importlib.import_module(module).make_entry(dict(terms)).module_text()
+    whole = llvm.parse_assembly(ir)
     for function in whole.functions:
         if not function.is_declaration and function.name != name:
             function.linkage = "internal"

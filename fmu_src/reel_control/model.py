@@ -6,13 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numba
-from numba import njit
-
 from fmu_src.interface import DIFFERENTIATE, INITIALISE, REFRESH, SIZE, STEP, check_implemented
 from fmu_src.limits import make_limits
 from fmu_src.reel_control.interface import BAD_PARAMETER, MODEL, NO_COMMAND, NOT_FINITE
-from orbital.kernel import OPTIONS, kernel
+from orbital.kernel import entry, kernel
 from orbital.vectors import Array
 
 IMPLEMENTED = {"motor": ("lag",)}
@@ -192,11 +189,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.partial_length = r.gain_proportional if pulls else 0.0
         r.partial_length_rate = r.gain_derivative if pulls else 0.0
 
-    record_type = numba.from_dtype(interface.dtype)[::1]
-    signature = numba.int32(numba.int64, record_type, numba.float64[::1], numba.float64, numba.float64)
-
-    @njit(signature, **OPTIONS)
-    def entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
+    @entry(interface.dtype)
+    def model_entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
         """The entry of `fmu_src.interface`, by command; returns a status.
 
         Checked  tests/reel_control/test_law.py
@@ -222,4 +216,4 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return 0
         return fail(record, NO_COMMAND, 0, float(command), time)
 
-    return entry
+    return model_entry

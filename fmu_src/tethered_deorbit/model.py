@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numba
 from numba import njit
 
 from fmu_src.integrators import make_dop853
@@ -27,7 +26,7 @@ from fmu_src.tethered_deorbit.thrust import DIRECTIONS, Thrust, make_thrust
 from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_squared_error, make_trajectory
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
-from orbital.kernel import OPTIONS, kernel
+from orbital.kernel import OPTIONS, entry, kernel
 from orbital.oscillators import reduced_mass
 from orbital.twobody import mean_motion
 from orbital.vectors import Array, norm
@@ -403,11 +402,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_taut = taut
         return 0
 
-    record_type = numba.from_dtype(interface.dtype)[::1]
-    signature = numba.int32(numba.int64, record_type, numba.float64[::1], numba.float64, numba.float64)
-
-    @njit(signature, **OPTIONS)
-    def entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
+    @entry(interface.dtype)
+    def model_entry(command: int, record: Any, work: Array, time: float, step: float) -> int:
         """The entry of `fmu_src.interface`, by command; returns a status.
 
         Checked  tests/tethered_deorbit/test_macro_step.py, test_robust.py: no such command
@@ -431,4 +427,4 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return answer(record, work, True)
         return fail(record, blame(record, BAD_PARAMETER, 0, float(command)), r.state_published)
 
-    return entry
+    return model_entry

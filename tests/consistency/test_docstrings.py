@@ -17,7 +17,7 @@ KERNELS = (
     "fmu_src/reel_control",
 )
 """Files and folders all of whose kernels name a test."""
-DECORATORS = ("kernel", "view", "njit")
+DECORATORS = ("kernel", "view", "entry", "njit")
 CHECKED = re.compile(r"^( *)Checked +(.*(?:\n\1 +\S.*)*)", re.MULTILINE)
 """The line, and those that go on with it farther in."""
 
@@ -37,7 +37,7 @@ def named_tests(text: str) -> Iterator[str]:
 
 
 def name_of(node: ast.AST) -> str:
-    """The last name of `kernel`, `njit(...)` or `plain.to_matrix`."""
+    """The last name of `kernel`, `entry(...)` or `plain.to_matrix`."""
     node = node.func if isinstance(node, ast.Call) else node
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
@@ -104,7 +104,7 @@ def test_every_kernel_names_the_test_that_checks_it() -> None:
     ],
 )
 def test_the_rule_notices(body: str, expected: str | None) -> None:
-    for decorator in ("kernel", "view", "njit(signature, **OPTIONS)"):
+    for decorator in ("kernel", "view", "entry(interface.dtype)", "njit(inline='always', **OPTIONS)"):
         (function,) = kernels(ast.parse(f"@{decorator}\ndef more(x):\n    {body}\n\n\ndef other(x):\n    return x\n"))
         found = fault(function)
         assert found is None if expected is None else found is not None and found.startswith(expected)

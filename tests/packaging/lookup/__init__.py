@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numba import from_dtype, njit, types
 
 from fmu_src import tables
 from fmu_src.interface import INITIALISE, SIZE, STEP, Group, Interface, Model, Term, Variable
 from fmu_src.packaging import c_header, compile, link, platforms, start_values, table_file
 from fmu_src.tables import Table
-from orbital.kernel import OPTIONS, kernel
+from orbital.kernel import entry, kernel
 
 KEY, GUID = "{library of the lookup}", "{lookup}"
 CURVE = Table("curve.knots", "1", "rows of an input and what it stands for, the inputs rising", dimensions=2)
@@ -92,11 +91,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 for j in range(numbers.shape[1]):
                     p.total += layer[i, j] / (1.0 + i + 10.0 * j + 100.0 * k)
 
-    record = from_dtype(interface.dtype)[::1]
-    signature = types.int32(types.int64, record, types.float64[::1], types.float64, types.float64)
-
-    @njit(signature, **OPTIONS)
-    def entry(command, instance, work, time, step):
+    @entry(interface.dtype)
+    def model_entry(command, instance, work, time, step):
         p = instance[0]
         if command == SIZE:
             p.work_size = 0
@@ -110,7 +106,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             p.sum += p.y
         return 0
 
-    return entry
+    return model_entry
 
 
 def given(terms: Mapping[str, str], curve: Any = KNOTS, grid: Any = BOX) -> Interface:

@@ -1,0 +1,122 @@
+"""Kernels as parts of others: typed and lowered once, and made into machine code only where they end up.
+
+numba makes of every function a library of its own, optimised, turned into machine code and wrapped for Python, and
+does much of it again wherever one function is linked into another: for a tree of two hundred kernels that is half of
+the time. Here a kernel that others call stops at its LLVM module. What is called from outside, by Python or by an FMU,
+links the modules of all kernels below it, and these are optimised and compiled once, as one.
+
+`whole` and `part` make numba's dispatchers do so, through the context in which they lower; numba's version is pinned.
+
+Checked  tests/orbital/test_kernel.py
+"""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+from numba import _dynfunc, njit  # type: ignore[attr-defined]
+from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
+from numba.core.cpu import CPUContext
+from numba.core.registry import cpu_target
+
+
+class PartLibrary(CPUCodeLibrary):
+    """One kernel's module, as it was lowered; its libraries are those of the functions that it calls."""
+
+    def finalize(self) -> None:
+        self._finalized = True
+
+
+class _Linked(CPUCodeLibrary):
+    """A kernel's module with those of all parts below it."""
+
+    def finalize(self) -> None:
+        # the linker takes of a module what is referred to by then
+        self._linking_libraries = _callers_first(self._linking_libraries)
+        super().finalize()  # type: ignore[no-untyped-call]
+
+
+class WholeLibrary(_Linked, JITCodeLibrary):
+    """The same as machine code of this process."""
+
+
+class TextLibrary(_Linked):
+    """The same as LLVM IR."""
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+
+
+def _callers_first(libraries: list[Any]) -> list[Any]:
+    """The libraries and all parts below them, each behind all that call it."""
+    done: dict[Any, None] = {}
+
+    def visit(library: Any) -> None:
+        if library not in done:
+            for called in library._linking_libraries if isinstance(library, PartLibrary) else ():
+                visit(called)
+            done[library] = None
+
+    for library in libraries:
+        visit(library)
+    return list(reversed(done))
+
+
+class PartContext(CPUContext):
+    """Lowers, and makes no machine code."""
+
+    def get_executable(self, library: Any, fndesc: Any, env: Any) -> Any:
+        library._ensure_finalized()
+        name = fndesc.qualname.rpartition(".")[2]
+        return _dynfunc.make_function(
+            fndesc.lookup_module(), name, "part of other kernels", _refusal(), env, (library,)
+        )
+
+
+@cache
+def _refusal() -> int:
+    """Address of a function that raises: a part is not to be called from Python."""
+    address = ctypes.cast(ctypes.pythonapi.PyErr_NoMemory, ctypes.c_void_p).value
+    assert address is not None
+    return address
+
+
+@cache
+def _target(context_class: type, library_class: type) -> Any:
+    """What numba's compiler asks of a target, with a context and code libraries of our own."""
+    codegen = copy.copy(cpu_target.target_context.codegen())
+    codegen._library_class = library_class
+    context = cpu_target.target_context.subtarget(_internal_codegen=codegen)
+    context.__class__ = context_class
+    return SimpleNamespace(typing_context=cpu_target.typing_context, target_context=context, options=cpu_target.options)
+
+
+def _dispatcher(function: Any, options: dict[str, Any], context_class: type, library_class: type) -> Any:
+    dispatcher = njit(**options)(function)
+    dispatcher._compiler.targetdescr = _target(context_class, library_class)
+    return dispatcher
+
+
+BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def part(function: Any, options: dict[str, Any]) -> Any:
+    """Dispatcher of a kernel for use by other kernels."""
+    return _dispatcher(function, options | BARE, PartContext, PartLibrary)
+
+
+def whole(function: Any, options: dict[str, Any]) -> Any:
+    """Dispatcher of a kernel that is called from Python."""
+    return _dispatcher(function, options, CPUContext, WholeLibrary)
+
+
+def module_text(function: Any, signature: Any, options: dict[str, Any]) -> tuple[str, str]:
+    """Name of a kernel's function in LLVM IR, and that IR: it and all below it, optimised as numba is told to."""
+    dispatcher = _dispatcher(function, options | BARE, PartContext, TextLibrary)
+    dispatcher.compile(signature)
+    result = dispatcher.overloads[signature.args]
+    return result.fndesc.llvm_func_name, result.library.get_llvm_str()
