@@ -35,11 +35,7 @@ class Kernel:
         """For Python."""
         from orbital.linking import whole
 
-        made = whole(self.py_func, self._options)
-        if self.signature is not None:
-            made.compile(self.signature)
-            made.disable_compile()
-        return made
+        return whole(self.py_func, self._options, self.signature)
 
     @cached_property
     def _part(self) -> Any:

@@ -96,8 +96,10 @@ def _target(context_class: type, library_class: type) -> Any:
 
 
 def _dispatcher(function: Any, options: dict[str, Any], context_class: type, library_class: type) -> Any:
+    """numba's dispatcher, with a target of our own; the function itself where numba is told not to compile."""
     dispatcher = njit(**options)(function)
-    dispatcher._compiler.targetdescr = _target(context_class, library_class)
+    if dispatcher is not function:
+        dispatcher._compiler.targetdescr = _target(context_class, library_class)
     return dispatcher
 
 
@@ -109,9 +111,13 @@ def part(function: Any, options: dict[str, Any]) -> Any:
     return _dispatcher(function, options | BARE, PartContext, PartLibrary)
 
 
-def whole(function: Any, options: dict[str, Any]) -> Any:
-    """Dispatcher of a kernel that is called from Python."""
-    return _dispatcher(function, options, CPUContext, WholeLibrary)
+def whole(function: Any, options: dict[str, Any], signature: Any = None) -> Any:
+    """Dispatcher of a kernel that is called from Python, for one signature only if one is given."""
+    dispatcher = _dispatcher(function, options, CPUContext, WholeLibrary)
+    if signature is not None and dispatcher is not function:
+        dispatcher.compile(signature)
+        dispatcher.disable_compile()
+    return dispatcher
 
 
 def module_text(function: Any, signature: Any, options: dict[str, Any]) -> tuple[str, str]:
