@@ -255,13 +255,16 @@ def make(composition: Any) -> Scheme:
                     fly_row(p, reals, row, p.grid + 1 - words[r + STAMP])
                     words[r + STAMP] = p.grid + 1
                 clear = 0
-                hit = touch_row(p, work, row * p.row_pitch)
-                if hit > 0:
-                    words[r + KICKED] = -1
-                    wake_strips(p, words, rows, row)
-                    following = p.grid + 1
-                elif hit < 0:
+                if words[r + CLEAR] > p.grid:
                     clear = clear_steps(p, work, row * p.row_pitch, touched != 0)
+                if clear == 0:
+                    hit = touch_row(p, work, row * p.row_pitch)
+                    if hit > 0:
+                        words[r + KICKED] = -1
+                        wake_strips(p, words, rows, row)
+                        following = p.grid + 1
+                    elif hit < 0:
+                        clear = clear_steps(p, work, row * p.row_pitch, touched != 0)
                 words[r + CLEAR] = p.grid + 1 + clear
             words[r + NEXT] = following
         p.thread_loss += p.solver_substep * total(power)
