@@ -45,7 +45,8 @@ def fly(fmu: str, folder: str) -> None:
 
 def plain(symbol: str) -> str:
     """Module and name of a kernel from what perf makes of the name that numba gave it."""
-    return ".".join(symbol.partition("[")[0].split("::")[-2:])
+    names = [name for name in symbol.partition("[")[0].split("::") if name != "_3clocals_3e"]
+    return ".".join([name for name in names if not name.startswith("make")][-2:])
 
 
 def profile(fmu: str) -> Counter[str]:
