@@ -90,3 +90,21 @@ def test_rows_are_looked_at_again_when_the_target_or_a_thread_gains(bench):
     p.contact_force = 5.0
     assert hurries(p)
     assert not hurries(p)
+
+
+def test_rows_are_looked_at_again_when_the_winches_or_the_tether_begin_to_pull():
+    """Of what pulls besides threads nothing was reckoned: once when it begins, and after a rest again."""
+    bench = Bench(TERMS | {"closing": "winches", "tether": "slack"})
+    p, hurries = bench.p, make_search(bench.parts, LONGEST).hurries
+    p.contact_haste = p.contact_force = p.contact_reckoned = p.tether_vertex_tension = 0.0
+    p.closing_t_start, p.contact_besides = -1.0, 0
+    p.target_drift[:] = 0.0
+    assert not hurries(p)
+    p.tether_vertex_tension = 2.0
+    assert hurries(p)
+    assert not hurries(p)
+    p.tether_vertex_tension = 0.0
+    assert not hurries(p)
+    p.closing_t_start = 0.5
+    assert hurries(p)
+    assert not hurries(p)

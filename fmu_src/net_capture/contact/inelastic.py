@@ -192,6 +192,7 @@ def make(composition: Any) -> Contact:
         p.contact_haste = 0.0
         p.contact_force = 0.0
         p.contact_reckoned = 0.0
+        p.contact_besides = 0
         p.contact_pull = largest_pull(p, work)
         mass = node_plane(p, work, MASS)
         for node in range(p.node_slots):
@@ -249,6 +250,7 @@ PART = Term(
         state("contact_haste", "m/s", "speed of the target that rows were reckoned with"),
         state("contact_force", "N", "tension that no thread has exceeded"),
         state("contact_reckoned", "N", "the same, that rows were reckoned with"),
+        count("contact_besides", "whether anything but threads pulled nodes", "state"),
         state("contact_pull", "1/kg", "acceleration that threads of 1 N may give the lightest node"),
         *(
             state(f"contact_{name}[#]", unit, text, shape=(3,))

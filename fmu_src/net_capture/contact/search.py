@@ -212,12 +212,15 @@ def make_search(composition: Any, longest: int) -> Search:
 
     @kernel
     def hurries(p):
-        """Whether the target has become faster, or a thread tauter, than rows were reckoned with.
+        """Whether the target has become faster, or a thread tauter, than rows were reckoned with, or something besides
+        threads has begun to pull.
 
-        Checked  tests/net_capture/test_sleep.py
+        Checked  tests/net_capture/test_search.py, tests/net_capture/test_sleep.py
         """
-        tauter = p.contact_force > p.contact_reckoned
+        besides = 1 if pulls_besides(p) else 0
+        tauter = p.contact_force > p.contact_reckoned or besides > p.contact_besides
         p.contact_reckoned = p.contact_force
+        p.contact_besides = besides
         speed = math.sqrt(dot(p.target_drift, p.target_drift))
         if speed > p.contact_haste:
             p.contact_haste = 1.5 * speed + HASTE
