@@ -144,7 +144,7 @@ def longest_step(stiffness_rate: float, damping_rate: float) -> float:
 def onset_step(stiffness_rate: float, damping_rate: float) -> float:
     """Step [s] that keeps the mouth area within 0.3 % and the energy within 1 % at any damping at which it is stable.
 
-        h = (0.3 + 1.77 zeta + 1.3 zeta^2) / omega
+        h = (0.3 + 1.77 zeta) / omega
 
     stiffness_rate       as for `longest_step`, omega^2 / 2                      [1/s2]
     damping_rate         as for `longest_step`, zeta omega                       [1/s]
@@ -157,7 +157,7 @@ def onset_step(stiffness_rate: float, damping_rate: float) -> float:
     """
     omega = math.sqrt(2.0 * stiffness_rate)
     zeta = damping_rate / omega
-    return (0.3 + 1.77 * zeta + 1.3 * zeta * zeta) / omega
+    return (0.3 + 1.77 * zeta) / omega
 
 
 @kernel

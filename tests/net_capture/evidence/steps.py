@@ -24,7 +24,7 @@ from fmu_src.net_capture.interface import MODEL
 RESULT = Path(__file__).with_name("steps.json")
 COMMAND = "python -m tests.net_capture.evidence.steps"
 RATIOS = (0.0, 0.0225, 0.05, 0.106, 0.25, 0.5, 1.0)
-SEEDS = 24
+SEEDS = 12
 END, LOOK = 15.0, 0.25
 FLAT = 576.0
 """Area of the flat net [m2]."""
