@@ -8,8 +8,8 @@ import pytest
 from tests.net_capture.evidence import mouth_error
 
 STORED = sorted(mouth_error.RESULT.parent.glob("mouth_error*.json"))
-REQUIRED = 0.05
-"""Per cent of the flat net's area."""
+REQUIRED = {"double": 0.05, "single": 0.1}
+"""Per cent of the flat net's area: what was asked of double precision, and what is said of single precision."""
 
 
 def judge(rows):
@@ -17,8 +17,8 @@ def judge(rows):
     judged = [row for row in rows if row["substep_of"] == "default" and row["times"] <= 1.14]
     assert {row["scene"] for row in judged} == set(mouth_error.SCENES)
     for row in judged:
-        assert row["mouth_curve_percent"] < REQUIRED
-        assert row["mouth_curve_standard_error"] < REQUIRED / 3.0
+        assert row["mouth_curve_percent"] < REQUIRED[row["precision"]]
+        assert row["mouth_curve_standard_error"] < REQUIRED["double"] / 3.0
 
 
 def test_a_result_is_stored():
