@@ -106,7 +106,7 @@ def test_both_open_the_net_alike(opened):
     assert rk4["thread.dissipated"] > 1.0
 
 
-@pytest.mark.parametrize(("scheme", "turning"), [("leapfrog", 1e-11), ("rk4", 1e-8)])
+@pytest.mark.parametrize(("scheme", "turning"), [("leapfrog", 1e-11), ("rk4", 1e-10)])
 def test_the_book_of_both_closes(opened, scheme, turning):
     """Central forces keep the angular momentum: the leapfrog to rounding, a scheme of several stages to its order."""
     net = opened[scheme]

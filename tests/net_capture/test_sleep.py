@@ -249,7 +249,7 @@ def clear_until(net):
 def test_a_target_that_becomes_fast_meets_rows_that_were_left_alone(shoot, speed):
     """Rows reckoned with a target at rest when something strikes it towards the net."""
     net = shoot({"net.mesh": 3.0, "closing.time": 30.0} | WALL, CAPTURE)
-    net.step(0.1)
+    net.step(0.3)
     assert clear_until(net).min() > net["solver.steps"] + 1000
     net.array("target_drift")[1] = -speed
     worst = -math.inf
