@@ -97,6 +97,21 @@ def test_a_knot_held_by_the_surface_has_no_speed_into_it(shoot):
     assert held > 100
 
 
+def test_every_impulse_turns_the_target_at_once(shoot):
+    """What is touched next in a substep meets a target that turns as its angular momentum says: I w = L."""
+    net = shoot({"closing.time": 11.2} | TUMBLE, CAPTURE)
+    net.step(16.0)
+    struck = 0
+    for _ in range(40):
+        before = net.array("target_spin").copy()
+        net.step(net["solver.substep"])
+        turn, spin = net.array("target_turn"), net.array("target_spin")
+        omega = turn @ (turn.T @ spin / net.array("target_inertia"))
+        np.testing.assert_allclose(net.array("target_omega"), omega, rtol=0.0, atol=1e-13)
+        struck += np.abs(spin - before).max() > 1e-6
+    assert struck > 10
+
+
 def test_a_lost_reaction_would_break_the_momentum(shoot):
     """The twin: had the target not taken the opposite impulse, the balance above would miss by newton seconds."""
     net = shoot({"closing.time": 11.2} | TUMBLE, CAPTURE)
