@@ -191,7 +191,7 @@ def export_ssp(
 @app.command(name="list")
 def list_scenes() -> None:
     """Name the scenes that come with the program."""
-    from dcone_cosim.scenes.scene import shipped, title_of
+    from dcone_cosim.loading import shipped, title_of
 
     scenes = shipped()
     width = max(len(name) for name in scenes)

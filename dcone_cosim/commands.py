@@ -11,15 +11,17 @@ from pathlib import Path
 
 from dcone_cosim import build, interrupts, placed
 from dcone_cosim.apart import ours, phases_apart
-from dcone_cosim.archives import Archives, remarks
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
+from dcone_cosim.loading import find, load
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import style, summary
 from dcone_cosim.run import default_folder, fill
+from dcone_cosim.scene_fmus import SceneFmus, remarks
 from dcone_cosim.scenes.kept import unlike
-from dcone_cosim.scenes.scene import Scene, find, load, parse, read_text
+from dcone_cosim.scenes.reading import parse, read_text
+from dcone_cosim.scenes.scene import Scene
 from dcone_cosim.scratch import Scratch, clear_left
 
 LEFT_BEHIND = (
@@ -65,7 +67,7 @@ def run_and_write(
     with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
         if left + draft.removed:
             notes.append(LEFT_BEHIND)
-        with Archives(scene, progress) as archives:
+        with SceneFmus(scene, progress) as archives:
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
         notes += [*nothing_recorded(result), *remarks(facts)]

@@ -1,7 +1,7 @@
-"""An FMU file: unpacked once, checked, and read for what it offers. It makes the instances.
+"""An FMU file: unpacked once, checked, and read for what it offers.
 
-Whatever is wrong with a file is one `FmuError` that names it. Its binary is not loaded before an instance is made,
-since that runs its code.
+Whatever is wrong with a file is one `FmuError` that names it. Its binary is not loaded here, since that runs its code:
+`component` and `isolation` make instances of it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from collections.abc import Container
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import fmpy
 
@@ -26,10 +26,6 @@ from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import NO_UNIT, Unit, by_name, read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scratch import Scratch
-
-if TYPE_CHECKING:
-    from dcone_cosim.fmu.component import Component
-    from dcone_cosim.fmu.isolation import IsolatedComponent
 
 EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
@@ -118,18 +114,6 @@ class Archive:
 
     def remark(self, sentence: str) -> None:
         self.remarks[sentence] = None
-
-    def instantiate(self, name: str) -> Component:
-        """An instance in this process."""
-        from dcone_cosim.fmu.component import Component
-
-        return Component(self, name)
-
-    def isolate(self, name: str, timeout: float = 60.0) -> IsolatedComponent:
-        """An instance in a process of its own; a call that takes longer than the timeout [s] is an error."""
-        from dcone_cosim.fmu.isolation import IsolatedComponent
-
-        return IsolatedComponent(self, name, timeout)
 
     def close(self) -> None:
         for scratch in (self._unpacked, self._within):

@@ -1,6 +1,6 @@
 """One instance of an FMU driven by variable name, in this process, through fmpy.
 
-Nothing here knows a model: a foreign FMU is as good as ours. Call order: `Archive`, `instantiate`, `set`, `initialise`,
+Nothing here knows a model: a foreign FMU is as good as ours. Call order: `Archive`, `Component`, `set`, `initialise`,
 then `step` with `read`, `set` of inputs and `save`/`restore` in between, at last `close`. All values are SI: an FMU
 that counts in other units is converted by its own unit definitions, one that counts in SI is passed through untouched.
 

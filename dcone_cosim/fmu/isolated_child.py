@@ -51,7 +51,7 @@ class Server:
             return None
         if call == "instantiate":
             path, folder, name, tolerance = arguments
-            self.component = Archive(Path(path), Path(folder), tolerance).instantiate(name)
+            self.component = Component(Archive(Path(path), Path(folder), tolerance), name)
             return None
         assert self.component is not None
         if call == "step":

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
-from dcone_cosim.archives import isolated, opened
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import Component
 from dcone_cosim.master import cannot_begin
 from dcone_cosim.progress import Progress
+from dcone_cosim.scene_fmus import isolated, opened
 from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
 from dcone_cosim.scenes.units import spoken
 
@@ -215,7 +216,7 @@ def _sizes(
     """What an instance says of itself: sizes, and how it will step."""
     interface = build.CATALOGUE[component.model].interface(component.terms)
     hidden = sum(v.size for v in interface.variables if v.causality == "state")
-    with archive.instantiate(component.name) as instance:
+    with Component(archive, component.name) as instance:
         instance.set(component.parameters)
         instance.initialise(0.0)
         sizes = [n for n in ("net.nodes", "net.threads") if n in instance.variables]

@@ -1,36 +1,18 @@
-"""A scene: what is to be simulated, read from TOML and checked as a whole before anything is built or written.
-
-    title = "..."               phases = ["capture", "removal"]
-    [orbit]                     shared by both phases
-    [capture]  [capture.net] shape = "square" ...       a table per part; a table that names a term brings the term in
-    [removal]  [removal.reel] law = "locked" ...
-    [handoff]
-
-Which tables and keys there are follows from the models' own tables of variables, through `build`; where an FMU file
-takes a model's place (`fmu = "path.fmu"`), from its model description.
-"""
+"""A scene: what is to be simulated, as it is once it has been read and has passed every check. All values are SI."""
 
 from __future__ import annotations
 
 import hashlib
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from dcone_cosim.coupling.options import Connection, Coupling
-from dcone_cosim.errors import InputError
-from dcone_cosim.files import no_file, regular
-from dcone_cosim.names import did_you_mean
 from dcone_cosim.scenes.mistakes import Places
-from dcone_cosim.scenes.toml_lines import DEEPEST, deep_key
 from dcone_cosim.scenes.toml_lines import Path as KeyPath
 
-SHIPPED = Path(__file__).parent
 PHASES = ("capture", "removal")
-UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-"""Byte order marks of UTF-16."""
 
 
 @dataclass(frozen=True)
@@ -154,101 +136,3 @@ class Scene:
     def sha256(self) -> str:
         """Of the text, by which a run knows its scene again."""
         return hashlib.sha256(self.text.encode()).hexdigest()
-
-
-def shipped() -> dict[str, Path]:
-    """The scenes that come with the program, by name."""
-    return {path.stem: path for path in sorted(SHIPPED.glob("*.toml"))}
-
-
-def find(name: str) -> Path:
-    """Path of a scene given by its name or as a path."""
-    known = shipped()
-    if name in known:
-        return known[name]
-    path = Path(name)
-    try:
-        is_file, is_folder, other = path.is_file(), path.is_dir(), no_file(path)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{name[:60]} cannot be looked for: {reason}") from error
-    if is_file:
-        return path
-    if is_folder:
-        raise InputError(f"{name} is a folder; expected a scene: a .toml file, or one of {', '.join(known)}")
-    if other:
-        raise InputError(f"{name} is {other}; expected a file")
-    if path.suffix == ".toml" or len(path.parts) > 1:
-        beside = [str(p) for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-        raise InputError(f"scene file {name} does not exist{did_you_mean(name, beside or known)}")
-    raise InputError(f"no scene named {name!r}{did_you_mean(name, known)}")
-
-
-def load(name: str, settings: Sequence[str] = ()) -> Scene:
-    """The scene of that name or path, or of the run whose folder that is; a `SceneError` lists every mistake found.
-
-    settings     `KEY.KEY=VALUE`, each in the place of what the file says
-    """
-    from dcone_cosim.scenes.kept import Kept, kept_in
-
-    kept = kept_in(Path(name)) if name not in shipped() else None
-    if kept is None:
-        path = find(name)
-        kept = Kept(path, path.stem, ())
-    settings = (*kept.settings, *settings)
-    if kept.path.suffix.lower() == ".ssp":
-        from dcone_cosim.ssp import system
-
-        return system.load(kept.path, settings, kept.name)
-    return parse(read_text(kept.path), kept.name, str(kept.path), kept.path.parent, settings)
-
-
-def read_text(path: Path) -> str:
-    """Text of a scene file, in UTF-8 with or without a byte order mark."""
-    try:
-        content = regular(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
-    try:
-        return content.decode("utf-8-sig").replace("\r\n", "\n")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        what = "it is in UTF-16" if content.startswith(UTF_16) else f"byte {content[error.start]:#x} in line {line}"
-        raise InputError(f"{path} cannot be read as text: {what}; save it as UTF-8") from error
-
-
-def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Sequence[str] = ()) -> Scene:
-    """A scene from its text.
-
-    source       names it in messages
-    folder       paths of FMUs are relative to it
-    """
-    if not text.strip():
-        raise InputError(f"{source} is empty; expected a scene with at least [capture] or [removal]")
-    line = deep_key(text)
-    if line is not None:
-        raise InputError(f"{source} line {line}: a key of more than {DEEPEST} parts; no scene has one")
-    try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        last = len(text.splitlines())
-        said = str(error).replace("(at end of document)", f"(line {last}, at the end of the file)")
-        raise InputError(f"{source} is not valid TOML, or cut short: {said}") from error
-    except RecursionError as error:
-        raise InputError(f"{source} is no scene: its lists or tables are nested too deeply") from error
-    except ValueError as error:
-        raise InputError(f"{source} is no scene: a number in it has thousands of digits") from error
-    from dcone_cosim.scenes.check import check  # astropy is loaded only for a text that parses
-    from dcone_cosim.scenes.text import as_run, name_changes, override
-
-    overrides = override(document, settings)
-    name_changes(text, document, overrides)
-    places = Places(source, text, tuple(overrides))
-    scene = check(document, name, places, folder)
-    tables = {table.path: table.file for table in scene.tables}
-    return replace(scene, text=as_run(text, document, overrides, folder, tables))
-
-
-def title_of(path: Path) -> str:
-    """The title of a scene file, without checking the rest."""
-    return str(tomllib.loads(read_text(path)).get("title", ""))

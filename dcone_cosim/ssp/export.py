@@ -21,9 +21,10 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import read_units
+from dcone_cosim.loading import load
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene, load
+from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure

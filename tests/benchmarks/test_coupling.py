@@ -57,10 +57,10 @@ def archives() -> Iterator[dict[str, Archive]]:
 @pytest.mark.parametrize("case", CASES)
 def test_error_against_coupling_step(case: str, motor: str, archives: dict[str, Archive]) -> None:
     def removal(law: str) -> Component:
-        return archives[law].instantiate("removal")
+        return Component(archives[law], "removal")
 
     def controller() -> Component:
-        made = archives["controller" if motor == "no motor" else "lagging"].instantiate("controller")
+        made = Component(archives["controller" if motor == "no motor" else "lagging"], "controller")
         made.set({"reel.length": LENGTH, "feed_forward": FEED_FORWARD})
         if motor == "motor":
             made.set({"motor.time_constant": LAG})

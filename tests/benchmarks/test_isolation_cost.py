@@ -18,9 +18,10 @@ import pytest
 from dcone_cosim import build as models
 from dcone_cosim.fmu import frames
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.component import output_names
+from dcone_cosim.fmu.component import Component, output_names
 from dcone_cosim.fmu.floating import Control
-from dcone_cosim.scenes.scene import load
+from dcone_cosim.fmu.isolation import IsolatedComponent
+from dcone_cosim.loading import load
 from tests.cosim.fmus.build import build
 
 pytestmark = pytest.mark.bench
@@ -53,14 +54,14 @@ def test_isolation_cost(tmp_path):
     ):
         found = []
         with Archive(path) as archive:
-            for make in (archive.instantiate, archive.isolate):
+            for make in (Component, IsolatedComponent):
                 began = time.perf_counter()
-                with make("tow") as component:
+                with make(archive, "tow") as component:
                     component.set(values)
                     component.initialise(0.0)
                     start = 1e3 * (time.perf_counter() - began)
                     plain, _ = timed(component, keep=False)
-                with make("tow") as component:
+                with make(archive, "tow") as component:
                     component.set(values)
                     component.initialise(0.0)
                     kept, row = timed(component, keep=True)

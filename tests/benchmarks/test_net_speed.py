@@ -23,7 +23,7 @@ import numpy.typing as npt
 import pytest
 from fmpy import extract
 
-from dcone_cosim.scenes.scene import load
+from dcone_cosim.loading import load
 from fmu_src.catalogue import MODELS
 from fmu_src.packaging import archive
 from tests.benchmarks.plain_net import DEFAULTS, PlainNet, compiled

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dcone_cosim import commands
-from dcone_cosim.scenes.scene import find
+from dcone_cosim.loading import find
 from tests.cosim.conftest import Dcone
 
 

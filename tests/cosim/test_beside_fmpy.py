@@ -16,7 +16,7 @@ import fmpy
 from dcone_cosim.fmu.archive import Archive
 
 path = sys.argv[1]
-with Archive(Path(path)) as archive, archive.instantiate("ours") as component:
+with Archive(Path(path)) as archive, Component(archive, "ours") as component:
     for _ in range(3):
         said = []
         fmpy.simulate_fmu(path, stop_time=60.0, output_interval=60.0, debug_logging=True,

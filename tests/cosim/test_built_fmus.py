@@ -22,8 +22,8 @@ from dcone_cosim import build
 from dcone_cosim.contract import EXTREMES
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.component import FmuError
-from dcone_cosim.scenes.scene import find
+from dcone_cosim.fmu.component import Component, FmuError
+from dcone_cosim.loading import find
 from fmu_src.interface import Model
 from fmu_src.packaging import archive
 from tests.cosim.conftest import Dcone
@@ -117,7 +117,7 @@ def test_the_missions_fmu_holds_the_missions_net_and_line(mission: Path) -> None
     assert [start(capture, name) for name in ("net.side", "bullets.mass", "tether.length")] == ["12.0", "1.27", "14.0"]
     assert start(removal, "tether.rest_length") == "14.0"
     for path, name, value in ((capture, "net.side", 12.0), (removal, "tether.rest_length", 14.0)):
-        with Archive(path) as unpacked, unpacked.instantiate("mission") as running:
+        with Archive(path) as unpacked, Component(unpacked, "mission") as running:
             running.initialise(0.0)
             assert running.get([name]) == {name: value}
 
@@ -318,7 +318,7 @@ def test_an_archive_that_was_changed_is_refused_with_its_reason(
     harm(files)
     archive.pack(files, path)
     with Archive(path) as unpacked, pytest.raises(FmuError, match=words):
-        unpacked.instantiate("tow")
+        Component(unpacked, "tow")
 
 
 def flip(files: dict[str, bytes], name: str) -> None:

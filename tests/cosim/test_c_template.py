@@ -26,7 +26,7 @@ VERSION = 0
 
 @pytest.fixture
 def tow(tmp_path: Path) -> Iterator[Component]:
-    with Archive(build(tmp_path)) as archive, archive.instantiate("tow") as component:
+    with Archive(build(tmp_path)) as archive, Component(archive, "tow") as component:
         yield component
 
 
@@ -153,7 +153,7 @@ def test_without_logging_errors_are_still_told(tmp_path: Path) -> None:
 @pytest.mark.parametrize("start", [0.0, 100.0, -50.0])
 def test_a_capture_at_any_start_time(tmp_path: Path, start: float) -> None:
     """Its net flies 16 m at 3 m/s, and `t_capture` counts from the shot."""
-    with Archive(build(tmp_path, "capture")) as archive, archive.instantiate("shot") as component:
+    with Archive(build(tmp_path, "capture")) as archive, Component(archive, "shot") as component:
         component.initialise(start)
         result = CaptureLoop(component, CapturePlan(0.5, 20.0, stop_there=True, start=start), Progress()).run()
     assert result.error is None

@@ -49,12 +49,12 @@ class NoArchives:
 def stand_in(monkeypatch: pytest.MonkeyPatch, make_scene: Callable[..., Scene]) -> type[NoArchives]:
     """`dcone run mock` without FMUs; set `meanwhile` to do something during the run."""
 
-    class Archives(NoArchives):
+    class SceneFmus(NoArchives):
         pass
 
-    monkeypatch.setattr(commands, "Archives", Archives)
+    monkeypatch.setattr(commands, "SceneFmus", SceneFmus)
     monkeypatch.setattr(commands, "load", lambda *_: make_scene("capture", "removal"))
-    return Archives
+    return SceneFmus
 
 
 def raising(error: BaseException) -> Callable[[], object]:
@@ -215,7 +215,7 @@ PROGRAM = """
     from dcone_cosim import cli, commands
     from tests.cosim.conftest import scene_of
     from tests.cosim.test_command_line import NoArchives
-    commands.Archives, commands.load = NoArchives, lambda *_: scene_of("capture", "removal")
+    commands.SceneFmus, commands.load = NoArchives, lambda *_: scene_of("capture", "removal")
     NoArchives.meanwhile = staticmethod(lambda: {act})
     sys.argv = ["dcone", "run", "mock", "-o", "deep/out", "--no-figures"]
     cli.main()

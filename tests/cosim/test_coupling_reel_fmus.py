@@ -13,7 +13,7 @@ import pytest
 
 from dcone_cosim import build
 from dcone_cosim.fmu.component import Archive, Component
-from dcone_cosim.scenes.scene import load
+from dcone_cosim.loading import load
 from tests.cosim.reel_pair import DURATION, FEED_FORWARD, LENGTH, MACRO_STEP, PROPORTIONAL, Outcome, pair, whole
 
 pytestmark = pytest.mark.slow
@@ -45,14 +45,14 @@ def errors(archives: dict[str, Archive]) -> Pair:
     """`errors(gain, **coupling)`: largest differences of tension [N] and separation [m] from the law inside."""
 
     def removal(law: str) -> Component:
-        return archives[law].instantiate("removal")
+        return Component(archives[law], "removal")
 
     inside: Outcome = whole(CASE, removal)
     assert inside.rows[:, 1].max() < SPAN
 
     def run(gain: float = 1.0, **coupling: object) -> np.ndarray:
         def controller() -> Component:
-            made = archives["controller"].instantiate("controller")
+            made = Component(archives["controller"], "controller")
             made.set({"reel.length": LENGTH, "feed_forward": FEED_FORWARD, "gain.proportional": gain * PROPORTIONAL})
             return made
 

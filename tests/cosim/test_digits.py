@@ -10,12 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dcone_cosim.archives import Archives
+from dcone_cosim.loading import load
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import TugLog
 from dcone_cosim.reports import chaos, summary
-from dcone_cosim.scenes.scene import Scene, load
+from dcone_cosim.scene_fmus import SceneFmus
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.conftest import Dcone
 from tests.cosim.test_summary import found, removal_run
 
@@ -56,7 +57,7 @@ def test_digits(value: float, spread: float, shown: str) -> None:
 def sample(scene: str, seed: int, *settings: str) -> RunResult:
     jitter = ('capture.solver.jitter=["1e-6 m", "1e-6 m", "1e-6 m"]', f"capture.solver.seed={seed}")
     chosen = load(scene, (*settings, *jitter))
-    with Archives(chosen, Progress()) as archives:
+    with SceneFmus(chosen, Progress()) as archives:
         return run_scene(chosen, archives.instantiate, Progress())
 
 

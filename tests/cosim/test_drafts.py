@@ -103,7 +103,7 @@ def test_the_next_run_says_so(tmp_path: Path, make_scene, monkeypatch: pytest.Mo
             return {}
 
     monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture"))
-    monkeypatch.setattr(commands, "Archives", NoArchives)
+    monkeypatch.setattr(commands, "SceneFmus", NoArchives)
     with dying(tmp_path / "run", "ctypes.string_at(0)") as process:
         process.communicate()
     notes = [

@@ -10,7 +10,8 @@ import pytest
 
 from dcone_cosim.fmu import floating
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.component import output_names
+from dcone_cosim.fmu.component import Component, output_names
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 
@@ -48,7 +49,7 @@ WAYS = [
 @pytest.mark.parametrize(("switch", "what", "call"), WAYS)
 def test_it_is_taken_back_and_remarked_on(tmp_path: Path, switch: str, what: str, call: str, isolate: bool) -> None:
     with Archive(build(tmp_path, "removal", switch)) as archive:
-        with archive.isolate("tow") if isolate else archive.instantiate("tow") as tow:
+        with IsolatedComponent(archive, "tow") if isolate else Component(archive, "tow") as tow:
             tow.initialise(0.0)
             for i in range(10):
                 tow.step(10.0 * i, 10.0)
@@ -62,7 +63,7 @@ def test_it_is_taken_back_and_remarked_on(tmp_path: Path, switch: str, what: str
 def test_one_that_does_not_is_not(tmp_path: Path) -> None:
     """The twin."""
     with Archive(build(tmp_path)) as archive:
-        with archive.instantiate("tow") as tow:
+        with Component(archive, "tow") as tow:
             tow.initialise(0.0)
             tow.step(0.0, 10.0)
         assert not archive.remarks
@@ -76,8 +77,8 @@ def test_what_is_computed_beside_it_keeps_its_bits(tmp_path: Path, switch: str) 
         with (
             Archive(build(tmp_path / "sound")) as sound,
             Archive(build(tmp_path / "other", "removal", *switches)) as it,
-            sound.instantiate("sound") as one,
-            it.instantiate("other") as other,
+            Component(sound, "sound") as one,
+            Component(it, "other") as other,
         ):
             for component in (one, other):
                 component.set({f"start.relative_velocity[{i}]": 0.1 / i for i in (1, 2, 3)})

@@ -13,6 +13,8 @@ import pytest
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import Component
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.interface_kit import write_template
 
 XML = "modelDescription.xml"
@@ -154,10 +156,10 @@ def test_a_binary_that_does_not_load_in_the_loaders_words(tmp_path: Path, descri
     path = tmp_path / "it.fmu"
     path.write_bytes(zipped({XML: description, BINARY: "no machine code"}))
     with Archive(path) as archive:
-        for make in (archive.instantiate, archive.isolate):
+        for make in (Component, IsolatedComponent):
             before = Path.cwd()
             with pytest.raises(FmuError, match=r"towing: the binary of it\.fmu cannot be used\n.*(invalid|too short)"):
-                make("towing")
+                make(archive, "towing")
             assert Path.cwd() == before
 
 

@@ -20,10 +20,13 @@ from dcone_cosim import cli
 from dcone_cosim.contract import asked, check_contract
 from dcone_cosim.errors import SUCCESS, InputError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import Component
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.interface_kit import show, write_template
+from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene, load
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.fmus.build import build as build_fmu
 from tests.cosim.mock_components import MockCapture
 
@@ -95,7 +98,7 @@ def test_both_c_templates_fly_a_mission(kits: dict[str, Path], make_scene: Make)
 
             def instantiate(phase: str, name: str, isolate: bool = isolate):
                 archive = capture if phase == "capture" else removal
-                return archive.isolate(name) if isolate else archive.instantiate(name)
+                return IsolatedComponent(archive, name) if isolate else Component(archive, name)
 
             scene = make_scene("capture", "removal", spin_tolerance=1e9)
             scene.phases[0].main.parameters["tether.length"] = 20.0  # type: ignore[index]
@@ -144,7 +147,7 @@ def test_the_python_template_tows(tmp_path: Path, make_scene: Make, isolate: boo
         def instantiate(phase: str, name: str):
             if phase == "capture":
                 return MockCapture(reports=True)
-            return archive.isolate(name) if isolate else archive.instantiate(name)
+            return IsolatedComponent(archive, name) if isolate else Component(archive, name)
 
         result = run_scene(make_scene("capture", "removal"), instantiate, Progress())
     assert result.exit_code == SUCCESS, result.message
@@ -158,7 +161,7 @@ def test_the_python_template_captures(tmp_path: Path, make_scene: Make) -> None:
     subprocess.run(command, check=True, capture_output=True)
     with Archive(tmp_path / "MyCapture.fmu") as archive:
         assert check_contract(archive, "capture", then_removal=True, hand_over="captured") == []
-        result = run_scene(make_scene("capture"), lambda _, name: archive.isolate(name), Progress())
+        result = run_scene(make_scene("capture"), lambda _, name: IsolatedComponent(archive, name), Progress())
     assert result.exit_code == SUCCESS, result.message
     assert result.phases["capture"].located == 5.5
 

@@ -15,6 +15,7 @@ from dcone_cosim.contract import check_contract
 from dcone_cosim.errors import FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, Terminated
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.phases import CaptureLoop, CapturePlan
 from dcone_cosim.progress import Progress
@@ -35,7 +36,7 @@ def swap_in(scene: Scene, removal: Path, isolate: bool = HERE, timeout: float = 
         def instantiate(phase: str, name: str):
             if phase == "capture":
                 return MockCapture(reports=True)
-            return archive.isolate(name, timeout) if isolate else archive.instantiate(name)
+            return IsolatedComponent(archive, name, timeout) if isolate else Component(archive, name)
 
         return run_scene(scene, instantiate, Progress())
 
@@ -63,7 +64,7 @@ def test_a_call_refused_later_quotes_no_old_words(tmp_path: Path, isolate: bool)
 
     for call in (lambda it: it.get(["separation"]), lambda it: it.set({"target.mass": 1.0})):
         with Archive(build(tmp_path, change=elsewhere)) as archive:
-            component = archive.isolate("towing") if isolate else archive.instantiate("towing")
+            component = IsolatedComponent(archive, "towing") if isolate else Component(archive, "towing")
             with component:
                 component.initialise(0.0)
                 with pytest.raises(CallError) as caught:
@@ -89,7 +90,7 @@ def test_what_is_no_number_is_left_alone(make_scene: Make, tmp_path: Path) -> No
     with Archive(build(tmp_path, change=change)) as archive:
         assert archive.variables["note"].kind == "String"
         assert archive.variables["mode"].kind == "Integer"
-        result = run_scene(make_scene("removal"), lambda _, name: archive.instantiate(name), Progress())
+        result = run_scene(make_scene("removal"), lambda _, name: Component(archive, name), Progress())
     assert result.exit_code == SUCCESS
     assert "mode" in result.parameters["removal"]
     assert "note" not in result.parameters["removal"]
@@ -164,7 +165,7 @@ def test_a_binary_that_does_not_load_keeps_the_capture(make_scene: Make, tmp_pat
         next(archive.folder.rglob("*.so")).write_bytes(b"no machine code")
 
         def instantiate(phase: str, name: str):
-            return MockCapture(reports=True) if phase == "capture" else archive.instantiate(name)
+            return MockCapture(reports=True) if phase == "capture" else Component(archive, name)
 
         result = run_scene(make_scene("capture", "removal"), instantiate, Progress())
     assert (result.exit_code, result.status) == (FMU_FAILED, "FMU failed")
@@ -194,13 +195,13 @@ def test_its_own_end_is_no_failure(make_scene: Make, tmp_path: Path, isolate: bo
 
 def test_an_end_before_the_capture_is_a_failed_capture(make_scene: Make, tmp_path: Path) -> None:
     with Archive(build(tmp_path, "capture", "ENDS", when=3.0)) as archive:
-        result = run_scene(make_scene("capture"), lambda _, name: archive.instantiate(name), Progress())
+        result = run_scene(make_scene("capture"), lambda _, name: Component(archive, name), Progress())
         assert result.exit_code == 3
         assert "ended at t = 3.25 s, not captured\n  the pair entered" in result.message
         (phase,) = make_scene("capture").phases
         flown = replace(phase, options={**phase.options, "hand_over": "none"})
         scene = replace(make_scene("capture"), phases=(flown,))
-        assert run_scene(scene, lambda _, name: archive.instantiate(name), Progress()).exit_code == SUCCESS
+        assert run_scene(scene, lambda _, name: Component(archive, name), Progress()).exit_code == SUCCESS
 
 
 class TestCapture:
@@ -208,7 +209,10 @@ class TestCapture:
 
     @staticmethod
     def run(path: Path, isolate: bool = HERE):
-        with Archive(path) as archive, archive.isolate("shot") if isolate else archive.instantiate("shot") as component:
+        with (
+            Archive(path) as archive,
+            IsolatedComponent(archive, "shot") if isolate else Component(archive, "shot") as component,
+        ):
             component.initialise(0.0)
             plan = CapturePlan(0.5, 20.0, stop_there=True)
             return CaptureLoop(component, plan, Progress()).run()
@@ -256,7 +260,7 @@ class TestCapture:
 class TestComponent:
     def test_no_call_after_fatal(self, tmp_path: Path) -> None:
         with Archive(build(tmp_path, "removal", "FATAL")) as archive:
-            component = archive.instantiate("tow")
+            component = Component(archive, "tow")
             component.initialise(0.0)
             read = component.reader(["separation"])
             component.save()
@@ -280,7 +284,7 @@ class TestComponent:
             assert calls == ["fmi2DoStep"]
 
     def test_a_discarded_step_says_how_far_it_came(self, tmp_path: Path) -> None:
-        with Archive(build(tmp_path, "removal", "DISCARD")) as archive, archive.instantiate("tow") as component:
+        with Archive(build(tmp_path, "removal", "DISCARD")) as archive, Component(archive, "tow") as component:
             component.initialise(0.0)
             component.save()
             with pytest.raises(CallError) as caught:
@@ -292,14 +296,14 @@ class TestComponent:
 
     @pytest.mark.parametrize("switch", ["NULL_LOG", "BAD_LOG"])
     def test_no_message_can_stop_us(self, tmp_path: Path, switch: str) -> None:
-        with Archive(build(tmp_path, "removal", switch)) as archive, archive.instantiate("tow") as component:
+        with Archive(build(tmp_path, "removal", switch)) as archive, Component(archive, "tow") as component:
             component.initialise(0.0)
             component.step(45.0, 10.0)
             with pytest.raises(CallError, match="not allowed"):
                 component.enter_initialisation(0.0)
 
     def test_a_parameter_may_be_infinite(self, tmp_path: Path) -> None:
-        with Archive(build(tmp_path)) as archive, archive.instantiate("tow") as component:
+        with Archive(build(tmp_path)) as archive, Component(archive, "tow") as component:
             component.set({"tether.rest_length": np.inf})
             component.initialise(0.0)
             assert component.get(["tether.rest_length"]) == {"tether.rest_length": np.inf}
@@ -330,4 +334,4 @@ def test_what_the_contract_misses(tmp_path: Path, old: str, new: str, complaint:
         assert re.search(complaint, found)
     with Archive(build(tmp_path / "good")) as archive:
         assert check_contract(archive, "removal", then_removal=True) == []
-        assert isinstance(archive.instantiate("it"), Component)
+        assert isinstance(Component(archive, "it"), Component)

@@ -13,6 +13,7 @@ import pytest
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, read_units, same_dimension, si_name
 from tests.cosim.fmus.build import build
 
@@ -121,8 +122,8 @@ class TestComponent:
     @pytest.fixture(params=["here", "isolated"])
     def component(self, path: Path, request: pytest.FixtureRequest) -> Iterator[Component]:
         with Archive(path) as archive:
-            make = archive.instantiate if request.param == "here" else archive.isolate
-            with make("it") as component:
+            make = Component if request.param == "here" else IsolatedComponent
+            with make(archive, "it") as component:
                 yield component  # type: ignore[misc]
 
     def test_what_is_set_and_read_is_si(self, component: Component) -> None:
@@ -145,7 +146,7 @@ class TestComponent:
 
 def test_si_values_pass_untouched(tmp_path: Path) -> None:
     odd = 0.1 + 0.2
-    with Archive(build(tmp_path)) as archive, archive.instantiate("it") as component:
+    with Archive(build(tmp_path)) as archive, Component(archive, "it") as component:
         component.set({"start.relative_position[1]": odd})
         component.initialise(0.0)
         assert component.get(["start.relative_position[1]"])["start.relative_position[1]"] == odd

@@ -15,9 +15,11 @@ import pytest
 from dcone_cosim import names
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.isolation import IsolatedComponent
+from dcone_cosim.loading import find, load
 from dcone_cosim.scenes.kept import kept_in, unlike
 from dcone_cosim.scenes.mistakes import SceneError
-from dcone_cosim.scenes.scene import find, load, parse, read_text
+from dcone_cosim.scenes.reading import parse, read_text
 from dcone_cosim.scenes.toml_lines import deep_key
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.package import Package
@@ -307,7 +309,7 @@ def test_a_damaged_archive_is_one_error_or_none(tmp_path: Path, count: int) -> N
 
 
 def steps(archive: Archive) -> None:
-    with archive.isolate("it", timeout=10.0) as component:
+    with IsolatedComponent(archive, "it", timeout=10.0) as component:
         component.initialise(0.0)
         component.step(0.0, 10.0)
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 import pytest
 
 from dcone_cosim import build
-from dcone_cosim.scenes.scene import load
+from dcone_cosim.loading import load
 from fmu_src.instance import Instance
 from fmu_src.net_capture.planes import MASS
 from tests.cosim.conftest import Dcone

@@ -46,13 +46,13 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch, make_scene: Callable[..., Scene])
     def use(capture: type = MockCapture, *removals: type) -> None:
         coming = list(removals)
 
-        class Archives(NoArchives):
+        class SceneFmus(NoArchives):
             def instantiate(self, phase: str, name: str) -> object:
                 if phase == "capture":
                     return capture(reports=True)
                 return (coming.pop(0) if coming else MockRemoval)(tugs=[(12.0, 5.0, 0.01)])
 
-        monkeypatch.setattr(commands, "Archives", Archives)
+        monkeypatch.setattr(commands, "SceneFmus", SceneFmus)
         monkeypatch.setattr(commands, "load", lambda *_: make_scene("capture", "removal"))
 
     return use
@@ -138,7 +138,7 @@ SLOW = """
             time.sleep({pause})
             super().step(at, size)
     NoArchives.instantiate = lambda self, phase, name: MockCapture() if phase == "capture" else Slow(tugs=[])
-    commands.Archives, commands.load = NoArchives, lambda *_: scene_of("capture", "removal")
+    commands.SceneFmus, commands.load = NoArchives, lambda *_: scene_of("capture", "removal")
     progress.REMINDER = {reminder}
     sys.argv = ["dcone", "run", "mock", "-o", "out", "--no-figures"]
     cli.main()

@@ -15,13 +15,14 @@ import pyarrow.parquet
 import pytest
 
 from dcone_cosim import build as models
-from dcone_cosim.archives import Archives, isolated
 from dcone_cosim.errors import FMU_FAILED
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.run import phase_table
-from dcone_cosim.scenes.scene import ComponentScene, load
+from dcone_cosim.scene_fmus import SceneFmus, isolated
+from dcone_cosim.scenes.scene import ComponentScene
 from fmu_src.packaging.archive import pack
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
@@ -145,7 +146,7 @@ def same_bits_coupled(method: str, control: str, extrapolation: str, duration: s
     scene = load("reel-control", [f"removal.{key}={value}" for key, value in told.items()])
     tables, statistics = [], []
     for isolate in (False, True):
-        with Archives(scene.isolating(isolate), Progress()) as archives:
+        with SceneFmus(scene.isolating(isolate), Progress()) as archives:
             run = run_scene(scene, archives.instantiate, Progress())
         assert run.exit_code == 0, run.message
         tables.append(phase_table(run.phases["removal"], ""))

@@ -23,9 +23,10 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import frames, isolation
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, output_names
+from dcone_cosim.fmu.isolation import IsolatedComponent
+from dcone_cosim.loading import load
 from dcone_cosim.phases import RemovalLoop
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import load
 from tests.cosim.fmus.build import build
 
 Fmu = Callable[..., Archive]
@@ -69,8 +70,8 @@ def test_our_removal_gives_the_same_bits() -> None:
     path = models.ensure_fmus({"removal": phase.main.terms}, lambda _: None)["removal"]
     rows = []
     with Archive(path) as archive:
-        for make in (archive.instantiate, archive.isolate):
-            with make("tow") as component:
+        for make in (Component, IsolatedComponent):
+            with make(archive, "tow") as component:
                 assert component.variables is archive.variables
                 component.set(phase.main.parameters)
                 component.initialise(0.0, 1e5)
@@ -96,7 +97,7 @@ def test_our_removal_gives_the_same_bits() -> None:
 
 
 def test_readers_do_not_keep_what_has_changed(fmu: Fmu) -> None:
-    with fmu().isolate("tow") as component:
+    with IsolatedComponent(fmu(), "tow") as component:
         component.set({"start.relative_velocity[1]": 1.0, "start.relative_position[1]": 5.0})
         component.initialise(0.0)
         first, second = component.reader(["separation"]), component.reader(["relative.position[1]"])
@@ -112,21 +113,21 @@ def test_readers_do_not_keep_what_has_changed(fmu: Fmu) -> None:
 
 
 def test_what_it_prints_reaches_no_stream_of_ours(fmu: Fmu, capfd: pytest.CaptureFixture[str]) -> None:
-    with fmu("NOISE", when=-1.0).isolate("tow") as component:
+    with IsolatedComponent(fmu("NOISE", when=-1.0), "tow") as component:
         component.initialise(0.0)
         for i in range(2000):
             component.step(float(i), 1.0)
         component.get(["separation"])
     written = capfd.readouterr()
     assert "noise" not in written.out + written.err
-    with fmu("NOISE", when=-1.0).instantiate("tow") as component:
+    with Component(fmu("NOISE", when=-1.0), "tow") as component:
         component.initialise(0.0)
         component.step(0.0, 1.0)
     assert "noise on stderr" in capfd.readouterr().err
 
 
 def test_an_error_keeps_its_class_and_words(fmu: Fmu) -> None:
-    with fmu("DISCARD").isolate("tow") as component:
+    with IsolatedComponent(fmu("DISCARD"), "tow") as component:
         with pytest.raises(FmuError, match=r"no variable 'seperation'; did you mean 'separation'"):
             component.get(["seperation"])
         component.initialise(0.0)
@@ -139,7 +140,7 @@ def test_an_error_keeps_its_class_and_words(fmu: Fmu) -> None:
 
 
 def test_after_a_crash_every_call_says_so_and_closing_is_quiet(fmu: Fmu) -> None:
-    component = fmu("CRASH").isolate("tow")
+    component = IsolatedComponent(fmu("CRASH"), "tow")
     component.initialise(0.0)
     read = component.reader(["separation"])
     process = component._child.pid
@@ -168,7 +169,7 @@ def test_after_a_crash_every_call_says_so_and_closing_is_quiet(fmu: Fmu) -> None
 def test_what_broke_is_told_truthfully(fmu: Fmu, switch: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Foreign code may write anything anywhere; it never was ended by a signal that we sent."""
     monkeypatch.setattr(isolation, "FAREWELL", 1.0)
-    with fmu(switch).isolate("tow") as component:
+    with IsolatedComponent(fmu(switch), "tow") as component:
         component.initialise(0.0)
         process = component._child.pid
         begin = time.monotonic()
@@ -202,7 +203,7 @@ def test_frames_carry_every_bit_and_run_nothing() -> None:
 
 
 def test_a_hang_is_ended_in_time_and_a_slow_one_is_not(fmu: Fmu) -> None:
-    with fmu("HANG").isolate("tow", timeout=2.0) as component:
+    with IsolatedComponent(fmu("HANG"), "tow", timeout=2.0) as component:
         component.initialise(0.0)
         for i in range(3):  # together longer than the timeout
             component.step(float(i), 1.0)
@@ -214,7 +215,7 @@ def test_a_hang_is_ended_in_time_and_a_slow_one_is_not(fmu: Fmu) -> None:
 
 
 def test_a_closed_one_leaves_no_process(fmu: Fmu) -> None:
-    component = fmu().isolate("tow")
+    component = IsolatedComponent(fmu(), "tow")
     process = component._child.pid
     component.initialise(0.0)
     component.close()
@@ -229,7 +230,7 @@ def test_children_made_ready_are_taken_or_ended(fmu: Fmu) -> None:
     first, second, third = isolation._ready
     first.kill()
     first.wait()
-    with fmu().isolate("tow") as component:
+    with IsolatedComponent(fmu(), "tow") as component:
         assert component._child is second
         component.initialise(0.0)
     isolation.dismiss()
@@ -243,7 +244,7 @@ def test_what_has_no_answer_goes_along_with_the_next_step(fmu: Fmu, monkeypatch:
     monkeypatch.setattr(
         isolation, "send", lambda pipe, calls: asked.append([c[0] for c in calls]) or frames.send(pipe, calls)
     )
-    with fmu().isolate("tow") as component:
+    with IsolatedComponent(fmu(), "tow") as component:
         component.set({"start.relative_velocity[1]": 1.0, "start.relative_position[1]": 5.0})
         component.initialise(0.0)
         read = component.reader(["separation"])
@@ -266,7 +267,7 @@ def test_what_has_no_answer_goes_along_with_the_next_step(fmu: Fmu, monkeypatch:
 
 def test_its_time_counts(fmu: Fmu) -> None:
     """The CPU time that a run tells holds that of the other process, alone and coupled."""
-    with fmu().isolate("tow") as component:
+    with IsolatedComponent(fmu(), "tow") as component:
         before, own = component.cpu_apart(), time.process_time()
         assert before > 0.0
         component.initialise(0.0)
@@ -281,7 +282,7 @@ def parent(archive: Archive, rest: str) -> subprocess.Popen[str]:
     program = f"""
         from pathlib import Path
         from dcone_cosim.fmu.archive import Archive
-        component = Archive(Path({str(archive.path)!r})).isolate("tow", 60.0)
+        component = IsolatedComponent(Archive(Path({str(archive.path)!r})), "tow", 60.0)
         component.initialise(0.0)
         print(component._child.pid, flush=True)
     """
@@ -313,7 +314,7 @@ def test_it_dies_with_its_parent(fmu: Fmu, rest: str) -> None:
 )
 def test_somebody_left_behind_keeps_nobody_waiting(fmu: Fmu, how: str, said: str) -> None:
     """The FMU starts a process that outlives it by 20 s and holds its streams open: they never end."""
-    with fmu("LEAVES", how).isolate("tow", timeout=2.0) as component:
+    with IsolatedComponent(fmu("LEAVES", how), "tow", timeout=2.0) as component:
         component.initialise(0.0)
         begin = time.monotonic()
         with pytest.raises(CallError, match=said):
@@ -342,13 +343,13 @@ def test_ctrl_c_ends_a_step_that_hangs(fmu: Fmu) -> None:
 
 def test_one_that_cannot_be_instantiated(fmu: Fmu) -> None:
     archive = fmu(change=lambda xml: xml.replace('guid="', 'guid="other-'))
-    for make in (archive.instantiate, archive.isolate):
+    for make in (Component, IsolatedComponent):
         with pytest.raises(FmuError, match="tow could not be instantiated"):
-            make("tow")
+            make(archive, "tow")
 
 
 def test_both_offer_the_same(fmu: Fmu) -> None:
-    with fmu().isolate("tow") as component:
+    with IsolatedComponent(fmu(), "tow") as component:
         offered = {name for name in vars(Component) if not name.startswith("_")} - {"reference", "not_finite"}
         assert offered <= set(dir(component))
         assert (component.can_save, component.can_interpolate) == (True, False)

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build
-from dcone_cosim.commands import Archives
+from dcone_cosim.commands import SceneFmus
 from dcone_cosim.fmu.component import Steppable
+from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.phases import PhaseResult
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene, load
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.in_process import KernelComponent
 
 pytestmark = pytest.mark.slow
@@ -29,7 +30,7 @@ def short(name: str, duration: float) -> Scene:
 @pytest.fixture(params=[("table2-deorbit", 7200.0), ("mission", 4.0)], ids=["removal", "capture"])
 def run_by_fmu(request: pytest.FixtureRequest) -> tuple[Scene, PhaseResult]:
     scene = short(*request.param)
-    with Archives(scene, Progress()) as archives:
+    with SceneFmus(scene, Progress()) as archives:
         return scene, run_scene(scene, archives.instantiate, Progress()).phases[scene.phases[0].name]
 
 

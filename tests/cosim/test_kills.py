@@ -108,7 +108,7 @@ def place(tmp_path: Path, make_scene, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "runs").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
     monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture"))
-    monkeypatch.setattr(commands, "Archives", Unpacking)
+    monkeypatch.setattr(commands, "SceneFmus", Unpacking)
     monkeypatch.setattr(commands, "fill", fill)
     monkeypatch.setattr(commands, "_load", lambda *_: None)
     return tmp_path / "runs"
@@ -297,7 +297,7 @@ PROGRAM = """
     from tests.cosim.mock_components import MockCapture, MockRemoval
     from tests.cosim.test_kills import Unpacking, kill_at
     Unpacking.instantiate = lambda self, phase, name: MockCapture() if phase == "capture" else MockRemoval(tugs=[])
-    commands.Archives, commands.load = Unpacking, lambda *_: scene_of("capture", "removal")
+    commands.SceneFmus, commands.load = Unpacking, lambda *_: scene_of("capture", "removal")
     sys.argv = ["dcone", "run", "mock", "-o", "runs/out", "--csv", *sys.argv[2:]]
     kill_at(int({event}))
     cli.main()

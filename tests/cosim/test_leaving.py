@@ -16,10 +16,10 @@ from tests.cosim.fmus.build import build
 ROOT = Path(__file__).parents[2]
 SCENE = '[removal]\nfmu = "my_removal.fmu"\nisolate = false\nmacro_step = "10 s"\nduration = "100 s"\n'
 PROGRAM = """
-    from dcone_cosim.archives import Archives
+    from dcone_cosim.scene_fmus import SceneFmus
     from dcone_cosim.progress import Progress
-    from dcone_cosim.scenes.scene import load
-    with Archives(load({scene!r}), Progress()) as archives:
+    from dcone_cosim.loading import load
+    with SceneFmus(load({scene!r}), Progress()) as archives:
         component = archives.instantiate("removal", "it")
         component.enter_initialisation(0.0)
         component.exit_initialisation()

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from dcone_cosim import build
+from dcone_cosim.loading import find, load
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import find, load
 from dcone_cosim.ssp.export import export_scene
 from tests.cosim.conftest import Dcone
 

@@ -9,7 +9,8 @@ import pytest
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.component import CallError
+from dcone_cosim.fmu.component import CallError, Component
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.messages import Messages
 from tests.cosim.fmus.build import build
 
@@ -39,7 +40,7 @@ def test_a_refusal_is_not_blamed_on_an_earlier_call(tmp_path: Path, isolate: boo
     """The FMU says "old news" while it is initialised."""
     with (
         Archive(build(tmp_path)) as archive,
-        archive.isolate("tow") if isolate else archive.instantiate("tow") as component,
+        IsolatedComponent(archive, "tow") if isolate else Component(archive, "tow") as component,
     ):
         component.initialise(0.0)
         with pytest.raises(CallError) as caught:
@@ -48,7 +49,7 @@ def test_a_refusal_is_not_blamed_on_an_earlier_call(tmp_path: Path, isolate: boo
 
 
 def test_a_crash_is_not_blamed_on_an_earlier_call(tmp_path: Path) -> None:
-    with Archive(build(tmp_path, "removal", "CRASH")) as archive, archive.isolate("tow") as component:
+    with Archive(build(tmp_path, "removal", "CRASH")) as archive, IsolatedComponent(archive, "tow") as component:
         component.initialise(0.0)
         with pytest.raises(CallError) as caught:
             component.step(45.0, 10.0)
@@ -59,13 +60,13 @@ def test_a_crash_is_not_blamed_on_an_earlier_call(tmp_path: Path) -> None:
 def test_a_guid_of_another_build_is_named(tmp_path: Path, isolate: bool) -> None:
     with Archive(build(tmp_path, change=lambda xml: xml.replace('guid="', 'guid="other-'))) as archive:
         with pytest.raises(FmuError, match="tow could not be instantiated") as caught:
-            archive.isolate("tow") if isolate else archive.instantiate("tow")
+            IsolatedComponent(archive, "tow") if isolate else Component(archive, "tow")
         told = f"the guid {archive.guid!r} of its modelDescription.xml is not in its binary"
         assert told in str(caught.value)
         assert f"the guid given is {archive.guid}, that of this binary is {archive.guid[6:]}" in str(caught.value)
     with Archive(build(tmp_path, "removal", "REFUSES_WITHOUT_A_WORD")) as archive:
         with pytest.raises(FmuError, match="the FMU gave no message\n") as caught:
-            archive.instantiate("tow")
+            Component(archive, "tow")
         assert "guid" not in str(caught.value)
 
 
@@ -87,7 +88,7 @@ def test_a_value_that_the_kind_cannot_hold(
 
     with Archive(build(tmp_path, change=change)) as archive:
         assert archive.variables[name].kind == kind
-        with archive.isolate("tow") if isolate else archive.instantiate("tow") as component:
+        with IsolatedComponent(archive, "tow") if isolate else Component(archive, "tow") as component:
             with pytest.raises(FmuError) as caught:
                 component.set({"tether.rest_length": 7.0, name: value})
             assert str(caught.value) == f"tow: {name} is of kind {kind}; expected {expected}"
@@ -105,7 +106,7 @@ def test_a_text_is_not_dropped_without_a_word(tmp_path: Path) -> None:
     fmu = build(tmp_path, change=lambda xml: xml.replace("</ModelVariables>", note))
     with (
         Archive(fmu) as archive,
-        archive.instantiate("tow") as component,
+        Component(archive, "tow") as component,
         pytest.raises(FmuError, match="note is a String; only numbers can be set"),
     ):
         component.set({"note": 1.0})

@@ -14,9 +14,10 @@ import pytest
 from dcone_cosim import build
 from dcone_cosim.commands import write_scene, write_schema
 from dcone_cosim.errors import InputError
+from dcone_cosim.loading import find, load, shipped
 from dcone_cosim.scenes.keys import expected_of
 from dcone_cosim.scenes.new import new_scene
-from dcone_cosim.scenes.scene import find, load, parse, shipped
+from dcone_cosim.scenes.reading import parse
 from dcone_cosim.scenes.schema import schema
 
 ONE_BY_ONE = re.compile(r"^# (\[[\w.]+\]|\w+ = .*)$", re.MULTILINE)

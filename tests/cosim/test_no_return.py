@@ -17,6 +17,7 @@ from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component, Terminated
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.phases import CaptureLoop, CapturePlan, RemovalLoop
 from dcone_cosim.progress import Progress
 from tests.cosim.fmus.build import build
@@ -49,7 +50,7 @@ def told(component: Component) -> list[tuple[float, bool]]:
 def test_a_removal_that_rewinds_is_towed_as_any_other(tmp_path: Path, isolate: bool) -> None:
     """It drifts at 0.5 m/s from 20 m: 60 s later the distance is sqrt(20^2 + 30^2) m."""
     with Archive(build(tmp_path, "removal", "REWINDS")) as archive:
-        component = archive.isolate("tow") if isolate else archive.instantiate("tow")
+        component = IsolatedComponent(archive, "tow") if isolate else Component(archive, "tow")
         with component:
             component.set({"start.relative_position[1]": 20.0, "start.relative_velocity[1]": 0.0})
             component.set({"start.relative_position[2]": 0.0, "start.relative_velocity[2]": 0.5})
@@ -65,7 +66,7 @@ def test_a_removal_that_rewinds_is_towed_as_any_other(tmp_path: Path, isolate: b
 @pytest.mark.parametrize("then", [True, False], ids=["stop", "go on"])
 def test_a_capture_is_located(tmp_path: Path, switch: str, change: Callable[[str], str], then: bool) -> None:
     """Every state that is gone back to is that of the begin of the last step, even while the step is halved."""
-    with Archive(build(tmp_path, "capture", switch, change=change)) as archive, archive.instantiate("shot") as shot:
+    with Archive(build(tmp_path, "capture", switch, change=change)) as archive, Component(archive, "shot") as shot:
         shot.initialise(0.0)
         words = told(shot)
         result = CaptureLoop(shot, CapturePlan(0.5, 8.0, stop_there=then), Progress()).run()
@@ -77,7 +78,7 @@ def test_a_capture_is_located(tmp_path: Path, switch: str, change: Callable[[str
 
 def twice(tmp_path: Path, switch: str, **coupling: object) -> tuple[Coupled, list[list[tuple[float, bool]]], Archive]:
     archives = [Archive(build(tmp_path / name, "removal", switch)) for name in ("one", "other")]
-    components = [archive.instantiate(archive.path.parent.name) for archive in archives]
+    components = [Component(archive, archive.path.parent.name) for archive in archives]
     for component in components:
         component.set({"start.relative_position[1]": 20.0, "start.relative_velocity[1]": 0.5})
         component.set({f"start.relative_{of}[{i}]": 0.0 for of in ("position", "velocity") for i in (2, 3)})
@@ -140,7 +141,7 @@ def test_controlled_steps_say_where_they_may_go_back(pair: Callable[..., tuple])
 
 
 def test_a_kept_state_is_told_of_until_it_is_released(tmp_path: Path) -> None:
-    with Archive(build(tmp_path, "removal", "FLUSHES")) as archive, archive.instantiate("tow") as tow:
+    with Archive(build(tmp_path, "removal", "FLUSHES")) as archive, Component(archive, "tow") as tow:
         tow.initialise(0.0)
         words = told(tow)
         tow.save("begin")

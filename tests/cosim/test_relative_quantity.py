@@ -13,6 +13,8 @@ from dcone_cosim.coupling.options import Connection
 from dcone_cosim.coupling.wiring import wire
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import Component
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import TEMPERATURE, Unit
 from dcone_cosim.scenes.fmus import offer
@@ -73,7 +75,7 @@ def test_what_is_read_of_the_description(fmu: Path) -> None:
 @pytest.mark.parametrize("isolate", [False, True], ids=["here", "isolated"])
 def test_five_kelvin_are_five_degrees_of_difference(fmu: Path, isolate: bool) -> None:
     """The FMU adds m->time times its rate to a distance without a unit of temperature: it shows what was set there."""
-    with Archive(fmu) as archive, archive.isolate("it") if isolate else archive.instantiate("it") as it:
+    with Archive(fmu) as archive, IsolatedComponent(archive, "it") if isolate else Component(archive, "it") as it:
         it.set({name: 5.0 for name in DIFFERENCES} | {"start.relative_velocity[1]": 273.15 + 2.0})
         it.initialise(0.0)
         it.step(0.0, 1.0)

@@ -18,9 +18,9 @@ import pandas as pd
 import pytest
 
 from dcone_cosim import build
+from dcone_cosim.loading import load
 from dcone_cosim.scenes.mistakes import SceneError
 from dcone_cosim.scenes.new import new_scene
-from dcone_cosim.scenes.scene import load
 from dcone_cosim.scenes.schema import _tables
 from fmu_src.packaging import table_file
 from tests.cosim.conftest import Dcone

@@ -11,7 +11,8 @@ import pytest
 
 from dcone_cosim import build
 from dcone_cosim.contract import HANDED_OVER, OUTCOMES
-from dcone_cosim.scenes.scene import find, load, parse, shipped, title_of
+from dcone_cosim.loading import find, load, shipped, title_of
+from dcone_cosim.scenes.reading import parse
 from dcone_cosim.scenes.toml_lines import Path, dotted, key_lines, line_of
 
 

@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from dcone_cosim import build
-from dcone_cosim.archives import Archives
+from dcone_cosim import build, loading
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes import scene as scenes
+from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.export import export_scene, identifier
 from tests.cosim.ssp_packages import STRUCTURE, changed, contents, packed
@@ -58,8 +57,8 @@ SCHEMAS = Path(fmpy.ssp.ssd.__file__).parent / "schema"
 
 
 def run(path: Path | str, *settings: str) -> RunResult:
-    scene = scenes.load(str(path), settings)
-    with Archives(scene, Progress()) as archives:
+    scene = loading.load(str(path), settings)
+    with SceneFmus(scene, Progress()) as archives:
         return run_scene(scene, archives.instantiate, Progress())
 
 
@@ -82,7 +81,7 @@ def tow(tmp_path: Path) -> Path:
 def pair(tmp_path: Path) -> Path:
     """A removal whose tension pushes the chaser of another removal: a second FMU, and a connection."""
     (tmp_path / "tow.toml").write_text(SHORT.format(duration="600 s"))
-    main = scenes.load(str(tmp_path / "tow.toml")).phases[0].main
+    main = loading.load(str(tmp_path / "tow.toml")).phases[0].main
     shutil.copy(build.ensure([(main.model, main.terms)], print)[0], tmp_path / "other.fmu")
     path = tmp_path / "pair.toml"
     path.write_text(PAIR)

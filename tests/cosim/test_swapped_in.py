@@ -8,7 +8,7 @@ from pathlib import Path
 import pyarrow.parquet
 import pytest
 
-from dcone_cosim.scenes.scene import find
+from dcone_cosim.loading import find
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 

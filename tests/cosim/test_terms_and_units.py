@@ -11,10 +11,12 @@ import pytest
 
 from dcone_cosim import build
 from dcone_cosim.errors import InputError
+from dcone_cosim.loading import find, load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import figures
-from dcone_cosim.scenes.scene import Scene, find, load, parse
+from dcone_cosim.scenes.reading import parse
+from dcone_cosim.scenes.scene import Scene
 from fmu_src.interface import Term, check_implemented
 from fmu_src.lanes import REALS
 from fmu_src.net_capture.composition import Composition

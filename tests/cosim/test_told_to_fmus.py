@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim.archives import Archives
 from dcone_cosim.errors import InputError
+from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene, load
+from dcone_cosim.scene_fmus import SceneFmus
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.fmus.build import build
 
 SCENE = '[removal]\nfmu = "my_removal.fmu"\nmacro_step = "10 s"\nduration = "100 s"\n'
@@ -63,7 +64,7 @@ def package(
 
 def shown(scene: Scene) -> float:
     """What the FMU shows once it has begun."""
-    with Archives(scene, Progress()) as archives:
+    with SceneFmus(scene, Progress()) as archives:
         component = archives.instantiate(scene.phases[0].name, "it")
         component.enter_initialisation(0.0)
         component.exit_initialisation()
@@ -97,7 +98,7 @@ class TestTexts:
         assert shown(package(fmu, '<ssd:DefaultExperiment stopTime="9"/>', step, "tow.label=xy")) == 2.0
 
     def test_it_is_kept_in_the_provenance(self, fmu: Path) -> None:
-        with Archives(of(fmu, SCENE, "removal.label=four"), Progress()) as archives:
+        with SceneFmus(of(fmu, SCENE, "removal.label=four"), Progress()) as archives:
             assert archives.facts()["removal"]["fmu"]["texts"] == {"label": "four"}
 
 

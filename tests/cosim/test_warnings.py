@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from dcone_cosim.loading import load, shipped
 from dcone_cosim.master import RunResult
 from dcone_cosim.recorder import TugLog
 from dcone_cosim.reports.warnings import approach, warnings
-from dcone_cosim.scenes.scene import Scene, load, shipped
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.conftest import Dcone
 from tests.cosim.test_summary import found, removal_run
 

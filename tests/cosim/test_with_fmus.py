@@ -12,8 +12,8 @@ import pytest
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu.component import Archive
-from dcone_cosim.scenes.scene import find, load
+from dcone_cosim.fmu.component import Archive, Component
+from dcone_cosim.loading import find, load
 from tests.cosim.conftest import Dcone
 
 pytestmark = pytest.mark.slow
@@ -152,7 +152,7 @@ class TestComponent:
             yield archive
 
     def test_an_unknown_name_is_told_the_nearest(self, archive: Archive) -> None:
-        with archive.instantiate("a") as component, pytest.raises(FmuError, match=r"tether\.rest_length"):
+        with Component(archive, "a") as component, pytest.raises(FmuError, match=r"tether\.rest_length"):
             component.set({"tether.rest_lenght": 1.0})
 
     def test_the_folder_is_gone_after_closing(self, archive: Archive) -> None:
@@ -163,7 +163,7 @@ class TestComponent:
         assert not folder.exists()
 
     def test_a_restored_state_goes_on_with_the_same_bits(self, archive: Archive) -> None:
-        with archive.instantiate("a") as component:
+        with Component(archive, "a") as component:
             component.initialise(0.0)
             component.step(0.0, 1000.0)
             component.save()
@@ -177,13 +177,13 @@ class TestComponent:
             assert ends[0]["tether.tug_count"] == 1.0
 
     def test_a_failure_carries_the_fmus_own_words(self, archive: Archive) -> None:
-        with archive.instantiate("towing") as component:
+        with Component(archive, "towing") as component:
             component.set({"start.separation": 100.0})
             with pytest.raises(FmuError, match=r"towing.*\n.*start stretched"):
                 component.initialise(0.0)
 
     def test_two_instances_do_not_know_each_other(self, archive: Archive) -> None:
-        with archive.instantiate("a") as first, archive.instantiate("b") as second:
+        with Component(archive, "a") as first, Component(archive, "b") as second:
             second.set({"start.separation": 5.0})
             first.initialise(0.0)
             second.initialise(0.0)

@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from dcone_cosim import build
-from dcone_cosim.fmu.component import Archive
-from dcone_cosim.scenes.scene import load
+from dcone_cosim.fmu.component import Archive, Component
+from dcone_cosim.loading import load
 from tests.interop.job import Job, Row, Value
 
 Points = Callable[[float, int], Iterator[tuple[float, float]]]
@@ -142,7 +142,7 @@ def multiples_of_equal_steps(step: float, steps: int) -> Iterator[tuple[float, f
 def by_component(job: Job, points: Points) -> list[Row]:
     """The same run by our own `Component`, over the given points."""
     rows = []
-    with Archive(Path(job.fmu)) as archive, archive.instantiate("towed") as component:
+    with Archive(Path(job.fmu)) as archive, Component(archive, "towed") as component:
         component.set({name: float(value) for name, value in job.parameters.items()})
         component.initialise(0.0)
         read = component.reader(job.outputs)

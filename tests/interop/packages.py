@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dcone_cosim.archives import Archives
+from dcone_cosim import loading
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
-from dcone_cosim.scenes import scene as scenes
+from dcone_cosim.scene_fmus import SceneFmus
 
 MODULES = {"ecos": "ecospy", "libcosim": "libcosimpy", "fmpy": "fmpy", "container": "fmu_manipulation_toolbox"}
 ROOT = Path(__file__).parents[2]
@@ -44,6 +44,6 @@ def in_tool(tool: str, package: Path, component: str, step: float, steps: int, s
 
 def own(package: Path, *settings: str) -> Recorder:
     """The first phase of a package by our own master; the settings are those of `--set`."""
-    scene = scenes.load(str(package), settings)
-    with Archives(scene, Progress()) as archives:
+    scene = loading.load(str(package), settings)
+    with SceneFmus(scene, Progress()) as archives:
         return run_scene(scene, archives.instantiate, Progress()).phases[scene.phases[0].name].recorder

@@ -16,11 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
-from dcone_cosim.archives import Archives
+from dcone_cosim import loading
 from dcone_cosim.contract import EXTREMES
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
-from dcone_cosim.scenes import scene as scenes
+from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.ssp.export import export_scene
 from tests.interop.cases import Points, added_up, multiples_of_equal_steps
 from tests.interop.packages import Rows, in_tool, own
@@ -59,9 +59,9 @@ POINTS = {"libcosim": nanoseconds, "ecos": added_up, "container": multiples_of_e
 
 def at_points(package: Path, points: Points, step: float) -> Rows:
     """The pair by our own coupling over the given points."""
-    scene = scenes.load(str(package))
+    scene = loading.load(str(package))
     (phase,) = scene.phases
-    with Archives(scene, Progress()) as archives:
+    with SceneFmus(scene, Progress()) as archives:
         pair = archives.instantiate(phase.name, MAIN)
         try:
             pair.set(phase.main.parameters)

@@ -12,7 +12,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from dcone_cosim import build
-from dcone_cosim.scenes.scene import load, shipped
+from dcone_cosim.loading import load, shipped
 from tests.interop.cases import CASES
 from tests.interop.measure import TOOLS
 

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dcone_cosim.fmu.component import Archive
+from dcone_cosim.fmu.component import Archive, Component
+from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
-from dcone_cosim.scenes.scene import Scene, load
+from dcone_cosim.scenes.scene import Scene
 from tests.interop.cases import CAPTURE, CASES, Case
 from tests.interop.children import run_tool
 from tests.interop.job import Job, Value
@@ -43,7 +44,7 @@ def plain(case: Case) -> tuple[Scene, Job]:
 
 def recorded(case: Case, scene: Scene) -> Recorder:
     with Archive(Path(case.path)) as archive:
-        result = run_scene(scene, lambda _, name: archive.instantiate(name), Progress())
+        result = run_scene(scene, lambda _, name: Component(archive, name), Progress())
     assert result.exit_code == 0, result.message
     return result.phases[case.phase].recorder
 

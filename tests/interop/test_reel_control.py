@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from dcone_cosim.archives import Archives
+from dcone_cosim import loading
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
-from dcone_cosim.scenes import scene as scenes
+from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.ssp.export import export_scene
 from tests.cosim.ssp_packages import STRUCTURE, contents
 from tests.interop.packages import Rows, in_tool, own
@@ -84,7 +84,7 @@ def test_another_control_is_seen(setting: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("tool", LATE)
 def test_a_control_without_a_motor_acts_a_step_late(tool: str, tmp_path: Path) -> None:
     """Its output depends on its inputs directly; the tools read it before they set them, our master after."""
-    text, motor, _ = scenes.shipped()[SCENE].read_text().partition("[removal.components.controller.motor]")
+    text, motor, _ = loading.shipped()[SCENE].read_text().partition("[removal.components.controller.motor]")
     assert motor
     (tmp_path / "direct.toml").write_text(text)
     path = package(tmp_path, "binary", str(tmp_path / "direct.toml"))
@@ -98,10 +98,10 @@ def test_the_scenes_package_has_the_scenes_bits_and_its_coupling_step(tmp_path: 
     (path,) = export_scene(SCENE, tmp_path, Progress()).paths
     root = etree.fromstring(contents(path)[STRUCTURE])
     (algorithm,) = root.iter("{*}FixedStepAlgorithm")
-    scene = scenes.load(SCENE)
+    scene = loading.load(SCENE)
     (phase,) = scene.phases
     assert (algorithm.get("baseStepSize"), phase.coupling.step, phase.macro_step) == ("2.0", 2.0, 60.0)
-    with Archives(scene, Progress()) as archives:
+    with SceneFmus(scene, Progress()) as archives:
         by_scene = run_scene(scene, archives.instantiate, Progress()).phases[MAIN].recorder
     by_package = own(path)
     assert by_scene.names == by_package.names

@@ -10,7 +10,8 @@ from dcone_cosim import build
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu import isolation
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.component import CallError, Steppable
+from dcone_cosim.fmu.component import CallError, Component, Steppable
+from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.leaving import guard_exit
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.mistakes import places_named
@@ -18,7 +19,7 @@ from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scratch import Scratch
 
 
-class Archives:
+class SceneFmus:
     """The unpacked FMU of every component of a scene; closing removes the temporary folders."""
 
     def __init__(self, scene: Scene, progress: Progress) -> None:
@@ -95,7 +96,7 @@ class Archives:
         apart = isolated(component, archive)
         if not apart and component.fmu is not None:
             guard_exit()
-        made = archive.isolate(name, component.timeout) if apart else archive.instantiate(name)
+        made = IsolatedComponent(archive, name, component.timeout) if apart else Component(archive, name)
         try:
             if component.texts:
                 made.set_texts(component.texts)
@@ -162,7 +163,7 @@ class Archives:
             "tables": {n: {"file": table.file.name, "sha256": table.sha256} for n, table in component.tables.items()},
         }
 
-    def __enter__(self) -> Archives:
+    def __enter__(self) -> SceneFmus:
         return self
 
     def close(self) -> None:

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim.archives import Archives
 from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene, load
+from dcone_cosim.scene_fmus import SceneFmus
+from dcone_cosim.scenes.scene import Scene
 from tests.cosim.fmus.build import build
 
 ALONE = '[removal]\nfmu = "my_removal.fmu"\nmacro_step = "10 s"\nduration = "100 s"\n'
@@ -35,12 +36,12 @@ def read(folder: Path, text: str) -> Scene:
 
 
 def test_one_is_itself_and_two_are_coupled(folder: Path) -> None:
-    with Archives(read(folder, ALONE), Progress()) as archives:
+    with SceneFmus(read(folder, ALONE), Progress()) as archives:
         alone = archives.instantiate("removal", "first")
         assert (type(alone).__name__, alone.name) == ("IsolatedComponent", "first")
         alone.close()
         assert set(archives.facts()["removal"]) == {"fmu"}
-    with Archives(read(folder, ALONE + OTHER.format("my_capture.fmu")), Progress()) as archives:
+    with SceneFmus(read(folder, ALONE + OTHER.format("my_capture.fmu")), Progress()) as archives:
         both = archives.instantiate("removal", "first")
         assert isinstance(both, Coupled)
         assert both.get(["other.tether.length"]) == {"other.tether.length": 15.0}
@@ -54,7 +55,7 @@ def test_one_is_itself_and_two_are_coupled(folder: Path) -> None:
 @pytest.mark.parametrize(("isolate", "kind"), [("true", "IsolatedComponent"), ("false", "Component")])
 def test_isolated_where_the_scene_says_so(folder: Path, isolate: str, kind: str) -> None:
     text = ALONE.replace("macro_step", f"isolate = {isolate}\nmacro_step")
-    with Archives(read(folder, text), Progress()) as archives:
+    with SceneFmus(read(folder, text), Progress()) as archives:
         component = archives.instantiate("removal", "first")
         assert type(component).__name__ == kind
         component.close()
@@ -63,14 +64,14 @@ def test_isolated_where_the_scene_says_so(folder: Path, isolate: str, kind: str)
 def test_its_folders_are_gone_afterwards(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = read(folder, ALONE + OTHER.format("my_capture.fmu"))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    with Archives(scene, Progress()):
+    with SceneFmus(scene, Progress()):
         assert len([path for path in tmp_path.iterdir() if path.is_dir()]) == 2
     assert not list(tmp_path.iterdir())
     (folder / "gone.fmu").write_bytes((folder / "my_capture.fmu").read_bytes())
     scene = read(folder, ALONE + OTHER.format("gone.fmu"))
     (folder / "gone.fmu").unlink()
     with pytest.raises(FmuError, match=r"gone\.fmu: no such file"):
-        Archives(scene, Progress())
+        SceneFmus(scene, Progress())
     assert not list(tmp_path.iterdir())
 
 
@@ -104,7 +105,7 @@ def test_a_value_refused(folder: Path, monkeypatch: pytest.MonkeyPatch, earlier:
         made.append(Refusing(CallError("other", "", "tether.length is odd", "x.fmu: fmi2SetReal gave Error", "Error")))
         return made[-1]
 
-    with Archives(scene, Progress()) as archives:
+    with SceneFmus(scene, Progress()) as archives:
         monkeypatch.setattr(archives, "_one", one)
         with pytest.raises(
             kind, match=r"mine\.toml: other of the removal cannot begin\n  line \d+: tether\.length is odd"
