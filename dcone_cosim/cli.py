@@ -174,11 +174,12 @@ def export_ssp(
     settings: Settings = None,
 ) -> None:
     """Write one package in the format SSP 1.0 per phase of a scene, for use in other tools."""
+    from dcone_cosim.commands import named
     from dcone_cosim.ssp.export import export_scene
 
     progress = _progress()
     try:
-        done = export_scene(scene, out, progress, from_run, parameters, open_inputs, settings or ())
+        done = export_scene(named(scene, settings or ()), out, progress, from_run, parameters, open_inputs)
     finally:
         progress.close()
     with _reader_may_leave():

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,7 +21,6 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import read_units
-from dcone_cosim.loading import load
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
@@ -44,26 +43,23 @@ class Exported:
 
 
 def export_scene(
-    name: str,
+    scene: Scene,
     out: Path,
     progress: Progress,
     from_run: Path | None = None,
     form: str = "inline",
     open_inputs: bool = True,
-    settings: Sequence[str] = (),
 ) -> Exported:
     """Write `SCENE-PHASE.ssp` for every phase of a scene.
 
     from_run       folder of a run of this scene: its removal begins as it was handed over there
     form           which of `FORMS` the structure binds its values in
     open_inputs    list inputs that nothing is connected to; fmpy's `simulate_ssp` cannot have them
-    settings       `KEY.KEY=VALUE`, each in the place of what the scene says
 
     Checked  tests/cosim/test_ssp_export.py, tests/interop/test_ssp_tools.py
     """
     if form not in FORMS:
         raise InputError(f"--parameters {form}: expected {' or '.join(FORMS)}{did_you_mean(form, FORMS)}")
-    scene = load(name, settings)
     check_folder(out)
     done = Exported()
     phases = phases_apart(scene, from_run, done.notes)

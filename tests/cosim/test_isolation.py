@@ -282,6 +282,7 @@ def parent(archive: Archive, rest: str) -> subprocess.Popen[str]:
     program = f"""
         from pathlib import Path
         from dcone_cosim.fmu.archive import Archive
+        from dcone_cosim.fmu.isolation import IsolatedComponent
         component = IsolatedComponent(Archive(Path({str(archive.path)!r})), "tow", 60.0)
         component.initialise(0.0)
         print(component._child.pid, flush=True)

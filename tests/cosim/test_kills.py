@@ -23,6 +23,7 @@ import pytest
 from dcone_cosim import commands, scratch
 from dcone_cosim.drafts import contents
 from dcone_cosim.interface_kit import write_template
+from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.run import as_json
 from dcone_cosim.scratch import PREFIX, Scratch, clear_left
@@ -185,7 +186,7 @@ def build_files(folder: Path) -> None:
 
 
 def export(folder: Path) -> None:
-    export_scene("reel-control", folder / "out", Progress())
+    export_scene(load("reel-control"), folder / "out", Progress())
 
 
 def template(folder: Path) -> None:

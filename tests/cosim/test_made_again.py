@@ -119,7 +119,7 @@ def test_another_fmu_in_the_folder_is_noted(dcone: Dcone, tmp_path: Path, fmu: P
 
 def test_a_package_and_its_settings(dcone: Dcone, tmp_path: Path) -> None:
     (tmp_path / "packages").mkdir()
-    (package,) = export_scene("table2-deorbit", tmp_path / "packages", Progress(), settings=[SHORT]).paths
+    (package,) = export_scene(load("table2-deorbit", [SHORT]), tmp_path / "packages", Progress()).paths
     first, second = again(dcone, tmp_path, str(package), "removal.thrust.offset=0.005 N", gone=tmp_path / "packages")
     assert told(first)["settings"] == told(second)["settings"] == ["removal.thrust.offset=0.005 N"]
     assert told(second)["phases"]["removal"]["inputs"]["thrust.offset"] == 0.005

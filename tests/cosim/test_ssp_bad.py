@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from dcone_cosim.errors import BAD_INPUT, InputError
+from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.export import export_scene
@@ -30,7 +31,7 @@ LOOSE = (
 def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("ssp")
     (folder / "tow.toml").write_text(SHORT.format(duration="600 s"))
-    (package,) = export_scene(str(folder / "tow.toml"), folder, Progress()).paths
+    (package,) = export_scene(load(str(folder / "tow.toml")), folder, Progress()).paths
     return package
 
 

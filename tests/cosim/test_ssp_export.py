@@ -14,6 +14,7 @@ from lxml import etree
 from dcone_cosim import build, loading
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
+from dcone_cosim.loading import load
 from dcone_cosim.master import RunResult, run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene_fmus import SceneFmus
@@ -90,7 +91,7 @@ def pair(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("form", ["inline", "ssv"])
 def test_a_package_runs_to_the_bits_of_its_scene(tow: Path, tmp_path: Path, form: str) -> None:
-    done = export_scene(str(tow), tmp_path / "out", Progress(), form=form)
+    done = export_scene(load(str(tow)), tmp_path / "out", Progress(), form=form)
     assert [path.name for path in done.paths] == ["tow-removal.ssp"]
     by_scene, by_package = run(tow), run(done.paths[0])
     assert same(by_scene, by_package)
@@ -100,13 +101,13 @@ def test_a_package_runs_to_the_bits_of_its_scene(tow: Path, tmp_path: Path, form
 
 def test_another_value_gives_other_bits(tow: Path, tmp_path: Path) -> None:
     """The twin of the round trip: the package's values do reach the FMU."""
-    (package,) = export_scene(str(tow), tmp_path / "out", Progress()).paths
+    (package,) = export_scene(load(str(tow)), tmp_path / "out", Progress()).paths
     assert not same(run(tow), run(package, "removal.thrust.level=-0.0101 N"))
     assert same(run(tow, "removal.thrust.level=-0.0101 N"), run(package, "removal.thrust.level=-0.0101 N"))
 
 
 def test_several_components_keep_their_connections_and_coupling(pair: Path, tmp_path: Path) -> None:
-    (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+    (package,) = export_scene(load(str(pair)), tmp_path, Progress()).paths
     by_scene, by_package = run(pair), run(package)
     phase = by_package.scene.phases[0]
     assert [component.name for component in phase.components] == ["removal", "other"]
@@ -122,7 +123,7 @@ def linear(pair: Path, tmp_path: Path) -> Callable[[str], RunResult]:
     """The pair with something else on its connection."""
 
     def make(attributes: str) -> RunResult:
-        (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+        (package,) = export_scene(load(str(pair)), tmp_path, Progress()).paths
         closing = f"><ssc:LinearTransformation {attributes}/></ssd:Connection>"
         old = 'endConnector="thrust.offset"'
         return run(changed(package, tmp_path / "linear.ssp", (f"{old}/>", f"{old}{closing}")))
@@ -143,7 +144,7 @@ def test_a_linear_transformation_stands_between_output_and_input(linear: Callabl
 
 def test_other_tools_are_told_the_coupling_step(pair: Path, tmp_path: Path) -> None:
     """It is the only step they have; changed by hand, it is our macro step too."""
-    (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+    (package,) = export_scene(load(str(pair)), tmp_path, Progress()).paths
     told = ('baseStepSize="5.0"', 'baseStepSize="20.0"')
     phase = system.load(changed(package, tmp_path / "longer.ssp", told)).phases[0]
     assert (phase.macro_step, phase.coupling.step) == (20.0, 5.0)
@@ -151,7 +152,7 @@ def test_other_tools_are_told_the_coupling_step(pair: Path, tmp_path: Path) -> N
 
 def test_without_our_annotation_the_contract_tells_the_phase(pair: Path, tmp_path: Path) -> None:
     """Its step is then the one that is written for all tools."""
-    (package,) = export_scene(str(pair), tmp_path, Progress()).paths
+    (package,) = export_scene(load(str(pair)), tmp_path, Progress()).paths
     files = contents(package)
     root = etree.fromstring(files[STRUCTURE])
     root.remove(root.findall("{*}Annotations")[-1])
@@ -162,11 +163,11 @@ def test_without_our_annotation_the_contract_tells_the_phase(pair: Path, tmp_pat
 
 
 def test_the_bytes_depend_on_the_scene_alone(tow: Path, tmp_path: Path) -> None:
-    (first,) = export_scene(str(tow), tmp_path / "one", Progress()).paths
-    (second,) = export_scene(str(tow), tmp_path / "two", Progress()).paths
+    (first,) = export_scene(load(str(tow)), tmp_path / "one", Progress()).paths
+    (second,) = export_scene(load(str(tow)), tmp_path / "two", Progress()).paths
     assert first.read_bytes() == second.read_bytes()
     tow.write_text(SHORT.format(duration="610 s"))
-    (other,) = export_scene(str(tow), tmp_path / "three", Progress()).paths
+    (other,) = export_scene(load(str(tow)), tmp_path / "three", Progress()).paths
     assert first.read_bytes() != other.read_bytes()
 
 
@@ -178,7 +179,7 @@ def _errors(content: bytes, schema: str) -> list[str]:
 
 @pytest.mark.parametrize("form", ["inline", "ssv"])
 def test_what_is_written_is_valid_by_the_schemas_of_ssp(pair: Path, tmp_path: Path, form: str) -> None:
-    (package,) = export_scene(str(pair), tmp_path, Progress(), form=form).paths
+    (package,) = export_scene(load(str(pair)), tmp_path, Progress(), form=form).paths
     files = contents(package)
     assert _errors(files[STRUCTURE], "SystemStructureDescription.xsd") == []
     sets = [name for name in files if name.endswith(".ssv")]
@@ -191,7 +192,7 @@ def test_what_is_written_is_valid_by_the_schemas_of_ssp(pair: Path, tmp_path: Pa
 
 def test_lists_carry_no_attributes_and_prefixes_are_those_that_tools_look_for(tow: Path, tmp_path: Path) -> None:
     """libcosim takes an attribute of a list, a namespace among them, for an item; ecos too knows prefixes only."""
-    (package,) = export_scene(str(tow), tmp_path, Progress()).paths
+    (package,) = export_scene(load(str(tow)), tmp_path, Progress()).paths
     text = contents(package)[STRUCTURE]
     root = etree.fromstring(text)
     for name in ("Elements", "Connectors", "ParameterBindings", "Parameters", "Annotations", "Connections"):
@@ -203,8 +204,8 @@ def test_lists_carry_no_attributes_and_prefixes_are_those_that_tools_look_for(to
 
 
 def test_inputs_that_nothing_is_connected_to_can_be_left_out(pair: Path, tmp_path: Path) -> None:
-    closed = export_scene(str(pair), tmp_path / "closed", Progress(), open_inputs=False).paths[0]
-    opened = export_scene(str(pair), tmp_path / "open", Progress()).paths[0]
+    closed = export_scene(load(str(pair)), tmp_path / "closed", Progress(), open_inputs=False).paths[0]
+    opened = export_scene(load(str(pair)), tmp_path / "open", Progress()).paths[0]
 
     def inputs(package: Path) -> set[str]:
         root = etree.fromstring(contents(package)[STRUCTURE])
@@ -215,7 +216,7 @@ def test_inputs_that_nothing_is_connected_to_can_be_left_out(pair: Path, tmp_pat
 
 
 def test_a_removal_without_its_run_is_noted(tmp_path: Path) -> None:
-    done = export_scene("mission", tmp_path, Progress())
+    done = export_scene(load("mission"), tmp_path, Progress())
     assert done.paths[0].name == "mission-capture.ssp"
     (note,) = done.notes
     assert "--from-run" in note
@@ -254,16 +255,16 @@ def test_a_folder_that_is_no_run_of_the_scene_is_refused(tmp_path: Path, make, s
     folder.mkdir()
     make(folder)
     with pytest.raises(InputError, match=said):
-        export_scene("mission", tmp_path / "out", Progress(), from_run=folder)
+        export_scene(load("mission"), tmp_path / "out", Progress(), from_run=folder)
     assert not (tmp_path / "out").exists()
 
 
 def test_nothing_is_left_where_nothing_can_be_written(tow: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="not a folder"):
-        export_scene(str(tow), tmp_path / "file", Progress())
+        export_scene(load(str(tow)), tmp_path / "file", Progress())
     with pytest.raises(InputError, match="inline"):
-        export_scene(str(tow), tmp_path / "out", Progress(), form="inlin")
+        export_scene(load(str(tow)), tmp_path / "out", Progress(), form="inlin")
     assert not (tmp_path / "out").exists()
 
 
@@ -272,7 +273,7 @@ def test_a_mission_in_two_packages_has_the_bits_of_the_mission(tmp_path: Path) -
     from dcone_cosim.commands import run_and_write
 
     whole = run_and_write("mission", tmp_path / "run", Progress(), with_figures=False).result
-    capture, removal = export_scene("mission", tmp_path / "out", Progress(), from_run=tmp_path / "run").paths
+    capture, removal = export_scene(load("mission"), tmp_path / "out", Progress(), from_run=tmp_path / "run").paths
     assert same(whole, run(capture), "capture")
     handed_over = run(removal)
     assert handed_over.phases["removal"].origin == whole.handoff.time
