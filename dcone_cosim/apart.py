@@ -16,35 +16,39 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.errors import InputError
 from dcone_cosim.files import regular
-from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
+from dcone_cosim.phases import kind_of
+from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 
 
 def phases_apart(scene: Scene, from_run: Path | None, notes: list[str]) -> list[PhaseScene]:
     """The phases as they are to be written, each to be run by itself.
 
-    from_run     folder of a run of this scene: its removal begins as it was handed over there
+    from_run     folder of a run of this scene: what takes over begins as it did there
     notes        gets what is to be told of phases that begin otherwise than in a run of the scene
     """
-    if len(scene.phases) < len(PHASES):
-        if from_run is not None:
-            raise InputError(f"--from-run {from_run}: {scene.source or scene.name} has no hand-off to take from a run")
-        return list(scene.phases)
-    capture, removal = scene.phases
-    # the mission ends its capture at the hand-over; alone, a capture goes on for `after_capture`
-    capture = replace(capture, options={**capture.options, "after_capture": 0.0})
-    if from_run is not None:
-        return [capture, _handed_over(scene, removal, from_run)]
-    values = {**removal.main.defaults, **removal.main.parameters}
-    begins = "the removal begins with what the capture hands over, which the scene alone does not tell"
+    if len(scene.phases) == 1 and from_run is not None:
+        raise InputError(f"--from-run {from_run}: {scene.source or scene.name} has no hand-off to take from a run")
+    phases = [kind_of(phase.name).by_itself(phase) for phase in scene.phases[:-1]] + list(scene.phases[-1:])
+    made = phases[:1]
+    for phase in phases[1:]:
+        alone = _handed_over(scene, phase, from_run) if from_run is not None else _begun_alone(phase, notes)
+        made += [alone] if alone is not None else []
+    return made
+
+
+def _begun_alone(phase: PhaseScene, notes: list[str]) -> PhaseScene | None:
+    """A phase that would take over, with the scene's own start; None where by that it cannot begin."""
+    values = {**phase.main.defaults, **phase.main.parameters}
+    begins = f"the {phase.name} begins with what the phase before hands over, which the scene alone does not tell"
     how = "run the scene, then name its folder with --from-run"
-    refusals = build.cannot_work("removal", values, removal.duration, removal.main.terms, False)
+    refusals = build.cannot_work(phase.main.model, values, phase.duration, phase.main.terms, False)
     if refusals:
         first = refusals[0]
         reason = f"by itself it cannot begin: {first.variable} = {first.given} {first.expected}"
         notes.append(f"{begins}; {reason}. It is left out: {how}")
-        return [capture]
+        return None
     notes.append(f"{begins}. It is written with the scene's own start, both at rest on one orbit: {how}")
-    return [capture, removal]
+    return phase
 
 
 def _unlike(scene: Scene, told: Mapping[str, Any]) -> str:
@@ -57,19 +61,20 @@ def _unlike(scene: Scene, told: Mapping[str, Any]) -> str:
     return f"that run of {scene.name!r} had other values than the scene has here; run it again"
 
 
-def _handed_over(scene: Scene, removal: PhaseScene, folder: Path) -> PhaseScene:
-    """The removal as a run of the scene began it."""
+def _handed_over(scene: Scene, own: PhaseScene, folder: Path) -> PhaseScene:
+    """A phase as a run of the scene began it."""
     told = _json(folder, "provenance.json")
     kept = folder / "scene.toml"
-    own = kept.is_file() and scene.source and Path(scene.source).is_file() and kept.samefile(scene.source)
-    if not own and told.get("scene_sha256") != scene.sha256:
+    same = kept.is_file() and scene.source and Path(scene.source).is_file() and kept.samefile(scene.source)
+    if not same and told.get("scene_sha256") != scene.sha256:
         raise InputError(f"--from-run {folder}: {_unlike(scene, told)}; or export its own, {kept}")
-    phase = told.get("phases", {}).get("removal")
+    phase = told.get("phases", {}).get(own.name)
     if phase is None:
-        raise InputError(f"--from-run {folder}: that run has no removal: {told.get('message') or told.get('status')}")
-    start = float(_json(folder, "ledger.json")["time"]["value"])
+        said = told.get("message") or told.get("status")
+        raise InputError(f"--from-run {folder}: that run has no {own.name}: {said}")
+    start = float(phase["origin"]["value"]) + float(phase["start"]["value"])
     parameters = {name: float(value) for name, value in {**phase["parameters"], **phase.get("given", {})}.items()}
-    return replace(removal, main=replace(removal.main, parameters=parameters), start=start)
+    return replace(own, main=replace(own.main, parameters=parameters), start=start)
 
 
 def _json(folder: Path, name: str) -> dict[str, Any]:

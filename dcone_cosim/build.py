@@ -34,7 +34,6 @@ from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 
 __all__ = [
     "CATALOGUE",
-    "MODELS",
     "STATE_HEAD",
     "Experiment",
     "Group",
@@ -46,11 +45,8 @@ __all__ = [
     "Variable",
 ]
 
-MODELS: Mapping[str, Model] = {"capture": NET_CAPTURE, "removal": TETHERED_DEORBIT}
-"""The model of each phase."""
-
-CAUTIONS = {"capture": net_capture_cautions, "removal": tethered_deorbit_cautions}
-"""What the model of each phase has to say of a run."""
+CAUTIONS = {NET_CAPTURE.name: net_capture_cautions, TETHERED_DEORBIT.name: tethered_deorbit_cautions}
+"""What a model has to say of a run, by its name."""
 
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
@@ -126,9 +122,9 @@ def defaults(interface: Interface) -> dict[str, float]:
     }
 
 
-def known_variables(phase: str) -> dict[str, tuple[Variable, Value]]:
-    """Row and start value of every variable that the phase's model can have, with whatever terms, by FMI name."""
-    model = MODELS[phase]
+def known_variables(name: str) -> dict[str, tuple[Variable, Value]]:
+    """Row and start value of every variable that the model of that name can have, with whatever terms, by FMI name."""
+    model = CATALOGUE[name]
     rows = list(model.base)
     for name, group in model.groups.items():
         # a term for any number of nodes is a family of its own: one node stands for all
@@ -143,7 +139,7 @@ def known_variables(phase: str) -> dict[str, tuple[Variable, Value]]:
 
 
 def cannot_work(
-    phase: str, values: Mapping[str, float], duration: float, terms: Mapping[str, str], handed_over: bool
+    model: str, values: Mapping[str, float], duration: float, terms: Mapping[str, str], handed_over: bool
 ) -> list[Refusal]:
     """Why a phase with these values cannot work, by conditions known before any build; empty if nothing is known.
 
@@ -151,11 +147,11 @@ def cannot_work(
     duration      in which a shot has to arrive [s]
     handed_over   the phase begins with what the one before hands over
     """
-    if phase == "capture":
+    if model == NET_CAPTURE.name:
         from fmu_src.net_capture.interface import refusals
 
         return [Refusal(*row) for row in refusals(terms, values, duration)]
-    if handed_over or values["start.condition"] == HANDED_OVER:
+    if model != TETHERED_DEORBIT.name or handed_over or values["start.condition"] == HANDED_OVER:
         return []
     separation, attachment = values["start.separation"], values["target.attachment_distance"]
     rest_length = values.get("tether.rest_length", math.inf)
@@ -170,35 +166,39 @@ def cannot_work(
     return [Refusal("start.separation", f"{separation:g} m", expected)]
 
 
-def cautions(phase: str, values: Mapping[str, float], given: Collection[str], terms: Mapping[str, str]) -> list[str]:
+def cautions(
+    phase: str, model: str, values: Mapping[str, float], given: Collection[str], terms: Mapping[str, str]
+) -> list[str]:
     """What a phase of ours means that its user may not expect, in plain sentences, as far as values alone tell it.
 
+    model         of the phase, by name
     values        every parameter and input of the phase by FMI name, SI
     given         names of those that the scene gives
     """
-    return _spoken(phase, CAUTIONS[phase].before(values, given, terms))
+    return _spoken(phase, CAUTIONS[model].before(values, given, terms)) if model in CAUTIONS else []
 
 
 def cautions_after(
-    phase: str, values: Mapping[str, float], given: Collection[str], terms: Mapping[str, str], seen: Seen
+    phase: str, model: str, values: Mapping[str, float], given: Collection[str], terms: Mapping[str, str], seen: Seen
 ) -> list[str]:
     """What came out of a phase that its user may not expect; of an FMU from elsewhere as far as its names tell it.
 
+    model         that the phase has, or whose place its FMU takes
     seen          gives the `Range` that an output had, None for one that is not there
     """
-    return _spoken(phase, CAUTIONS[phase].after(values, given, terms, seen))
+    return _spoken(phase, CAUTIONS[model].after(values, given, terms, seen)) if model in CAUTIONS else []
 
 
-def implied(phase: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Implied]:
-    """What the values of a phase of ours come to, by the formulas that its model computes with.
+def implied(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Implied]:
+    """What the values of a model of ours come to, by the formulas that it computes with.
 
-    values        every parameter and input of the phase by FMI name, SI
+    values        every parameter and input by FMI name, SI
     """
     from fmu_src.net_capture import implied as of_net_capture
     from fmu_src.tethered_deorbit import implied as of_tethered_deorbit
 
-    models = {"capture": of_net_capture, "removal": of_tethered_deorbit}
-    return list(models[phase].rows(values, terms)) if phase in models else []
+    models = {NET_CAPTURE.name: of_net_capture, TETHERED_DEORBIT.name: of_tethered_deorbit}
+    return list(models[model].rows(values, terms)) if model in models else []
 
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:
@@ -306,12 +306,6 @@ def ensure(wanted: Sequence[tuple[str, Mapping[str, str]]], announce: Callable[[
     built = _built([CATALOGUE[model].interface(dict(terms)) for model, terms in unlike], announce)
     paths = {key: path for key, (path,) in zip(unlike, built, strict=True)}
     return [paths[key] for key in keys]
-
-
-def ensure_fmus(phases: Mapping[str, Mapping[str, str]], announce: Callable[[str], None]) -> dict[str, Path]:
-    """Path of the FMU of each phase, `{phase: terms}`, with the model of that phase."""
-    paths = ensure([(MODELS[phase].name, terms) for phase, terms in phases.items()], announce)
-    return dict(zip(phases, paths, strict=True))
 
 
 def platform_names(text: str) -> tuple[str, ...]:

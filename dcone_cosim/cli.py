@@ -109,7 +109,7 @@ def run(
 
     with _reader_may_leave():
         if json:
-            from dcone_cosim.run import as_json
+            from dcone_cosim.run_folder import as_json
 
             more = {"folder": str(written.folder), "notes": written.notes}
             typer.echo(as_json(summary.as_dict(result) | more))
@@ -217,7 +217,7 @@ def inspect(scene: SceneName, settings: Settings = None, json: Json = False, off
         with _reader_may_leave():
             chosen = named(scene, settings or ())
             if json:
-                from dcone_cosim.run import as_json
+                from dcone_cosim.run_folder import as_json
 
                 typer.echo(as_json(inspection.as_dict(chosen, progress)))
             else:

@@ -14,14 +14,16 @@ from dcone_cosim.apart import ours, phases_apart
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import find, load
-from dcone_cosim.master import RunResult, run_scene
+from dcone_cosim.master import run_scene
+from dcone_cosim.plots import style
 from dcone_cosim.progress import Progress
-from dcone_cosim.reports import style, summary
-from dcone_cosim.run import default_folder, fill
+from dcone_cosim.reports import summary
+from dcone_cosim.results import RunResult
+from dcone_cosim.run_folder import default_folder, fill
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus, remarks
 from dcone_cosim.scenes.kept import unlike
 from dcone_cosim.scenes.reading import parse, read_text
-from dcone_cosim.scenes.scene import Scene
 from dcone_cosim.scratch import Scratch, clear_left
 
 LEFT_BEHIND = (

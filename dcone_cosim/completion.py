@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-PHASE_NAMES = ("capture", "removal")
-
 
 def scenes_like(incomplete: str) -> list[str]:
     """Scenes that come with the program, and TOML files and folders that begin so."""
@@ -20,4 +18,6 @@ def scenes_like(incomplete: str) -> list[str]:
 
 
 def phases_like(incomplete: str) -> list[str]:
-    return [name for name in PHASE_NAMES if name.startswith(incomplete)]
+    """Phases that there is a template for: the others ask the same of their FMUs."""
+    templates = (Path(__file__).parent / "templates" / "c").glob("*.c")
+    return sorted(path.stem for path in templates if path.stem != "fmu" and path.stem.startswith(incomplete))

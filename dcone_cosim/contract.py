@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Protocol
 
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, spoken_dimension
-from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS
-from dcone_cosim.line import ATTACHMENT, REST_LENGTH
 from dcone_cosim.names import nearest
 
 if TYPE_CHECKING:
@@ -34,12 +32,6 @@ FLOWN = "flown"
 
 ENDED = "ended"
 """Outcome of a phase whose FMU came to an end of its own, by fmi2Discard and fmi2Terminated."""
-
-CAPTURE_NEEDS = ("target", "closing")
-"""Tables of a scene without which no capture can ever be reported."""
-
-LINE = {"capture": "tether.length", "removal": REST_LENGTH}
-"""Length of the line in each phase: one and the same line."""
 
 HANDED_OVER = "handed_over"
 """Name of the choice of `start.condition` under which the removal takes the state it is given."""
@@ -69,10 +61,11 @@ EXTREMES: Mapping[str, Extreme] = {
     "cord.tension_peak": Extreme(max),
 }
 
-Need = Literal["always", "hand-over", "captured", "settled", "tether_taut", "slack", "optional"]
+Need = Literal["always", "hand-over", "take-over", "captured", "settled", "tether_taut", "slack", "optional"]
 NEEDS: Mapping[str, str] = {
     "always": "always",
-    "hand-over": "for a hand-over to the removal",
+    "hand-over": "to hand over to the next phase",
+    "take-over": "to take over from the phase before",
     "captured": "to hand over, unless hand_over says otherwise",
     "settled": 'for hand_over = "settled"',
     "tether_taut": 'for hand_over = "tether_taut"',
@@ -82,30 +75,6 @@ NEEDS: Mapping[str, str] = {
 """What a variable is needed for."""
 OPTIONAL = ("slack", "optional")
 """Needs without which an FMU can be swapped in all the same."""
-
-_EACH = tuple(f"[{i}]" for i in (1, 2, 3))
-_WANTED: Mapping[str, Sequence[tuple[Need, Sequence[str]]]] = {
-    "capture": (
-        ("captured", ("captured",)),
-        ("settled", ("settled",)),
-        ("tether_taut", ("tether.length", "tether.paid_out")),
-        ("hand-over", (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)),
-        ("optional", ("t_capture", "outcome", "net.nodes", "net.threads", "contact.first_time", "contact.loss")),
-        ("optional", ("mouth.t80", "mouth.t_max", "mouth.area_max", "mouth.cord_length", "mouth.girth")),
-        ("optional", ("thread.tension_max", "cord.tension_max", "closing.t_start", "closing.work")),
-    ),
-    "removal": (
-        ("hand-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
-        ("slack", (ATTACHMENT,)),
-        ("always", ("separation", "tether.tension")),
-        ("optional", ("tether.rest_length", "thrust.level")),
-        ("optional", tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in _EACH)),
-        ("optional", ("tether.tension_peak", "tether.tension_least", "tether.impulse")),
-        ("optional", ("approach.distance", "approach.time", "tether.taut", "tether.tug_count")),
-        ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
-        ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
-    ),
-}
 
 
 @dataclass(frozen=True)
@@ -125,24 +94,34 @@ class Asked:
     need: Need
     start: float
 
-    def needed(self, then_removal: bool, hand_over: str) -> bool:
-        if self.need == "always":
+    def needed(self, takes_over: bool, hands_over: Collection[str], hand_over: str) -> bool:
+        if self.need == "always" or self.name in hands_over:
             return True
-        if self.need == "hand-over":
-            return then_removal
+        if self.need == "take-over":
+            return takes_over
         if self.need == "captured":
             return hand_over in ("captured", "tether_taut")
         return self.need == hand_over
 
 
+class Wanting(Protocol):
+    """A kind of phase, as far as it wants variables of its FMU, by what they are needed for."""
+
+    @property
+    def model(self) -> str: ...
+    @property
+    def wanted(self) -> Sequence[tuple[Need, Sequence[str]]]: ...
+    def __hash__(self) -> int: ...
+
+
 @cache
-def asked(phase: str) -> tuple[Asked, ...]:
-    """The interface of a phase's FMU; unit and meaning are those of our own model of the phase."""
+def asked(kind: Wanting) -> tuple[Asked, ...]:
+    """The interface of the FMU of a kind of phase; unit and meaning are those of our own model of it."""
     from dcone_cosim.build import known_variables
 
-    known = known_variables(phase)
+    known = known_variables(kind.model)
     rows = []
-    for need, names in _WANTED[phase]:
+    for need, names in kind.wanted:
         for name in names:
             v, start = known[name]
             meaning = v.description
@@ -152,22 +131,29 @@ def asked(phase: str) -> tuple[Asked, ...]:
     return tuple(rows)
 
 
-def check_contract(archive: Archive, phase: str, then_removal: bool = False, hand_over: str = NEVER) -> list[str]:
-    """Every way in which an FMU does not offer what the phase asks of it; empty when it can be swapped in.
+def check_contract(
+    archive: Archive,
+    kind: Wanting,
+    takes_over: bool = False,
+    hands_over: Collection[str] = (),
+    hand_over: str = NEVER,
+) -> list[str]:
+    """Every way in which an FMU does not offer what a phase asks of it; empty when it can be swapped in.
 
-    then_removal   a hand-over takes place, which the capture has to feed and the removal to take
-    hand_over      when the capture hands over, one of `HAND_OVER`
+    takes_over     from a phase before it
+    hands_over     names of what the phase after it takes over
+    hand_over      what ends the phase, one of `HAND_OVER`
     """
     found = []
     missing = []
-    for row in asked(phase):
+    for row in asked(kind):
         info = archive.variables.get(row.name)
-        needed = row.needed(then_removal, hand_over if phase == "capture" else NEVER)
+        needed = row.needed(takes_over, hands_over, hand_over)
         if info is not None and (needed or row.need in OPTIONAL):
             found += [f"{row.name}: {fault}" for fault in _faults(row, info)]
         elif info is None and needed:
             missing.append(row)
-    names = [row.name for row in asked(phase)]
+    names = [row.name for row in asked(kind)]
     spare = [name for name in archive.variables if name not in names]
     for row in missing:
         like = nearest(row.name, spare)
@@ -180,9 +166,9 @@ ALIKE = 0.9
 """Likeness of two names, as difflib measures it, from which on one is taken for a slip in the other."""
 
 
-def near_misses(archive: Archive, phase: str) -> list[str]:
+def near_misses(archive: Archive, kind: Wanting) -> list[str]:
     """Variables that nobody looks for, whose names are nearly those of something the phase would report."""
-    rows = asked(phase)
+    rows = asked(kind)
     names = {row.name for row in rows}
     spare = [name for name in archive.variables if name not in names]
     found = []

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING
 
 from dcone_cosim import placed
 from dcone_cosim.build import shared_with_template
-from dcone_cosim.contract import NEEDS, Asked, asked
+from dcone_cosim.contract import NEEDS, TUG_PREFIX, Asked, asked
 from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.units import BASE, by_name
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.phases import kinds
 from dcone_cosim.scratch import Scratch, clear_left
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
 TEMPLATES = Path(__file__).parent / "templates"
 KINDS = ("c", "pythonfmu")
-PHASES = ("capture", "removal")
 _TEMPLATE_HAS = (
     *("t_capture", "outcome", "separation", "relative.position", "relative.velocity"),
     *("tether.rest_length", "target.attachment_distance", "thrust.level"),
@@ -48,14 +48,14 @@ def show(phase: str, console: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    _known("phase", phase, PHASES)
+    _known("phase", phase, list(kinds()))
     title = Text(f"What the master looks for in the FMU of the {phase}", style="table.title")
     table = Table(title=title, title_justify="left", box=None, pad_edge=False)
     for header in ("name", "type", "unit", "causality"):
         table.add_column(header, no_wrap=True)
     for header in ("needed", "meaning"):
         table.add_column(header, overflow="fold")
-    for name, row in _by_array(asked(phase)):
+    for name, row in _by_array(asked(kinds()[phase])):
         cells = (name, row.kind, row.unit, row.causality, NEEDS[row.need], row.meaning)
         table.add_row(*(Text(cell) for cell in cells))
     console.print(table, width=None if console.is_terminal else 200)
@@ -63,7 +63,7 @@ def show(phase: str, console: Console) -> None:
         "Another unit of the same dimension may be declared: values are converted by the FMU's own definition."
     )
     console.print("Every instant it tells counts from its own start, whatever time it is told to start at.")
-    if phase == "removal":
+    if any(row.name.startswith(TUG_PREFIX) for row in asked(kinds()[phase])):
         console.print("tug[1..n] is a ring of the latest tugs, newest first, as long as the FMU likes.")
 
 
@@ -82,13 +82,13 @@ def _by_array(rows: Sequence[Asked]) -> Iterator[tuple[str, Asked]]:
 
 def write_template(phase: str, kind: str, folder: Path) -> list[Path]:
     """Write an empty FMU of a phase into a folder that is new or empty; returns the files."""
-    _known("phase", phase, PHASES)
+    _known("phase", phase, [name for name in kinds() if (TEMPLATES / "c" / f"{name}.c").is_file()])
     _known("template", kind, KINDS)
     for left in (folder.absolute().parent, folder):
         clear_left(left)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"{folder} already exists; a template is written to a new or an empty folder")
-    rows = [r for r in asked(phase) if r.need != "optional" or r.name.startswith(_TEMPLATE_HAS)]
+    rows = [r for r in asked(kinds()[phase]) if r.need != "optional" or r.name.startswith(_TEMPLATE_HAS)]
     content = _c_files(phase, rows) if kind == "c" else _python_files(phase, rows)
     if folder.exists():  # somebody may be in it: it stays, and the files come into it
         with Scratch(folder) as draft:

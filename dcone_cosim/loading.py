@@ -10,8 +10,8 @@ from dcone_cosim import scenes
 from dcone_cosim.errors import InputError
 from dcone_cosim.files import no_file
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scenes.reading import parse, read_text
-from dcone_cosim.scenes.scene import Scene
 
 SHIPPED = Path(scenes.__file__).parent
 

@@ -14,8 +14,8 @@ from dcone_cosim.fmu.component import CallError, Component, Steppable
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.leaving import guard_exit
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.mistakes import places_named
-from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scene.mistakes import places_named
 from dcone_cosim.scratch import Scratch
 
 

@@ -5,16 +5,20 @@ The mapping itself is `handoff`'s, the line's `line`'s; here they are held again
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from dcone_cosim.contract import HANDED_OVER
 from dcone_cosim.errors import HandoffError
+from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinCheck, check_spin, held_bodies
+from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinCheck, check_spin, held_bodies, spin_energy
 from dcone_cosim.ledger import LedgerRow, ledger
-from dcone_cosim.line import ATTACHMENT, LINE_HELD, REST_LENGTH, Line, line_rows
-from dcone_cosim.scenes.scene import PhaseScene
+from dcone_cosim.line import ATTACHMENT, LINE_HELD, OFFSET, REST_LENGTH, SLACK, Line, line_parameters, line_rows
+from dcone_cosim.scene.data import PhaseScene
 
 CROSS_CHECK = 1e-4
 """Relative agreement asked of what the removal computes with what was handed over. It forms its outputs in the frame of
@@ -37,18 +41,74 @@ class HandoffRecord:
     """The transaction as it went: what was mapped, its ledger, the spin check, and why it failed if it did.
 
     time              of the hand-over, since the shot [s]
+    start             the same, as time that the removal's FMU is told to begin at [s]
+    phase             the removal
     line_parameters   what is set in the removal so that its line is the capture's
     """
 
     time: float
+    start: float
     located_by: str
+    phase: PhaseScene
     handed: Handoff
     line: Line
-    spin: SpinCheck
+    spin: SpinCheck = field(default_factory=lambda: SpinCheck(0.0, 0.0, 0.0))
     line_parameters: dict[str, float] = field(default_factory=dict)
     rows: list[LedgerRow] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
     failure: str = ""
+
+    @property
+    def reach(self) -> float:
+        return self.handed.reach
+
+    def parameters(self, component: Steppable) -> dict[str, float]:
+        """Masses, relative state, anomaly of the orbit, and the line, as far as the component offers it."""
+        self.line_parameters = line_parameters(self.line, component.variables)
+        anomaly = advanced(self.phase.setting("orbit.true_anomaly") or 0.0, self.handed.turning[2] * self.time)
+        begun = {"orbit.true_anomaly": anomaly, "start.condition": self.phase.choice("start.condition", HANDED_OVER)}
+        return self.handed.parameters | begun | self.line_parameters
+
+    def close(self, component: Steppable) -> None:
+        close_ledger(self, component)
+
+    def findings(self) -> list[Finding]:
+        return list(findings(self))
+
+    def told(self) -> dict[str, Any]:
+        """All of it, with units."""
+        handed, spin, line = self.handed, self.spin, self.line
+        return {
+            "time": {"value": self.time, "unit": "s", "clock": "since the shot"},
+            "located_by": self.located_by,
+            "rows": [row.as_dict() for row in self.rows],
+            "cross_checks": [vars(check) for check in self.checks],
+            "spin": {
+                "dropped": {"value": float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
+                "attachment_speed": {"value": spin.attachment_speed, "unit": "m/s"},
+                "tug_speed": {"value": spin.tug_speed, "unit": "m/s"},
+                "tolerance": spin.tolerance,
+            },
+            "joint_body": {
+                "mass": {"value": handed.joint.mass, "unit": "kg"},
+                "position": {"value": handed.joint.position, "unit": "m"},
+                "velocity": {"value": handed.joint.velocity, "unit": "m/s"},
+                "spin": {"value": handed.joint.spin, "unit": "N m s"},
+                "inertia": {"value": handed.joint.inertia, "unit": "kg m2"},
+            },
+            "line": {
+                "length": {"value": line.length, "unit": "m"},
+                "attachment_distance": {"value": line.attachment, "unit": "m"},
+                "slack": {"value": line.slack, "unit": "m"},
+            },
+            "set_in_removal": handed.parameters | self.line_parameters,
+            "failure": self.failure,
+        }
+
+
+def advanced(anomaly: float, by: float) -> float:
+    """True anomaly on a circular orbit moved on [rad], kept within one turn, as the removal's bounds ask."""
+    return float(np.remainder(anomaly + by, 2.0 * np.pi))
 
 
 def check_before(record: HandoffRecord, phase: PhaseScene, tolerance: float) -> None:
@@ -129,3 +189,41 @@ def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:
 
 def _elements(name: str) -> tuple[str, ...]:
     return tuple(f"{name}[{i}]" for i in (1, 2, 3))
+
+
+def findings(record: HandoffRecord) -> Iterator[Finding]:
+    handed, spin = record.handed, record.spin
+    relative = handed.joint.velocity - handed.chaser.velocity
+    distance = handed.joint.position - handed.chaser.position
+    dropped, speed = float(np.linalg.norm(handed.joint.spin)), spin.attachment_speed
+    yield Finding("hand-off", "time", "after the shot", record.time, "s")
+    yield Finding("hand-off", "mass", "target and net", handed.joint.mass, "kg")
+    yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
+    yield Finding(
+        "hand-off", "relative_speed", "relative speed", float(np.linalg.norm(relative)), "m/s", shown_in="mm/s"
+    )
+    yield Finding("hand-off", "spin_dropped", "spin dropped (a point target has none)", dropped, "N m s")
+    yield Finding("hand-off", "spin_energy_dropped", "energy of the dropped spin", spin_energy(handed.joint), "J")
+    yield Finding("hand-off", "attachment_speed", "it moves the tether's end by at most", speed, "m/s", shown_in="mm/s")
+    yield Finding("hand-off", "tug_speed", "speed of the first tug, estimated", spin.tug_speed, "m/s", shown_in="mm/s")
+    yield from _of_line(record)
+    if record.rows:
+        worst = max(record.rows, key=lambda row: row.closure)
+        yield Finding("hand-off", "ledger_closure", "ledger closes to", worst.closure)
+        energy = next(row for row in record.rows if row.quantity == "kinetic energy")
+        lost = energy.accounted - spin_energy(handed.joint)
+        yield Finding("hand-off", "energy_lost", "energy lost as the net joins", lost, "J")
+
+
+def _of_line(record: HandoffRecord) -> Iterator[Finding]:
+    """Which line was handed over, and what is not as it was."""
+    line = record.line
+    if line.length is not None:
+        yield Finding("hand-off", "line", "line, chaser to net's vertex", line.length, "m")
+    yield Finding("hand-off", "attachment_distance", "vertex to centre of mass", line.attachment, "m")
+    for row in record.rows:
+        if row.quantity == SLACK:
+            yield Finding("hand-off", "slack", "slack of the line", row.before, "m")
+            yield Finding("hand-off", "slack_after", "slack in the removal", row.after, "m")
+        if row.quantity == OFFSET and row.account:
+            yield Finding("hand-off", "line_carried", "line", row.account)

@@ -12,10 +12,11 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
 from dcone_cosim.master import cannot_begin
+from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
+from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scene.units import spoken
 from dcone_cosim.scene_fmus import isolated, opened
-from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
-from dcone_cosim.scenes.units import spoken
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -85,10 +86,10 @@ def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: 
     about = About("", phase.name, component.name, component.model, list(_terms(component)))
     about.isolated = bool(component.isolate)
     values = {**component.defaults, **component.parameters}
-    if phase.name == PHASES[1] and component is phase.main and phase is not scene.phases[0]:
-        values |= _handed_over(scene.phases[0].main)
     if component is phase.main:
-        about.implied += build.implied(phase.name, values, component.terms)
+        place = scene.phases.index(phase)
+        values |= kind_of(phase.name).values_taken(scene.phases[place - 1]) if place else {}
+        about.implied += build.implied(component.model, values, component.terms)
     try:
         with opened(path, component) as archive:
             about.facts, more = _sizes(phase, component, archive)
@@ -96,11 +97,6 @@ def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: 
         raise cannot_begin(scene, phase.name, error) from None
     about.implied += more
     return about
-
-
-def _handed_over(capture: ComponentScene) -> dict[str, float]:
-    """The masses that a removal gets from the capture before it."""
-    return build.masses_after({**capture.defaults, **capture.parameters}) if capture.fmu is None else {}
 
 
 def _other(phase: PhaseScene, component: ComponentScene) -> About:

@@ -7,47 +7,38 @@ Nothing is built for it: what a model of ours takes is known from its rows, what
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path as File
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.contract import CAPTURE_NEEDS, HAND_OVER, LINE, NEVER, check_contract, near_misses
+from dcone_cosim.contract import check_contract, near_misses
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.line import line_notes
+from dcone_cosim.phases import kind_of, kinds
+from dcone_cosim.phases.phase import Document
+from dcone_cosim.scene.data import SHARED, ComponentScene, HandoffOptions, PhaseScene, Scene
+from dcone_cosim.scene.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
+from dcone_cosim.scene.toml_lines import Path
 from dcone_cosim.scenes.coupling import about_components, about_one_length, read_connections, read_coupling
 from dcone_cosim.scenes.fmus import file_of, offer, opened
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     FLAG,
     HANDOFF_KEYS,
-    PHASE_KEYS,
     REQUIRED,
-    SHARED,
     TOP,
     isolation,
     orbit_keys,
-    read_snapshots,
+    phase_keys,
     read_table,
     read_title,
     read_value,
     table_in,
 )
-from dcone_cosim.scenes.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
 from dcone_cosim.scenes.parts import RESERVED, Part, follow, of_fmu, of_model, read_files, read_part, reserved_of
-from dcone_cosim.scenes.relations import (
-    about_hand_over,
-    about_line,
-    about_steps,
-    about_values,
-    phases_to_run,
-    set_by_handoff,
-)
-from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
-from dcone_cosim.scenes.toml_lines import Path
+from dcone_cosim.scenes.relations import about_steps, about_values, phases_to_run
 
 
 @dataclass
@@ -101,35 +92,41 @@ def check(document: dict[str, Any], name: str, places: Places, folder: File) -> 
 def _checked(document: dict[str, Any], name: str, places: Places, folder: File, mistakes: list[Mistake]) -> Scene:
     mistakes += [
         Mistake((phase,), document[phase], f"expected a table [{phase}]")
-        for phase in PHASES
+        for phase in kinds()
         if phase in document and not isinstance(document[phase], dict)
     ]
-    known = (*TOP, *PHASES)
+    known = (*TOP, *kinds())
     mistakes += [unknown((key,), document[key], "unknown key", key, known) for key in document if key not in known]
     title = read_value(document["title"], read_title, ("title",), mistakes) if "title" in document else ""
     handoff = read_table(table_in(document, ("handoff",), mistakes), HANDOFF_KEYS, ("handoff",), mistakes)
     orbit = _orbit(document, mistakes)
-    present = [phase for phase in PHASES if isinstance(document.get(phase), dict)]
+    present = [phase for phase in kinds() if isinstance(document.get(phase), dict)]
     phases = {phase: _read_phase(phase, document[phase], orbit, folder, mistakes) for phase in present}
     chosen = phases_to_run(document, present, mistakes)
-    mains = {phase: read.main.part for phase, read in phases.items()}
-    if len(chosen) == len(PHASES):
-        mistakes += set_by_handoff(document, mains["removal"])
-    mistakes += about_hand_over(document, mains, chosen)
-    mistakes += _about_contract(document, phases, chosen)
+    whole = Document(document, {phase: read.main.part for phase, read in phases.items()}, chosen)
+    for phase in present:
+        mistakes += kind_of(phase).faults(whole)
+    mistakes += _about_contract(whole, phases)
     if not mistakes and not chosen:
-        raise InputError(f"{places.source} holds no phase; expected [capture], [removal] or both")
+        raise InputError(f"{places.source} holds no phase; expected {' or '.join(f'[{name}]' for name in kinds())}")
     if not mistakes:
         made = [_phase_scene(phase, phases[phase]) for phase in chosen]
-        if len(made) == len(PHASES):
-            _share_line(made)
+        for after in range(1, len(made)):
+            made[after - 1 : after + 1] = kind_of(made[after].name).joined(made[after - 1], made[after])
         handoff = {key: bool(value) if HANDOFF_KEYS[key] is FLAG else value for key, value in handoff.items()}
-        notes = tuple(_close_calls(phases, chosen))
-        scene = Scene(name, title, "", tuple(made), handoff, places.source, places, notes)
-        mistakes = [*about_steps(scene, document), *about_values(scene, document), *about_line(scene, document)]
+        notes = tuple(_close_calls(whole, phases))
+        scene = Scene(name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes)
+        mistakes = [*about_steps(scene, document), *about_values(scene, document)]
+        for before, own in pairs(scene):
+            mistakes += kind_of(own.name).value_faults(before, own, document)
         if not mistakes:
             return replace(scene, cautions=tuple(_cautions(scene)))
     raise SceneError(mistakes, places)
+
+
+def pairs(scene: Scene) -> Iterator[tuple[PhaseScene | None, PhaseScene]]:
+    """Each phase with the one before it, None for the first."""
+    return zip((None, *scene.phases), scene.phases, strict=False)
 
 
 def _orbit(document: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
@@ -143,7 +140,7 @@ def _orbit(document: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
 def _read_phase(
     phase: str, tables: dict[str, Any], orbit: dict[str, Any], folder: File, mistakes: list[Mistake]
 ) -> _Phase:
-    model, path = build.MODELS[phase], (phase,)
+    model, path = build.CATALOGUE[kind_of(phase).model], (phase,)
     main = _read_component(Part(path, phase, model, reserved=reserved_of(phase)), tables, orbit, folder, mistakes)
     read = _Phase(main, options=_options(phase, tables, mistakes))
     components = table_in(tables, (*path, "components"), mistakes)
@@ -151,7 +148,7 @@ def _read_phase(
         at: Path = (*path, "components", name)
         if not isinstance(table, dict):
             mistakes.append(Mistake(at, table, f"expected a table [{phase}.components.{name}]"))
-        elif name in PHASES or "." in name or not name.strip():
+        elif name in kinds() or "." in name or not name.strip():
             text = "cannot be the name of a component: expected one without a dot, and not that of a phase"
             mistakes.append(Mistake(at, table, text))
         else:
@@ -166,15 +163,13 @@ def _read_phase(
 
 
 def _options(phase: str, tables: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
-    """What concerns the phase itself, not its components."""
+    """What concerns the phase itself, not its components, as far as it is told."""
     found = {}
-    for key, expected in PHASE_KEYS[phase].items():
+    for key, expected in phase_keys(phase).items():
         if key in tables:
             found[key] = read_value(tables[key], expected.read, (phase, key), mistakes)
         elif key in REQUIRED:
             mistakes.append(Mistake((phase, key), None, f'expected, such as "{expected.example}"'))
-    if phase == "capture" and "snapshots" in tables:
-        found["snapshots"] = read_value(tables["snapshots"], read_snapshots, (phase, "snapshots"), mistakes)
     return found
 
 
@@ -220,38 +215,38 @@ def _foreign(part: Part, tables: dict[str, Any], folder: File, mistakes: list[Mi
     return True
 
 
-def _about_contract(document: dict[str, Any], phases: Mapping[str, _Phase], chosen: list[str]) -> Iterator[Mistake]:
+def _about_contract(document: Document, phases: Mapping[str, _Phase]) -> Iterator[Mistake]:
     """What a phase needs of the FMU that takes the place of our model, and does not find there."""
-    for name in chosen:
-        part = phases[name].main.part
-        if part.archive is not None:
-            hand_over = _hand_over(phases[name]) if name == "capture" else NEVER
-            for text in check_contract(part.archive, name, len(chosen) == len(PHASES), hand_over):
-                yield Mistake((name, "fmu"), document[name]["fmu"], text)
+    for name in document.chosen:
+        read, kind = phases[name], kind_of(name)
+        archive = read.main.part.archive
+        if archive is not None:
+            after = document.after(name)
+            hands_over = kind_of(after).takes if after else ()
+            hand_over = kind.hand_over(kind.options(_own(kind.keys, read), read.main.part))
+            for text in check_contract(archive, kind, bool(document.before(name)), hands_over, hand_over):
+                yield Mistake((name, "fmu"), document.tables[name]["fmu"], text)
 
 
-def _close_calls(phases: Mapping[str, _Phase], chosen: list[str]) -> Iterator[str]:
-    for name in chosen:
+def _close_calls(document: Document, phases: Mapping[str, _Phase]) -> Iterator[str]:
+    for name in document.chosen:
         archive = phases[name].main.part.archive
         if archive is not None:
-            yield from near_misses(archive, name)
-            if name == "removal" and len(chosen) == len(PHASES):
-                yield from (f"{archive.path.name}: {note}" for note in line_notes(archive.variables))
+            yield from near_misses(archive, kind_of(name))
+            if document.before(name):
+                yield from (f"{archive.path.name}: {note}" for note in kind_of(name).notes(archive.variables))
 
 
 def _cautions(scene: Scene) -> dict[str, None]:
-    """What the models have to say of the values; each sentence once, be it of both phases."""
+    """What the models have to say of the values; each sentence once, be it of several phases."""
     found: list[str] = []
     for phase in scene.phases:
         main = phase.main
         if main.fmu is None:
-            found += build.cautions(phase.name, {**main.defaults, **main.parameters}, main.parameters, main.terms)
-    if len(scene.phases) == len(PHASES) and scene.phases[0].main.terms.get("gravity") == "none":
-        found.append(
-            'capture.gravity: law = "none" lets the orbital frame stand still in the capture; it turns in the removal, '
-            "which takes the velocities handed over as seen in it (n r: 12 mm/s at 12 m in low orbit). "
-            'law = "hill" turns it in both'
-        )
+            values = {**main.defaults, **main.parameters}
+            found += build.cautions(phase.name, main.model, values, main.parameters, main.terms)
+    for before, own in pairs(scene):
+        found += kind_of(own.name).cautions(before, own)
     return dict.fromkeys(found)
 
 
@@ -270,37 +265,19 @@ def _named_model(part: Part, tables: dict[str, Any], mistakes: list[Mistake]) ->
 
 def _phase_scene(name: str, read: _Phase) -> PhaseScene:
     """The phase from values that have passed every check."""
-    options = {key: read.options.get(key) for key in PHASE_KEYS[name] if key not in REQUIRED}
-    if name == "capture":
-        options["snapshots"] = read.options.get("snapshots") or []
-        options["hand_over"] = _hand_over(read)
-        options["after_capture"] = math.inf if options["after_capture"] is None else options["after_capture"]
+    kind = kind_of(name)
     return PhaseScene(
         name,
         read.main.scene(),
         read.options["macro_step"],
         read.options["duration"],
-        options,
+        kind.options(_own(kind.keys, read), read.main.part),
         tuple(component.scene() for component in read.others),
         read.connections,
         read.coupling,
     )
 
 
-def _hand_over(read: _Phase) -> str:
-    """When the capture hands over: as told, otherwise at capture, or never where no capture can be reported."""
-    told, part = read.options.get("hand_over"), read.main.part
-    if told is not None:
-        return HAND_OVER[int(told)]
-    can_capture = all(group in part.terms for group in CAPTURE_NEEDS) if part.fmu is None else "captured" in part.slots
-    return HAND_OVER[0] if can_capture else NEVER
-
-
-def _share_line(phases: list[PhaseScene]) -> None:
-    """Give the phase that does not tell the line's length what the other tells."""
-    given = [phase.main.parameters.get(LINE[phase.name]) for phase in phases]
-    for i, (phase, length, other) in enumerate(zip(phases, given, reversed(given), strict=True)):
-        name = LINE[phase.name]
-        if length is None and other is not None and name in phase.main.defaults:
-            main = replace(phase.main, parameters={**phase.main.parameters, name: other})
-            phases[i] = replace(phase, main=main)
+def _own(keys: Mapping[str, Any], read: _Phase) -> dict[str, Any]:
+    """The options of a phase that only its kind knows."""
+    return {key: value for key, value in read.options.items() if key in keys and value is not None}

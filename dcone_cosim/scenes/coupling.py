@@ -8,10 +8,10 @@ from typing import Any
 from dcone_cosim.coupling.one_length import divides, one_length, uncontrolled
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.coupling.wiring import mismatch
-from dcone_cosim.scenes.keys import COUPLING_KEYS, read_table, table_in
-from dcone_cosim.scenes.mistakes import Mistake, unknown
+from dcone_cosim.scene.mistakes import Mistake, unknown
+from dcone_cosim.scene.toml_lines import Path, dotted
+from dcone_cosim.scenes.keys import COUPLING_KEYS, phase_keys, read_table, table_in
 from dcone_cosim.scenes.parts import Part
-from dcone_cosim.scenes.toml_lines import Path, dotted
 
 ARROW = "->"
 FORM = '"INSTANCE.VARIABLE -> INSTANCE.VARIABLE"'
@@ -146,7 +146,8 @@ def about_one_length(
     macro_step, path = options.get("macro_step"), parts[0].path
     if not even or macro_step is None:
         return
-    for key in ("duration", "after_capture"):
+    times = [k for k, expected in phase_keys(str(path[0])).items() if expected.unit == "s" and not expected.size]
+    for key in times:
         length = options.get(key)
         if length is not None and length > 0.0 and not divides(macro_step, length):
             text = f"must be a whole number of macro steps of {macro_step:g} s: {one_length(even)}"

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
+from dcone_cosim.scene.units import TEXT, Expected, Unexpected, example_of, is_unit
 from dcone_cosim.scenes.keys import Key, Slot
-from dcone_cosim.scenes.units import TEXT, Expected, Unexpected, example_of, is_unit
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive

@@ -22,7 +22,7 @@ from dcone_cosim.files import regular
 from dcone_cosim.scenes.text import moved
 
 if TYPE_CHECKING:
-    from dcone_cosim.scenes.scene import Scene
+    from dcone_cosim.scene.data import Scene
 
 PROVENANCE, SCENE, PACKAGE, STRUCTURE, FMUS, TABLES = (
     *("provenance.json", "scene.toml", "system.ssp", "SystemStructure.ssd", "fmus", "tables"),

@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.contract import HAND_OVER
 from dcone_cosim.fmu.units import Unit
-from dcone_cosim.scenes.mistakes import Mistake, unknown
-from dcone_cosim.scenes.toml_lines import Path, dotted
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of
+from dcone_cosim.phases import kind_of, kinds
+from dcone_cosim.scene.data import SHARED
+from dcone_cosim.scene.mistakes import Mistake, unknown
+from dcone_cosim.scene.toml_lines import Path, dotted
+from dcone_cosim.scene.units import Expected, Unexpected, example_of
 
-SHARED = "orbit"
-"""Section that stands at the top of a scene and goes to every component that has it."""
 TOP = ("title", "phases", SHARED, "handoff")
 """Keys at the top of a scene, beside the phases."""
 MOST_STEPS = 5_000_000
@@ -39,20 +38,15 @@ def _one_of(*names: str) -> Expected:
 
 FLAG = Expected("1", kind="Boolean")
 
-PHASE_KEYS: Mapping[str, Mapping[str, Expected]] = {
-    "capture": {
-        "macro_step": _positive("s", "0.02 s"),
-        "duration": _positive("s", "30 s"),
-        "hand_over": _one_of(*HAND_OVER),
-        "after_capture": _not_negative("s", "1 s"),
-    },
-    "removal": {
-        "macro_step": _positive("s", "60 s"),
-        "duration": _positive("s", "1 day"),
-    },
-}
+
+def phase_keys(phase: str) -> dict[str, Expected]:
+    """What concerns a phase itself, not its components: its times, and what its kind has beside them."""
+    kind = kind_of(phase)
+    step, duration = kind.examples
+    return {"macro_step": _positive("s", step), "duration": _positive("s", duration), **kind.keys}
+
+
 REQUIRED = ("macro_step", "duration")
-SNAPSHOTS = _not_negative("s", "5.32 s")
 HANDOFF_KEYS: Mapping[str, Expected] = {
     "spin_tolerance": _not_negative("1", "0.1"),
     "compare_without_recoil": FLAG,
@@ -156,10 +150,11 @@ def key_of(row: build.Variable) -> Key:
 
 def orbit_keys() -> dict[str, Key]:
     """Every key the shared orbit may have, whatever phases and terms a scene has."""
+    models = dict.fromkeys(kind.model for kind in kinds().values())
     return {
         row.key: key_of(row)
-        for model in build.MODELS.values()
-        for row in build.all_rows(model)
+        for model in models
+        for row in build.all_rows(build.CATALOGUE[model])
         if row.section == SHARED and row.causality in build.SETTABLE
     }
 
@@ -203,12 +198,6 @@ def table_in(document: Mapping[str, Any], path: Path, mistakes: list[Mistake]) -
         return value
     mistakes.append(Mistake(path, value, f"expected a table [{dotted(path)}]"))
     return {}
-
-
-def read_snapshots(value: object) -> list[float]:
-    if not isinstance(value, list):
-        raise Unexpected('expected a list of times, such as ["0 s", "5 s"]')
-    return SNAPSHOTS.read_each(value)
 
 
 def read_title(value: object) -> str:

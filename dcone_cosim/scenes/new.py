@@ -12,14 +12,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.handoff import REMOVAL_SETS
-from dcone_cosim.line import ATTACHMENT
-from dcone_cosim.scenes.keys import COUPLING_KEYS, HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
+from dcone_cosim.phases import kind_of, kinds
+from dcone_cosim.scene.data import SHARED
+from dcone_cosim.scene.toml_lines import dotted
+from dcone_cosim.scene.units import ANY, Expected
+from dcone_cosim.scenes.keys import COUPLING_KEYS, HANDOFF_KEYS, MEANING, Key, key_of, orbit_keys, phase_keys
 from dcone_cosim.scenes.parts import term_named
-from dcone_cosim.scenes.scene import PHASES
 from dcone_cosim.scenes.tables import EXAMPLE
-from dcone_cosim.scenes.toml_lines import dotted
-from dcone_cosim.scenes.units import Expected
 
 WIDTH = 120
 RESERVED = ("components", "coupling", "parameters")
@@ -47,34 +46,31 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
         "",
         _line("title", _toml(document.get("title", "")), MEANING["title"]),
     ]
-    present = [phase for phase in PHASES if phase in document]
+    present = [phase for phase in kinds() if phase in document]
     lines.append(_line("phases", _toml(document.get("phases", present)), MEANING["phases"]))
     orbit = {key: known for key, known in orbit_keys().items() if _somewhere(document, f"{SHARED}.{key}")}
     lines += ["", f"[{SHARED}]", *_table(document.get(SHARED, {}), orbit)]
-    for phase in present:
-        lines += ["", *_phase(phase, document[phase], skip=_owned(present) if phase == "removal" else ())]
-    if len(present) == len(PHASES):
+    for place, phase in enumerate(present):
+        lines += ["", *_phase(phase, document[phase], skip=kind_of(phase).taken_over if place else ())]
+    if len(present) > 1:
         given = document.get("handoff", {})
         lines += ["", "[handoff]"]
         lines += [_option(key, given.get(key), known) for key, known in HANDOFF_KEYS.items()]
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
 
-def _owned(present: Sequence[str]) -> tuple[str, ...]:
-    """Beginnings of names that the hand-off sets when both phases run."""
-    if len(present) < len(PHASES):
-        return ()
-    return ("start.", ATTACHMENT, *(name.partition("[")[0] for name in REMOVAL_SETS))
-
-
 def _somewhere(document: Mapping[str, Any], name: str) -> bool:
     """Whether a phase of the document has this variable."""
     return any(
         build.scene_name(row) == name
-        for phase in PHASES
+        for phase in kinds()
         if phase in document
-        for row in build.settable(build.MODELS[phase].interface(_terms(build.MODELS[phase], document[phase])))
+        for row in build.settable(_model(phase).interface(_terms(_model(phase), document[phase])))
     )
+
+
+def _model(phase: str) -> build.Model:
+    return build.CATALOGUE[kind_of(phase).model]
 
 
 def _terms(model: build.Model, tables: Mapping[str, Any]) -> dict[str, str]:
@@ -89,15 +85,16 @@ def _terms(model: build.Model, tables: Mapping[str, Any]) -> dict[str, str]:
 def _phase(phase: str, tables: Mapping[str, Any], skip: Sequence[str]) -> Iterator[str]:
     connections = tables.get("connections", [])
     yield f"[{phase}]"
-    for key, expected in PHASE_KEYS[phase].items():
-        yield _option(key, tables.get(key), expected)
-    if "snapshots" in tables:
-        yield _line("snapshots", _toml(tables["snapshots"]), MEANING["snapshots"])
+    for key, expected in phase_keys(phase).items():
+        if expected.size != ANY:
+            yield _option(key, tables.get(key), expected)
+        elif key in tables:
+            yield _line(key, _toml(tables[key]), MEANING[key])
     if connections:
         yield "connections = ["
         yield from (f"    {_toml(connection)}," for connection in connections)
         yield "]"
-    yield from _component((phase,), build.MODELS[phase], tables, (*skip, *_set_by(connections, phase)))
+    yield from _component((phase,), _model(phase), tables, (*skip, *_set_by(connections, phase)))
     if "coupling" in tables:
         yield from ("", f"[{phase}.coupling]")
         coupling = tables["coupling"]

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
 from dcone_cosim.fmu.units import by_name
+from dcone_cosim.scene.data import SHARED, TableFile
+from dcone_cosim.scene.mistakes import Mistake, unknown
+from dcone_cosim.scene.toml_lines import Path, dotted, given_at
+from dcone_cosim.scene.units import LARGEST_INTEGER, TEXT
 from dcone_cosim.scenes.fmus import Offer
-from dcone_cosim.scenes.keys import COMPONENT_KEYS, PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
-from dcone_cosim.scenes.mistakes import Mistake, unknown
-from dcone_cosim.scenes.scene import TableFile
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, Key, Slot, key_of, phase_keys, read_value
 from dcone_cosim.scenes.tables import EXAMPLE, table_of
-from dcone_cosim.scenes.toml_lines import Path, dotted, given_at
-from dcone_cosim.scenes.units import LARGEST_INTEGER, TEXT
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
@@ -315,9 +315,8 @@ def _term_that_has(part: Part, names: tuple[str, ...]) -> str | None:
 
 def reserved_of(phase: str) -> frozenset[str]:
     """Keys of a phase's table that are no parameters of its component."""
-    own = {"snapshots"} if phase == "capture" else set()
     return frozenset(
-        {*PHASE_KEYS[phase], *own, *COMPONENT_KEYS, "fmu", "components", "connections", "coupling", "parameters"}
+        {*phase_keys(phase), *COMPONENT_KEYS, "fmu", "components", "connections", "coupling", "parameters"}
     )
 
 

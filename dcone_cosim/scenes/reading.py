@@ -19,9 +19,9 @@ from pathlib import Path
 
 from dcone_cosim.errors import InputError
 from dcone_cosim.files import regular
-from dcone_cosim.scenes.mistakes import Places
-from dcone_cosim.scenes.scene import Scene
-from dcone_cosim.scenes.toml_lines import DEEPEST, deep_key
+from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene.mistakes import Places
+from dcone_cosim.scene.toml_lines import DEEPEST, deep_key
 
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """Byte order marks of UTF-16."""

@@ -13,20 +13,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from dcone_cosim import build
+from dcone_cosim.phases import kind_of, kinds
+from dcone_cosim.scene.data import SHARED
+from dcone_cosim.scene.units import ANY, Expected
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,
     HANDOFF_KEYS,
     MEANING,
-    PHASE_KEYS,
     REQUIRED,
-    SHARED,
-    SNAPSHOTS,
     key_of,
     orbit_keys,
+    phase_keys,
 )
-from dcone_cosim.scenes.scene import PHASES
-from dcone_cosim.scenes.units import Expected
 
 QUANTITY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s].*$"
 """A number and a unit."""
@@ -41,13 +40,13 @@ def schema() -> Schema:
         "title": {"type": "string", "description": MEANING["title"]},
         "phases": {
             "type": "array",
-            "items": {"enum": list(PHASES)},
+            "items": {"enum": list(kinds())},
             "minItems": 1,
             "uniqueItems": True,
             "description": MEANING["phases"],
         },
         SHARED: _table(orbit, "the orbit, shared by the phases"),
-        **{phase: _phase(phase) for phase in PHASES},
+        **{phase: _phase(phase) for phase in kinds()},
         "handoff": _table(_options(HANDOFF_KEYS), "how the capture hands over to the removal"),
     }
     return {
@@ -56,7 +55,7 @@ def schema() -> Schema:
         "type": "object",
         "properties": properties,
         "additionalProperties": False,
-        "anyOf": [{"required": [phase]} for phase in PHASES],
+        "anyOf": [{"required": [phase]} for phase in kinds()],
     }
 
 
@@ -78,7 +77,9 @@ def _value(expected: Expected, description: str, starts: tuple[float, ...] = ())
     single = _scalar(expected)
     found: Schema = single
     if expected.size:
-        found = {"type": "array", "items": single, "minItems": expected.size, "maxItems": expected.size}
+        found = {"type": "array", "items": single}
+        if expected.size != ANY:
+            found |= {"minItems": expected.size, "maxItems": expected.size}
     found["description"] = "; ".join(part for part in (description, expected.bounds()) if part)
     if starts:
         found["default"] = tomllib.loads(f"x = {expected.written(starts)}")["x"]
@@ -102,7 +103,7 @@ def _scalar(expected: Expected) -> Schema:
 
 def _phase(phase: str) -> Schema:
     """A phase: with a model of ours only the keys that this has, with an FMU in its place any."""
-    model = build.MODELS[phase]
+    model = build.CATALOGUE[kind_of(phase).model]
     tables, own = _tables(model), _own(phase)
     needed = [name for name, group in model.groups.items() if not group.optional and not group.default]
     strict = {name: {"properties": dict.fromkeys(t["properties"], True), "additionalProperties": False}
@@ -158,9 +159,7 @@ def _selector(group: build.Group) -> Schema:
 
 def _own(phase: str) -> dict[str, Schema]:
     """Keys of a phase that are no parameters of its model."""
-    found = _options(PHASE_KEYS[phase])
-    if phase == "capture":
-        found["snapshots"] = {"type": "array", "items": _scalar(SNAPSHOTS), "description": MEANING["snapshots"]}
+    found = _options(phase_keys(phase))
     component = _component()
     found |= {key: value for key, value in component["properties"].items() if key != "model"}
     found["components"] = {

@@ -13,8 +13,8 @@ from types import MappingProxyType
 from typing import Any
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.scenes.mistakes import Override, shown
-from dcone_cosim.scenes.toml_lines import DEEPEST, Path, deep_key, dotted, given_at
+from dcone_cosim.scene.mistakes import Override, shown
+from dcone_cosim.scene.toml_lines import DEEPEST, Path, deep_key, dotted, given_at
 
 FORM = 'expected KEY.KEY=VALUE, such as capture.bullets.speed="4 m/s"'
 

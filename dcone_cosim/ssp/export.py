@@ -23,7 +23,7 @@ from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
@@ -166,7 +166,7 @@ def _ours(phase: PhaseScene) -> dict[str, dict[str, str]]:
     """What a phase is beyond SSP, for our own master."""
     plan = {"name": phase.name, "main": phase.main.name}
     plan |= {"macro_step": repr(phase.macro_step), "duration": repr(phase.duration)}
-    for key, value in phase.options.items():
+    for key, value in vars(phase.options).items():
         if isinstance(value, str | float):
             plan[key] = value if isinstance(value, str) else repr(value)
         elif isinstance(value, list | tuple) and value:

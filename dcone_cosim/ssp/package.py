@@ -15,7 +15,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.files import regular
 from dcone_cosim.fmu.archive import LARGEST, MOST
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scenes.mistakes import TOLD, shortened
+from dcone_cosim.scene.mistakes import TOLD, shortened
 from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import STRUCTURE
 

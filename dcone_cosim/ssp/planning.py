@@ -6,33 +6,29 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, cast
 
-from dcone_cosim.contract import HAND_OVER
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
-from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
 from dcone_cosim.names import did_you_mean
+from dcone_cosim.phases import kind_of, kinds
+from dcone_cosim.scene.mistakes import Override
+from dcone_cosim.scene.toml_lines import given_at
+from dcone_cosim.scene.units import Expected, Unexpected, example_of
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, MOST_STEPS, isolation
-from dcone_cosim.scenes.mistakes import Override
-from dcone_cosim.scenes.scene import PHASES
-from dcone_cosim.scenes.toml_lines import given_at
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part, owner_of
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import Document
 
-RESERVED = (*PHASES, "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
+RESERVED = (*kinds(), "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
 """Names of files in a run folder that a system's own name must not take."""
 
-SETTINGS: Mapping[str, Expected] = {
+SETTINGS: dict[str, Expected] = {
     "macro_step": Expected("s", example="0.1 s", minimum=0.0, open_minimum=True),
     "duration": Expected("s", example="30 s", minimum=0.0, open_minimum=True),
-    "after_capture": Expected("s", example="1 s", minimum=0.0),
-    "hand_over": Expected("1", choices=HAND_OVER),
     "solver_tolerance": Expected("1", example="1e-6", minimum=0.0, open_minimum=True),
 }
-"""What the command line may say of the phase, beside the values of its components."""
+"""What the command line may say of any phase, beside the values of its components."""
 OF_COMPONENT = {key: COMPONENT_KEYS[key] for key in ("isolate", "timeout")}
 """What it may say of how a component is run, unless its FMU has a variable of that name."""
 CHOICES = {"method": ("gauss_seidel", "jacobi"), "control": ("fixed", "error"), "extrapolation": ("constant", "linear")}
@@ -43,11 +39,11 @@ def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, st
     """Name of the phase, and the component that it is about: the first when none meets a contract."""
     plan = content.ours.get("Plan", {})
     main = plan.get("main", "")
-    if main in parts and plan.get("name") in PHASES:
+    if main in parts and plan.get("name") in kinds():
         return plan["name"], main
-    for name, needs in ((PHASES[0], ("captured", *CAPTURE_OUTPUTS)), (PHASES[1], ("separation", *REMOVAL_SETS))):
+    for name, kind in kinds().items():
         for part, row in parts.items():
-            if all(need in row.variables for need in needs):
+            if kind.recognised_by and all(name in row.variables for name in kind.recognised_by):
                 return name, part
     name = identifier(content.name)
     return (f"{name}_system" if name in RESERVED else name), main if main in parts else next(iter(parts))
@@ -61,6 +57,7 @@ def settings_of(
     document     values of `PHASE.macro_step`, `COMPONENT.isolate`, `COMPONENT.VARIABLE`
     arguments    where they are in it
     """
+    of_phase = SETTINGS | {key: known for key, known in kind_of(phase).keys.items() if not known.size}
     told: dict[str, float] = {}
     run: dict[str, dict[str, float]] = {}
     values: dict[str, dict[str, float | str]] = {}
@@ -69,8 +66,8 @@ def settings_of(
         name = ".".join(map(str, argument.path))
         head, _, key = name.partition(".")
         try:
-            if head == phase and key in SETTINGS:
-                told[key] = cast(float, SETTINGS[key].read(given))
+            if head == phase and key in of_phase:
+                told[key] = cast(float, of_phase[key].read(given))
                 continue
             owner, variable = owner_of(name, parts)
             if not owner:
@@ -167,21 +164,24 @@ def decimal(text: object) -> float | None:
         return None
 
 
-def options(name: str, plan: Mapping[str, str], told: Mapping[str, float], mistakes: Mistakes) -> dict[str, Any]:
-    """What concerns the master of a capture; nothing for another phase."""
-    if name != PHASES[0]:
-        return {}
-    hand_over = HAND_OVER[int(told["hand_over"])] if "hand_over" in told else plan.get("hand_over", HAND_OVER[0])
-    if hand_over not in HAND_OVER:
-        text = f"<dcone:Plan> hand_over = {hand_over!r}{did_you_mean(hand_over, HAND_OVER)}"
-        mistakes.add(STRUCTURE, None, text)
-    after = told.get("after_capture", decimal(plan.get("after_capture")))
-    snapshots = [decimal(text) for text in plan.get("snapshots", "").split()]
-    return {
-        "hand_over": hand_over,
-        "after_capture": math.inf if after is None else after,
-        "snapshots": [time for time in snapshots if time is not None],
-    }
+def options(name: str, plan: Mapping[str, str], told: Mapping[str, float], mistakes: Mistakes) -> Any:
+    """What concerns the master of a phase: as the command line tells, otherwise as our own annotation does."""
+    kind, found = kind_of(name), dict[str, Any](told)
+    for key, known in kind.keys.items():
+        text = plan.get(key)
+        if key in found or text is None:
+            continue
+        numbers = [decimal(part) for part in text.split()]
+        if known.choices:
+            if text not in known.choices:
+                mistakes.add(STRUCTURE, None, f"<dcone:Plan> {key} = {text!r}{did_you_mean(text, known.choices)}")
+                continue
+            found[key] = known.choices.index(text)
+        elif None in numbers or not (known.size or len(numbers) == 1):
+            mistakes.add(STRUCTURE, None, f"<dcone:Plan> {key} = {text!r}: expected {known.unit} as a number")
+        else:
+            found[key] = numbers if known.size else numbers[0]
+    return kind.options({key: value for key, value in found.items() if key in kind.keys}, None)
 
 
 def coupling(told: Mapping[str, str], parts: Mapping[str, Part], mistakes: Mistakes) -> Coupling:

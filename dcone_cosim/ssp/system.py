@@ -12,11 +12,12 @@ from typing import Any
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.phases import kind_of
+from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scene.mistakes import Places
+from dcone_cosim.scene.toml_lines import given_at
 from dcone_cosim.scenes.keys import isolation
-from dcone_cosim.scenes.mistakes import Places
-from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
 from dcone_cosim.scenes.text import override, setting, titled
-from dcone_cosim.scenes.toml_lines import given_at
 from dcone_cosim.ssp import matching, planning
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
@@ -56,8 +57,8 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
     overrides = override(changes, settings)
     told, run, more = planning.settings_of(changes, overrides, name, parts)
     start, duration = planning.times(content, parts, told, mistakes)
-    if name == PHASES[0] and start != 0.0:
-        mistakes.add(STRUCTURE, None, f"startTime = {start!r}: a capture begins at 0")
+    if kind_of(name).begins_at_zero and start != 0.0:
+        mistakes.add(STRUCTURE, None, f"startTime = {start!r}: a {name} begins at 0")
     given = {part: parameters[part] | more.get(part, {}) for part in parts}
     components = {
         part: ComponentScene(
@@ -78,19 +79,21 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
         components[main],
         planning.macro_step(content, parts, duration, told, mistakes),
         duration,
-        # the unpacked FMUs are there for as long as the phase is
-        {**options, "unpacked": folder},
+        options,
         tuple(row for part, row in components.items() if part != main),
         connections,
         planning.coupling(content.ours.get("Coupling", {}), parts, mistakes),
         start,
+        folder,  # with the unpacked FMUs
     )
     mistakes.check()
     shown = text.decode("utf-8", "replace")
     rows = {change.path: setting(change.path, given_at(changes, change.path)) for change in overrides}
     title = titled(content.description, list(rows.values()))
     places = Places(str(path), "", tuple(overrides))
-    return Scene(shown_name or path.stem, title, shown, (phase,), {}, str(path), places, tuple(mistakes.ignored))
+    return Scene(
+        shown_name or path.stem, title, shown, (phase,), source=str(path), places=places, notes=tuple(mistakes.ignored)
+    )
 
 
 def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, Part]:

@@ -45,7 +45,7 @@ def timed(component, keep):
 
 def test_isolation_cost(tmp_path):
     (tow,) = load("table2-deorbit").phases
-    ours = models.ensure_fmus({"removal": tow.main.terms}, print)["removal"]
+    ours = models.ensure([("tethered_deorbit", tow.main.terms)], print)[0]
     print("\n| FMU | start [ms] | step and reading [us] | with a state kept [us] |")
     print("| --- | --- | --- | --- |")
     for name, path, values in (

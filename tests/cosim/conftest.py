@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,16 +9,16 @@ from typing import Any
 import pytest
 
 from dcone_cosim import cli
-from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.phases.capture import CaptureOptions
+from dcone_cosim.scene.data import ComponentScene, HandoffOptions, PhaseScene, Scene
 
 Dcone = Callable[..., tuple[int, str, str]]
 
 
 def scene_of(*phases: str, **handoff: Any) -> Scene:
     """A scene for the stand-ins, of the named phases."""
-    options = {"hand_over": "captured", "after_capture": math.inf, "snapshots": []}
     known = {
-        "capture": PhaseScene("capture", ComponentScene("capture", "mock"), 0.5, 20.0, options),
+        "capture": PhaseScene("capture", ComponentScene("capture", "mock"), 0.5, 20.0, CaptureOptions()),
         "removal": PhaseScene(
             "removal",
             ComponentScene(
@@ -33,7 +32,9 @@ def scene_of(*phases: str, **handoff: Any) -> Scene:
             100.0,
         ),
     }
-    return Scene("mock", "A scene of stand-ins", "title = 'mock'\n", tuple(known[p] for p in phases), handoff)
+    return Scene(
+        "mock", "A scene of stand-ins", "title = 'mock'\n", tuple(known[p] for p in phases), HandoffOptions(**handoff)
+    )
 
 
 @pytest.fixture

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from dcone_cosim.build import MODELS
+from dcone_cosim.build import CATALOGUE
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import VariableInfo
+from dcone_cosim.phases import kinds
 from fmu_src.instance import Instance, ModelFault
 
 
@@ -17,7 +18,7 @@ class KernelComponent:
 
     def __init__(self, phase: str, name: str, terms: Mapping[str, str]) -> None:
         self.name = name
-        self.instance = Instance(MODELS[phase], terms)
+        self.instance = Instance(CATALOGUE[kinds()[phase].model], terms)
         self.variables = {
             n: VariableInfo(n, slot, v.kind, v.unit, v.causality, v.description)
             for n, slot, v, _ in self.instance.interface.scalars()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,11 @@ from dcone_cosim.errors import CAPTURE_FAILED, SUCCESS, InputError
 from dcone_cosim.fmu.component import CallError
 from dcone_cosim.loading import find, load
 from dcone_cosim.master import run_scene
+from dcone_cosim.phases.capture import CaptureOptions
 from dcone_cosim.progress import Progress
+from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene.units import Expected, Unexpected
 from dcone_cosim.scenes.reading import parse
-from dcone_cosim.scenes.scene import Scene
-from dcone_cosim.scenes.units import Expected, Unexpected
 from fmu_src.net_capture.interface import MOST_NODES, NodeTerms, refusals
 from fmu_src.net_capture.nets.grid import node_count
 from tests.cosim.mock_components import MockCapture
@@ -220,14 +222,14 @@ class TestWithoutCapture:
 
     def test_it_asks_for_no_capture_unless_told(self) -> None:
         asked_for = 'hand_over = "captured"'
-        assert self.free((asked_for, "")).phases[0].options["hand_over"] == "none"
-        assert self.free().phases[0].options["hand_over"] == "captured"
+        assert self.free((asked_for, "")).phases[0].options.hand_over == "none"
+        assert self.free().phases[0].options.hand_over == "captured"
         too_short = ('duration = "30 s"', 'duration = "2 s"')
         assert self.free((asked_for, ""), too_short).phases[0].duration == 2.0
         with pytest.raises(InputError, match="raise duration"):
             self.free(too_short)
         closing = parse(changed("table1-capture", (asked_for, "")), "a", "a")
-        assert closing.phases[0].options["hand_over"] == "captured"
+        assert closing.phases[0].options.hand_over == "captured"
 
     @pytest.mark.parametrize(
         ("hand_over", "ends_as", "outcome", "code"),
@@ -240,7 +242,7 @@ class TestWithoutCapture:
     )
     def test_it_is_flown_to_its_end(self, make_scene, hand_over: str, ends_as: str, outcome: str, code: int) -> None:
         scene = make_scene("capture")
-        scene.phases[0].options["hand_over"] = hand_over
+        scene = replace(scene, phases=(replace(scene.phases[0], options=CaptureOptions(hand_over)),))
         component = MockCapture(instant=1e9 if ends_as == "captured" else 7.0, outcome=ends_as)
         result = run_scene(scene, lambda phase, name: component, Progress())
         assert (result.exit_code, result.phases["capture"].outcome) == (code, outcome)

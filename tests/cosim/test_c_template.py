@@ -15,7 +15,7 @@ import pytest
 from dcone_cosim.fmu.archive import XML, Archive
 from dcone_cosim.fmu.component import CallError, Component
 from dcone_cosim.interface_kit import write_template
-from dcone_cosim.phases import CaptureLoop, CapturePlan
+from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.progress import Progress
 from fmu_src.packaging.sources import SHIM
 from tests.cosim.fmus.build import HEADERS, build

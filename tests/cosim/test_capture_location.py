@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, grid_steps
+from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
+from dcone_cosim.phases.stepping import grid_steps
 from dcone_cosim.progress import Progress
+from dcone_cosim.results import PhaseResult
 from tests.cosim.mock_components import MockCapture
 
 INSTANT = 7.1234567

@@ -14,12 +14,13 @@ from dcone_cosim.commands import nothing_recorded
 from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.fmu.component import VariableInfo
-from dcone_cosim.master import RunResult
-from dcone_cosim.phases import CaptureLoop, CapturePlan, RemovalLoop
+from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
+from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
-from dcone_cosim.run import phase_table
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import RunResult
+from dcone_cosim.run_folder import phase_table
+from dcone_cosim.scene.data import Scene
 from tests.cosim.mock_components import MockCapture, MockComponent
 
 
@@ -39,7 +40,7 @@ class Clocked(MockComponent):
 def run(component: object, macro_step: float = 0.1, start: float = 0.0, duration: float = 1.0):
     component.enter_initialisation(start)  # type: ignore[attr-defined]
     component.exit_initialisation()  # type: ignore[attr-defined]
-    result = RemovalLoop(component, macro_step, start, duration, Progress()).run()  # type: ignore[arg-type]
+    result = PhaseLoop(component, macro_step, start, duration, Progress()).run()  # type: ignore[arg-type]
     assert result.error is None
     return result
 

@@ -18,7 +18,7 @@ import pytest
 
 from dcone_cosim import cli, commands, drafts, interrupts
 from dcone_cosim.progress import Bar, Lines, Progress
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
 from tests.cosim.mock_components import MockCapture, MockRemoval
 

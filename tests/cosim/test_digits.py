@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 
 from dcone_cosim.loading import load
-from dcone_cosim.master import RunResult, run_scene
+from dcone_cosim.master import run_scene
+from dcone_cosim.phases import chaos
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import TugLog
-from dcone_cosim.reports import chaos, summary
+from dcone_cosim.reports import summary
+from dcone_cosim.results import RunResult
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus
-from dcone_cosim.scenes.scene import Scene
 from tests.cosim.conftest import Dcone
 from tests.cosim.test_summary import found, removal_run
 

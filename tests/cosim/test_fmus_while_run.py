@@ -10,8 +10,8 @@ from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus
-from dcone_cosim.scenes.scene import Scene
 from tests.cosim.fmus.build import build
 
 ALONE = '[removal]\nfmu = "my_removal.fmu"\nmacro_step = "10 s"\nduration = "100 s"\n'

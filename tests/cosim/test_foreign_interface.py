@@ -26,7 +26,7 @@ from dcone_cosim.interface_kit import show, write_template
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.scene.data import Scene
 from tests.cosim.fmus.build import build as build_fmu
 from tests.cosim.mock_components import MockCapture
 
@@ -36,7 +36,8 @@ Make = Callable[..., Scene]
 @pytest.mark.slow
 def test_our_own_fmus_meet_the_contract() -> None:
     phases = {phase.name: phase for phase in load("mission").phases}
-    paths = models.ensure_fmus({name: phase.main.terms for name, phase in phases.items()}, lambda _: None)
+    built = models.ensure([(phase.main.model, phase.main.terms) for phase in phases.values()], lambda _: None)
+    paths = dict(zip(phases, built, strict=True))
     for name, path in paths.items():
         with Archive(path) as archive:
             assert check_contract(archive, name, then_removal=True, hand_over="captured") == []
@@ -104,10 +105,10 @@ def test_both_c_templates_fly_a_mission(kits: dict[str, Path], make_scene: Make)
             scene.phases[0].main.parameters["tether.length"] = 20.0  # type: ignore[index]
             result = run_scene(scene, instantiate, Progress())
             assert result.exit_code == SUCCESS, result.message
-            assert result.handoff is not None
-            assert result.handoff.time == 16.0 / 3.0
-            assert all(row.closed for row in result.handoff.rows)
-            assert [check.quantity for check in result.handoff.checks] == [
+            assert result.handovers["removal"] is not None
+            assert result.handovers["removal"].time == 16.0 / 3.0
+            assert all(row.closed for row in result.handovers["removal"].rows)
+            assert [check.quantity for check in result.handovers["removal"].checks] == [
                 "separation",
                 "size of relative.position",
                 "size of relative.velocity",

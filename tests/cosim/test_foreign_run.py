@@ -16,11 +16,13 @@ from dcone_cosim.errors import FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, In
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, Terminated
 from dcone_cosim.fmu.isolation import IsolatedComponent
-from dcone_cosim.master import RunResult, run_scene
-from dcone_cosim.phases import CaptureLoop, CapturePlan
+from dcone_cosim.master import run_scene
+from dcone_cosim.phases.capture import CaptureOptions
+from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import RunResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.fmus.build import build
 from tests.cosim.mock_components import MockCapture
 from tests.cosim.written import write
@@ -47,8 +49,8 @@ def test_a_sound_one_tows(make_scene: Make, tmp_path: Path) -> None:
     here, isolated = (swap_in(make_scene("capture", "removal"), fmu, isolate) for isolate in (HERE, ISOLATED))
     assert here.exit_code == isolated.exit_code == SUCCESS, here.message
     assert here.phases["removal"].outcome == "towed"
-    assert here.handoff is not None
-    assert next(check.quantity for check in here.handoff.checks) == "separation"
+    assert here.handovers["removal"] is not None
+    assert next(check.quantity for check in here.handovers["removal"].checks) == "separation"
     for name in here.phases["removal"].recorder.names:
         np.testing.assert_array_equal(here.phases["removal"].recorder[name], isolated.phases["removal"].recorder[name])
 
@@ -199,7 +201,7 @@ def test_an_end_before_the_capture_is_a_failed_capture(make_scene: Make, tmp_pat
         assert result.exit_code == 3
         assert "ended at t = 3.25 s, not captured\n  the pair entered" in result.message
         (phase,) = make_scene("capture").phases
-        flown = replace(phase, options={**phase.options, "hand_over": "none"})
+        flown = replace(phase, options=CaptureOptions("none"))
         scene = replace(make_scene("capture"), phases=(flown,))
         assert run_scene(scene, lambda _, name: Component(archive, name), Progress()).exit_code == SUCCESS
 

@@ -14,8 +14,10 @@ from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import CallError, Terminated
 from dcone_cosim.holding import Held
-from dcone_cosim.phases import CaptureLoop, CapturePlan, PhaseResult, RemovalLoop
+from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
+from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
+from dcone_cosim.results import PhaseResult
 from tests.cosim.in_process import KernelComponent
 from tests.cosim.mock_components import MockCapture, MockComponent, MockRemoval
 from tests.cosim.reel_pair import CONNECTIONS, Law
@@ -57,7 +59,7 @@ class Pulling(MockComponent):
 def tow(component: object, macro_step: float, duration: float, start: float = 0.0) -> PhaseResult:
     component.enter_initialisation(start)  # type: ignore[attr-defined]
     component.exit_initialisation()  # type: ignore[attr-defined]
-    return RemovalLoop(component, macro_step, start, duration, Progress(), origin=start).run()  # type: ignore[arg-type]
+    return PhaseLoop(component, macro_step, start, duration, Progress(), origin=start).run()  # type: ignore[arg-type]
 
 
 def check_rows(result: PhaseResult, prefix: str = "") -> None:

@@ -17,10 +17,10 @@ from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.loading import find, load
+from dcone_cosim.scene.mistakes import SceneError
+from dcone_cosim.scene.toml_lines import deep_key
 from dcone_cosim.scenes.kept import kept_in, unlike
-from dcone_cosim.scenes.mistakes import SceneError
 from dcone_cosim.scenes.reading import parse, read_text
-from dcone_cosim.scenes.toml_lines import deep_key
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.package import Package
 from tests.cosim.fmus.build import build

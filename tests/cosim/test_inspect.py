@@ -19,14 +19,14 @@ from tests.net_capture.memory import graph, nodes, planes
 def implied(scene: str, *settings: str, phase: int = 0) -> dict[str, float]:
     chosen = load(scene, settings).phases[phase]
     values = {**chosen.main.defaults, **chosen.main.parameters}
-    return {row.key: row.value for row in build.implied(chosen.name, values, chosen.main.terms)}
+    return {row.key: row.value for row in build.implied(chosen.main.model, values, chosen.main.terms)}
 
 
 def instance(scene: str, *settings: str, phase: int = 0) -> Instance:
     """The model of a scene's phase, initialised in this process."""
     chosen = load(scene, settings).phases[phase]
     terms = {group: term for group, term in chosen.main.terms.items() if group != "nodes"}
-    return Instance(build.MODELS[chosen.name], terms, chosen.main.parameters).initialise()
+    return Instance(build.CATALOGUE[chosen.main.model], terms, chosen.main.parameters).initialise()
 
 
 def close(found: Mapping[str, float], expected: Mapping[str, float]) -> None:

@@ -17,7 +17,7 @@ import pytest
 
 from dcone_cosim import commands, interrupts, progress
 from dcone_cosim.progress import Lines, Progress
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
 from tests.cosim.mock_components import MockCapture, MockRemoval
 from tests.cosim.test_command_line import NoArchives

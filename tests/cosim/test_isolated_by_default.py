@@ -20,9 +20,9 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.run import phase_table
+from dcone_cosim.run_folder import phase_table
+from dcone_cosim.scene.data import ComponentScene
 from dcone_cosim.scene_fmus import SceneFmus, isolated
-from dcone_cosim.scenes.scene import ComponentScene
 from fmu_src.packaging.archive import pack
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build

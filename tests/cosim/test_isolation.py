@@ -25,7 +25,7 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, output_names
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.loading import load
-from dcone_cosim.phases import RemovalLoop
+from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
 from tests.cosim.fmus.build import build
 
@@ -67,7 +67,7 @@ def gone_within(process: int, seconds: float) -> bool:
 def test_our_removal_gives_the_same_bits() -> None:
     """Outputs of 300 steps, and of a replay from a saved state, in this process and in another."""
     (phase,) = load("table2-deorbit").phases
-    path = models.ensure_fmus({"removal": phase.main.terms}, lambda _: None)["removal"]
+    path = models.ensure([("tethered_deorbit", phase.main.terms)], lambda _: None)[0]
     rows = []
     with Archive(path) as archive:
         for make in (Component, IsolatedComponent):
@@ -271,7 +271,7 @@ def test_its_time_counts(fmu: Fmu) -> None:
         before, own = component.cpu_apart(), time.process_time()
         assert before > 0.0
         component.initialise(0.0)
-        result = RemovalLoop(Coupled("all", [component], [], Coupling()), 1.0, 0.0, 2000.0, Progress()).run()
+        result = PhaseLoop(Coupled("all", [component], [], Coupling()), 1.0, 0.0, 2000.0, Progress()).run()
         used, own = component.cpu_apart() - before, time.process_time() - own
         assert own + 0.5 * used < result.cpu < own + 1.1 * used
     assert component.cpu_apart() >= before + 0.9 * used, "and is known when it is gone"

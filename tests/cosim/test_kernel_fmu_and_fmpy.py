@@ -13,9 +13,9 @@ from dcone_cosim.commands import SceneFmus
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
-from dcone_cosim.phases import PhaseResult
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import PhaseResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.in_process import KernelComponent
 
 pytestmark = pytest.mark.slow
@@ -52,7 +52,7 @@ def test_kernel_and_fmu_give_the_same_bits(run_by_fmu: tuple[Scene, PhaseResult]
 def test_fmpy_gives_the_masters_numbers(run_by_fmu: tuple[Scene, PhaseResult]) -> None:
     scene, ours = run_by_fmu
     (phase,) = scene.phases
-    path = build.ensure_fmus({phase.name: phase.main.terms}, lambda _: None)[phase.name]
+    path = build.ensure([(phase.main.model, phase.main.terms)], lambda _: None)[0]
     names = [name for name in ours.recorder.names[1:] if ours.recorder.kinds[name] == "Real"]
     whole = {"Real": float, "Integer": int, "Boolean": bool}
     kinds = {v.name: v.type for v in fmpy.read_model_description(str(path)).modelVariables}

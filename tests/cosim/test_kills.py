@@ -25,7 +25,7 @@ from dcone_cosim.drafts import contents
 from dcone_cosim.interface_kit import write_template
 from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
-from dcone_cosim.run import as_json
+from dcone_cosim.run_folder import as_json
 from dcone_cosim.scratch import PREFIX, Scratch, clear_left
 from dcone_cosim.ssp.export import export_scene
 from fmu_src.catalogue import MODELS

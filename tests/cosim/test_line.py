@@ -13,10 +13,11 @@ from dcone_cosim.errors import HANDOFF_FAILED, SUCCESS
 from dcone_cosim.handoff import prepare
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.line import Line, line_notes, line_of, line_parameters
-from dcone_cosim.master import RunResult, run_scene
+from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import RunResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.mock_components import MockCapture, MockComponent, MockRemoval
 from tests.cosim.raw_world import RATE, world
 
@@ -45,8 +46,8 @@ def hand_over(
         return component
 
     result = run_scene(scene, instantiate, Progress())
-    assert result.handoff is not None
-    return result, made, {row.quantity: row for row in result.handoff.rows if row.unit == "m"}
+    assert result.handovers["removal"] is not None
+    return result, made, {row.quantity: row for row in result.handovers["removal"].rows if row.unit == "m"}
 
 
 def slack_of(removal: MockComponent) -> float:
@@ -140,10 +141,12 @@ def test_a_working_reel_is_told_the_offset(make_scene: Make) -> None:
     assert made[1].values[ATTACHMENT] == pytest.approx(OFF_CENTER, rel=1e-13)
     assert set(rows) == {OFFSET}
     assert rows[OFFSET].account == ""
-    assert result.handoff is not None
+    assert result.handovers["removal"] is not None
     speed = 0.005 + 10.0 / 1006.0
     slack = 15.0 + OFF_CENTER - DISTANCE
-    assert result.handoff.spin.tug_speed == pytest.approx(math.sqrt(speed**2 + 2.0 * 0.01 / 2000.0 * slack), rel=1e-12)
+    assert result.handovers["removal"].spin.tug_speed == pytest.approx(
+        math.sqrt(speed**2 + 2.0 * 0.01 / 2000.0 * slack), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(("name", "factor"), [(ATTACHMENT, 1.01), (REST, 1.01), (REST, 1.0 - 1e-11)])
@@ -157,10 +160,12 @@ def test_a_removal_with_another_line_is_caught(make_scene: Make, name: str, fact
 
 def test_the_estimate_of_the_first_tug_has_the_slack_handed_over(make_scene: Make) -> None:
     result, _, _ = hand_over(make_scene("capture", "removal"))
-    assert result.handoff is not None
+    assert result.handovers["removal"] is not None
     speed, slack = 0.005 + 10.0 / 1006.0, 20.0 + OFF_CENTER - DISTANCE
-    assert result.handoff.spin.tug_speed == pytest.approx(math.sqrt(speed**2 + 2.0 * 0.01 / 2000.0 * slack), rel=1e-12)
-    assert result.handoff.spin.tolerance == 0.1
+    assert result.handovers["removal"].spin.tug_speed == pytest.approx(
+        math.sqrt(speed**2 + 2.0 * 0.01 / 2000.0 * slack), rel=1e-12
+    )
+    assert result.handovers["removal"].spin.tolerance == 0.1
 
 
 @pytest.mark.parametrize(
@@ -174,8 +179,8 @@ def test_a_line_that_is_too_short_is_refused(make_scene: Make, length: float, ac
     assert (result.exit_code == SUCCESS) is accepted
     if not accepted:
         assert len(made) == 1
-        assert result.handoff is not None
-        assert result.handoff.failure == result.message
+        assert result.handovers["removal"] is not None
+        assert result.handovers["removal"].failure == result.message
         for told in (f"{REACH:.6g} m apart", f"{length:.6g} m long", f"t = {INSTANT:.6g} s"):
             assert told in result.message
 

@@ -9,9 +9,11 @@ import pytest
 
 from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, InputError
 from dcone_cosim.handoff import mean_motion
-from dcone_cosim.master import RunResult, advanced, run_scene
+from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import RunResult
+from dcone_cosim.scene.data import Scene
+from dcone_cosim.transaction import advanced
 from tests.cosim.mock_components import MockCapture, MockComponent, MockRemoval
 
 Make = Callable[..., Scene]
@@ -34,18 +36,18 @@ def run(scene: Scene, capture: MockComponent | None = None, removal: Callable[[]
 def test_two_phases_and_a_closed_ledger(make_scene: Make) -> None:
     result, made = run(make_scene("capture", "removal"), MockCapture(reports=True))
     assert result.exit_code == SUCCESS
-    assert result.handoff is not None
-    assert result.handoff.rows
-    assert all(row.closed for row in result.handoff.rows)
+    assert result.handovers["removal"] is not None
+    assert result.handovers["removal"].rows
+    assert all(row.closed for row in result.handovers["removal"].rows)
     assert [component.name for component in made] == ["capture", "removal", "removal without recoil"]
-    assert made[1].calls[0][0] == result.handoff.time
+    assert made[1].calls[0][0] == result.handovers["removal"].time
     removal = result.phases["removal"]
-    assert (removal.origin, removal.start, removal.end) == (result.handoff.time, 0.0, 100.0)
+    assert (removal.origin, removal.start, removal.end) == (result.handovers["removal"].time, 0.0, 100.0)
 
 
 def test_the_removal_begins_where_the_capture_ended(make_scene: Make) -> None:
     result, made = run(make_scene("capture", "removal"), MockCapture(reports=True))
-    given, instant = made[1].values, result.handoff.time
+    given, instant = made[1].values, result.handovers["removal"].time
     assert given["start.condition"] == 1.0
     assert given["target.mass"] == 1006.0
     assert given["orbit.true_anomaly"] == pytest.approx(mean_motion(800e3) * instant, rel=1e-12)
@@ -63,7 +65,7 @@ def test_the_comparison_is_at_rest(make_scene: Make) -> None:
 def test_the_comparison_can_be_left_out(make_scene: Make) -> None:
     result, made = run(make_scene("capture", "removal", compare_without_recoil=False), MockCapture())
     assert len(made) == 2
-    assert result.comparison is None
+    assert result.comparisons.get("removal") is None
 
 
 @pytest.mark.parametrize("when", ["made", "stepped", "never"])
@@ -86,7 +88,7 @@ def test_a_comparison_that_fails_says_why_and_fails_nothing(make_scene: Make, wh
     said: list[str] = []
     result = run_scene(make_scene("capture", "removal"), instantiate, Listening())
     assert result.exit_code == SUCCESS
-    assert (result.comparison is None) == (when != "never")
+    assert (result.comparisons.get("removal") is None) == (when != "never")
     told = ["the removal without recoil is left out: the winch jammed"] if when != "never" else []
     assert [text for text in said if "left out" in text] == told
 

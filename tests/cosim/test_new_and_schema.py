@@ -15,6 +15,7 @@ from dcone_cosim import build
 from dcone_cosim.commands import write_scene, write_schema
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import find, load, shipped
+from dcone_cosim.phases import kinds
 from dcone_cosim.scenes.keys import expected_of
 from dcone_cosim.scenes.new import new_scene
 from dcone_cosim.scenes.reading import parse
@@ -65,7 +66,11 @@ class TestNew:
         """Every parameter is there with the table's own sentence and bounds; a line that lacks one would be found."""
         text = re.sub(r"\n#   ", " ", begun("mission"))
         scene = next(p for p in load("mission").phases if p.name == phase)
-        rows = [v for v in build.settable(build.MODELS[phase].interface(scene.main.terms)) if v.section != "orbit"]
+        rows = [
+            v
+            for v in build.settable(build.CATALOGUE[scene.main.model].interface(scene.main.terms))
+            if v.section != "orbit"
+        ]
         owned = (
             ("start.", "target.mass", "target.attachment_distance", "chaser.mass") if phase == "removal" else ("\0",)
         )
@@ -172,7 +177,8 @@ class TestSchema:
     def test_every_parameter_is_described_with_its_default(self) -> None:
         net = schema()["properties"]["capture"]["properties"]["net"]["properties"]
         assert net["side"]["description"] == "side of the mouth; greater than 0 m"
-        for phase, model in build.MODELS.items():
+        for phase, kind in kinds().items():
+            model = build.CATALOGUE[kind.model]
             tables = schema()["properties"][phase]["properties"]
             for row in build.all_rows(model):
                 if row.causality in build.SETTABLE and row.section != "orbit":

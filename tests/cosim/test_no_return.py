@@ -18,7 +18,8 @@ from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component, Terminated
 from dcone_cosim.fmu.isolation import IsolatedComponent
-from dcone_cosim.phases import CaptureLoop, CapturePlan, RemovalLoop
+from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
+from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
 from tests.cosim.fmus.build import build
 from tests.cosim.mock_components import MockRemoval
@@ -56,7 +57,7 @@ def test_a_removal_that_rewinds_is_towed_as_any_other(tmp_path: Path, isolate: b
             component.set({"start.relative_position[2]": 0.0, "start.relative_velocity[2]": 0.5})
             component.set({"start.relative_position[3]": 0.0, "start.relative_velocity[3]": 0.0})
             component.initialise(0.0)
-            result = RemovalLoop(component, 10.0, 0.0, 60.0, Progress()).run()
+            result = PhaseLoop(component, 10.0, 0.0, 60.0, Progress()).run()
             assert result.error is None
             assert result.recorder["separation"][-1] == pytest.approx(np.hypot(20.0, 30.0), rel=1e-15)
 
@@ -169,7 +170,7 @@ def test_pieces_of_a_step_go_back_to_their_own_begin_alone() -> None:
     component = Kept(tugs=[(0.3 + 1.3 * i, 10.0, 0.1) for i in range(7)])
     component.enter_initialisation(0.0)
     component.exit_initialisation()
-    result = RemovalLoop(component, 10.0, 0.0, 20.0, Progress()).run()
+    result = PhaseLoop(component, 10.0, 0.0, 20.0, Progress()).run()
     assert result.error is None
     assert result.tugs is not None
     assert len(component.calls) > 6

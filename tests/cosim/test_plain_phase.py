@@ -8,7 +8,7 @@ from dcone_cosim.errors import FMU_FAILED, FmuError, InputError
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.scenes.scene import ComponentScene, PhaseScene, Scene
+from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 from tests.cosim.mock_components import MockComponent
 
 

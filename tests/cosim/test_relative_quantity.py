@@ -17,8 +17,8 @@ from dcone_cosim.fmu.component import Component
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import TEMPERATURE, Unit
+from dcone_cosim.scene.units import Unexpected
 from dcone_cosim.scenes.fmus import offer
-from dcone_cosim.scenes.units import Unexpected
 from dcone_cosim.ssp import matching
 from dcone_cosim.ssp.parsing import PortRow
 from dcone_cosim.ssp.values import Given

@@ -10,10 +10,11 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from dcone_cosim.master import RunResult, run_scene
+from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import RunResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.mock_components import MockCapture, MockRemoval
 from tests.cosim.written import write
 
@@ -142,7 +143,7 @@ def test_every_table_says_what_its_times_count_from(result: RunResult, tmp_path:
     put(result, tmp_path / "run")
     tables = {path.stem: pyarrow.parquet.read_table(path) for path in (tmp_path / "run").glob("*.parquet")}
     clocks = {name: table.schema.field("time").metadata[b"clock"].decode() for name, table in tables.items()}
-    instant = result.handoff.time
+    instant = result.handovers["removal"].time
     shot, hand_over = "since the shot", f"since the hand-over, which was {instant!r} s after the shot"
     removal = dict.fromkeys(("removal", "tugs", "removal_without_recoil_tugs"), hand_over)
     assert clocks == {"capture": shot} | removal

@@ -7,9 +7,9 @@ import pytest
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import find
-from dcone_cosim.scenes.mistakes import SceneError
+from dcone_cosim.scene.data import PhaseScene
+from dcone_cosim.scene.mistakes import SceneError
 from dcone_cosim.scenes.reading import parse
-from dcone_cosim.scenes.scene import PhaseScene
 
 CONTROLLED = """
 [removal]

@@ -15,7 +15,7 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.fmu.units import by_name
 from dcone_cosim.loading import find, load
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 

@@ -19,7 +19,7 @@ import pytest
 
 from dcone_cosim import build
 from dcone_cosim.loading import load
-from dcone_cosim.scenes.mistakes import SceneError
+from dcone_cosim.scene.mistakes import SceneError
 from dcone_cosim.scenes.new import new_scene
 from dcone_cosim.scenes.schema import _tables
 from fmu_src.packaging import table_file

@@ -12,8 +12,8 @@ import pytest
 from dcone_cosim import build
 from dcone_cosim.contract import HANDED_OVER, OUTCOMES
 from dcone_cosim.loading import find, load, shipped, title_of
+from dcone_cosim.scene.toml_lines import Path, dotted, key_lines, line_of
 from dcone_cosim.scenes.reading import parse
-from dcone_cosim.scenes.toml_lines import Path, dotted, key_lines, line_of
 
 
 def test_the_three_scenes_are_there() -> None:
@@ -26,7 +26,7 @@ def test_a_shipped_scene_says_only_what_its_model_has(name: str) -> None:
     scene = load(name)
     assert scene.text == find(name).read_text()
     for phase in scene.phases:
-        interface = build.MODELS[phase.name].interface(phase.main.terms)
+        interface = build.CATALOGUE[phase.main.model].interface(phase.main.terms)
         assert set(phase.main.parameters) <= set(interface.references)
         assert set(phase.main.parameters) <= set(phase.main.defaults)
 
@@ -66,7 +66,7 @@ def test_table_1_is_the_papers() -> None:
         "target.size[3]": 4.0,
     }
     assert expected.items() <= phase.main.parameters.items()
-    assert phase.options["snapshots"] == [0.0, 5.32, 7.24, 9.13, 11.21, 12.32, 13.8, 15.0]
+    assert phase.options.snapshots == [0.0, 5.32, 7.24, 9.13, 11.21, 12.32, 13.8, 15.0]
 
 
 def test_the_orbit_goes_to_every_phase_that_has_it() -> None:
@@ -89,7 +89,7 @@ def test_a_phase_can_be_run_alone() -> None:
 
 
 def test_the_contract_names_what_our_models_mean() -> None:
-    capture, removal = (build.MODELS[phase] for phase in ("capture", "removal"))
+    capture, removal = (build.CATALOGUE[model] for model in ("net_capture", "tethered_deorbit"))
     outcome = next(v for v in capture.base if v.name == "outcome")
     condition = next(v for v in removal.base if v.name == "start.condition")
     assert outcome.choices == OUTCOMES

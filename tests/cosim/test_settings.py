@@ -8,8 +8,8 @@ import pytest
 
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import find, load
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scenes.reading import parse
-from dcone_cosim.scenes.scene import Scene
 from dcone_cosim.scenes.text import override
 
 

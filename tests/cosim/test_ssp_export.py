@@ -15,8 +15,9 @@ from dcone_cosim import build, loading
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
-from dcone_cosim.master import RunResult, run_scene
+from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
+from dcone_cosim.results import RunResult
 from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.export import export_scene, identifier
@@ -276,7 +277,7 @@ def test_a_mission_in_two_packages_has_the_bits_of_the_mission(tmp_path: Path) -
     capture, removal = export_scene(load("mission"), tmp_path / "out", Progress(), from_run=tmp_path / "run").paths
     assert same(whole, run(capture), "capture")
     handed_over = run(removal)
-    assert handed_over.phases["removal"].origin == whole.handoff.time
+    assert handed_over.phases["removal"].origin == whole.handovers["removal"].time
     assert same(whole, handed_over)
     shutil.rmtree(tmp_path / "run")
 

@@ -17,14 +17,15 @@ from rich.console import Console
 
 from dcone_cosim import build
 from dcone_cosim.fmu.component import VariableInfo
-from dcone_cosim.master import RunResult, run_scene
-from dcone_cosim.phases import PhaseResult
+from dcone_cosim.master import run_scene
+from dcone_cosim.plots import net_view, side_by_side, style
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, TugLog
-from dcone_cosim.reports import figures, net_view, side_by_side, style, summary
+from dcone_cosim.reports import figures, summary
 from dcone_cosim.reports.figures import draw_all
-from dcone_cosim.run import as_json
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.run_folder import as_json
+from dcone_cosim.scene.data import Scene
 from tests.cosim.mock_components import MockCapture, MockRemoval
 
 MakeScene = Callable[..., Scene]

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dcone_cosim.phases import PhaseResult, RemovalLoop
+from dcone_cosim.phases.stepping import PhaseLoop
+from dcone_cosim.phases.tension import last_orbit
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import TugLog
-from dcone_cosim.reports.tension import last_orbit
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import PhaseResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.in_process import KernelComponent
 from tests.cosim.test_summary import found, removal_run
 
@@ -93,7 +94,7 @@ def towed(duration: float, **parameters: float) -> PhaseResult:
     component.set({name.replace("__", "."): value for name, value in parameters.items()})
     component.enter_initialisation(0.0)
     component.exit_initialisation()
-    return RemovalLoop(component, 60.0, 0.0, duration, Progress()).run()
+    return PhaseLoop(component, 60.0, 0.0, duration, Progress()).run()
 
 
 RATE, LENGTH, REDUCED, PUSH = 1.0381289e-3, 12.0, 2000.0 / 3.0, 0.01 / 2000.0

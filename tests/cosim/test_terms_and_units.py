@@ -15,8 +15,8 @@ from dcone_cosim.loading import find, load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import figures
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scenes.reading import parse
-from dcone_cosim.scenes.scene import Scene
 from fmu_src.interface import Term, check_implemented
 from fmu_src.lanes import REALS
 from fmu_src.net_capture.composition import Composition
@@ -61,24 +61,24 @@ class TestNeeds:
 
     def test_one_that_no_kernel_implements_is_built_by_none(self) -> None:
         """A gravity of another name was built as none at all, and a reel of another name as a commanded one."""
-        model = build.MODELS["capture"]
+        model = build.CATALOGUE["net_capture"]
         gravity = replace(model.groups["gravity"], terms={**model.groups["gravity"].terms, "j2": Term("oblate")})
         more = replace(model, groups={**model.groups, "gravity": gravity})
         with pytest.raises(ValueError, match=r"net_capture: no kernel implements gravity = 'j2'"):
             Composition(more, more.interface({"net": "square", "gravity": "j2"}).terms)
         assert Composition(more, more.interface({"net": "square", "gravity": "hill"}).terms).gravity.bends
-        reel = build.MODELS["removal"]
+        reel = build.CATALOGUE["tethered_deorbit"]
         implemented = importlib.import_module(reel.module).IMPLEMENTED
         with pytest.raises(ValueError, match=r"tethered_deorbit: no kernel implements reel = 'spring'"):
             check_implemented(reel, implemented, {"reel": "spring"})
         check_implemented(reel, implemented, {"reel": next(iter(reel.groups["reel"].terms))})
-        removal = importlib.import_module(build.MODELS["removal"].module)
+        removal = importlib.import_module(build.CATALOGUE["tethered_deorbit"].module)
         with pytest.raises(ValueError, match="reel = 'elastic'"):
             removal.make_entry({"reel": "elastic"})
 
     def test_a_term_that_lacks_what_it_needs_is_no_interface(self) -> None:
         with pytest.raises(ValueError, match="contact = 'inelastic' needs a choice of target"):
-            build.MODELS["capture"].interface({"net": "square", "gravity": "none", "contact": "inelastic"})
+            build.CATALOGUE["net_capture"].interface({"net": "square", "gravity": "none", "contact": "inelastic"})
 
 
 class TestCapacity:

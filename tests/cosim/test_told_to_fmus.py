@@ -13,8 +13,8 @@ import pytest
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
+from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus
-from dcone_cosim.scenes.scene import Scene
 from tests.cosim.fmus.build import build
 
 SCENE = '[removal]\nfmu = "my_removal.fmu"\nmacro_step = "10 s"\nduration = "100 s"\n'

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from dcone_cosim.errors import HANDOFF_FAILED, SUCCESS
-from dcone_cosim.master import RunResult, run_scene
+from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.results import RunResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.mock_components import MockCapture, MockComponent, MockRemoval, elements
 
 Make = Callable[..., Scene]
@@ -59,9 +60,9 @@ def test_what_the_removal_computes_is_compared(make_scene: Make) -> None:
     """Sizes that turning the frame does not change; the twin of those below."""
     result = run(make_scene("capture", "removal"), Telling)
     assert result.exit_code == SUCCESS, result.message
-    assert result.handoff is not None
-    assert result.handoff.failure == ""
-    seen = {check.quantity: check for check in result.handoff.checks}
+    assert result.handovers["removal"] is not None
+    assert result.handovers["removal"].failure == ""
+    seen = {check.quantity: check for check in result.handovers["removal"].checks}
     length = DISTANCE - REACH_AND_ON
     for quantity, size, unit, tolerance in (
         ("separation", DISTANCE, "m", 1e-4 * DISTANCE),
@@ -94,8 +95,8 @@ def test_one_part_in_ten_thousand_is_the_limit(
     assert wrong.exit_code == HANDOFF_FAILED
     assert wrong.message.startswith("hand-off violated: the ledger does not close\n  " + named)
     assert ", the removal computes " in wrong.message
-    assert wrong.handoff is not None
-    assert wrong.handoff.failure == wrong.message
+    assert wrong.handovers["removal"] is not None
+    assert wrong.handovers["removal"].failure == wrong.message
     assert "removal" not in wrong.phases
 
 
@@ -122,10 +123,10 @@ def test_a_chaser_nearer_than_the_attachment_is_compared_by_size(make_scene: Mak
     scene.phases[1].main.parameters["tether.rest_length"] = 30.0  # type: ignore[index]
     result = run(scene, Telling, Beyond(INSTANT, reports=True))
     assert result.exit_code == SUCCESS, result.message
-    assert result.handoff is not None
-    check = next(check for check in result.handoff.checks if check.quantity == "size of tether.length")
+    assert result.handovers["removal"] is not None
+    check = next(check for check in result.handovers["removal"].checks if check.quantity == "size of tether.length")
     assert check.given == pytest.approx(14.0 - 6.0 * CATCH / 1006.0 - DISTANCE, rel=1e-9)
-    slack = next(row for row in result.handoff.rows if row.quantity == "slack of the line")
+    slack = next(row for row in result.handovers["removal"].rows if row.quantity == "slack of the line")
     assert slack.after - slack.before == pytest.approx(2.0 * (14.0 - 6.0 * CATCH / 1006.0), rel=1e-9)
 
 
@@ -183,9 +184,9 @@ def test_the_spin_is_judged_at_the_scene_s_tolerance(make_scene: Make) -> None:
     assert spinning(make_scene, 1.001 * limit, spin_tolerance=0.11).exit_code == SUCCESS
     assert spinning(make_scene, 0.999 * limit, spin_tolerance=0.09).exit_code == HANDOFF_FAILED
     told = spinning(make_scene, 0.05, spin_tolerance=1e-3)
-    assert told.handoff is not None
-    assert told.handoff.spin.share == pytest.approx(share(0.05), rel=1e-6)
-    assert told.handoff.failure == told.message
+    assert told.handovers["removal"] is not None
+    assert told.handovers["removal"].spin.share == pytest.approx(share(0.05), rel=1e-6)
+    assert told.handovers["removal"].failure == told.message
     spin = 0.05 + joining * RATE
     assert f"{spin:.4g}" != "0.05", "the net's share shows"
     for text in (
@@ -207,10 +208,10 @@ def test_the_thrust_of_the_scene_counts(make_scene: Make, thrust: float | None) 
     if thrust is not None:
         given["thrust.level"] = thrust  # type: ignore[index]
     result = run(scene, MockRemoval)
-    assert result.handoff is not None
+    assert result.handovers["removal"] is not None
     slack = 20.0 + REACH_AND_ON - DISTANCE
     expected = math.sqrt(SPEED**2 + 2.0 * abs(thrust or 0.0) / 2000.0 * slack)
-    assert result.handoff.spin.tug_speed == pytest.approx(expected, rel=1e-12)
+    assert result.handovers["removal"].spin.tug_speed == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_removal_of_unknown_length_counts_as_tight(make_scene: Make) -> None:
@@ -218,8 +219,8 @@ def test_a_removal_of_unknown_length_counts_as_tight(make_scene: Make) -> None:
     scene.phases[1].main.parameters.pop("tether.rest_length")  # type: ignore[attr-defined]
     scene.phases[1].main.defaults.clear()  # type: ignore[attr-defined]
     result = run(scene, lambda: MockRemoval(without=["tether.rest_length"]))
-    assert result.handoff is not None
-    assert result.handoff.spin.tug_speed == pytest.approx(SPEED, rel=1e-12)
+    assert result.handovers["removal"] is not None
+    assert result.handovers["removal"].spin.tug_speed == pytest.approx(SPEED, rel=1e-12)
 
 
 def test_the_tow_without_recoil_keeps_what_the_chaser_had(make_scene: Make) -> None:

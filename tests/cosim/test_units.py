@@ -6,9 +6,10 @@ import math
 
 import pytest
 
-from dcone_cosim.build import MODELS, defaults
+from dcone_cosim.build import CATALOGUE, defaults
+from dcone_cosim.phases import kinds
+from dcone_cosim.scene.units import Expected, Unexpected, example_of, unit_of
 from dcone_cosim.scenes.keys import expected_of
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of, unit_of
 
 LENGTH = Expected("m", example="24 m", refusal=lambda v: None if v > 0 else "must be greater than 0 m")
 
@@ -85,7 +86,7 @@ def test_other_kinds_of_values(expected: Expected, good: object, bad: list[objec
 @pytest.mark.parametrize("phase", ["capture", "removal"])
 def test_every_unit_of_the_models_is_understood(phase: str) -> None:
     """And the example a message gives for a key is itself accepted by the key."""
-    model = MODELS[phase]
+    model = CATALOGUE[kinds()[phase].model]
     rows = [*model.base]
     for group in model.groups.values():
         for term in group.terms:
@@ -105,6 +106,6 @@ def test_examples_use_the_display_unit() -> None:
 
 
 def test_defaults_are_the_start_values() -> None:
-    values = defaults(MODELS["capture"].interface({"net": "square", "gravity": "none", "target": "box"}))
+    values = defaults(CATALOGUE["net_capture"].interface({"net": "square", "gravity": "none", "target": "box"}))
     assert values["target.size[2]"] == 8.0
     assert values["chaser.start_position[2]"] == -20.0

@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 
 from dcone_cosim.loading import load, shipped
-from dcone_cosim.master import RunResult
+from dcone_cosim.phases.removal_report import approach
 from dcone_cosim.recorder import TugLog
-from dcone_cosim.reports.warnings import approach, warnings
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.reports.warnings import warnings
+from dcone_cosim.results import RunResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
 from tests.cosim.test_summary import found, removal_run
 

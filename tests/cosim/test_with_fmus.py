@@ -148,7 +148,7 @@ class TestComponent:
     @pytest.fixture
     def archive(self):
         (phase,) = load("table2-deorbit").phases
-        with Archive(build.ensure_fmus({"removal": phase.main.terms}, lambda _: None)["removal"]) as archive:
+        with Archive(build.ensure([("tethered_deorbit", phase.main.terms)], lambda _: None)[0]) as archive:
             yield archive
 
     def test_an_unknown_name_is_told_the_nearest(self, archive: Archive) -> None:

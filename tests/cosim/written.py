@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim.drafts import atomic_folder
-from dcone_cosim.master import RunResult
-from dcone_cosim.run import fill
+from dcone_cosim.results import RunResult
+from dcone_cosim.run_folder import fill
 
 
 def write(result: RunResult, folder: Path, summary: dict[str, Any], force: bool = False, **more: Any) -> Path:

@@ -19,6 +19,7 @@ from pathlib import Path
 from dcone_cosim import build
 from dcone_cosim.fmu.component import Archive, Component
 from dcone_cosim.loading import load
+from dcone_cosim.scene.data import ComponentScene
 from tests.interop.job import Job, Row, Value
 
 Points = Callable[[float, int], Iterator[tuple[float, float]]]
@@ -54,11 +55,15 @@ class Case:
 
     @functools.cached_property
     def terms(self) -> Mapping[str, str]:
-        return {p.name: p.main.terms for p in load(self.scene).phases}[self.phase]
+        return self.main.terms
+
+    @functools.cached_property
+    def main(self) -> ComponentScene:
+        return next(p.main for p in load(self.scene).phases if p.name == self.phase)
 
     @functools.cached_property
     def path(self) -> Path:
-        return build.ensure_fmus({self.phase: self.terms}, lambda _: None)[self.phase]
+        return build.ensure([(self.main.model, self.terms)], lambda _: None)[0]
 
     def job(self, grid: str, coarse: int = 1) -> Job:
         """The run on one of the grids, with steps `coarse` times as long."""

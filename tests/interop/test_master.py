@@ -12,9 +12,10 @@ import pytest
 from dcone_cosim.fmu.component import Archive, Component
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
+from dcone_cosim.phases.capture import CaptureOptions
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
-from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.scene.data import Scene
 from tests.interop.cases import CAPTURE, CASES, Case
 from tests.interop.children import run_tool
 from tests.interop.job import Job, Value
@@ -34,7 +35,7 @@ def plain(case: Case) -> tuple[Scene, Job]:
         main=replace(phase.main, parameters=parameters),
         macro_step=job.step,
         duration=job.steps * job.step,
-        options={**phase.options, "hand_over": "none", "snapshots": []},
+        options=CaptureOptions("none") if phase.name == "capture" else phase.options,
     )
     every = list(range(1, job.steps + 1))
     return replace(scene, phases=(phase,)), replace(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dcone_cosim.loading import load
-from dcone_cosim.scenes.mistakes import SceneError
+from dcone_cosim.scene.mistakes import SceneError
 from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.planes import SHOWN, P, U, X

@@ -26,9 +26,9 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.drafts import PROVENANCE, contents
-from dcone_cosim.master import RunResult
-from dcone_cosim.phases import PhaseResult
+from dcone_cosim.phases import kind_of
 from dcone_cosim.recorder import Snapshots, TugLog
+from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scenes.kept import keep
 
 if TYPE_CHECKING:
@@ -38,10 +38,6 @@ PACKAGES = (
     *("dcone-cosim", "numpy", "fmpy", "astropy", "tomlkit", "pyarrow", "matplotlib", "typer"),
     *("numba", "llvmlite", "ziglang"),
 )
-
-
-OPTIONS = ("hand_over", "after_capture", "snapshots")
-"""What a scene tells the master of a phase, beside its steps."""
 
 
 def default_folder(scene: str) -> Path:
@@ -67,8 +63,8 @@ def fill(
         if with_csv:
             headed = table.rename_columns([_headed(f) for f in table.schema])
             pyarrow.csv.write_csv(headed, folder / f"{name}.csv")
-    if run.handoff is not None:
-        _write_ledger(run, folder)
+    for place, (name, handover) in enumerate(run.handovers.items()):
+        _write_ledger(handover, folder / (f"ledger_{name}.json" if place else "ledger.json"))
     _write_json(folder / "summary.json", summary)
     if draw is not None:
         draw(folder)
@@ -133,25 +129,15 @@ def _arrow(values: npt.NDArray[Any]) -> Any:
 
 def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
     for name, result in run.phases.items():
-        clock = clock_of(run, name)
+        kind, clock = kind_of(name), kind_of(name).clock(run)
         yield name, phase_table(result, clock)
         if result.snapshots.times:
             yield "nodes", nodes_table(result.snapshots, clock)
         if result.tugs is not None:
-            yield "tugs", tugs_table(result.tugs, clock)
-    if run.comparison is not None and run.comparison.tugs is not None:
-        yield "removal_without_recoil_tugs", tugs_table(run.comparison.tugs, clock_of(run, "removal"))
-
-
-def clock_of(run: RunResult, phase: str) -> str:
-    """What the times of a phase count from, in words."""
-    if phase == "capture":
-        return "since the shot"
-    if phase != "removal":
-        return "time of the phase's FMU"
-    if run.handoff is None:
-        return "since the removal began"
-    return f"since the hand-over, which was {run.handoff.time!r} s after the shot"
+            yield kind.tugs_file, tugs_table(result.tugs, clock)
+    for name, result in run.comparisons.items():
+        if result.tugs is not None:
+            yield f"{name}_without_recoil_tugs", tugs_table(result.tugs, kind_of(name).clock(run))
 
 
 def phase_table(result: PhaseResult, clock: str) -> pa.Table:
@@ -188,40 +174,12 @@ def tugs_table(tugs: TugLog, clock: str) -> pa.Table:
     )
 
 
-def _write_ledger(run: RunResult, draft: Path) -> None:
-    record = run.handoff
-    assert record is not None
-    handed = record.handed
-    rows = [row.as_dict() for row in record.rows]
-    content = {
-        "time": {"value": record.time, "unit": "s", "clock": "since the shot"},
-        "located_by": record.located_by,
-        "rows": rows,
-        "cross_checks": [vars(check) for check in record.checks],
-        "spin": {
-            "dropped": {"value": float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
-            "attachment_speed": {"value": record.spin.attachment_speed, "unit": "m/s"},
-            "tug_speed": {"value": record.spin.tug_speed, "unit": "m/s"},
-            "tolerance": record.spin.tolerance,
-        },
-        "joint_body": {
-            "mass": {"value": handed.joint.mass, "unit": "kg"},
-            "position": {"value": handed.joint.position, "unit": "m"},
-            "velocity": {"value": handed.joint.velocity, "unit": "m/s"},
-            "spin": {"value": handed.joint.spin, "unit": "N m s"},
-            "inertia": {"value": handed.joint.inertia, "unit": "kg m2"},
-        },
-        "line": {
-            "length": {"value": record.line.length, "unit": "m"},
-            "attachment_distance": {"value": record.line.attachment, "unit": "m"},
-            "slack": {"value": record.line.slack, "unit": "m"},
-        },
-        "set_in_removal": handed.parameters | record.line_parameters,
-        "failure": record.failure,
-    }
-    _write_json(draft / "ledger.json", content)
+def _write_ledger(handover: Handover, path: Path) -> None:
+    """What was handed over, as JSON, and its ledger once more as CSV."""
+    _write_json(path, handover.told())
+    rows = [row.as_dict() for row in handover.rows]
     if rows:
-        with (draft / "ledger.csv").open("w", newline="", encoding="utf-8") as file:
+        with path.with_suffix(".csv").open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, fieldnames=list(rows[0]))
             writer.writeheader()
             writer.writerows(rows)
@@ -247,9 +205,10 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
             **fmus.get(name, {}),
             "terms": dict(phase.main.terms),
             "start": {"value": result.start, "unit": "s"},
+            "origin": {"value": result.origin, "unit": "s"},
             "macro_step": {"value": phase.macro_step, "unit": "s"},
             "duration": {"value": phase.duration, "unit": "s"},
-            "options": {key: value for key, value in phase.options.items() if key in OPTIONS},
+            "options": {} if phase.options is None else vars(phase.options),
             "steps": result.steps,
             "cpu": {"value": result.cpu, "unit": "s"},
             "wall": {"value": result.wall, "unit": "s"},
@@ -262,10 +221,8 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         "scene": run.scene.name,
         "scene_sha256": run.scene.sha256,
         "settings": [override.argument for override in run.scene.places.overrides],
-        "handoff": dict(run.scene.handoff),
-        "handed_over_at": None
-        if run.handoff is None
-        else {"value": run.handoff.time, "unit": "s", "clock": "since the shot"},
+        "handoff": vars(run.scene.handoff),
+        "handed_over_at": {name: {"value": it.time, "unit": "s"} for name, it in run.handovers.items()},
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,

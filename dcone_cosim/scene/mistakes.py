@@ -10,7 +10,7 @@ from typing import Any
 
 from dcone_cosim.errors import InputError
 from dcone_cosim.names import did_you_mean, nearest
-from dcone_cosim.scenes.toml_lines import Lines, Path, dotted, key_lines, line_of
+from dcone_cosim.scene.toml_lines import Lines, Path, dotted, key_lines, line_of
 
 MOST = 1000
 """Mistakes after which nobody reads on."""

@@ -1,30 +1,27 @@
-"""The two phases as loops over communication points, each on one component; what they leave is a `PhaseResult`.
+"""The capture as a loop that ends in the instant of its hand-over, wherever between two communication points that lies.
 
-Every communication point is start + i * macro_step, from an integer, so nothing accumulates. The times of a capture or
-a removal count from its begin, whatever time its FMU is told to begin at; those of any other phase are its FMU's.
+Times count from the shot, whatever time the FMU is told to begin at.
 """
 
 from __future__ import annotations
 
 import math
-import time as clock
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from dcone_cosim import interrupts
-from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, TUG_PREFIX
-from dcone_cosim.errors import DconeError, FmuError, Interrupted
+from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES
+from dcone_cosim.errors import FmuError, Interrupted
 from dcone_cosim.fmu import restoring
-from dcone_cosim.fmu.component import KINDS, Readable, Row, Steppable, Terminated, output_names
-from dcone_cosim.fmu.steppable import cpu_apart
+from dcone_cosim.fmu.component import Readable, Row, Steppable, Terminated, output_names
 from dcone_cosim.holding import holding
+from dcone_cosim.phases.stepping import Stopwatch, coupling_of, grid_steps, length_of
 from dcone_cosim.progress import Progress
-from dcone_cosim.recorder import Recorder, Snapshots, TugLog
+from dcone_cosim.recorder import Recorder, Snapshots
+from dcone_cosim.results import PhaseResult
 
 LOCATED_TO = 1e-6
 """How closely the instant of a hand-over is located by halving [s]."""
-SAME = 1e-6
-"""Relative difference up to which two steps are of one length: at t = 1e6 s a step of 1 ms has lost six digits."""
 
 
 @dataclass(frozen=True)
@@ -45,79 +42,6 @@ class CapturePlan:
     after_capture: float = math.inf
     snapshots: Sequence[float] = ()
     start: float = 0.0
-
-
-@dataclass
-class PhaseResult:
-    """What a phase leaves: its columns, and how it came out.
-
-    start        of its own times [s]: 0 for a capture or a removal
-    origin       what these are counted from, in the time of its FMU [s]
-    outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
-    located      instant of the hand-over [s] and how it was found, None when there was none
-    cpu          time of the processors [s], that of FMUs in processes of their own included
-    error        the failure, or the interrupt, that ended the phase early
-    ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
-    coupling     steps of several coupled FMUs: how many, rejected, forced, smallest and largest [s]
-    """
-
-    name: str
-    start: float
-    recorder: Recorder
-    snapshots: Snapshots = field(default_factory=Snapshots)
-    tugs: TugLog | None = None
-    outcome: str = ""
-    located: float | None = None
-    located_by: str = ""
-    steps: int = 0
-    cpu: float = 0.0
-    wall: float = 0.0
-    error: DconeError | None = None
-    coupling: Mapping[str, float] = field(default_factory=dict)
-    ended_by: str = ""
-    ended_at: float = math.nan
-    origin: float = 0.0
-
-    def ended(self, end: Terminated) -> None:
-        """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:
-        the last row stays that of the communication point before."""
-        self.outcome, self.ended_by, self.ended_at = ENDED, end.said, end.time - self.origin
-
-    @property
-    def end(self) -> float:
-        return float(self.recorder["time"][-1]) if len(self.recorder) else self.start
-
-
-def coupling_of(component: Steppable) -> dict[str, float]:
-    """What the coupling of several FMUs has cost; empty for one."""
-    return dict(getattr(component, "statistics", {}))
-
-
-class _Stopwatch:
-    def __init__(self, result: PhaseResult, component: Steppable) -> None:
-        self.result, self.component = result, component
-
-    def _cpu(self) -> float:
-        return clock.process_time() + cpu_apart(self.component)
-
-    def __enter__(self) -> None:
-        self.cpu, self.wall = self._cpu(), clock.perf_counter()
-
-    def __exit__(self, *_: object) -> None:
-        self.result.cpu = self._cpu() - self.cpu
-        self.result.wall = clock.perf_counter() - self.wall
-
-
-def grid_steps(duration: float, macro_step: float) -> int:
-    """Number of macro steps that cover the duration; the last one may be shorter."""
-    return max(1, math.ceil(duration / macro_step - 1e-9))
-
-
-def length_of(size: float, component: Steppable, macro_step: float) -> float:
-    """Length of a step [s]. The difference of two times may have lost its last bits, and an FMU that takes steps of one
-    length may compare them: it gets the macro step itself."""
-    same = not component.can_vary_step and math.isclose(size, macro_step, rel_tol=SAME)
-    return macro_step if same else size
 
 
 class CaptureLoop:
@@ -173,7 +97,7 @@ class CaptureLoop:
 
     def run(self) -> PhaseResult:
         result = self.result
-        with _Stopwatch(result, self.component):
+        with Stopwatch(result, self.component):
             try:
                 self._run()
             except Terminated as end:
@@ -288,72 +212,3 @@ class CaptureLoop:
         self._step(low, high)
         result.located_by = f"halving the macro step to {high - low:.2g} s"
         return high
-
-
-class RemovalLoop:
-    """Steps a removal FMU, or that of any other phase, for its duration and gathers its tugs.
-
-    start        time the FMU is told to begin at [s]
-    origin       in that time, what the times of the result are counted from [s]
-    """
-
-    def __init__(
-        self,
-        component: Steppable,
-        macro_step: float,
-        start: float,
-        duration: float,
-        progress: Progress,
-        origin: float = 0.0,
-    ) -> None:
-        self.component = holding(component)
-        self.macro_step, self.duration = macro_step, duration
-        self.progress = progress
-        self.read = self.component.row(output_names(component.variables, without=(NODE_PREFIX, TUG_PREFIX)))
-        self.result = PhaseResult(
-            component.name,
-            start - origin,
-            Recorder(self.read.names, component.variables, grid_steps(duration, macro_step) + 1),
-            tugs=self.component.tugs,
-            origin=origin,
-        )
-
-    def run(self) -> PhaseResult:
-        result = self.result
-        with _Stopwatch(result, self.component):
-            try:
-                self._run()
-                result.outcome = "towed"
-            except Terminated as end:
-                result.ended(end)
-            except (FmuError, Interrupted) as error:
-                result.error = interrupts.instead_of(error, result.name, result.end)
-                result.outcome = "stopped"
-        result.coupling = coupling_of(self.component)
-        return result
-
-    def _record(self, time: float) -> None:
-        self.result.recorder.add(time, self.read())
-        self.component.begin_row()
-
-    def _run(self) -> None:
-        component, result = self.component, self.result
-        start, origin = result.start, result.origin
-        steps = grid_steps(self.duration, self.macro_step)
-        self._record(start)
-        interrupts.arm()
-        for i in range(steps):
-            interrupts.check(result.name, start + i * self.macro_step)
-            end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
-            begun = origin + (start + i * self.macro_step)
-            component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
-            result.steps += 1
-            self._record(end)
-            self.progress.at(end)
-
-
-def standing(component: Steppable, causality: str) -> dict[str, float]:
-    """Every parameter, or every input, of the component as it now stands, whether it was given or left at its start."""
-    names = [v.name for v in component.variables.values() if v.causality == causality and v.kind in KINDS]
-    present = component.get(names) if names else {}
-    return {name: present[name] for name in names}

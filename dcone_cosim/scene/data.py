@@ -9,10 +9,23 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim.coupling.options import Connection, Coupling
-from dcone_cosim.scenes.mistakes import Places
-from dcone_cosim.scenes.toml_lines import Path as KeyPath
+from dcone_cosim.scene.mistakes import Places
+from dcone_cosim.scene.toml_lines import Path as KeyPath
 
-PHASES = ("capture", "removal")
+SHARED = "orbit"
+"""Section of a scene that goes to every component that has it."""
+
+
+@dataclass(frozen=True)
+class HandoffOptions:
+    """How a capture hands over.
+
+    spin_tolerance           speed of the tether's end by the spin that is dropped, over that of the first tug   [1]
+    compare_without_recoil   run the removal once more without the shot's recoil
+    """
+
+    spin_tolerance: float = 0.1
+    compare_without_recoil: bool = True
 
 
 @dataclass(frozen=True)
@@ -67,7 +80,8 @@ class PhaseScene:
 
     main         the component that the phase is about: it offers what `contract` asks of the phase
     others       further components, connected to it and to one another
-    options      what concerns the master: hand_over, after_capture, snapshots
+    options      what concerns the master, of the class that its kind has for them
+    keeps        what has to be there for as long as the phase is, such as a folder of unpacked FMUs
     start        when it begins [s], unless another phase hands over to it
     """
 
@@ -75,11 +89,12 @@ class PhaseScene:
     main: ComponentScene
     macro_step: float
     duration: float
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Any = None
     others: tuple[ComponentScene, ...] = ()
     connections: tuple[Connection, ...] = ()
     coupling: Coupling = field(default_factory=Coupling)
     start: float = 0.0
+    keeps: object = field(default=None, repr=False, compare=False)
 
     @property
     def components(self) -> tuple[ComponentScene, ...]:
@@ -100,7 +115,6 @@ class Scene:
 
     name       its file's name without the suffix
     text       the scene as run, kept with the results: the file, with what the command line changed
-    handoff    options of the hand-off: spin_tolerance, compare_without_recoil
     source     where it was read from, for messages
     places     where each key was written
     notes      what is no mistake, and may be one all the same
@@ -111,7 +125,7 @@ class Scene:
     title: str
     text: str
     phases: tuple[PhaseScene, ...]
-    handoff: Mapping[str, Any] = field(default_factory=dict)
+    handoff: HandoffOptions = HandoffOptions()
     source: str = ""
     places: Places = field(default_factory=lambda: Places("", ""))
     notes: tuple[str, ...] = ()

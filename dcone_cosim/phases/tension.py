@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dcone_cosim.phases import PhaseResult
+from dcone_cosim.results import PhaseResult
 from orbital.constants import EARTH_MU
 from orbital.plain import mean_motion
 

@@ -88,12 +88,16 @@ def _article(noun: str) -> str:
     return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
+ANY = -1
+"""Size of a list that may have any number of elements."""
+
+
 @dataclass(frozen=True)
 class Expected:
     """What a key of a scene takes, and the way from there to SI.
 
     unit       FMI unit of the SI value, "1" for a pure number
-    size       0 for a scalar, otherwise the number of elements of a list
+    size       0 for a scalar, otherwise the number of elements of a list; `ANY` for a list of whatever length
     choices    names of an Integer's values
     example    a value as a scene would write it
     minimum    least permitted SI value; `open_minimum` excludes the bound itself
@@ -118,8 +122,9 @@ class Expected:
         """SI value, or text, or `Unexpected`."""
         if not self.size:
             return self._scalar(value)
-        if not isinstance(value, list) or len(value) != self.size:
-            raise Unexpected(f"expected a list of {self.size}, each {self._wanted()}")
+        if not isinstance(value, list) or self.size not in (ANY, len(value)):
+            count = "" if self.size == ANY else f" of {self.size}"
+            raise Unexpected(f"expected a list{count}, each {self._wanted()}")
         return self.read_each(value)
 
     def read_each(self, values: Sequence[object]) -> list[float]:

@@ -9,9 +9,9 @@ import numpy as np
 
 from dcone_cosim.build import Drawing, Surface
 from dcone_cosim.handoff import rotation_matrix
-from dcone_cosim.phases import PhaseResult
-from dcone_cosim.reports import style
-from dcone_cosim.reports.style import Array
+from dcone_cosim.plots import style
+from dcone_cosim.plots.style import Array
+from dcone_cosim.results import PhaseResult
 
 PANELS = 8
 LEAST_WIDTH = 9.0

@@ -1,0 +1,151 @@
+"""What a capture found: its lines of the summary, and its figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dcone_cosim import build
+from dcone_cosim.findings import Finding
+from dcone_cosim.phases.end import of_end
+from dcone_cosim.phases.phase import Figure
+from dcone_cosim.plots import net_view, style
+from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.scene.data import PhaseScene
+
+_CAPTURE_ROWS = (
+    ("contact.first_time", "first touch of the target", "s"),
+    ("mouth.t80", "mouth over 80 % of the net's area from", "s"),
+    ("mouth.t_max", "mouth widest at", "s"),
+    ("mouth.area_max", "largest mouth area", "m2"),
+    ("thread.tension_max", "largest tension of a thread", "N"),
+    ("cord.tension_max", "largest tension of the closing cord", "N"),
+    ("closing.t_start", "winches started at", "s"),
+    ("mouth.cord_length", "mouth cord still out at the end", "m"),
+    ("mouth.girth", "girth it would have to pass", "m"),
+    ("contact.loss", "energy lost in contact", "J"),
+    ("closing.work", "work of the winches", "J"),
+    ("thread.dissipated", "taken by the threads' dashpots", "J"),
+    ("cord.dissipated", "taken by the cord's dashpots", "J"),
+    ("energy.remainder", "left over in the energy book", "J"),
+    ("tether.paid_out", "tether paid out", "m"),
+    ("net.nodes", "nodes of the net", ""),
+    ("net.threads", "threads of the net", ""),
+)
+
+
+def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
+    last = result.recorder.last() if len(result.recorder) else {}
+    yield Finding("capture", "outcome", "outcome", result.outcome.replace("_", " "))
+    yield from of_end("capture", result)
+    if result.located is not None:
+        yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
+        yield Finding("capture", "located_by", "found by", result.located_by)
+    for name, label, unit in _CAPTURE_ROWS:
+        if name in last and not (unit == "s" and last[name] < 0.0):  # an instant that has not come is told as -1
+            whole = not unit and math.isfinite(last[name])
+            value = int(last[name]) if whole else last[name]
+            yield Finding("capture", name, label, value, unit)
+    yield from _of_catch(last, result)
+    parameters = run.parameters.get("capture", {})
+    if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
+        recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
+        size = float(np.linalg.norm(recoil))
+        yield Finding("capture", "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+
+
+_CATCH_ROWS = (
+    ("t_capture", "captured at", "s"),
+    ("enclosure.at_capture", "share of the target inside by then", ""),
+    ("mouth.margin_at_capture", "girth less mouth cord by then", "m"),
+    ("enclosure.least", "least share inside since", ""),
+)
+
+
+def _of_catch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Finding]:
+    """When the target counted as caught, how that looked, and whether it lasted as long as the phase went on."""
+    if not last.get("t_capture", -1.0) >= 0.0:
+        return
+    for name, label, unit in _CATCH_ROWS:
+        if name in last:
+            yield Finding("capture", name, label, last[name], unit)
+    if "t_lost" not in last:
+        return
+    seen = result.end - result.start - last["t_capture"]
+    if last["t_lost"] >= 0.0:
+        text = f"no: the target was out again {last['t_lost'] - last['t_capture']:.3g} s later"
+    elif seen > 1e-6:
+        text = f"yes, for the {seen:.3g} s to the end of the phase"
+    else:
+        text = "not seen: the phase ends here"
+    yield Finding("capture", "lasted", "did it last", text)
+
+
+def _vector(values: dict[str, float], name: str) -> Any:
+    return np.array([values.get(f"{name}[{i}]", 0.0) for i in (1, 2, 3)])
+
+
+def figures(run: RunResult, phase: PhaseScene, result: PhaseResult) -> Iterator[Figure]:
+    """The capture in space, where node positions were kept, and the mouth with the energies."""
+    title = run.scene.title
+    if len(result.recorder) < 2:
+        return
+    if result.snapshots.times:
+        values = run.parameters.get(phase.name, {})
+        shapes = build.net_drawing(values, phase.main.terms), build.target_surface(values, phase.main.terms)
+        asked = bool(phase.options.snapshots)
+        yield "capture_in_space.png", partial(net_view.draw, result, *shapes, asked, title)
+    if "mouth.area" in result.recorder:
+        yield "mouth_and_energies.png", partial(_mouth_and_energy, result, title)
+
+
+EVENTS = (
+    ("contact.first_time", "first touch", "--"),
+    ("closing.t_start", "winches start", "-."),
+    ("t_capture", "captured", "-"),
+)
+
+
+def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
+    recorder = result.recorder
+    time, last = recorder["time"], recorder.last()
+    figure = style.new_figure(8.5, 6.5)
+    above, below = figure.subplots(2, 1, sharex=True)
+    style.margins(figure, 0.2 + 2 * style.LEGEND_ROW)
+    above.plot(time, recorder["mouth.area"], color=style.NET, label="mouth area")
+    if "mouth.area_ratio" in recorder and recorder["mouth.area_ratio"].max() > 0:
+        widest = int(np.argmax(recorder["mouth.area_ratio"]))
+        flat = recorder["mouth.area"][widest] / recorder["mouth.area_ratio"][widest]
+        above.axhline(0.8 * flat, color=style.MUTED, linewidth=0.8, linestyle=":", label="80 % of the flat net")
+    above.set_ylabel("mouth area [m²]")
+    above.set_ylim(bottom=0)
+    series: tuple[tuple[str, str, str, dict[str, Any]], ...] = (
+        ("energy.total", "kinetic and elastic", "#9db8d2", {"linewidth": 3.0}),
+        ("energy.kinetic", "kinetic", style.CHASER, {"linestyle": (0, (5, 2)), "linewidth": 1.3}),
+        ("energy.elastic", "elastic", style.ACCENT, {}),
+        ("target.energy", "of the target", style.TARGET, {}),
+        ("contact.loss", "lost in contact", style.BULLET, {}),
+        ("closing.work", "work of the winches", "#7d3c98", {}),
+    )
+    for name, label, colour, extra in series:
+        if name in recorder:
+            below.plot(time, recorder[name], color=colour, label=label, **({"linewidth": 1.1} | extra))
+    below.set_ylabel("energy [J]")
+    below.set_xlabel("time since the shot [s]")
+    for name, label, dash in EVENTS:
+        if last.get(name, -1.0) >= 0.0:
+            for axes in (above, below):
+                axes.axvline(last[name], color="black", linewidth=0.8, linestyle=dash, alpha=0.7)
+            above.annotate(
+                label, (last[name], 0.5), xycoords=("data", "axes fraction"), rotation=90, fontsize=8,
+                ha="center", va="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
+            )  # fmt: skip
+    style.legend(above)
+    style.legend(below)
+    style.head(figure, title)
+    style.save(figure, path)

@@ -1,0 +1,234 @@
+"""What the program asks of a kind of phase. `Phase` itself is the plainest: any system, stepped and recorded.
+
+A kind is one module of this package with a `PHASE`, an instance of a class that says here what is its own. The scene's
+keys and checks, the master, the summary and the figures ask the kind; none of them knows a phase by its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from dcone_cosim.contract import NEVER, Need
+from dcone_cosim.findings import Finding
+from dcone_cosim.fmu.component import Steppable
+from dcone_cosim.phases.stepping import PhaseLoop
+from dcone_cosim.progress import Progress
+from dcone_cosim.results import Handover, PhaseResult, RunResult
+from dcone_cosim.scene.data import PhaseScene, Scene
+from dcone_cosim.scene.mistakes import Mistake
+from dcone_cosim.scene.toml_lines import Path as KeyPath
+from dcone_cosim.scene.units import Expected
+
+Figure = tuple[str, Callable[[Path], object]]
+"""File name, and what draws it there."""
+Instantiate = Callable[[str, str], Steppable]
+"""`instantiate(phase, name)` makes a component of that phase's FMU."""
+
+MOST_OUTPUTS = 12
+"""Outputs of a plain phase that the summary shows; all are in its columns."""
+
+
+class Loop(Protocol):
+    """Steps a component through its phase."""
+
+    result: PhaseResult
+
+    def run(self) -> PhaseResult: ...
+
+
+class Main(Protocol):
+    """The main component of a phase while its scene is read: a file or a model of ours with terms, its variables, and
+    where the scene gives a value."""
+
+    @property
+    def fmu(self) -> Path | None: ...
+    @property
+    def terms(self) -> Mapping[str, str]: ...
+    @property
+    def slots(self) -> Mapping[str, Any]: ...
+    @property
+    def given(self) -> Mapping[str, KeyPath]: ...
+
+
+@dataclass(frozen=True)
+class Document:
+    """A scene that is being read: its tables, the main components of its phases, and which phases are to be run."""
+
+    tables: Mapping[str, Any]
+    mains: Mapping[str, Main]
+    chosen: Sequence[str]
+
+    def before(self, phase: str) -> str:
+        """The phase that hands over to this one; "" for none."""
+        place = self.chosen.index(phase) if phase in self.chosen else 0
+        return self.chosen[place - 1] if place else ""
+
+    def after(self, phase: str) -> str:
+        """The phase that this one hands over to; "" for none."""
+        rest = self.chosen[self.chosen.index(phase) + 1 :] if phase in self.chosen else ()
+        return rest[0] if rest else ""
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of a phase that has none."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A phase on its turn.
+
+    before, after   the phases that hand over to it and that it hands over to, None for none
+    """
+
+    run: RunResult
+    phase: PhaseScene
+    before: PhaseScene | None
+    after: PhaseScene | None
+    instantiate: Instantiate
+    progress: Progress
+
+
+class Phase:
+    """A kind of phase.
+
+    name           of its table in a scene, and of its columns in a run folder; "" for a system by its own name
+    model          of ours that is built for it, "" for none
+    follows        kinds that can hand over to it
+    alone          whether it can be the first of a scene
+    keys           of its table that concern the master, beside `macro_step` and `duration`
+    examples       values of `macro_step` and `duration`, for advice
+    wanted         variables that the master looks for in its FMU, by what they are needed for
+    recognised_by  variables by which a component of a package is taken for the main one of such a phase
+    takes          outputs and parameters of the phase before that it takes over, by name
+    takes_too      the same, of those that the phase before may lack
+    taken_over     names of parameters that a hand-over to it sets; one that ends in a dot stands for a whole table
+    begins_at_zero whether its FMU has to be told to begin at 0
+    own_clock      its times count from its begin, whatever time its FMU is told
+    tugs_file      name of the table of its tugs
+    """
+
+    name = ""
+    model = ""
+    follows: Sequence[str] = ()
+    alone = True
+    keys: Mapping[str, Expected] = {}
+    examples = ("0.1 s", "30 s")
+    wanted: Sequence[tuple[Need, Sequence[str]]] = ()
+    recognised_by: Sequence[str] = ()
+    takes: Sequence[str] = ()
+    takes_too: Sequence[str] = ()
+    taken_over: Sequence[str] = ()
+    begins_at_zero = False
+    own_clock = False
+    tugs_file = "tugs"
+
+    # the scene
+
+    def options(self, found: Mapping[str, Any], main: Main | None) -> Any:
+        """The options of a phase, from those of its `keys` that are told; `main` None where it is not known."""
+        return Options()
+
+    def hand_over(self, options: Any) -> str:
+        """What ends the phase and begins the next, one of `contract.HAND_OVER`."""
+        return NEVER
+
+    def faults(self, document: Document) -> Iterator[Mistake]:
+        """Keys of a scene that do not go together, before any value is looked at."""
+        yield from ()
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        """Values, each well formed, that do not go together."""
+        yield from ()
+
+    def joined(self, before: PhaseScene, own: PhaseScene) -> tuple[PhaseScene, PhaseScene]:
+        """Both with what one tells and the other leaves to it."""
+        return before, own
+
+    def notes(self, offered: Mapping[str, Any]) -> Sequence[str]:
+        """What is to be said beforehand of a hand-over to an FMU that offers these variables."""
+        return ()
+
+    def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
+        """What a hand-over between such phases means that its user may not expect."""
+        yield from ()
+
+    def by_itself(self, own: PhaseScene) -> PhaseScene:
+        """A phase that hands over, as it is when another tool runs it alone."""
+        return own
+
+    def takes_over(self, variable: str) -> bool:
+        """Whether a hand-over to it sets this parameter."""
+        name = variable.partition("[")[0]
+        return any(name == own or (own.endswith(".") and name.startswith(own)) for own in self.taken_over)
+
+    def values_taken(self, before: PhaseScene) -> dict[str, float]:
+        """Parameters that are known before the run to be handed over, SI."""
+        return {}
+
+    # the run
+
+    def take_over(self, stage: Stage) -> Handover | None:
+        """What the phase before has left, checked; `HandoffError` if the phase cannot carry it.
+
+        None where no other phase comes before. It is among the run's handovers even when it is refused.
+        """
+        return None
+
+    def loop(self, stage: Stage, component: Steppable, start: float) -> Loop:
+        """What steps the phase from `start`, the time that its FMU is told to begin at [s]."""
+        phase = stage.phase
+        origin = start if self.own_clock else 0.0
+        return PhaseLoop(component, phase.macro_step, start, phase.duration, stage.progress, origin)
+
+    def judge(self, stage: Stage, result: PhaseResult) -> None:
+        """Let the run fail if the phase did not come to what the next one needs."""
+
+    def afterwards(self, stage: Stage, result: PhaseResult) -> None:
+        """What else is to be run once the phase is over and its FMU closed."""
+
+    # the reports
+
+    def clock(self, run: RunResult) -> str:
+        """What its times count from, in words."""
+        return "time of the phase's FMU" if not self.own_clock else f"since the {self.spoken} began"
+
+    @property
+    def spoken(self) -> str:
+        """Its name in a sentence."""
+        return self.name.replace("_", " ")
+
+    def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
+        """What the summary tells of it: a phase that nothing is known of by its outputs."""
+        name = next(name for name, its in run.phases.items() if its is result)
+        yield Finding(name, "simulated", "simulated", result.end - result.start, "s")
+        recorder = result.recorder
+        if not len(recorder):
+            return
+        last = recorder.last()
+        for output in [key for key in last if key != "time"][:MOST_OUTPUTS]:
+            unit = recorder.units[output]
+            yield Finding(name, output, f"{output} at the end", last[output], "" if unit == "1" else unit)
+
+    def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
+        """Relative spread [1] of those of its figures that are one sample of many, by key."""
+        return {}
+
+    def handover_spreads(self) -> Mapping[str, float]:
+        """The same of the figures of what it took over."""
+        return {}
+
+    def warnings(self, run: RunResult, result: PhaseResult) -> Iterator[str]:
+        """What came out that a user may not expect, beside what its model has to say."""
+        yield from ()
+
+    def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
+        """The figures that there is data for."""
+        yield from ()
+
+    def without_figure(self, scene: Scene, result: PhaseResult) -> Iterator[str]:
+        """Why there is no figure where one might be expected."""
+        yield from ()

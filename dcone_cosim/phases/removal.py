@@ -1,0 +1,228 @@
+"""The removal: two bodies on an orbit, a line between them, and thrust; alone, or begun by what a capture leaves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from dcone_cosim import build
+from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
+from dcone_cosim.errors import DconeError, FmuError, Interrupted
+from dcone_cosim.findings import Finding
+from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
+from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
+from dcone_cosim.phases import chaos, removal_report
+from dcone_cosim.phases.phase import Document, Figure, Phase, Stage
+from dcone_cosim.plots import tow
+from dcone_cosim.results import Handover, PhaseResult, RunResult
+from dcone_cosim.scene.data import SHARED, PhaseScene
+from dcone_cosim.scene.mistakes import Mistake, shown
+from dcone_cosim.scene.toml_lines import Path, given_at
+from dcone_cosim.transaction import HandoffRecord, check_before
+
+LINE = "tether.length"
+"""Length of the line in the phase before, a capture: one and the same line."""
+EACH = tuple(f"[{i}]" for i in (1, 2, 3))
+_STATES = tuple(f"{body}.{what}" for body in ("chaser", "target", "center") for what in ("position", "velocity"))
+RELATIVE = tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in EACH)
+
+
+class Removal(Phase):
+    name = "removal"
+    model = "tethered_deorbit"
+    follows: Sequence[str] = ("capture",)
+    examples = ("60 s", "1 day")
+    own_clock = True
+    wanted = (
+        ("take-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
+        ("slack", (ATTACHMENT,)),
+        ("always", ("separation", "tether.tension")),
+        ("optional", (REST_LENGTH, "thrust.level")),
+        ("optional", RELATIVE),
+        ("optional", ("tether.tension_peak", "tether.tension_least", "tether.impulse")),
+        ("optional", ("approach.distance", "approach.time", "tether.taut", "tether.tug_count")),
+        ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
+        ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
+        ("hand-over", tuple(f"{whose}{each}" for whose in _STATES for each in EACH)),
+    )
+    recognised_by: Sequence[str] = ("separation", *REMOVAL_SETS)
+    takes: Sequence[str] = (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)
+    takes_too: Sequence[str] = (LINE,)
+    taken_over: Sequence[str] = ("start.", ATTACHMENT, *(name.partition("[")[0] for name in REMOVAL_SETS))
+
+    def faults(self, document: Document) -> Iterator[Mistake]:
+        """Keys that the hand-off sets, and orbits on which the two phases do not fit together."""
+        before = document.before(self.name)
+        if not before:
+            return
+        own = (self.name,)
+        text = f"is set by the hand-off from the {before}; leave it out"
+        if self.alone:
+            text += f", or run the {self.spoken} alone"
+        tables = document.tables[self.name]
+        for section, keys in tables.items():
+            for key in keys if isinstance(keys, dict) else ():
+                if self.takes_over(f"{section}.{key}"):
+                    yield Mistake((*own, section, key), keys[key], text)
+        for variable, path in document.mains[self.name].given.items():
+            if path[:2] == (*own, "parameters") and self.takes_over(variable):
+                yield Mistake(path, given_at(document.tables, path), text)
+        yield from self.orbit_faults(document)
+
+    def orbit_faults(self, document: Document) -> Iterator[Mistake]:
+        """An orbit that what comes before cannot have."""
+        orbit = document.tables.get(SHARED)
+        eccentricity = orbit.get("eccentricity", 0.0) if isinstance(orbit, dict) else 0.0
+        if eccentricity and isinstance(eccentricity, int | float):
+            text = "must be 0 when a capture hands over: its frame turns evenly, as on a circular orbit"
+            yield Mistake((SHARED, "eccentricity"), eccentricity, text)
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        """The one line of two phases: the same length in both, and more than the least it has to span at the shot: from
+        the chaser to the nearest point that a target of that size can have, however it lies."""
+        if before is None:
+            return
+        paths: dict[str, Path] = {p: (p, *n.split(".")) for p, n in ((before.name, LINE), (own.name, REST_LENGTH))}
+        told = {phase: given_at(tables, path) for phase, path in paths.items()}
+        length = own.setting(REST_LENGTH)
+        if length is None:
+            return
+        at = own.name if told[own.name] is not None or told[before.name] is None else before.name
+        other = before.setting(LINE)
+        if not math.isclose(length, length if other is None else other, rel_tol=1e-9):
+            same = f"{before.name}.{LINE}"
+            if told[own.name] is None:
+                yield Mistake(paths[own.name], None, f"expected the length of the line, here or as {same}")
+                return
+            text = f"must equal {same} = {shown(told[before.name])}: both phases have the same line"
+            yield Mistake(paths[own.name], told[own.name], text)
+        start = [before.setting(f"chaser.start_{what}[{i}]") for what in ("position", "velocity") for i in (1, 2, 3)]
+        known = [value for value in start if value is not None]
+        if len(known) < len(start):
+            return
+        distance, speed = math.hypot(*known[:3]), math.hypot(*known[3:])
+        values = {**before.main.defaults, **before.main.parameters}
+        corners, _ = build.target_surface(values, before.main.terms) or ([], [])
+        nearest = distance - max((math.hypot(*corner) for corner in corners), default=0.0)
+        if length <= nearest - speed * before.duration:
+            text = (
+                f"must exceed {nearest:.6g} m, the distance from the chaser to the target's nearest point at the shot: "
+            )
+            yield Mistake(paths[at], told[at], text + "a locked line would start stretched", f"{length:g} m")
+
+    def joined(self, before: PhaseScene, own: PhaseScene) -> tuple[PhaseScene, PhaseScene]:
+        """Both with the line's length, where one of them leaves it to the other."""
+        lengths = before.main.parameters.get(LINE), own.main.parameters.get(REST_LENGTH)
+        return _with(before, LINE, lengths[1]), _with(own, REST_LENGTH, lengths[0])
+
+    def notes(self, offered: Mapping[str, Any]) -> Sequence[str]:
+        return line_notes(offered)
+
+    def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
+        if before is not None and before.main.terms.get("gravity") == "none":
+            yield (
+                f'{before.name}.gravity: law = "none" lets the orbital frame stand still in the {before.name}; it '
+                f"turns in the {self.name}, which takes the velocities handed over as seen in it (n r: 12 mm/s at 12 m "
+                'in low orbit). law = "hill" turns it in both'
+            )
+
+    def values_taken(self, before: PhaseScene) -> dict[str, float]:
+        """The masses of the pair."""
+        main = before.main
+        return build.masses_after({**main.defaults, **main.parameters}) if main.fmu is None else {}
+
+    def take_over(self, stage: Stage) -> Handover | None:
+        """The capture's bodies and line as the removal's; `HandoffError` if a point target cannot carry the spin."""
+        if stage.before is None:
+            return None
+        run, phase, capture = stage.run, stage.phase, stage.run.phases[stage.before.name]
+        left, altitude = run.left[stage.before.name], phase.setting("orbit.altitude")
+        assert altitude is not None, "the contract asks for it"
+        assert capture.located is not None, "it has handed over"
+        handed = prepare(left, mean_motion(altitude))
+        line = line_of(handed, left.get(LINE, phase.setting(REST_LENGTH)))
+        start = capture.origin + capture.located
+        record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line)
+        run.handovers[self.name] = record
+        check_before(record, phase, run.scene.handoff.spin_tolerance)
+        return record
+
+    def afterwards(self, stage: Stage, result: PhaseResult) -> None:
+        """The same removal with the shot's momentum left out: what the recoil changes."""
+        run, phase = stage.run, stage.phase
+        record = run.handovers.get(self.name)
+        if not isinstance(record, HandoffRecord) or not run.scene.handoff.compare_without_recoil:
+            return
+        assert stage.before is not None, "somebody handed over"
+        capture = run.parameters[stage.before.name]
+        velocity = np.array([capture[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
+        name = f"{self.name} without recoil"
+        try:
+            component = stage.instantiate(self.name, name)
+            try:
+                component.set(run.given[self.name] | without_recoil(record.handed, velocity))
+                component.enter_initialisation(record.start, record.start + phase.duration)
+                component.exit_initialisation()
+                loop = self.loop(stage, component, record.start)
+                stage.progress.begin(name, 0.0, phase.duration)
+                beside = loop.run()
+                stage.progress.end()
+            finally:
+                component.close()
+            reason: DconeError | None = beside.error
+        except FmuError as error:
+            reason = error
+        if reason is None:
+            run.comparisons[self.name] = beside
+            return
+        if isinstance(reason, Interrupted):
+            run.stop(reason)
+        stage.progress.say(f"the {name} is left out: {reason}")
+
+    def clock(self, run: RunResult) -> str:
+        record = run.handovers.get(self.name)
+        if record is None:
+            return super().clock(run)
+        return f"since the hand-over, which was {record.time!r} s after the shot"
+
+    def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
+        return removal_report.findings(run, self.name, result)
+
+    def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
+        return chaos.of_tow(result, isinstance(run.handovers.get(self.name), HandoffRecord))
+
+    def handover_spreads(self) -> Mapping[str, float]:
+        return chaos.HAND_OFF
+
+    def warnings(self, run: RunResult, result: PhaseResult) -> Iterator[str]:
+        record = run.handovers.get(self.name)
+        return removal_report.meeting(self.name, result, None if record is None else record.reach)
+
+    def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
+        """The orbit of both bodies, and the tension of the line."""
+        recorder, title = result.recorder, run.scene.title
+        if len(recorder) < 2:
+            return
+        since = "time since the hand-over" if self.name in run.handovers else f"time since the {self.spoken} began"
+        if {"chaser.radius", "target.radius"} <= set(recorder.names):
+            yield self.figure_names[0], partial(tow.orbit, result, since, title)
+        if "tether.tension" in recorder:
+            yield self.figure_names[1], partial(tow.tension, result, run.comparisons.get(self.name), since, title)
+
+    figure_names = ("orbital_radius.png", "tether_tension.png")
+
+
+def _with(phase: PhaseScene, name: str, value: float | None) -> PhaseScene:
+    """The phase with the value of a parameter that it has and does not tell."""
+    main = phase.main
+    if value is None or name in main.parameters or name not in main.defaults:
+        return phase
+    return replace(phase, main=replace(main, parameters={**main.parameters, name: value}))
+
+
+PHASE = Removal()

@@ -1,0 +1,183 @@
+"""What a tow found: its lines of the summary, and whether the bodies may have met."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from dcone_cosim.findings import Finding
+from dcone_cosim.phases.end import of_end
+from dcone_cosim.phases.tension import last_orbit, orbital_period
+from dcone_cosim.results import PhaseResult, RunResult
+
+UNKNOWN_EXTENT = 1.0
+"""How far a body of which nothing is known is taken to reach from its centre of mass [m]."""
+
+
+class Approach(NamedTuple):
+    """Least distance of the two centres of mass [m], when since the phase began [s], and whether from rows alone."""
+
+    distance: float
+    time: float
+    recorded: bool
+
+
+def approach(result: PhaseResult) -> Approach | None:
+    """How near the two bodies came, by the FMU's own watch or, without that, by the rows there are."""
+    recorder = result.recorder
+    if not len(recorder):
+        return None
+    if {"approach.distance", "approach.time"} <= set(recorder.names):
+        last = recorder.last()
+        return Approach(last["approach.distance"], last["approach.time"], False)
+    if "separation" not in recorder:
+        return None
+    row = int(np.argmin(recorder["separation"]))
+    time = recorder["time"]
+    return Approach(float(recorder["separation"][row]), float(time[row] - time[0]), True)
+
+
+def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Finding]:
+    """All lines of a tow, which is the phase of that name."""
+    recorder = result.recorder
+    elapsed = result.end - result.start
+    # what an FMU went on beyond its last whole step is not recorded
+    told = "recorded, in whole steps" if result.ended_by else "simulated"
+    yield Finding(phase, "simulated", told, elapsed, "s")
+    yield from of_end(phase, result)
+    begin = " the hand-over" if phase in run.handovers else ""
+    yield from _of_tugs(phase, result, "", begin)
+    if phase in run.comparisons:
+        yield from _of_tugs(phase, run.comparisons[phase], "_without_recoil", begin)
+    if not len(recorder):
+        return
+    yield from _of_tension(phase, result)
+    last = recorder.last()
+    for name, label, unit, shown_in in (
+        ("separation", "distance at the end", "m", ""),
+        ("altitude", "altitude at the end", "m", "km"),
+        ("chaser.propellant", "propellant used", "kg", ""),
+    ):
+        if name in last:
+            yield Finding(phase, name, label, last[name], unit, shown_in=shown_in)
+    yield from _of_approach(phase, result)
+    yield from _of_lowering(phase, result)
+
+
+def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
+    tension = last_orbit(result)
+    if tension is None:
+        return
+    when, window = (
+        ("last orbit", "that orbit, in whole steps") if tension.is_orbit else ("whole phase", "less than an orbit:")
+    )
+    for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
+        sampled = " (of rows)" if what in tension.sampled else ""
+        told: float | str = "not told: tugs fall between the rows" if value is None else value
+        yield Finding(phase, f"tension_{what}", f"{what} tension, {when}{sampled}", told, "N")
+    yield Finding(phase, "tension_window", window, tension.window, "s")
+
+
+def _of_approach(phase: str, result: PhaseResult) -> Iterator[Finding]:
+    nearest = approach(result)
+    if nearest is not None:
+        recorded = " recorded" if nearest.recorded else ""
+        yield Finding(phase, "approach", f"least distance{recorded}", nearest.distance, "m")
+        yield Finding(phase, "approach_time", "that was at", nearest.time, "s")
+
+
+NEAR = 1e-4
+"""Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
+
+
+def _of_lowering(phase: str, result: PhaseResult) -> Iterator[Finding]:
+    """How far the semi-major axis of the pair fell, where that is an orbit's.
+
+    Gravity on the pair is not that on its mass at the centre: it differs by (3/2) (s/r)^2 at most, and moves the
+    osculating axis by some of that. What is smaller than this is not told, and nothing when the pair is far apart;
+    a rate per day needs a whole revolution.
+    """
+    recorder = result.recorder
+    if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
+        return
+    axis = recorder["center.semi_major_axis"]
+    share = float(np.max(recorder["separation"])) / float(np.min(axis))
+    if not 0.0 <= share <= NEAR:
+        text = f"not told: the pair is up to {share:.2g} of its orbit's radius apart, at most {NEAR:g} may be"
+        yield Finding(phase, "lowered", "orbit lowered by", text)
+        return
+    lowered, elapsed = float(axis[0] - axis[-1]), result.end - result.start
+    if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
+        yield Finding(phase, "lowered", "orbit lowered by", "too little to tell from the pair's own motion")
+        return
+    key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
+    yield Finding(phase, key, f"orbit {key} by", abs(lowered), "m")
+    if elapsed >= orbital_period(float(axis[0])):
+        yield Finding(phase, rate, "that is", abs(lowered) / elapsed, "m/s", shown_in="m/day")
+
+
+def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterator[Finding]:
+    """Of one removal; `begin` is what its times count from, "" where that needs no word."""
+    tugs = result.tugs
+    if tugs is None:
+        return
+    note = " (no recoil)" if suffix else ""
+    taut = _is_taut_from_start(result)
+    yield Finding(phase, f"tugs{suffix}", f"tugs{note}", tugs.count - taut)
+    if taut:
+        yield Finding(phase, f"taut_from_start{suffix}", f"line{note}", "taut from the start")
+    if tugs.missed:
+        label = f"of these not seen: more than {tugs.ring} in one macro step{note}"
+        yield Finding(phase, f"tugs_missed{suffix}", label, tugs.missed)
+    real = sorted(number for number in tugs.rows if not (taut and number == 1))
+    if real:
+        time, peak, speed = tugs.rows[real[0]]
+        seen, mark = ("_seen", " seen") if real[0] > 1 + taut else ("", "")
+        yield Finding(phase, f"first_tug{seen}{suffix}", f"first tug{mark} after{begin}{note}", time, "s")
+        yield Finding(phase, f"first_tug{seen}_speed{suffix}", f"its speed{note}", speed, "m/s", shown_in="mm/s")
+        yield Finding(phase, f"first_tug{seen}_peak{suffix}", f"its peak{note}", peak, "N")
+    recorder = result.recorder
+    if tugs.missed and "tether.tension_peak" in recorder:
+        largest = float(np.max(recorder["tether.tension_peak"]))
+    elif tugs.rows:
+        largest = max(peak for _, peak, _ in tugs.rows.values())
+    else:
+        return
+    label = "largest tension" if taut else "largest tug"
+    seen, mark = ("_seen", " seen") if tugs.missed and "tether.tension_peak" not in recorder else ("", "")
+    yield Finding(phase, f"largest_tug{seen}_peak{suffix}", f"{label}{mark}{note}", largest, "N")
+
+
+def _is_taut_from_start(result: PhaseResult) -> bool:
+    """Whether the line carried tension as the phase began; the FMU counts that as its first tug."""
+    recorder = result.recorder
+    return "tether.taut" in recorder and len(recorder) > 0 and bool(recorder["tether.taut"][0])
+
+
+def meeting(phase: str, result: PhaseResult, reach: float | None) -> Iterator[str]:
+    """Whether the bodies would meet, by what is known of how far they reach from their centres of mass.
+
+    A target reaches as far as its farthest corner at most, so a pass that is told may still be a miss; none that is not
+    told is a hit, as far as the chaser reaches no farther than is assumed.
+
+    reach    of the target from its centre [m], None where that is not known
+    """
+    nearest = approach(result)
+    if nearest is None:
+        return
+    if reach is None:
+        reach = UNKNOWN_EXTENT
+        assumed = f"each is taken to reach {UNKNOWN_EXTENT:g} m from its centre, as no size is known"
+    else:
+        assumed = (
+            f"the target reaches {reach:.3g} m from its centre, "
+            f"and the chaser is taken to reach {UNKNOWN_EXTENT:g} m from its own"
+        )
+    if nearest.distance < reach + UNKNOWN_EXTENT:
+        recorded = ", by the rows recorded" if nearest.recorded else ""
+        yield (
+            f"{phase}: the bodies may meet: their centres came within {nearest.distance:.3g} m, {nearest.time:.6g} s "
+            f"after the {phase.replace('_', ' ')} began{recorded}; {assumed}, and no contact is computed"
+        )

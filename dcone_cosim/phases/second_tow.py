@@ -1,0 +1,227 @@
+"""A second tow: the line of the removal is cut, and the chaser tows on with another, from where both bodies are.
+
+altitude = |r| - R,   cos i = h_z/h,   tan raan = h_x/(-h_y),   u from the node        the circle through the point
+start.center_velocity = (e_r . v, e_t . v - sqrt(mu/r), 0)                             as seen in its turning frame
+start.relative_velocity = rho' + (w - n) x rho,   w = h/r^2, n = sqrt(mu/r^3)          rho' in the removal's frame
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from dcone_cosim.contract import ENDED, HANDED_OVER
+from dcone_cosim.errors import HandoffError
+from dcone_cosim.findings import Finding
+from dcone_cosim.fmu.component import Steppable
+from dcone_cosim.handoff import Vector
+from dcone_cosim.ledger import LedgerRow
+from dcone_cosim.line import ATTACHMENT, REST_LENGTH
+from dcone_cosim.phases import removal
+from dcone_cosim.phases.phase import Document, Stage
+from dcone_cosim.phases.removal import EACH, RELATIVE, Removal
+from dcone_cosim.results import Handover, PhaseResult, RunResult
+from dcone_cosim.scene.data import PhaseScene
+from dcone_cosim.scene.mistakes import Mistake
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+
+BODIES = ("chaser", "target")
+AXES = ("x", "y", "z")
+TENSION = "tether.tension"
+ROUNDING = 8.0 * 2.0**-52
+"""Share of the largest coordinate by which a relative state may differ: it is formed again from geocentric ones [1]."""
+
+
+def vector(values: Mapping[str, float], name: str) -> Vector:
+    return np.array([values[f"{name}{each}"] for each in EACH])
+
+
+def begun_again(left: Mapping[str, float]) -> dict[str, float]:
+    """Parameters of a removal that begins where another has left both bodies.
+
+    left    its masses, and its outputs center.* (inertial) and relative.* (orbital frame of the centre of mass), SI
+
+    Source   the frames of `orbital.frames`; the circle through a point and along its velocity's plane
+    Checked  tests/cosim/test_second_tow.py
+    """
+    position, velocity = vector(left, "center.position"), vector(left, "center.velocity")
+    momentum = np.cross(position, velocity)
+    radius, spin = float(np.linalg.norm(position)), float(np.linalg.norm(momentum))
+    radial, normal = position / radius, momentum / spin
+    along = np.cross(normal, radial)
+    raan = math.atan2(normal[0], -normal[1]) if normal[0] or normal[1] else 0.0
+    node = np.array([math.cos(raan), math.sin(raan), 0.0])
+    from_node = math.atan2(float(position @ np.cross(normal, node)), float(position @ node))
+    relative, rate = vector(left, "relative.position"), vector(left, "relative.velocity")
+    turning = spin / radius**2 - math.sqrt(EARTH_MU / radius**3)
+    rate = rate + turning * np.array([-relative[1], relative[0], 0.0])
+    seen = np.array([radial @ velocity, along @ velocity - math.sqrt(EARTH_MU / radius), 0.0])
+    found = {
+        "orbit.altitude": radius - EARTH_EQUATORIAL_RADIUS,
+        "orbit.eccentricity": 0.0,
+        "orbit.inclination": math.acos(min(1.0, max(-1.0, float(normal[2])))),
+        "orbit.raan": raan,
+        "orbit.argument_of_perigee": 0.0,
+        "orbit.true_anomaly": from_node,
+        **{f"{body}.mass": left[f"{body}.mass"] for body in BODIES},
+    }
+    for name, value in (
+        ("center_position", np.zeros(3)),
+        ("center_velocity", seen),
+        ("relative_position", relative),
+        ("relative_velocity", rate),
+    ):
+        found |= {f"start.{name}{each}": float(x) for each, x in zip(EACH, value, strict=True)}
+    return found
+
+
+@dataclass
+class TowHandover:
+    """The hand-over from one tow to the next: what was left, and whether the next one holds it.
+
+    time     since the tow before began [s]
+    left     `SecondTow.takes` as the tow before left them, SI
+    """
+
+    time: float
+    start: float
+    phase: PhaseScene
+    left: Mapping[str, float]
+    reach: float | None
+    rows: list[LedgerRow] = field(default_factory=list)
+    failure: str = ""
+
+    def parameters(self, component: Steppable) -> dict[str, float]:
+        found = begun_again(self.left) | {"start.condition": self.phase.choice("start.condition", HANDED_OVER)}
+        if ATTACHMENT in component.variables and ATTACHMENT in self.left:
+            found[ATTACHMENT] = self.left[ATTACHMENT]
+        return found
+
+    def close(self, component: Steppable) -> None:
+        """Mass, mass moment and momentum of each body by the inertial outputs of both, and the relative state."""
+        held = component.get(SecondTow.takes)
+        self.rows = list(_rows(self.left, held))
+        broken = [
+            f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}"
+            for row in self.rows
+            if not row.closed
+        ]
+        for name, of in (("relative.position", "position"), ("relative.velocity", "velocity")):
+            apart = float(np.linalg.norm(vector(held, name) - vector(self.left, name)))
+            largest = max(float(np.linalg.norm(vector(self.left, f"{body}.{of}"))) for body in BODIES)
+            if not apart <= ROUNDING * largest:
+                broken.append(f"{name}: differs by {apart:.3g}, more than rounding, {ROUNDING * largest:.3g}, explains")
+        if broken:
+            raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
+
+    def findings(self) -> list[Finding]:
+        place = f"hand-off to {self.phase.name}"
+        apart = float(np.linalg.norm(vector(self.left, "relative.position")))
+        speed = float(np.linalg.norm(vector(self.left, "relative.velocity")))
+        rows = [
+            Finding(place, "time", "after the tow before began", self.time, "s"),
+            Finding(place, "distance", "distance chaser to target", apart, "m"),
+            Finding(place, "relative_speed", "relative speed", speed, "m/s", shown_in="mm/s"),
+            Finding(place, "tension_cut", "tension of the line as it was cut", self.left[TENSION], "N"),
+        ]
+        if self.rows:
+            closure = max(row.closure for row in self.rows)
+            rows.append(Finding(place, "ledger_closure", "ledger closes to", closure))
+        return rows
+
+    def told(self) -> dict[str, Any]:
+        return {
+            "time": {"value": self.time, "unit": "s", "clock": "since the tow before began"},
+            "rows": [row.as_dict() for row in self.rows],
+            "left": dict(self.left),
+            "failure": self.failure,
+        }
+
+
+def _rows(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[LedgerRow]:
+    """Conserved quantities in inertial axes about the Earth's centre, of what both FMUs say of the same instant."""
+    for body in BODIES:
+        old, new = before[f"{body}.mass"], after[f"{body}.mass"]
+        yield LedgerRow(f"mass, {body}", "kg", old, new, 0.0, "", old)
+        for quantity, unit, of in (("mass moment", "kg m", "position"), ("linear momentum", "N s", "velocity")):
+            was, now = old * vector(before, f"{body}.{of}"), new * vector(after, f"{body}.{of}")
+            size = float(np.linalg.norm(was))
+            for axis, x, y in zip(AXES, was.tolist(), now.tolist(), strict=True):
+                yield LedgerRow(f"{quantity}, {body}, {axis}", unit, x, y, 0.0, "", size)
+
+
+class SecondTow(Removal):
+    name = "second_tow"
+    follows = ("removal",)
+    alone = False
+    recognised_by = ()
+    takes = (
+        *("chaser.mass", "target.mass", TENSION),
+        *(f"{body}.{of}{each}" for body in (*BODIES, "center") for of in ("position", "velocity") for each in EACH),
+        *RELATIVE,
+    )
+    takes_too = (ATTACHMENT,)
+    tugs_file = "second_tow_tugs"
+    figure_names = ("second_tow_orbital_radius.png", "second_tow_tether_tension.png")
+
+    def orbit_faults(self, document: Document) -> Iterator[Mistake]:
+        """None: the tow before may be on any orbit."""
+        yield from ()
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        """None: its line is another than that of the tow before."""
+        yield from ()
+
+    def joined(self, before: PhaseScene, own: PhaseScene) -> tuple[PhaseScene, PhaseScene]:
+        return before, own
+
+    def notes(self, offered: Mapping[str, Any]) -> Sequence[str]:
+        return ()
+
+    def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
+        yield from ()
+
+    def values_taken(self, before: PhaseScene) -> dict[str, float]:
+        return {name: value for body in BODIES if (value := before.setting(name := f"{body}.mass")) is not None}
+
+    def take_over(self, stage: Stage) -> Handover | None:
+        """Where the tow before left both bodies; `HandoffError` where the new line is too short for that."""
+        assert stage.before is not None, "it is no scene's first"
+        run, phase, tow = stage.run, stage.phase, stage.run.phases[stage.before.name]
+        left, earlier = run.left[stage.before.name], run.handovers.get(stage.before.name)
+        reach = None if earlier is None else earlier.reach
+        record = TowHandover(tow.end - tow.start, tow.origin + tow.end, phase, left, reach)
+        run.handovers[self.name] = record
+        if tow.outcome == ENDED:
+            raise HandoffError(f"hand-off refused: the FMU of the {stage.before.name} ended itself\n  {tow.ended_by}")
+        length, apart = phase.setting(REST_LENGTH), float(np.linalg.norm(vector(left, "relative.position")))
+        reaches = math.inf if length is None else length + left.get(ATTACHMENT, 0.0)
+        if apart > reaches:
+            raise HandoffError(
+                f"hand-off refused: the bodies are {apart:.6g} m apart, and the new line reaches {reaches:.6g} m: "
+                f"{self.name}.{REST_LENGTH} must be larger"
+            )
+        return record
+
+    def clock(self, run: RunResult) -> str:
+        record = run.handovers.get(self.name)
+        before = f", which was {record.time!r} s after the tow before began" if record is not None else ""
+        return f"since the hand-over{before}"
+
+    def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
+        """At least those of the tow before, where that is chaotic."""
+        before = run.phases[removal.PHASE.name]
+        return {**removal.PHASE.spreads(run, before), **super().spreads(run, result)}
+
+    def handover_spreads(self) -> Mapping[str, float]:
+        return {}
+
+    def afterwards(self, stage: Stage, result: PhaseResult) -> None:
+        """Nothing: there was no shot."""
+
+
+PHASE = SecondTow()

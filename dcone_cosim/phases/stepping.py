@@ -1,0 +1,122 @@
+"""A phase as a loop over communication points on one component; what it leaves is a `PhaseResult`.
+
+Every communication point is start + i * macro_step, from an integer, so nothing accumulates.
+"""
+
+from __future__ import annotations
+
+import math
+import time as clock
+
+from dcone_cosim import interrupts
+from dcone_cosim.contract import NODE_PREFIX, TUG_PREFIX
+from dcone_cosim.errors import FmuError, Interrupted
+from dcone_cosim.fmu.component import Steppable, Terminated, output_names
+from dcone_cosim.fmu.steppable import cpu_apart
+from dcone_cosim.holding import holding
+from dcone_cosim.progress import Progress
+from dcone_cosim.recorder import Recorder
+from dcone_cosim.results import PhaseResult
+
+SAME = 1e-6
+"""Relative difference up to which two steps are of one length: at t = 1e6 s a step of 1 ms has lost six digits."""
+
+COMPLETED = "completed"
+"""Outcome of a phase that was stepped to its end."""
+
+
+def coupling_of(component: Steppable) -> dict[str, float]:
+    """What the coupling of several FMUs has cost; empty for one."""
+    return dict(getattr(component, "statistics", {}))
+
+
+class Stopwatch:
+    """Notes in a result what its phase takes, on the clock and of the processors [s]."""
+
+    def __init__(self, result: PhaseResult, component: Steppable) -> None:
+        self.result, self.component = result, component
+
+    def _cpu(self) -> float:
+        return clock.process_time() + cpu_apart(self.component)
+
+    def __enter__(self) -> None:
+        self.cpu, self.wall = self._cpu(), clock.perf_counter()
+
+    def __exit__(self, *_: object) -> None:
+        self.result.cpu = self._cpu() - self.cpu
+        self.result.wall = clock.perf_counter() - self.wall
+
+
+def grid_steps(duration: float, macro_step: float) -> int:
+    """Number of macro steps that cover the duration; the last one may be shorter."""
+    return max(1, math.ceil(duration / macro_step - 1e-9))
+
+
+def length_of(size: float, component: Steppable, macro_step: float) -> float:
+    """Length of a step [s]. The difference of two times may have lost its last bits, and an FMU that takes steps of one
+    length may compare them: it gets the macro step itself."""
+    same = not component.can_vary_step and math.isclose(size, macro_step, rel_tol=SAME)
+    return macro_step if same else size
+
+
+class PhaseLoop:
+    """Steps a component for the duration of a phase, records a row at every communication point, and gathers its tugs.
+
+    start        time the FMU is told to begin at [s]
+    origin       in that time, what the times of the result are counted from [s]
+    """
+
+    def __init__(
+        self,
+        component: Steppable,
+        macro_step: float,
+        start: float,
+        duration: float,
+        progress: Progress,
+        origin: float = 0.0,
+    ) -> None:
+        self.component = holding(component)
+        self.macro_step, self.duration = macro_step, duration
+        self.progress = progress
+        self.read = self.component.row(output_names(component.variables, without=(NODE_PREFIX, TUG_PREFIX)))
+        self.result = PhaseResult(
+            component.name,
+            start - origin,
+            Recorder(self.read.names, component.variables, grid_steps(duration, macro_step) + 1),
+            tugs=self.component.tugs,
+            origin=origin,
+        )
+
+    def run(self) -> PhaseResult:
+        """Step to the end of the phase, or of its FMU; a failure and an interrupt are noted in the result."""
+        result = self.result
+        with Stopwatch(result, self.component):
+            try:
+                self._run()
+            except Terminated as end:
+                result.ended(end)
+            except (FmuError, Interrupted) as error:
+                result.error = interrupts.instead_of(error, result.name, result.end)
+                result.outcome = "stopped"
+        result.coupling = coupling_of(self.component)
+        return result
+
+    def _record(self, time: float) -> None:
+        self.result.recorder.add(time, self.read())
+        self.component.begin_row()
+
+    def _run(self) -> None:
+        component, result = self.component, self.result
+        start, origin = result.start, result.origin
+        steps = grid_steps(self.duration, self.macro_step)
+        self._record(start)
+        interrupts.arm()
+        for i in range(steps):
+            interrupts.check(result.name, start + i * self.macro_step)
+            end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
+            begun = origin + (start + i * self.macro_step)
+            component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
+            result.steps += 1
+            self._record(end)
+            self.progress.at(end)
+        result.outcome = COMPLETED

@@ -1,0 +1,121 @@
+"""What a run leaves: of each phase, of each hand-over, and of the whole."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from dcone_cosim.contract import ENDED
+from dcone_cosim.errors import SUCCESS, DconeError, Interrupted
+from dcone_cosim.findings import Finding
+from dcone_cosim.fmu.steppable import Steppable, Terminated
+from dcone_cosim.ledger import LedgerRow
+from dcone_cosim.recorder import Recorder, Snapshots, TugLog
+from dcone_cosim.scene.data import Scene
+
+
+@dataclass
+class PhaseResult:
+    """What a phase leaves: its columns, and how it came out.
+
+    start        of its own times [s]: 0 for a capture or a removal
+    origin       what these are counted from, in the time of its FMU [s]
+    outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
+    located      instant of the hand-over [s] and how it was found, None when there was none
+    cpu          time of the processors [s], that of FMUs in processes of their own included
+    error        the failure, or the interrupt, that ended the phase early
+    ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
+    coupling     steps of several coupled FMUs: how many, rejected, forced, smallest and largest [s]
+    """
+
+    name: str
+    start: float
+    recorder: Recorder
+    snapshots: Snapshots = field(default_factory=Snapshots)
+    tugs: TugLog | None = None
+    outcome: str = ""
+    located: float | None = None
+    located_by: str = ""
+    steps: int = 0
+    cpu: float = 0.0
+    wall: float = 0.0
+    error: DconeError | None = None
+    coupling: Mapping[str, float] = field(default_factory=dict)
+    ended_by: str = ""
+    ended_at: float = math.nan
+    origin: float = 0.0
+
+    def ended(self, end: Terminated) -> None:
+        """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:
+        the last row stays that of the communication point before."""
+        self.outcome, self.ended_by, self.ended_at = ENDED, end.said, end.time - self.origin
+
+    @property
+    def end(self) -> float:
+        return float(self.recorder["time"][-1]) if len(self.recorder) else self.start
+
+
+class Handover(Protocol):
+    """What one phase took over from the one before it, and whether it holds that.
+
+    time       of the hand-over, as the phase before counts it                                   [s]
+    start      time that the FMU of the phase is told to begin at                                [s]
+    reach      how far the target reaches from its centre of mass, None where that is not known  [m]
+    rows       of the ledger, once it is closed
+    failure    why it failed, "" if it did not
+    """
+
+    time: float
+    start: float
+    rows: list[LedgerRow]
+    failure: str
+
+    @property
+    def reach(self) -> float | None: ...
+
+    def parameters(self, component: Steppable) -> dict[str, float]:
+        """What is set in the FMU of the phase, SI, beside what the scene says."""
+
+    def close(self, component: Steppable) -> None:
+        """Read back what the FMU holds and fill the ledger; `HandoffError` if it does not close."""
+
+    def findings(self) -> Sequence[Finding]:
+        """What the summary tells of it."""
+
+    def told(self) -> dict[str, Any]:
+        """What `ledger.json` holds of it."""
+
+
+@dataclass
+class RunResult:
+    """All that a run leaves behind.
+
+    parameters   every parameter of each phase as it stood when the phase began, SI
+    inputs       every input likewise
+    given        what the master set before that: what the scene says and what was handed over
+    left         what the phase after asked for of each phase that hands over, as it ended, SI
+    handovers    by the phase that took over
+    comparisons  by phase, the same once more, had the shot given no momentum
+    """
+
+    scene: Scene
+    phases: dict[str, PhaseResult] = field(default_factory=dict)
+    parameters: dict[str, dict[str, float]] = field(default_factory=dict)
+    inputs: dict[str, dict[str, float]] = field(default_factory=dict)
+    given: dict[str, dict[str, float]] = field(default_factory=dict)
+    left: dict[str, dict[str, float]] = field(default_factory=dict)
+    handovers: dict[str, Handover] = field(default_factory=dict)
+    comparisons: dict[str, PhaseResult] = field(default_factory=dict)
+    status: str = "completed"
+    message: str = ""
+    exit_code: int = SUCCESS
+
+    def fail(self, status: str, message: str, exit_code: int) -> None:
+        self.status, self.message, self.exit_code = status, message, exit_code
+
+    def stop(self, error: DconeError) -> None:
+        """Note what ended a phase early: an interrupt, or a failure of its FMU."""
+        status = "interrupted" if isinstance(error, Interrupted) else "FMU failed"
+        self.fail(status, str(error), error.exit_code)
