@@ -6,6 +6,7 @@ folder of a run does.
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Mapping
@@ -30,16 +31,16 @@ def phases_apart(scene: Scene, from_run: Path | None, notes: list[str]) -> list[
         raise InputError(f"--from-run {from_run}: {scene.source or scene.name} has no hand-off to take from a run")
     phases = [kind_of(phase.name).by_itself(phase) for phase in scene.phases[:-1]] + list(scene.phases[-1:])
     made = phases[:1]
-    for phase in phases[1:]:
-        alone = _handed_over(scene, phase, from_run) if from_run is not None else _begun_alone(phase, notes)
+    for before, phase in itertools.pairwise(phases):
+        alone = _handed_over(scene, phase, from_run) if from_run is not None else _begun_alone(before, phase, notes)
         made += [alone] if alone is not None else []
     return made
 
 
-def _begun_alone(phase: PhaseScene, notes: list[str]) -> PhaseScene | None:
+def _begun_alone(before: PhaseScene, phase: PhaseScene, notes: list[str]) -> PhaseScene | None:
     """A phase that would take over, with the scene's own start; None where by that it cannot begin."""
     values = {**phase.main.defaults, **phase.main.parameters}
-    begins = f"the {phase.name} begins with what the phase before hands over, which the scene alone does not tell"
+    begins = f"the {phase.name} begins with what the {before.name} hands over, which the scene alone does not tell"
     how = "run the scene, then name its folder with --from-run"
     refusals = build.cannot_work(phase.main.model, values, phase.duration, phase.main.terms, False)
     if refusals:

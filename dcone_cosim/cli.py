@@ -39,7 +39,7 @@ Settings = Annotated[
     ),
 ]
 FromRun = Annotated[
-    Path | None, typer.Option("--from-run", help="Results of this scene: begin the removal as handed over there.")
+    Path | None, typer.Option("--from-run", help="Results of this scene: what takes over begins as it did there.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Answer as JSON.")]
 Offline = Annotated[
@@ -307,7 +307,9 @@ def schema(
 
 @app.command()
 def interface(
-    phase: Annotated[str, typer.Argument(metavar="PHASE", help="capture or removal", autocompletion=phases_like)],
+    phase: Annotated[
+        str, typer.Argument(metavar="PHASE", help="such as capture or removal", autocompletion=phases_like)
+    ],
     template: Annotated[
         str | None, typer.Option("--template", metavar="KIND", help="Write an empty FMU too: c or pythonfmu.")
     ] = None,

@@ -130,7 +130,7 @@ def write_fmus(
 
     Each starts with the scene's values. Files that the scene names itself are there already.
 
-    from_run     folder of a run of the scene: its removal begins as it was handed over there
+    from_run     folder of a run of the scene: what takes over begins as it did there
     """
     chosen = build.platform_names(platforms) if platforms else ()
     scene = named(name, settings)

@@ -6,7 +6,7 @@ import errno
 import stat
 from pathlib import Path
 
-_KINDS = (
+FILE_KINDS = (
     (stat.S_ISFIFO, "a pipe"),
     (stat.S_ISSOCK, "a socket"),
     (stat.S_ISCHR, "a device"),
@@ -23,7 +23,7 @@ def no_file(path: Path) -> str:
         mode = path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):
         return ""
-    return next((what for is_kind, what in _KINDS if is_kind(mode)), "")
+    return next((what for is_kind, what in FILE_KINDS if is_kind(mode)), "")
 
 
 def regular(path: Path) -> Path:

@@ -264,7 +264,7 @@ class Held:
         self._rates = {}
         self._state = replace(self._kept[key])
         if self._log is not None:
-            self._log.go_back(self._state.count, self._state.newest)
+            self._log.forget_after(self._state.count, self._state.newest)
 
     def release(self, key: str = "") -> None:
         self.component.release(key)

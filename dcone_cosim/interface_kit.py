@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 TEMPLATES = Path(__file__).parent / "templates"
-KINDS = ("c", "pythonfmu")
+TEMPLATE_KINDS = ("c", "pythonfmu")
 _TEMPLATE_HAS = (
     *("t_capture", "outcome", "separation", "relative.position", "relative.velocity"),
     *("tether.rest_length", "target.attachment_distance", "thrust.level"),
@@ -83,7 +83,7 @@ def _by_array(rows: Sequence[Asked]) -> Iterator[tuple[str, Asked]]:
 def write_template(phase: str, kind: str, folder: Path) -> list[Path]:
     """Write an empty FMU of a phase into a folder that is new or empty; returns the files."""
     _known("phase", phase, [name for name in kinds() if (TEMPLATES / "c" / f"{name}.c").is_file()])
-    _known("template", kind, KINDS)
+    _known("template", kind, TEMPLATE_KINDS)
     for left in (folder.absolute().parent, folder):
         clear_left(left)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):

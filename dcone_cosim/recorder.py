@@ -152,7 +152,7 @@ class TugLog:
         """The tug that may still grow."""
         return self.rows.get(self.count)
 
-    def go_back(self, count: int, newest: tuple[float, float, float] | None) -> None:
+    def forget_after(self, count: int, newest: tuple[float, float, float] | None) -> None:
         """Forget all after this count, and how the newest of then has grown since."""
         for number in range(count + 1, self.count + 1):
             self.rows.pop(number, None)

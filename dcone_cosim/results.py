@@ -20,9 +20,9 @@ from dcone_cosim.scene.data import Scene
 class PhaseResult:
     """What a phase leaves: its columns, and how it came out.
 
-    start        of its own times [s]: 0 for a capture or a removal
+    start        of its own times [s]: 0 where they count from the begin of the phase
     origin       what these are counted from, in the time of its FMU [s]
-    outcome      capture: name of its outcome; removal: "towed"; either: "ended" when the FMU came to an end of its own
+    outcome      name of the outcome of a capture, or "completed"; "ended" when the FMU came to an end of its own
     located      instant of the hand-over [s] and how it was found, None when there was none
     cpu          time of the processors [s], that of FMUs in processes of their own included
     error        the failure, or the interrupt, that ended the phase early

@@ -1,7 +1,7 @@
 """The run folder: everything a run leaves, written whole or not at all.
 
     summary.json  provenance.json  scene.toml  fmus/*.fmu  ledger.json  ledger.csv
-    capture.parquet  nodes.parquet  removal.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
+    PHASE.parquet  nodes.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
     *.png
 
 Columns carry their unit in the field metadata of the Parquet file, and in `df.attrs["units"]` where pandas reads it; in
@@ -222,7 +222,7 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         "scene_sha256": run.scene.sha256,
         "settings": [override.argument for override in run.scene.places.overrides],
         "handoff": vars(run.scene.handoff),
-        "handed_over_at": {name: {"value": it.time, "unit": "s"} for name, it in run.handovers.items()},
+        "handed_over_at": {name: it.told()["time"] for name, it in run.handovers.items()},
         "status": run.status,
         "message": run.message,
         "exit_code": run.exit_code,

@@ -187,7 +187,11 @@ class Coupled:
         self._stale = False
 
     def step(self, time: float, size: float) -> None:
-        """Advance all from `time` by `size` [s], in as many coupling steps as it takes."""
+        """Advance all from `time` by `size` [s].
+
+        What was set from outside since the last step is first passed on along the connections; then come the coupling
+        steps that the step control makes of the step.
+        """
         if size <= 0.0:
             return
         if self._stale:
@@ -200,13 +204,13 @@ class Coupled:
 
     def save(self, key: str = "") -> None:
         """Keep the present state of all and of what is between them under this key."""
-        self._steps.keep(KEPT + key)
+        self._steps.save(KEPT + key)
         self._times[key] = self._time
 
     def restore(self, key: str = "") -> None:
         """Go back to what was kept last under this key."""
         self._time = self._times[key]
-        self._steps.go_back(KEPT + key, self._time)
+        self._steps.restore(KEPT + key, self._time)
 
     def release(self, key: str = "") -> None:
         """Nobody goes back to what was kept under this key any more."""

@@ -141,7 +141,7 @@ class Exchange:
         for k in range(len(self.links)):
             self._held[k], self._rate[k] = UNSET, 0.0
 
-    def take(self, time: float, size: float) -> None:
+    def step(self, time: float, size: float) -> None:
         """One coupling step of all components from `time` by `size` [s]."""
         before = list(self.out)
         reached: set[int] = set()
@@ -195,7 +195,7 @@ class Exchange:
             restoring.replay(component, read, kept, time, end, COUPLED_FIXED)
             component.release()
 
-    def keep(self, key: str) -> None:
+    def save(self, key: str) -> None:
         """Save every component and what stands between them under a key."""
         for component in self.components:
             component.save(key)
@@ -207,8 +207,8 @@ class Exchange:
             component.release(key)
         self._kept.pop(key, None)
 
-    def go_back(self, key: str, time: float) -> None:
-        """Go back to what was kept under the key, and see that the connected outputs are those of then."""
+    def restore(self, key: str, time: float) -> None:
+        """Restore every component and what stands between them, and see that the connected outputs are as they were."""
         out, held, rate = self._kept[key]
         for component in self.components:
             component.restore(key)

@@ -52,8 +52,8 @@ class StepControl(Protocol):
     """Goes from one communication point to another; what it remembers can be kept and gone back to."""
 
     def advance(self, begin: float, end: float, macro_step: float) -> None: ...
-    def keep(self, key: str) -> None: ...
-    def go_back(self, key: str, time: float) -> None: ...
+    def save(self, key: str) -> None: ...
+    def restore(self, key: str, time: float) -> None: ...
     def release(self, key: str) -> None: ...
 
 
@@ -81,9 +81,9 @@ class FixedSteps:
             if self.even:
                 size = self.size or macro_step
             if self.can_meet:
-                self.exchange.keep(BEGIN)
+                self.exchange.save(BEGIN)
             try:
-                self.exchange.take(time, size)
+                self.exchange.step(time, size)
             except Terminated as end_of_one:
                 if self.can_meet:
                     self._meet(time, end_of_one)
@@ -92,21 +92,21 @@ class FixedSteps:
 
     def _meet(self, begin: float, end: Terminated) -> None:
         """Bring all components to the time at which one of them has ended itself, in a step from `begin` [s]."""
-        self.exchange.go_back(BEGIN, begin)
+        self.exchange.restore(BEGIN, begin)
         if end.time <= begin:
             return
         try:
-            self.exchange.take(begin, end.time - begin)
+            self.exchange.step(begin, end.time - begin)
             self.statistics.count(end.time - begin)
         except Terminated as again:
-            self.exchange.go_back(BEGIN, begin)
+            self.exchange.restore(BEGIN, begin)
             end.reached = again.reached = begin
 
-    def keep(self, key: str) -> None:
-        self.exchange.keep(key)
+    def save(self, key: str) -> None:
+        self.exchange.save(key)
 
-    def go_back(self, key: str, time: float) -> None:
-        self.exchange.go_back(key, time)
+    def restore(self, key: str, time: float) -> None:
+        self.exchange.restore(key, time)
 
     def release(self, key: str) -> None:
         self.exchange.release(key)
@@ -159,7 +159,7 @@ class ControlledSteps:
 
     def _step(self, time: float, size: float, end: float, macro_step: float) -> float:
         """Take one step of at most this size, and return where it ends."""
-        self.exchange.keep(TRIAL)
+        self.exchange.save(TRIAL)
         planned = self._next
         rejected = False
         while True:
@@ -173,7 +173,7 @@ class ControlledSteps:
             except CallError as refusal:
                 if refusal.status != "Discard":
                     raise
-                self.exchange.go_back(TRIAL, time)
+                self.exchange.restore(TRIAL, time)
                 if smallest:
                     refusal.reached = time
                     raise
@@ -183,7 +183,7 @@ class ControlledSteps:
                 self._largest = self._largest or largest
                 if error <= 1.0 or smallest:
                     break
-                self.exchange.go_back(TRIAL, time)
+                self.exchange.restore(TRIAL, time)
             rejected = True
             self.statistics.rejected += 1
             size = max(size * self._factor(error, LEAST_SHRINK), self._smallest)
@@ -198,13 +198,13 @@ class ControlledSteps:
     def _try(self, time: float, until: float, macro_step: float) -> tuple[float, list[float]]:
         """A whole step and two halves: the error of the halves in tolerances, and the sizes it was measured by."""
         exchange = self.exchange
-        exchange.take(time, until - time)
+        exchange.step(time, until - time)
         whole = exchange.measured()
-        exchange.go_back(TRIAL, time)
+        exchange.restore(TRIAL, time)
         middle = time + 0.5 * (until - time)
-        exchange.take(time, middle - time)
+        exchange.step(time, middle - time)
         unknown = [surprise * (middle - time) for surprise in exchange.surprise]
-        exchange.take(middle, until - middle)
+        exchange.step(middle, until - middle)
         unknown = [u + surprise * (until - middle) for u, surprise in zip(unknown, exchange.surprise, strict=True)]
         halves = exchange.measured()
         known = self._largest or [0.0] * len(halves)
@@ -235,12 +235,12 @@ class ControlledSteps:
                 "finer than what they reach themselves; loosen it, or take smallest_step smaller"
             )
 
-    def keep(self, key: str) -> None:
-        self.exchange.keep(key)
+    def save(self, key: str) -> None:
+        self.exchange.save(key)
         self._kept[key] = (self._next, list(self._largest), self._forced)
 
-    def go_back(self, key: str, time: float) -> None:
-        self.exchange.go_back(key, time)
+    def restore(self, key: str, time: float) -> None:
+        self.exchange.restore(key, time)
         self._next, largest, self._forced = self._kept[key]
         self._largest = list(largest)
 

@@ -101,7 +101,7 @@ def figures(run: RunResult, phase: PhaseScene, result: PhaseResult) -> Iterator[
         asked = bool(phase.options.snapshots)
         yield "capture_in_space.png", partial(net_view.draw, result, *shapes, asked, title)
     if "mouth.area" in result.recorder:
-        yield "mouth_and_energies.png", partial(_mouth_and_energy, result, title)
+        yield "mouth_and_energies.png", partial(mouth_and_energy, result, title)
 
 
 EVENTS = (
@@ -111,7 +111,8 @@ EVENTS = (
 )
 
 
-def _mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
+def mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
+    """Mouth area above, energies below, with what happened when."""
     recorder = result.recorder
     time, last = recorder["time"], recorder.last()
     figure = style.new_figure(8.5, 6.5)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
     from dcone_cosim.fmu.steppable import VariableInfo
 
-KINDS = ("Real", "Integer", "Boolean", TEXT)
+SETTABLE_KINDS = ("Real", "Integer", "Boolean", TEXT)
 ADDRESS = re.compile(r"[a-zA-Z][a-zA-Z0-9+.-]+://")
 _ELEMENT = re.compile(r"(.*)\[(\d+)\]")
 
@@ -59,7 +59,7 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
     slots = {info.name: Slot(info.kind, info.own, info.causality) for info in variables.values()}
     names: dict[str, list[str]] = {}
     for info in variables.values():
-        if info.causality in build.SETTABLE and info.kind in KINDS:
+        if info.causality in build.SETTABLE and info.kind in SETTABLE_KINDS:
             match = _ELEMENT.fullmatch(info.name)
             names.setdefault(match[1] if match else info.name, []).append(info.name)
     keys: dict[str, Key] = {}

@@ -47,7 +47,7 @@ def schema() -> Schema:
         },
         SHARED: _table(orbit, "the orbit, shared by the phases"),
         **{phase: _phase(phase) for phase in kinds()},
-        "handoff": _table(_options(HANDOFF_KEYS), "how the capture hands over to the removal"),
+        "handoff": _table(_options(HANDOFF_KEYS), "how a capture hands over to a removal"),
     }
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",

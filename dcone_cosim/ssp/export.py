@@ -52,7 +52,7 @@ def export_scene(
 ) -> Exported:
     """Write `SCENE-PHASE.ssp` for every phase of a scene.
 
-    from_run       folder of a run of this scene: its removal begins as it was handed over there
+    from_run       folder of a run of this scene: what takes over begins as it did there
     form           which of `FORMS` the structure binds its values in
     open_inputs    list inputs that nothing is connected to; fmpy's `simulate_ssp` cannot have them
 

@@ -1,7 +1,7 @@
 """From a package to a scene, which the master runs like any other.
 
-The scene has one phase. It is a capture or a removal when our own annotation says so or its main component offers what
-`contract` asks of one; any other system is a phase by its own name, stepped from its start to its stop.
+The scene has one phase. It is of a kind that is known when our own annotation says so or its main component offers
+what such a kind is recognised by; any other system is a phase by its own name, stepped from its start to its stop.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ def test_rollback_leaves_no_trace(method: str, extrapolation: str) -> None:
     """To the last bit the run that takes the accepted half steps alone."""
     whole = coupled(*by_force(), method=method, extrapolation=extrapolation, **CONTROLLED)
     taken: list[tuple[float, float]] = []
-    whole._exchange.take = _noting(whole._exchange, taken)  # type: ignore[method-assign]
+    whole._exchange.step = _noting(whole._exchange, taken)  # type: ignore[method-assign]
     run(whole, 3.0, 1.0)
     assert whole.statistics["rejected"] > 0
     accepted = _halves(taken, 3.0)
@@ -55,7 +55,7 @@ def test_rollback_leaves_no_trace(method: str, extrapolation: str) -> None:
 
 
 def _noting(exchange: Exchange, taken: list[tuple[float, float]]) -> Any:
-    take = exchange.take
+    take = exchange.step
 
     def noted(time: float, size: float) -> None:
         taken.append((time, size))
@@ -85,7 +85,7 @@ def test_times_land_on_the_communication_points() -> None:
 def test_step_size_is_remembered_across_macro_steps() -> None:
     whole = coupled(*by_motion(), **CONTROLLED)
     taken: list[tuple[float, float]] = []
-    whole._exchange.take = _noting(whole._exchange, taken)  # type: ignore[method-assign]
+    whole._exchange.step = _noting(whole._exchange, taken)  # type: ignore[method-assign]
     first = []
     for i in range(5):
         first.append(len(taken))

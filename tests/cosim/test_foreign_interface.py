@@ -25,10 +25,14 @@ from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.interface_kit import show, write_template
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
+from dcone_cosim.phases import kinds
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
 from tests.cosim.fmus.build import build as build_fmu
 from tests.cosim.mock_components import MockCapture
+
+HANDS_OVER = kinds()["removal"].takes
+"""What a capture hands over to a removal."""
 
 Make = Callable[..., Scene]
 
@@ -40,9 +44,9 @@ def test_our_own_fmus_meet_the_contract() -> None:
     paths = dict(zip(phases, built, strict=True))
     for name, path in paths.items():
         with Archive(path) as archive:
-            assert check_contract(archive, name, then_removal=True, hand_over="captured") == []
+            assert check_contract(archive, kinds()[name], True, HANDS_OVER, hand_over="captured") == []
             other = "removal" if name == "capture" else "capture"
-            assert len(check_contract(archive, other, then_removal=True, hand_over="captured")) > 10
+            assert len(check_contract(archive, kinds()[other], True, HANDS_OVER, hand_over="captured")) > 10
 
 
 @pytest.mark.parametrize("phase", ["capture", "removal"])
@@ -50,7 +54,7 @@ def test_the_table_names_everything(phase: str) -> None:
     console = Console(file=io.StringIO(), width=200)
     show(phase, console)
     text = console.file.getvalue()  # type: ignore[attr-defined]
-    for row in asked(phase):
+    for row in asked(kinds()[phase]):
         assert row.name.partition("[")[0] in text
         assert row.causality in text
     assert "N.m.s" in text or phase == "removal"
@@ -82,8 +86,8 @@ def kits(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 def test_the_c_template_is_a_valid_fmu(kits: dict[str, Path], phase: str) -> None:
     assert validate_fmu(str(kits[phase])) == []
     with Archive(kits[phase]) as archive:
-        assert check_contract(archive, phase, then_removal=True, hand_over="tether_taut") == []
-        assert check_contract(archive, phase, then_removal=True, hand_over="settled") == []
+        assert check_contract(archive, kinds()[phase], True, HANDS_OVER, hand_over="tether_taut") == []
+        assert check_contract(archive, kinds()[phase], True, HANDS_OVER, hand_over="settled") == []
     result = fmpy.simulate_fmu(str(kits[phase]), stop_time=10.0, output_interval=1.0)
     assert len(result) == 11
 
@@ -113,7 +117,7 @@ def test_both_c_templates_fly_a_mission(kits: dict[str, Path], make_scene: Make)
                 "size of relative.position",
                 "size of relative.velocity",
             ]
-            assert result.phases["removal"].outcome == "towed"
+            assert result.phases["removal"].outcome == "completed"
 
 
 def test_a_rate_counted_in_turns_is_not_taken_for_one_in_radians(tmp_path: Path) -> None:
@@ -127,7 +131,7 @@ def test_a_rate_counted_in_turns_is_not_taken_for_one_in_radians(tmp_path: Path)
             return changed
 
         with Archive(build_fmu(tmp_path, "capture", change=in_turns)) as archive:
-            faults = check_contract(archive, "capture", then_removal=True)
+            faults = check_contract(archive, kinds()["capture"], True, HANDS_OVER)
         told = [fault for fault in faults if "its unit is Hz (1/s); expected rad/s" in fault]
         assert len(told) == (0 if fits else 3), faults
 
@@ -143,7 +147,7 @@ def test_the_python_template_tows(tmp_path: Path, make_scene: Make, isolate: boo
     )
     assert built.returncode == 0, built.stderr
     with Archive(tmp_path / "MyRemoval.fmu") as archive:
-        assert check_contract(archive, "removal", then_removal=True) == []
+        assert check_contract(archive, kinds()["removal"], True, HANDS_OVER) == []
 
         def instantiate(phase: str, name: str):
             if phase == "capture":
@@ -152,7 +156,7 @@ def test_the_python_template_tows(tmp_path: Path, make_scene: Make, isolate: boo
 
         result = run_scene(make_scene("capture", "removal"), instantiate, Progress())
     assert result.exit_code == SUCCESS, result.message
-    assert result.phases["removal"].outcome == "towed"
+    assert result.phases["removal"].outcome == "completed"
 
 
 def test_the_python_template_captures(tmp_path: Path, make_scene: Make) -> None:
@@ -161,7 +165,7 @@ def test_the_python_template_captures(tmp_path: Path, make_scene: Make) -> None:
     command = [sys.executable, "-m", "pythonfmu", "build", "-f", str(script), "-d", str(tmp_path)]
     subprocess.run(command, check=True, capture_output=True)
     with Archive(tmp_path / "MyCapture.fmu") as archive:
-        assert check_contract(archive, "capture", then_removal=True, hand_over="captured") == []
+        assert check_contract(archive, kinds()["capture"], True, HANDS_OVER, hand_over="captured") == []
         result = run_scene(make_scene("capture"), lambda _, name: IsolatedComponent(archive, name), Progress())
     assert result.exit_code == SUCCESS, result.message
     assert result.phases["capture"].located == 5.5

@@ -17,6 +17,7 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, Terminated
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.master import run_scene
+from dcone_cosim.phases import kinds
 from dcone_cosim.phases.capture import CaptureOptions
 from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.progress import Progress
@@ -26,6 +27,9 @@ from dcone_cosim.scene.data import Scene
 from tests.cosim.fmus.build import build
 from tests.cosim.mock_components import MockCapture
 from tests.cosim.written import write
+
+HANDS_OVER = kinds()["removal"].takes
+"""What a capture hands over to a removal."""
 
 Make = Callable[..., Scene]
 ISOLATED, HERE = True, False
@@ -48,7 +52,7 @@ def test_a_sound_one_tows(make_scene: Make, tmp_path: Path) -> None:
     fmu = build(tmp_path)
     here, isolated = (swap_in(make_scene("capture", "removal"), fmu, isolate) for isolate in (HERE, ISOLATED))
     assert here.exit_code == isolated.exit_code == SUCCESS, here.message
-    assert here.phases["removal"].outcome == "towed"
+    assert here.phases["removal"].outcome == "completed"
     assert here.handovers["removal"] is not None
     assert next(check.quantity for check in here.handovers["removal"].checks) == "separation"
     for name in here.phases["removal"].recorder.names:
@@ -332,8 +336,8 @@ def test_what_the_contract_misses(tmp_path: Path, old: str, new: str, complaint:
         return xml.replace(old, new)
 
     with Archive(build(tmp_path / "odd", change=change)) as archive:
-        (found,) = check_contract(archive, "removal", then_removal=True)
+        (found,) = check_contract(archive, kinds()["removal"], True, HANDS_OVER)
         assert re.search(complaint, found)
     with Archive(build(tmp_path / "good")) as archive:
-        assert check_contract(archive, "removal", then_removal=True) == []
+        assert check_contract(archive, kinds()["removal"], True, HANDS_OVER) == []
         assert isinstance(Component(archive, "it"), Component)

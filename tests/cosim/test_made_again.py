@@ -136,7 +136,7 @@ def test_a_mission_with_its_hand_over(dcone: Dcone, tmp_path: Path) -> None:
     assert {"start.condition", "orbit.true_anomaly"} <= removal["handed_over"].keys()
     assert "thrust.level" not in removal["handed_over"]
     at = json.loads((first / "ledger.json").read_text())["time"]
-    assert told(first)["handed_over_at"] == at
+    assert told(first)["handed_over_at"] == {"removal": at}
     assert at["value"] == pytest.approx(8.78, abs=0.1)
     assert told(first)["phases"]["capture"]["options"]["hand_over"] == "captured"
 

@@ -96,7 +96,7 @@ def test_a_package_runs_to_the_bits_of_its_scene(tow: Path, tmp_path: Path, form
     assert [path.name for path in done.paths] == ["tow-removal.ssp"]
     by_scene, by_package = run(tow), run(done.paths[0])
     assert same(by_scene, by_package)
-    assert by_package.phases["removal"].outcome == "towed"
+    assert by_package.phases["removal"].outcome == "completed"
     assert by_package.scene.title == "A tow for ten minutes"
 
 

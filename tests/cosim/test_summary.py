@@ -18,10 +18,11 @@ from rich.console import Console
 from dcone_cosim import build
 from dcone_cosim.fmu.component import VariableInfo
 from dcone_cosim.master import run_scene
-from dcone_cosim.plots import net_view, side_by_side, style
+from dcone_cosim.phases import capture_report
+from dcone_cosim.plots import net_view, side_by_side, style, tow
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, TugLog
-from dcone_cosim.reports import figures, summary
+from dcone_cosim.reports import summary
 from dcone_cosim.reports.figures import draw_all
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.run_folder import as_json
@@ -92,7 +93,9 @@ class TestLowering:
     def test_of_a_pair_close_together(self, make_scene: MakeScene) -> None:
         rows = self.rows(make_scene, 12.0, 554.8, 1.0)
         assert rows["lowered"].value == pytest.approx(554.8)
-        assert rows["lowering_rate"].value == pytest.approx(554.8)
+        assert rows["lowering_rate"].value == pytest.approx(554.8 / 86400.0)
+        assert rows["lowering_rate"].shown() == "554.8 m/day"
+        assert rows["lowering_rate"].unit == "m/s"
 
     def test_not_of_a_pair_far_apart(self, make_scene: MakeScene) -> None:
         rows = self.rows(make_scene, 20e3, 554.8, 1.0)
@@ -206,7 +209,7 @@ class TestFigures:
     def test_one_that_fails_is_named_and_the_others_are_drawn(
         self, towed: RunResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("dcone_cosim.reports.figures._orbit", lambda *_: 1 / 0)
+        monkeypatch.setattr("dcone_cosim.plots.tow.orbit", lambda *_: 1 / 0)
         (note,) = draw_all(towed, tmp_path)
         assert "orbital_radius.png" in note
         assert "ZeroDivisionError" in note
@@ -242,9 +245,9 @@ class TestFigures:
             seen.append(len(legends))
 
         monkeypatch.setattr(style, "save", save)
-        for draw in (figures._orbit, figures._tension):
-            draw(towed, towed.phases["removal"], "", tmp_path / "x.png")
-        figures._mouth_and_energy(shot.phases["capture"], "", tmp_path / "x.png")
+        tow.orbit(towed.phases["removal"], "", "", tmp_path / "x.png")
+        tow.tension(towed.phases["removal"], towed.comparisons.get("removal"), "", "", tmp_path / "x.png")
+        capture_report.mouth_and_energy(shot.phases["capture"], "", tmp_path / "x.png")
         assert seen == [1, 1, 2]
 
     def test_long_titles_stay_within_the_figure(self) -> None:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -78,12 +79,14 @@ def after(
     make_scene: MakeScene,
     columns: dict[str, Sequence[float]],
     removal: Mapping[str, float] | None = None,
-    capture: Mapping[str, float] | None = None,
+    reach: float | None = None,
 ) -> str:
-    """The warnings of a removal with these columns and parameters."""
+    """The warnings of a removal with these columns and parameters, of a target that was handed over with this reach."""
     run = removal_run(make_scene("removal"), columns, [100.0, 160.0, 220.0], TugLog(1))
     masses = {"chaser.mass": 2000.0, "target.mass": 1000.0}
-    run.parameters |= {"removal": {**masses, **(removal or {})}, "capture": dict(capture or {})}
+    run.parameters |= {"removal": {**masses, **(removal or {})}}
+    if reach is not None:
+        run.handovers["removal"] = SimpleNamespace(reach=reach)  # type: ignore[assignment]
     return "\n".join(warnings(run))
 
 
@@ -164,13 +167,12 @@ def test_an_orbit_that_rose(make_scene: MakeScene) -> None:
 class TestApproach:
     def test_bodies_that_would_meet(self, make_scene: MakeScene) -> None:
         """25 x 10 x 5 m: the corners are 13.693 m from the centre."""
-        size = {**load("table1-capture").phases[0].main.defaults}
-        size |= {f"target.size[{i + 1}]": edge for i, edge in enumerate((25.0, 10.0, 5.0))}
-        told = after(make_scene, {"separation": [20.0, 5.65, 18.0]}, capture=size)
+        reach = 0.5 * math.hypot(25.0, 10.0, 5.0)
+        told = after(make_scene, {"separation": [20.0, 5.65, 18.0]}, reach=reach)
         assert "within 5.65 m, 60 s after the removal began, by the rows recorded" in told
         assert "the target reaches 13.7 m from its centre, and the chaser is taken to reach 1 m" in told
-        assert "may meet" in after(make_scene, {"separation": [20.0, 14.69, 18.0]}, capture=size)
-        assert after(make_scene, {"separation": [20.0, 14.70, 18.0]}, capture=size) == ""
+        assert "may meet" in after(make_scene, {"separation": [20.0, 14.69, 18.0]}, reach=reach)
+        assert after(make_scene, {"separation": [20.0, 14.70, 18.0]}, reach=reach) == ""
 
     def test_bodies_of_no_known_size(self, make_scene: MakeScene) -> None:
         assert "each is taken to reach 1 m" in after(make_scene, {"separation": [12.0, 1.9, 12.0]})
