@@ -50,7 +50,7 @@ def test_rollback_leaves_no_trace(method: str, extrapolation: str) -> None:
     for component in components:
         component.exit_initialisation()
     for time, size in accepted:
-        again.take(time, size)
+        again.step(time, size)
     assert [c.state.tobytes() for c in components] == states(whole)
 
 
