@@ -1,8 +1,9 @@
 """Error and CPU time of a reel control coupled to the removal, both FMUs: `pytest -m bench -n 0 -s
 tests/benchmarks/test_coupling.py`.
 
-Prints the tables that stand in README.md. Reference: the removal with the same law inside, one FMU. With a motor
-behind the law there is no such FMU: the reference is the pair at a hundredth of the motor's lag, inputs moving on.
+Prints the tables of dcone_cosim/coupling/README.md. Reference: the removal with the same law inside, one FMU. With a
+motor behind the law there is no such FMU: the reference is the pair at a hundredth of the motor's lag, inputs moving
+on.
 """
 
 from __future__ import annotations

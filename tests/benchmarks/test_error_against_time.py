@@ -1,7 +1,7 @@
 """Error against run time of what a user can trade: `pytest -m bench -n 0 -s
 tests/benchmarks/test_error_against_time.py`.
 
-Prints the tables that stand in README.md. Reference of each row: the finest setting of the same table.
+Prints the tables of tests/README.md. Reference of each row: the finest setting of the same table.
 """
 
 import time

@@ -1,4 +1,8 @@
-"""The README's commands do what it says: each is run as it stands, in an empty folder."""
+"""The READMEs' commands do what they say, each run as it stands; and what a README points to is there.
+
+The blocks marked `sh` and `python` of one README run in the order of the page, in a folder of their own that is empty
+at first: a command may use what one above it has written.
+"""
 
 import os
 import re
@@ -9,34 +13,86 @@ from pathlib import Path
 
 import pytest
 
-README = Path(__file__).parents[2] / "README.md"
-COMMANDS = [
-    line
-    for block in re.findall(r"^```sh\n(.*?)^```$", README.read_text(), re.DOTALL | re.MULTILINE)
-    for line in block.splitlines()
-    if line.strip()
-]
+ROOT = Path(__file__).parents[2]
+README = ROOT / "README.md"
+PLACES = (".readme", "dcone_cosim", "fmu_src", "orbital", "tests")
+PAGES = [README, *sorted(page for place in PLACES for page in (ROOT / place).rglob("*.md"))]
+LONGEST = 200
+"""Lines that a newcomer is asked to read."""
 
 
-def test_two_lines_are_two():
-    (block,) = re.findall(r"^```sh two-lines\n(.*?)^```$", README.read_text(), re.DOTALL | re.MULTILINE)
-    assert len(block.splitlines()) == 2
-    assert "dcone run mission" in block
-    assert "pytest" in block
+def blocks(text, language):
+    """The fenced blocks of a language, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+
+
+def steps(text):
+    """Commands by line and pieces of Python, in the order of the page."""
+    for language, block in re.findall(r"^```(sh|python)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+        if language == "python":
+            yield [sys.executable, "-c", block]
+            continue
+        for line in filter(str.strip, block.splitlines()):
+            program, *arguments = shlex.split(line)
+            assert program == "dcone", f"{line}: only dcone is run here"
+            yield [str(Path(sys.executable).with_name("dcone")), *arguments]
+
+
+def named(page):
+    return page.relative_to(ROOT).as_posix()
+
+
+def prose(text):
+    """The page without its blocks, indented ones included."""
+    text = re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+    return re.sub(r"^    .*$", "", text, flags=re.MULTILINE)
+
+
+def anchors(text):
+    """What headings can be linked to by, as GitHub makes it: lower case, no punctuation, hyphens for blanks."""
+    heads = re.findall(r"^#+ (.*)$", prose(text), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+def dead_links(page, text):
+    """Links of a page that lead nowhere: files that are not there, headings that a page does not have."""
+    for link in re.findall(r"\]\(([^)\s]+)\)", prose(text)):
+        if re.match(r"[a-z]+:", link):
+            continue
+        path, _, anchor = link.partition("#")
+        there = (page.parent / path).resolve() if path else page
+        if not there.is_file() or (anchor and anchor not in anchors(text if there == page else there.read_text())):
+            yield link
+
+
+def lost_files(text):
+    """Files of the tests that a page names, in prose or in a command, and that are not there."""
+    for path in re.findall(r"\btests/[\w/.]*\w", text):
+        if not (ROOT / path).exists():
+            yield path
+    for module in re.findall(r"python -m (tests[.\w]*\w)", text):
+        if not (ROOT / module.replace(".", "/")).with_suffix(".py").is_file():
+            yield module
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("readme")
+def folders(tmp_path_factory):
+    """A folder for each page."""
+    return {page: tmp_path_factory.mktemp("page") for page in PAGES}
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_command_runs(command, folder):
-    program, *arguments = shlex.split(command)
-    assert program == "dcone"
+STEPS = [
+    pytest.param(page, step, id=f"{named(page)}: {' '.join(step[1:]).partition(chr(10))[0]}")
+    for page in PAGES
+    for step in steps(page.read_text())
+]
+
+
+@pytest.mark.parametrize(("page", "command"), STEPS)
+def test_command_runs(page, command, folders):
     done = subprocess.run(
-        [str(Path(sys.executable).with_name("dcone")), *arguments],
-        cwd=folder,
+        command,
+        cwd=folders[page],
         env=os.environ,
         capture_output=True,
         text=True,
@@ -45,6 +101,42 @@ def test_command_runs(command, folder):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_figures_of_the_readme_are_there():
-    for path in re.findall(r"!\[.*?\]\((.*?)\)", README.read_text()):
-        assert (README.parent / path).is_file()
+def test_two_lines_are_two():
+    (block,) = blocks(README.read_text(), "sh two-lines")
+    assert len(block.splitlines()) == 2
+    assert "dcone run mission" in block
+    assert "pytest" in block
+
+
+def test_the_first_page_is_short():
+    assert len(README.read_text().splitlines()) <= LONGEST
+
+
+def test_every_page_is_within_reach_of_the_first():
+    """By links alone, so that no page is forgotten; the templates' is written for who uses them."""
+    seen, found = set(), [README]
+    while found:
+        page = found.pop()
+        if page in seen:
+            continue
+        seen.add(page)
+        links = re.findall(r"\]\(([^)\s#]+\.md)", page.read_text())
+        found += [(page.parent / link).resolve() for link in links]
+    templates = ROOT / "dcone_cosim" / "templates"
+    assert {page for page in PAGES if templates not in page.parents} == seen
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_links_and_pictures_lead_somewhere(page):
+    text = page.read_text()
+    assert list(dead_links(page, text)) == []
+    wrong = text + "\n[one](no-such-page.md) [two](#no-such-heading) ![three](none.png)\n"
+    assert list(dead_links(page, wrong)) == ["no-such-page.md", "#no-such-heading", "none.png"]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_files_of_the_tests_that_are_named_are_there(page):
+    text = page.read_text()
+    assert list(lost_files(text)) == []
+    wrong = text + "\n`pytest tests/none/test_such.py`, `python -m tests.none.such`\n"
+    assert list(lost_files(wrong)) == ["tests/none/test_such.py", "tests.none.such"]

@@ -1,4 +1,4 @@
-"""The tools, and what each makes of the two runs: measured once, for the tests and for the README's table."""
+"""The tools, and what each makes of the two runs: measured once, for the tests and for the packaging's README."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def verdict(tool: str, case: str, which: str) -> str:
 
 
 def rows(tools: Iterable[str]) -> dict[tuple[str, str], str]:
-    """The lines of the README's table by tool and run."""
+    """The lines of that README's table by tool and run."""
     lines = {}
     for tool in tools:
         for case, about in CASES.items():

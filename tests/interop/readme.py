@@ -1,4 +1,4 @@
-"""The table of tools in the README. To measure it anew: python -m tests.interop.readme"""
+"""The table of tools in the packaging's README. To measure it anew: python -m tests.interop.readme"""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from tests.interop import reel_pair
 from tests.interop.cases import CASES
 from tests.interop.measure import TOOLS, rows
 
-PAGE = Path(__file__).parents[2] / "README.md"
-HEAD = (
-    "| tool | version | FMU | steps that a double holds | steps that it does not |\n| --- | --- | --- | --- | --- |\n"
-)
+PAGE = Path(__file__).parents[2] / "fmu_src" / "packaging" / "README.md"
+TITLES = "| tool | version | FMU | steps that a double holds exactly | steps that it does not |"
+HEAD = f"{TITLES}\n| --- | --- | --- | --- | --- |\n"
 PAIR = ("container", "pair")
 """Key of the line on two FMUs coupled by a tool."""
 TABLE = re.compile(re.escape(HEAD) + r"((?:\|.*\n)*)")
@@ -34,7 +33,7 @@ def versions(text: str) -> dict[str, str]:
 
 
 def page(text: str, tools: Iterable[str], keep_versions: bool = False) -> str:
-    """The README with the lines of these tools as measured now; the others stay.
+    """The page with the lines of these tools as measured now; the others stay.
 
     keep_versions    a tool may be newer here than the one that the table tells of, if its numbers are the same
     """

@@ -2,7 +2,7 @@
 
 Each tool holds the inputs over a step and steps both FMUs from the same outputs, as Jacobi does; our master is asked
 for the same. The times can differ by rounding; and some tools read a step's outputs before they set the next inputs, so
-what depends on an input directly is told a step late.
+what depends on an input directly arrives one step late.
 """
 
 from __future__ import annotations
@@ -114,10 +114,10 @@ def container(grid: str) -> tuple[Rows, Recorder, Rows]:
 
 
 def verdict(grid: str) -> str:
-    """What the README's table says of the container."""
+    """What the table of tools says of the container."""
     length = f"{STEPS} steps of {GRIDS[grid]:g} s"
     found, ours, at_its_times = container(grid)
-    late = f"`{DIRECT[0]}` is told a step late"
+    late = f"`{DIRECT[0]}` arrives one step late"
     if not differing(found, ours, DIRECT):
         return f"same bits as the master's Jacobi over {length}; {late}"
     if not differing(found, at_its_times, DIRECT) and farthest(found, ours, DIRECT) <= SPREAD:

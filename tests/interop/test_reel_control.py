@@ -36,7 +36,7 @@ from tests.interop.reel_pair import (
 pytestmark = pytest.mark.interop
 
 LATE = {"ecos": (), "libcosim": DIRECT, "container": DIRECT}
-"""What a tool tells a step late: it reads the outputs of a step before it sets the inputs of the next."""
+"""What arrives one step late in a tool: it reads the outputs of a step before it sets the inputs of the next."""
 
 Run = tuple[str, str, Rows, Recorder, Rows]
 
