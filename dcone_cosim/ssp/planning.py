@@ -20,7 +20,7 @@ from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part, owner_of
 from dcone_cosim.ssp.package import Mistakes
-from dcone_cosim.ssp.parsing import Document
+from dcone_cosim.ssp.parsing import Document, decimal
 
 RESERVED = (*PHASES, "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
 """Names of files in a run folder that a system's own name must not take."""
@@ -157,14 +157,6 @@ def _own_macro_step(content: Document) -> float | None:
 
 def _of_experiment(experiment: Any, name: str) -> float | None:
     return decimal(getattr(experiment, name, None)) if experiment is not None else None
-
-
-def decimal(text: object) -> float | None:
-    """A number of an attribute, None when there is none or it is none."""
-    try:
-        return float(str(text)) if text is not None else None
-    except ValueError:
-        return None
 
 
 def options(name: str, plan: Mapping[str, str], told: Mapping[str, float], mistakes: Mistakes) -> dict[str, Any]:

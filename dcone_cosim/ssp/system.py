@@ -17,12 +17,13 @@ from dcone_cosim.scenes.mistakes import Places
 from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
 from dcone_cosim.scenes.text import override, setting, titled
 from dcone_cosim.scenes.toml_lines import given_at
+from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp import matching, planning
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part
-from dcone_cosim.ssp.package import Mistakes, Package, entry_of, parsed, unpacked_folder
-from dcone_cosim.ssp.parsing import Document, document
+from dcone_cosim.ssp.package import Mistakes, Package, entry_of
+from dcone_cosim.ssp.parsing import Document, document, read
 from dcone_cosim.ssp.values import given_values
 
 
@@ -36,19 +37,18 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
     Checked  tests/cosim/test_ssp_bad.py, tests/cosim/test_ssp_export.py
     """
     mistakes = Mistakes(str(path))
-    folder = unpacked_folder()
+    folder = Scratch.temporary()
     with Package(path) as package:
         text = package.read(STRUCTURE)
-        root = parsed(text, STRUCTURE, mistakes)
-        content = document(root, STRUCTURE, mistakes) if root is not None else None
+        root = read(text, STRUCTURE, "ssd:SystemStructureDescription", mistakes)
         mistakes.check()
-        assert content is not None, "without a mistake there is a structure"
+        assert root is not None, "without a mistake there is a structure"
+        content = document(root, STRUCTURE, mistakes)
         parts = _parts(content, package, folder.path, mistakes)
         mistakes.check()
         for part in parts.values():
             matching.check_ports(part, content.units, mistakes)
-        bindings = [*(row for part in parts.values() for row in part.row.bindings), *content.bindings]
-        values = list(given_values(iter(bindings), package, mistakes))
+        values = list(given_values(content.bindings, package, mistakes))
     parameters = matching.parameters(values, parts, mistakes)
     connections = matching.connections(content.connections, parts, mistakes)
     name, main = planning.name_and_main(content, parts)
