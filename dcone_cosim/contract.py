@@ -9,10 +9,10 @@ from functools import cache
 from typing import TYPE_CHECKING, Literal
 
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, spoken_dimension
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH
 from dcone_cosim.names import nearest
+from dcone_cosim.units import PURE, Unit, by_name, misfit, spoken_dimension
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive

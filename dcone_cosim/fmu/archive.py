@@ -23,9 +23,9 @@ import fmpy
 from dcone_cosim.errors import FmuError
 from dcone_cosim.files import regular
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import NO_UNIT, Unit, by_name, read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scratch import Scratch
+from dcone_cosim.units import Unit, by_name, read_units
 
 EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
@@ -250,7 +250,7 @@ def _variables(path: Path, description: Any, relative: Container[str]) -> dict[s
         kind = "Integer" if v.type == "Enumeration" else v.type
         name = (v.unit or (v.declaredType.unit if v.declaredType is not None else "") or "") if kind == "Real" else ""
         unit = units.get(name) or by_name(name)
-        label = unit.si_name if unit is not NO_UNIT else "1"
+        label = unit.si_name
         if v.name in relative:
             unit = unit.of_differences()
         found[v.name] = VariableInfo(
@@ -283,7 +283,7 @@ def _number(path: Path, name: str, what: str, text: Any, kind: str, unit: Unit) 
         value = float(text)
     except ValueError:
         raise FmuError(f"{path}: {what} of its variable {name!r} is {text!r}, no number") from None
-    return value if unit.is_si else unit.factor * value + unit.offset
+    return unit.to_si(value)
 
 
 def _bounds(path: Path, v: Any, kind: str, unit: Unit) -> tuple[float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu.units import Dimension, Unit
+from dcone_cosim.units import Dimension, Unit
 
 Row = npt.NDArray[np.float64]
 KINDS = ("Real", "Integer", "Boolean")

@@ -15,7 +15,7 @@ from dcone_cosim.master import cannot_begin
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene_fmus import isolated, opened
 from dcone_cosim.scenes.scene import PHASES, ComponentScene, PhaseScene, Scene
-from dcone_cosim.scenes.units import spoken
+from dcone_cosim.units import spoken
 
 if TYPE_CHECKING:
     from rich.console import Console

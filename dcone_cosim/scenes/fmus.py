@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
 from dcone_cosim.scenes.keys import Key, Slot
-from dcone_cosim.scenes.units import TEXT, Expected, Unexpected, example_of, is_unit
+from dcone_cosim.scenes.units import TEXT, Expected, Unexpected, example_of
+from dcone_cosim.units import by_name, si_name
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
@@ -74,12 +75,10 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
 
 def _unit(info: VariableInfo) -> str:
     """SI unit in which a value is read and compared; "1" for a pure number, and when nothing is known of the unit."""
-    from dcone_cosim.fmu.units import si_name
-
     if info.dimension is None:
         return "1"
-    name = si_name(info.dimension)
-    return info.unit if is_unit(info.unit, like=name) else name
+    known = by_name(info.unit)
+    return info.unit if known.is_si and known.dimension == info.dimension else si_name(info.dimension)
 
 
 def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, choices: tuple[str, ...] = ()) -> Key:

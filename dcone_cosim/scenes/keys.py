@@ -12,10 +12,10 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.contract import HAND_OVER
-from dcone_cosim.fmu.units import Unit
 from dcone_cosim.scenes.mistakes import Mistake, unknown
 from dcone_cosim.scenes.toml_lines import Path, dotted
 from dcone_cosim.scenes.units import Expected, Unexpected, example_of
+from dcone_cosim.units import Unit
 
 SHARED = "orbit"
 """Section that stands at the top of a scene and goes to every component that has it."""

@@ -9,11 +9,11 @@ from typing import Any
 
 from dcone_cosim.coupling.options import Connection
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import Unit, misfit, same_dimension
 from dcone_cosim.ssp.markup import KINDS, STRUCTURE, TEXT
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import ComponentRow, ConnectionRow, PortRow
 from dcone_cosim.ssp.values import Given
+from dcone_cosim.units import Unit, misfit, same_dimension
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,6 @@ class Part:
         }
 
 
-def own_unit(info: VariableInfo) -> Unit:
-    """The unit that an FMU counts a variable in."""
-    return Unit(info.declared_unit or "1", info.dimension, info.factor, info.offset, info.relative)
-
-
 def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> None:
     """Note connectors that the FMU has not, or has otherwise."""
     for port in part.row.ports.values():
@@ -53,7 +48,7 @@ def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> No
         if port.kind != info.causality:
             text = f"{what} has kind = {port.kind!r}; in the FMU it is {info.causality!r}"
             mistakes.add(STRUCTURE, port.line, text)
-        if _other_unit(port, own_unit(info), units):
+        if _other_unit(port, info.own, units):
             text = f"{what} is in {port.unit!r}; the FMU has it in {info.declared_unit!r}"
             mistakes.add(STRUCTURE, port.line, text)
 
@@ -125,19 +120,16 @@ def _problem(given: Given, info: VariableInfo) -> str:
 
 def _in_si(given: Given, info: VariableInfo) -> float:
     """The SI value of a variable: first the unit is converted, then the mapping's transformation applied."""
-    value, unit, own = given.value, given.unit, own_unit(info)
-    linear = (given.factor, given.offset) != (1.0, 0.0)
+    value, unit, own = given.value, given.unit, info.own
     if unit is not None and own.relative:
         unit = unit.of_differences()
-    convert = unit is not None and own.dimension is not None and not given.suppress and unit.name != own.name
-    if convert and unit is not None:
-        value = value if unit.is_si else unit.factor * value + unit.offset
-        if not linear:
-            return value
-        value = value if own.is_si else (value - own.offset) / own.factor
-    if linear:
-        value = given.factor * value + given.offset
-    return value if own.is_si else own.factor * value + own.offset
+    if unit is None or unit.name == own.name or own.dimension is None or given.suppress:
+        unit = own
+    if (given.factor, given.offset) == (1.0, 0.0):
+        return unit.to_si(value)
+    if unit is not own:
+        value = own.from_si(unit.to_si(value))
+    return own.to_si(given.factor * value + given.offset)
 
 
 def connections(rows: Iterable[ConnectionRow], parts: Mapping[str, Part], mistakes: Mistakes) -> tuple[Connection, ...]:

@@ -14,7 +14,6 @@ from pathlib import Path
 import fmpy.ssp
 from lxml import etree
 
-from dcone_cosim.fmu.units import BASE, Unit
 from dcone_cosim.ssp.markup import (
     FMU_TYPE,
     KINDS,
@@ -30,6 +29,7 @@ from dcone_cosim.ssp.markup import (
     tag,
 )
 from dcone_cosim.ssp.package import Mistakes
+from dcone_cosim.units import Unit
 
 SCHEMAS = {"ssd": "Description", "ssc": "Common", "ssv": "ParameterValues", "ssm": "ParameterMapping"}
 """Schema of every namespace: `SystemStructure....xsd`, as fmpy brings it."""
@@ -197,7 +197,7 @@ def document(root: etree._Element, file: str, mistakes: Mistakes) -> Document:
         tuple(components.values()),
         tuple(_connection(row) for row in system.iterfind("ssd:Connections/ssd:Connection", READ)),
         (*bindings, *(("", element) for element in system.iterfind(binding, READ))),
-        units(root),
+        units(root, file, mistakes),
         decimal(experiment.get("startTime")) if experiment is not None else None,
         decimal(experiment.get("stopTime")) if experiment is not None else None,
         step,
@@ -236,12 +236,15 @@ def flag(row: etree._Element, name: str) -> bool:
     return row.get(name, "false").strip() in ("true", "1")
 
 
-def units(root: etree._Element) -> dict[str, Unit]:
+def units(root: etree._Element, file: str, mistakes: Mistakes) -> dict[str, Unit]:
     """Units that a structure or a parameter set defines, by name."""
     found = {}
     for base in root.xpath("(ssd:Units | ssv:Units)/ssc:Unit/ssc:BaseUnit", namespaces=READ):
-        name, dimension = base.getparent().get("name"), tuple(int(base.get(key, 0)) for key in BASE)
-        found[name] = Unit(name, dimension, float(base.get("factor", 1.0)), float(base.get("offset", 0.0)))
+        name = base.getparent().get("name")
+        try:
+            found[name] = Unit.defined(name, base.attrib)
+        except ValueError as error:
+            mistakes.add(file, base.sourceline, f"<ssc:Unit> {name!r}: {error}")
     return found
 
 

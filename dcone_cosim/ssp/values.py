@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 from lxml import etree
 
-from dcone_cosim.fmu.units import Unit
 from dcone_cosim.ssp.markup import READ, STRUCTURE, TEXT, plain
 from dcone_cosim.ssp.package import Mistakes, Package, entry_of
 from dcone_cosim.ssp.parsing import flag, linear, read, units
+from dcone_cosim.units import Unit
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def _content(
 
 
 def _values(owner: str, prefix: str, root: etree._Element, file: str, mistakes: Mistakes) -> Iterator[Given]:
-    known = units(root)
+    known = units(root, file, mistakes)
     for row in root.iterfind("ssv:Parameters/ssv:Parameter", READ):
         name, kind, text = prefix + row.get("name"), etree.QName(row[0]).localname, row[0].get("value")
         if kind == TEXT:

@@ -14,7 +14,7 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
 from dcone_cosim.fmu.isolation import IsolatedComponent
-from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, read_units, same_dimension, si_name
+from dcone_cosim.units import PURE, Unit, by_name, misfit, read_units, same_dimension, si_name
 from tests.cosim.fmus.build import build
 
 LENGTH = (0, 1, 0, 0, 0, 0, 0, 0)

@@ -16,12 +16,12 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import TEMPERATURE, Unit
 from dcone_cosim.scenes.fmus import offer
 from dcone_cosim.scenes.units import Unexpected
 from dcone_cosim.ssp import matching
 from dcone_cosim.ssp.parsing import PortRow
 from dcone_cosim.ssp.values import Given
+from dcone_cosim.units import TEMPERATURE, Unit
 from tests.cosim.fmus.build import build
 from tests.cosim.mock_components import MockComponent
 
@@ -136,4 +136,4 @@ class TestInPackages:
         port = PortRow("dT", "parameter", "Real", "C", 1)
         units = {"C": Unit("C", TEMPERATURE, 1.0, 273.15), "K": Unit("K", TEMPERATURE)}
         for info in (self.RISE, self.LEVEL):
-            assert not matching._other_unit(port, matching.own_unit(info), units)
+            assert not matching._other_unit(port, info.own, units)

@@ -13,9 +13,9 @@ from dcone_cosim.coupling.wiring import mismatch
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import by_name
 from dcone_cosim.loading import find, load
 from dcone_cosim.scenes.scene import Scene
+from dcone_cosim.units import by_name
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 
