@@ -6,7 +6,7 @@ walked without further checks.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -74,51 +74,23 @@ BEYOND = {
 """What SSP has and the subset has not: where it stands, and what is said of it, with the values of its attributes."""
 
 
-@dataclass(frozen=True)
-class PortRow:
-    """A connector; `type` and `unit` are "" where it tells none."""
-
-    name: str
-    kind: str
-    type: str
-    unit: str
-    line: int
-
-
-@dataclass(frozen=True)
-class ComponentRow:
-    name: str
-    source: str
-    ports: Mapping[str, PortRow]
-    step: float | None
-    line: int
-
-
-@dataclass(frozen=True)
-class ConnectionRow:
-    """As it stands: which end is the output follows from the connectors."""
-
-    start: tuple[str, str]
-    end: tuple[str, str]
-    factor: float
-    offset: float
-    suppress: bool
-    line: int
+BINDING = "ssd:ParameterBindings/ssd:ParameterBinding"
 
 
 @dataclass(frozen=True)
 class Document:
     """A structure; times [s], None where it tells none.
 
-    bindings    elements of parameter bindings, each with its component, "" for the system; a later one counts more
-    ours        attributes of our own annotation by element
+    components, connections    their elements
+    bindings                   elements, each with the name of its component, "" for the system; a later one counts more
+    ours                       attributes of our own annotation by element
     """
 
     name: str
     description: str
-    components: tuple[ComponentRow, ...]
-    connections: tuple[ConnectionRow, ...]
-    bindings: tuple[tuple[str, etree._Element], ...]
+    components: Mapping[str, etree._Element]
+    connections: Sequence[etree._Element]
+    bindings: Sequence[tuple[str, etree._Element]]
     units: Mapping[str, Unit]
     start: float | None
     stop: float | None
@@ -174,54 +146,34 @@ def _schema() -> etree.XMLSchema:
 def document(root: etree._Element, file: str, mistakes: Mistakes) -> Document:
     """The structure that a file holds; components of the same name, or none, are noted as mistakes."""
     system = root.find("ssd:System", READ)
-    binding, steps = "ssd:ParameterBindings/ssd:ParameterBinding", "osp:Algorithm/osp:FixedStepAlgorithm/@baseStepSize"
-    components: dict[str, ComponentRow] = {}
+    experiment = root.find("ssd:DefaultExperiment", READ)
+    components: dict[str, etree._Element] = {}
     bindings = []
     for row in system.iterfind("ssd:Elements/ssd:Component", READ):
-        made = _component(row)
-        if made.name in components:
-            text = f"<ssd:Component> {made.name!r}: line {components[made.name].line} has one of that name"
-            mistakes.add(file, made.line, text)
-        components.setdefault(made.name, made)
-        bindings += [(made.name, element) for element in row.iterfind(binding, READ)]
+        name = row.get("name")
+        if components.setdefault(name, row) is not row:
+            text = f"<ssd:Component> {name!r}: line {components[name].sourceline} has one of that name"
+            mistakes.add(file, row.sourceline, text)
+        bindings += [(name, binding) for binding in row.iterfind(BINDING, READ)]
     if not components:
         mistakes.add(file, system.sourceline, "the system holds no component")
-    experiment = root.find("ssd:DefaultExperiment", READ)
-    step = _annotated(experiment, OSP_TYPE, steps)
-    if step is None:
-        step = _annotated(system, OMS_TYPE, "oms:Annotations/oms:SimulationInformation/@fixedStepSize")
+    steps = (
+        "osp:Algorithm/osp:FixedStepAlgorithm/@baseStepSize",
+        "oms:Annotations/oms:SimulationInformation/@fixedStepSize",
+    )
+    step = annotated(experiment, OSP_TYPE, steps[0])
     ours = root.xpath(f"ssd:Annotations/ssc:Annotation[@type = '{OUR_TYPE}'][1]/dcone:Phase/*", namespaces=READ)
     return Document(
         system.get("name"),
         system.get("description") or root.get("name"),
-        tuple(components.values()),
-        tuple(_connection(row) for row in system.iterfind("ssd:Connections/ssd:Connection", READ)),
-        (*bindings, *(("", element) for element in system.iterfind(binding, READ))),
+        components,
+        system.findall("ssd:Connections/ssd:Connection", READ),
+        [*bindings, *(("", binding) for binding in system.iterfind(BINDING, READ))],
         units(root, file, mistakes),
         decimal(experiment.get("startTime")) if experiment is not None else None,
         decimal(experiment.get("stopTime")) if experiment is not None else None,
-        step,
+        annotated(system, OMS_TYPE, steps[1]) if step is None else step,
         {etree.QName(row).localname: dict(row.attrib) for row in ours},
-    )
-
-
-def _component(row: etree._Element) -> ComponentRow:
-    ports = {}
-    for port in row.iterfind("ssd:Connectors/ssd:Connector", READ):
-        typed = port.find("ssc:*", READ)
-        kind, unit = ("", "") if typed is None else (etree.QName(typed).localname, typed.get("unit", ""))
-        ports[port.get("name")] = PortRow(port.get("name"), port.get("kind"), kind, unit, port.sourceline)
-    step = _annotated(row, OSP_TYPE, "osp:StepSizeHint/@value")
-    return ComponentRow(row.get("name"), row.get("source"), ports, step, row.sourceline)
-
-
-def _connection(row: etree._Element) -> ConnectionRow:
-    return ConnectionRow(
-        (row.get("startElement"), row.get("startConnector")),
-        (row.get("endElement"), row.get("endConnector")),
-        *linear(row),
-        flag(row, "suppressUnitConversion"),
-        row.sourceline,
     )
 
 
@@ -248,7 +200,7 @@ def units(root: etree._Element, file: str, mistakes: Mistakes) -> dict[str, Unit
     return found
 
 
-def _annotated(row: etree._Element | None, kind: str, path: str) -> float | None:
+def annotated(row: etree._Element | None, kind: str, path: str) -> float | None:
     """The number at that path in the first annotation of a type, which no schema has checked."""
     if row is None:
         return None

@@ -11,7 +11,7 @@ from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scenes.keys import COMPONENT_KEYS, MOST_STEPS, isolation
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, COUPLING_KEYS, MOST_STEPS, isolation
 from dcone_cosim.scenes.mistakes import Override
 from dcone_cosim.scenes.scene import PHASES
 from dcone_cosim.scenes.toml_lines import given_at
@@ -35,8 +35,6 @@ SETTINGS: Mapping[str, Expected] = {
 """What the command line may say of the phase, beside the values of its components."""
 OF_COMPONENT = {key: COMPONENT_KEYS[key] for key in ("isolate", "timeout")}
 """What it may say of how a component is run, unless its FMU has a variable of that name."""
-CHOICES = {"method": ("gauss_seidel", "jacobi"), "control": ("fixed", "error"), "extrapolation": ("constant", "linear")}
-"""Words of our annotation on the coupling; the first counts when there is none."""
 
 
 def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, str]:
@@ -128,7 +126,7 @@ def macro_step(
     """Communication step [s]: of an annotation, else the least that a component or its FMU asks for."""
     asked = [told.get("macro_step", _own_macro_step(content))]
     if asked == [None]:
-        asked = [part.row.step for part in parts.values()]
+        asked = [part.step for part in parts.values()]
     if asked == [None] * len(asked):
         asked = [_of_experiment(part.experiment, "stepSize") for part in parts.values()]
     step = min((s for s in asked if s is not None), default=None)
@@ -186,7 +184,8 @@ def coupling(told: Mapping[str, str], parts: Mapping[str, Part], mistakes: Mista
             mistakes.add(STRUCTURE, None, f"<dcone:Coupling> {key} = {told[key]!r}: expected a number, not negative")
         numbers[key] = getattr(plain, key) if number is None else number
     words = {}
-    for key, known in CHOICES.items():
+    for key in ("method", "control", "extrapolation"):
+        known = COUPLING_KEYS[key].choices
         words[key] = told.get(key, known[0])
         if words[key] not in known:
             mistakes.add(STRUCTURE, None, f"<dcone:Coupling> {key} = {words[key]!r}{did_you_mean(words[key], known)}")

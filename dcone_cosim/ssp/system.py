@@ -96,16 +96,16 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
 def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, Part]:
     """Every component with its FMU, unpacked and opened once to see what it offers."""
     parts = {}
-    for number, row in enumerate(content.components):
-        entry, reason = entry_of(row.source, package.names, mistakes)
+    for number, (name, row) in enumerate(content.components.items()):
+        entry, reason = entry_of(row.get("source"), package.names, mistakes)
         if reason:
-            mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {reason}")
+            mistakes.add(STRUCTURE, row.sourceline, f"<ssd:Component> {name!r}: {reason}")
             continue
         fmu = package.unpack(entry, folder, f"{number}-{identifier(Path(entry).stem)}")
         try:
             with Archive(fmu) as archive:
-                parts[row.name] = Part(row, fmu, archive.variables, archive.description.defaultExperiment)
+                parts[name] = Part(name, row, fmu, archive.variables, archive.description.defaultExperiment)
         except FmuError as error:
             said = str(error).replace(str(fmu), entry)
-            mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {said}")
+            mistakes.add(STRUCTURE, row.sourceline, f"<ssd:Component> {name!r}: {said}")
     return parts

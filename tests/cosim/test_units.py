@@ -121,7 +121,7 @@ def test_symbols_are_those_of_astropy(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "factor", "offset", "like"),
-    [("deg_C", 1.0, 273.15, "K"), ("m/s/s", 1.0, 0.0, "m/s2"), ("uN", 1e-6, 0.0, "N"), ("Mm^2", 1e12, 0.0, "m2")],
+    [("deg_C", 1.0, 273.15, "K"), ("uN", 1e-6, 0.0, "N"), ("Mm^2", 1e12, 0.0, "m2")],
 )
 def test_astropy_knows_the_rest(name: str, factor: float, offset: float, like: str) -> None:
     assert named(name) == Unit(name, named(like).dimension, pytest.approx(factor, rel=1e-15), offset)
@@ -152,9 +152,7 @@ def test_a_rate_is_read_as_it_is_written() -> None:
 
 
 def test_a_scene_loads_without_astropy() -> None:
-    program = (
-        "import sys; from dcone_cosim.loading import load; load('mission'); sys.exit('astropy' in sys.modules)"
-    )
+    program = "import sys; from dcone_cosim.loading import load; load('mission'); sys.exit('astropy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
 
 
