@@ -324,7 +324,9 @@ def platform_names(text: str) -> tuple[str, ...]:
     for name in names:
         if name not in PLATFORMS:
             expected = f"expected all, or some of {', '.join(PLATFORMS)}"
-            raise InputError(f"--platforms {text}: {name!r} is no platform; {expected}{did_you_mean(name, PLATFORMS)}")
+            raise InputError(
+                f"--platforms {text}: {name!r} is not a platform; {expected}{did_you_mean(name, PLATFORMS)}"
+            )
     return tuple(names)
 
 

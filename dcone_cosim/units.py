@@ -234,7 +234,7 @@ def misfit(one: Unit, other: Unit) -> str:
     if not same_dimension(one.dimension, other.dimension):
         return "different dimensions"
     if TEMPERATURE == one.dimension == other.dimension and one.relative != other.relative:
-        return "a difference of temperature (relativeQuantity) is no temperature"
+        return "a difference of temperatures (relativeQuantity) is not a temperature"
     for turns, angle in ((one, other), (other, one)):
         if turns.counts_turns and angle.dimension is not None and angle.dimension[-1] != 0:
             return (

@@ -180,7 +180,7 @@ def _check_file(path: Path) -> None:
     if not head:
         raise FmuError(f"{path}: empty; expected an FMU")
     if head[:2] != LOCAL_HEADER[:2]:
-        raise FmuError(f"{path}: not a readable FMU: an FMU is a zip file, and this is none")
+        raise FmuError(f"{path}: not a readable FMU: an FMU is a zip file, and this is not one")
 
 
 def _check_name(path: Path, name: str) -> None:
@@ -198,15 +198,15 @@ def _description(path: Path, folder: Path) -> tuple[Any, ET.Element]:
         found = sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.name.lower() == XML.lower())
         if found:
             raise FmuError(f"{path}: no {XML} at its top; there is {found[0]}")
-        raise FmuError(f"{path}: no FMU: it has no {XML}")
+        raise FmuError(f"{path}: not an FMU: it has no {XML}")
     try:
         root = ET.parse(file).getroot()
     except ET.ParseError as error:
-        raise FmuError(f"{path}: its {XML} is no valid XML ({error})") from None
+        raise FmuError(f"{path}: its {XML} is not valid XML ({error})") from None
     version = root.get("fmiVersion")
     if root.tag != "fmiModelDescription" or version is None:
         told = ", without an fmiVersion" if version is None else f", fmiVersion {version}"
-        raise FmuError(f"{path}: its {XML} is of no FMU: it begins with <{root.tag}>{told}")
+        raise FmuError(f"{path}: its {XML} is not that of an FMU: it begins with <{root.tag}>{told}")
     if version != "2.0":
         raise FmuError(f"{path}: this is FMI {version}; {EXPECTED}")
     try:

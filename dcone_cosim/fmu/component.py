@@ -321,7 +321,7 @@ class Component:
 
     def not_finite(self, info: VariableInfo, value: float) -> CallError:
         """The error for an output that is no finite number."""
-        said = f"its output {info.name} is {value}, which is no finite number"
+        said = f"its output {info.name} is {value}, which is not a finite number"
         return CallError(self.name, f" at t = {self.time:.9g} s", said, self.archive.path.name)
 
 

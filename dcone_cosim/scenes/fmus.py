@@ -38,7 +38,7 @@ def file_of(given: object, folder: Path, what: str = "FMU", example: str = "my.f
     if ADDRESS.match(given):
         raise Unexpected(f"is an address: nothing is fetched; download the {what} and give its path")
     if "\0" in given:
-        raise Unexpected("is no path: it holds a NUL")
+        raise Unexpected("is not a path: it holds a NUL")
     return folder / Path(given).expanduser()
 
 

@@ -89,7 +89,7 @@ class Expected:
             if not isinstance(value, str):
                 raise Unexpected(f"expected {self._wanted()}, in quotes")
             if "\0" in value:
-                raise Unexpected("is no text: it holds a NUL")
+                raise Unexpected("is not a text: it holds a NUL")
             return value  # type: ignore[return-value]  # who asks for a String knows it
         if self.choices:
             if value not in self.choices:
@@ -176,7 +176,7 @@ class Expected:
             raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
         match = _QUANTITY.fullmatch(value)
         if match is None:
-            raise Unexpected(f"is no number with a unit; expected {self._wanted()}")
+            raise Unexpected(f"is not a number with a unit; expected {self._wanted()}")
         if match[2] is None:
             raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
         unit, expected = named(match[2].strip()), by_name(self.unit)

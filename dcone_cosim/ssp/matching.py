@@ -93,7 +93,7 @@ def parameters(
         info = parts[owner].variables.get(name)
         if info is None:
             hint = mistakes.near(name, parts[owner].variables)
-            _not_found(given, f"parameter {name!r} of {owner!r} is no variable of its FMU{hint}", mistakes)
+            _not_found(given, f"parameter {name!r} of {owner!r} is not a variable of its FMU{hint}", mistakes)
             continue
         problem = _problem(given, info)
         if problem:

@@ -70,7 +70,7 @@ class Package:
         try:
             self._archive = zipfile.ZipFile(regular(path))
         except zipfile.BadZipFile as error:
-            raise InputError(f"{path} is no SSP package: {error}; the file may be cut short") from error
+            raise InputError(f"{path} is not an SSP package: {error}; the file may be cut short") from error
         except OSError as error:
             raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
         try:
@@ -98,7 +98,7 @@ class Package:
         if STRUCTURE not in names:
             others = [n for n in names if n.endswith(".ssd")]
             hint = did_you_mean(STRUCTURE, others) if others else ""
-            raise InputError(f"{self.path} is no SSP package: it holds no {STRUCTURE}{hint}")
+            raise InputError(f"{self.path} is not an SSP package: it holds no {STRUCTURE}{hint}")
 
     @property
     def names(self) -> list[str]:

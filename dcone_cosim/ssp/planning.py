@@ -72,14 +72,14 @@ def settings_of(
                 continue
             owner, variable = owner_of(name, parts)
             if not owner:
-                raise Unexpected(f"is no variable of a component{did_you_mean(head, [phase, *parts])}")
+                raise Unexpected(f"is not a variable of a component{did_you_mean(head, [phase, *parts])}")
             info = parts[owner].variables.get(variable)
             if info is None and variable in OF_COMPONENT:
                 run.setdefault(owner, {})[variable] = cast(float, OF_COMPONENT[variable].read(given))
                 continue
             if info is None or info.causality not in ("parameter", "input"):
                 known = [n for n, v in parts[owner].variables.items() if v.causality in ("parameter", "input")]
-                raise Unexpected(f"is no parameter or input of its FMU{did_you_mean(variable, known)}")
+                raise Unexpected(f"is not a parameter or an input of its FMU{did_you_mean(variable, known)}")
             example = example_of(info.start or 0.0, info.unit)
             expected = Expected(
                 info.unit, info.kind, 0, (), example, info.minimum, info.maximum, relative=info.relative

@@ -50,9 +50,9 @@ def complaint(text: str) -> str:
     [
         # numbers that are none
         ("mission", "damping_ratio = 0.106", f"damping_ratio = {'9' * 400}", ["net.damping_ratio", "too large"]),
-        ("mission", 'side = "12 m"', 'side = "[1,2] m"', ['net.side = "[1,2] m"', "is no number with a unit"]),
-        ("mission", 'side = "12 m"', 'side = "1 99m"', ['net.side = "1 99m"', "is no number with a unit"]),
-        ("mission", MUZZLE, MUZZLE.replace("-12 m", "far"), ["element 2 is no number with a unit"]),
+        ("mission", 'side = "12 m"', 'side = "[1,2] m"', ['net.side = "[1,2] m"', "is not a number with a unit"]),
+        ("mission", 'side = "12 m"', 'side = "1 99m"', ['net.side = "1 99m"', "is not a number with a unit"]),
+        ("mission", MUZZLE, MUZZLE.replace("-12 m", "far"), ["element 2 is not a number with a unit"]),
         ("mission", "[handoff]", "[capture.solver]\nseed = 3000000000\n[handoff]", ["solver.seed", "2147483647"]),
         ("table1-capture", '"5.32 s"', "5", ["capture.snapshots", "element 2: a bare number"]),
         # bounds in the unit that was written

@@ -317,7 +317,7 @@ def test_steps_of_one_length() -> None:
     whole = coupled(components, connections, step=0.3)
     assert not whole.can_vary_step
     with pytest.raises(
-        FmuError, match=r"step of 1 s at t = 0 s is no whole number of steps of 0\.3 s.* of second takes"
+        FmuError, match=r"step of 1 s at t = 0 s is not a whole number of steps of 0\.3 s.* of second takes"
     ):
         whole.step(0.0, 1.0)
     assert components[0].calls == []
@@ -325,7 +325,7 @@ def test_steps_of_one_length() -> None:
     assert {round(size, 12) for _, size in components[1].calls} == {0.1}
     whole = coupled(components, connections)
     whole.step(0.0, 0.3)
-    with pytest.raises(FmuError, match=r"step of 0\.2 s at t = 0\.3 s is no whole number of steps of 0\.3 s"):
+    with pytest.raises(FmuError, match=r"step of 0\.2 s at t = 0\.3 s is not a whole number of steps of 0\.3 s"):
         whole.step(0.3, 0.2)
 
 

@@ -112,7 +112,7 @@ def test_in_connections(out: Unit, into: bool) -> None:
     parts[1].variables = {"in": of("in", "input", wanted)}
     names = ["a", "b"]
     wrong, right = ("T", "dT") if into else ("dT", "T")
-    with pytest.raises(InputError, match=r"a difference of temperature \(relativeQuantity\) is no temperature"):
+    with pytest.raises(InputError, match=r"a difference of temperatures \(relativeQuantity\) is not a temperature"):
         wire("x", names, parts, [Connection("a", wrong, "b", "in")])
     assert len(wire("x", names, parts, [Connection("a", right, "b", "in")])) == 1
 

@@ -135,6 +135,11 @@ def test_the_package_that_is_damaged_here_is_good(good: Path) -> None:
         ),
         (
             SYSTEM_END,
+            SYSTEM_END + LOOSE.format("", "separation", "removal", "thrust.offset").replace('startElement="" ', ""),
+            ("startConnector = 'separation' is one of the system", "startElement"),
+        ),
+        (
+            SYSTEM_END,
             SYSTEM_END + LOOSE.format("removal", "separation", "removal", "thrust.ofset"),
             ("no connector 'thrust.ofset'", "did you mean 'thrust.offset'?"),
         ),
@@ -220,8 +225,8 @@ def test_an_entry_that_would_leave_the_package_is_refused(
 def test_files_that_are_no_packages(good: Path, tmp_path: Path) -> None:
     whole = good.read_bytes()
     for name, content, said in (
-        ("empty.ssp", b"", "no SSP package"),
-        ("text.ssp", b"not a zip", "no SSP package"),
+        ("empty.ssp", b"", "not an SSP package"),
+        ("text.ssp", b"not a zip", "not an SSP package"),
         ("short.ssp", whole[: len(whole) // 2], "cut short"),
         ("flipped.ssp", whole.replace(b"tow_removal", b"tow_remuval", 1), "damaged"),
     ):
@@ -240,7 +245,7 @@ def test_the_command_line_says_what_it_cannot_set(good: Path) -> None:
         ("removal.thrust.level=1", "removal.thrust.level: a bare number has no unit; expected a force"),
         ("removal.thrust.level=1", 'such as "-0.01 N"'),
         ("removl.thrust.level=1 N", "did you mean 'removal'"),
-        ("zzz.thrust.level=1 N", "is no variable of a component; known: removal"),
+        ("zzz.thrust.level=1 N", "is not a variable of a component; known: removal"),
         ("removal.macro_step=0 s", "greater than 0"),
     ):
         with pytest.raises(InputError, match=r"^--set ") as caught:
