@@ -203,9 +203,9 @@ def _faults(row: Asked, info: VariableInfo) -> list[str]:
     wanted = by_name(row.unit)
     dimension = PURE if wanted.dimension is None else wanted.dimension
     if info.kind == row.kind == "Real" and misfit(info.own, Unit(row.unit, dimension)):
-        theirs = spoken_dimension(info.dimension)
-        counted = f" ({theirs})" if theirs != info.declared_unit else ""
-        faults.append(f"its unit is {info.declared_unit}{counted}; expected {spoken_dimension(dimension)}")
+        theirs = spoken_dimension(info.own.dimension)
+        counted = f" ({theirs})" if theirs != info.own.name else ""
+        faults.append(f"its unit is {info.own.name}{counted}; expected {spoken_dimension(dimension)}")
     return faults
 
 

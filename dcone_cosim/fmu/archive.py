@@ -260,15 +260,11 @@ def _variables(path: Path, description: Any, relative: Container[str]) -> dict[s
             label,
             v.causality or "local",
             v.description or "",
-            name,
-            unit.dimension,
-            unit.factor,
-            unit.offset,
+            unit,
             v.variability or "",
             v.initial or "",
             _number(path, v.name, "start", v.start, kind, unit),
             *_bounds(path, v, kind, unit),
-            unit.relative,
         )
     return found
 

@@ -65,7 +65,7 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
             names.setdefault(match[1] if match else info.name, []).append(info.name)
     keys: dict[str, Key] = {}
     for name, elements in names.items():
-        alike = len({variables[element].relative for element in elements}) == 1
+        alike = len({variables[element].own.relative for element in elements}) == 1
         if alike and sorted(elements) == sorted(f"{name}[{i + 1}]" for i in range(len(elements))):
             keys[name] = _key([f"{name}[{i + 1}]" for i in range(len(elements))], variables, len(elements))
         else:
@@ -75,10 +75,10 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
 
 def _unit(info: VariableInfo) -> str:
     """SI unit in which a value is read and compared; "1" for a pure number, and when nothing is known of the unit."""
-    if info.dimension is None:
+    if info.own.dimension is None:
         return "1"
     known = by_name(info.unit)
-    return info.unit if known.is_si and known.dimension == info.dimension else si_name(info.dimension)
+    return info.unit if known.is_si and known.dimension == info.own.dimension else si_name(info.own.dimension)
 
 
 def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, choices: tuple[str, ...] = ()) -> Key:
@@ -96,6 +96,6 @@ def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, cho
         f"{start:g}" if first.kind == "Integer" else example_of(start, unit),
         max(info.minimum for info in infos),
         min(info.maximum for info in infos),
-        relative=first.relative,
+        relative=first.own.relative,
     )
     return Key(tuple(names), expected, starts, first.description)

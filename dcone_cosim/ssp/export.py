@@ -131,7 +131,7 @@ def _part(component: ComponentScene, archive: Archive, source: str, connected: s
     rows = {name: archive.variables[name] for name in kinds}
 
     def unit(name: str) -> str:
-        declared = rows[name].declared_unit
+        declared = rows[name].own.name
         return declared if kinds[name] == "Real" and declared in units else ""
 
     ports = [
@@ -151,9 +151,9 @@ def _part(component: ComponentScene, archive: Archive, source: str, connected: s
 def _wire(connection: Connection, out: VariableInfo, to: VariableInfo) -> Wire:
     """The connection between the values as the two FMUs count them; it is between SI values inside."""
     factor, offset = connection.factor, connection.offset
-    if not (out.is_si and to.is_si):
-        offset = (factor * out.offset + offset - to.offset) / to.factor
-        factor = factor * (out.factor / to.factor)
+    if not (out.own.is_si and to.own.is_si):
+        offset = to.own.from_si(factor * out.own.offset + offset)
+        factor = factor * (out.own.factor / to.own.factor)
     return Wire((connection.source, out.name), (connection.target, to.name), factor, offset)
 
 

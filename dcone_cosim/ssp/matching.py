@@ -65,7 +65,7 @@ def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> No
             mistakes.add(STRUCTURE, line, text)
         unit = typed.get("unit") if typed is not None else None
         if unit and _other_unit(unit, info.own, units):
-            mistakes.add(STRUCTURE, line, f"{what} is in {unit!r}; the FMU has it in {info.declared_unit!r}")
+            mistakes.add(STRUCTURE, line, f"{what} is in {unit!r}; the FMU has it in {info.own.name!r}")
 
 
 def _other_unit(name: str, own: Unit, units: Mapping[str, Unit]) -> bool:
@@ -124,13 +124,13 @@ def _problem(given: Given, info: VariableInfo) -> str:
         return "cannot be set: in the FMU it is a constant"
     if info.causality not in ("parameter", "input") and info.initial not in ("exact", "approx"):
         return f"cannot be set: in the FMU its causality is {info.causality!r}, without a start value of its own"
-    if given.unit is None or given.suppress or info.dimension is None or given.unit.name == info.declared_unit:
+    if given.unit is None or given.suppress or info.own.dimension is None or given.unit.name == info.own.name:
         return ""
     if given.unit.dimension is None:
         return f"is given in {given.unit.name!r}, which <ssv:Units> does not define"
-    if same_dimension(given.unit.dimension, info.dimension):
+    if same_dimension(given.unit.dimension, info.own.dimension):
         return ""
-    return f"is given in {given.unit.name!r}; the FMU has it in {info.declared_unit or '1'!r}"
+    return f"is given in {given.unit.name!r}; the FMU has it in {info.own.name!r}"
 
 
 def _in_si(given: Given, info: VariableInfo) -> float:
@@ -202,7 +202,7 @@ def _mismatch(row: etree._Element, out: VariableInfo, to: VariableInfo) -> str:
     if out.kind != "Real" and linear(row) != (1.0, 0.0):
         return f"both are {out.kind}; a linear transformation is for Real"
     why = misfit(out.own, to.own)
-    return f"{out.declared_unit!r} cannot be converted to {to.declared_unit!r}: {why}" if why else ""
+    return f"{out.own.name!r} cannot be converted to {to.own.name!r}: {why}" if why else ""
 
 
 def _si_transformation(row: etree._Element, out: VariableInfo, to: VariableInfo) -> tuple[float, float]:
@@ -212,9 +212,9 @@ def _si_transformation(row: etree._Element, out: VariableInfo, to: VariableInfo)
     conversion is suppressed.
     """
     factor, offset = linear(row)
-    of = out if flag(row, "suppressUnitConversion") else to
-    if of is not to:
-        factor = factor * to.factor / of.factor
-    if to.is_si and of.is_si:
+    of = out.own if flag(row, "suppressUnitConversion") else to.own
+    if of is not to.own:
+        factor = factor * to.own.factor / of.factor
+    if to.own.is_si and of.is_si:
         return factor, offset
-    return factor, to.factor * offset + to.offset - factor * of.offset
+    return factor, to.own.to_si(offset) - factor * of.offset

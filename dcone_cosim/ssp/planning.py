@@ -82,7 +82,7 @@ def settings_of(
                 raise Unexpected(f"is not a parameter or an input of its FMU{did_you_mean(variable, known)}")
             example = example_of(info.start or 0.0, info.unit)
             expected = Expected(
-                info.unit, info.kind, 0, (), example, info.minimum, info.maximum, relative=info.relative
+                info.unit, info.kind, 0, (), example, info.minimum, info.maximum, relative=info.own.relative
             )
             values.setdefault(owner, {})[variable] = cast(float | str, expected.read(given))
         except Unexpected as error:

@@ -10,6 +10,7 @@ from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.component import Terminated, output_names
+from dcone_cosim.units import NO_UNIT, Unit
 from tests.cosim.linear_components import LinearComponent, by_force, by_motion, coupled, error_at, run
 from tests.cosim.mock_components import MockComponent
 
@@ -70,15 +71,13 @@ def test_kinds_that_do_not_fit(kind: str, other: str) -> None:
 def test_dimensions_must_be_the_same() -> None:
     components, connections = by_force()
     first, second = components
-    first.variables["position"] = replace(
-        first.variables["position"], unit="m", declared_unit="mm", dimension=LENGTH, factor=1e-3
-    )
-    second.variables["position"] = replace(second.variables["position"], unit="m", dimension=LENGTH)
+    first.variables["position"] = replace(first.variables["position"], own=Unit("mm", LENGTH, 1e-3))
+    second.variables["position"] = replace(second.variables["position"], own=Unit("m", LENGTH))
     Coupled("tow", components, connections, Coupling())
-    second.variables["position"] = replace(second.variables["position"], unit="N", dimension=FORCE)
+    second.variables["position"] = replace(second.variables["position"], own=Unit("N", FORCE))
     with pytest.raises(InputError, match=r"position is in mm, position in N: different dimensions"):
         Coupled("tow", components, connections, Coupling())
-    second.variables["position"] = replace(second.variables["position"], unit="1", dimension=None)
+    second.variables["position"] = replace(second.variables["position"], own=NO_UNIT)
     Coupled("tow", components, connections, Coupling())
 
 
@@ -87,14 +86,14 @@ def test_turns_are_no_angle() -> None:
     components, connections = by_force()
     first, second = components
     frequency, angular = (0, 0, -1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 0, 0, 0, 1)
-    info = replace(first.variables["position"], unit="Hz", declared_unit="Hz", dimension=frequency)
-    second.variables["position"] = replace(second.variables["position"], unit="rad/s", dimension=angular)
+    info = replace(first.variables["position"], own=Unit("Hz", frequency))
+    second.variables["position"] = replace(second.variables["position"], own=Unit("rad/s", angular))
     first.variables["position"] = info
     with pytest.raises(InputError, match=r"position is in Hz, position in rad/s: Hz counts turns, rad/s an angle"):
         Coupled("tow", components, connections, Coupling())
     for other in (
-        replace(info, unit="1/s", declared_unit="1/s"),
-        replace(info, dimension=angular, factor=6.283185307179586),
+        replace(info, own=Unit("1/s", frequency)),
+        replace(info, own=Unit("Hz", angular, 6.283185307179586)),
     ):
         first.variables["position"] = other
         Coupled("tow", components, connections, Coupling())

@@ -139,7 +139,7 @@ class TestComponent:
 
     def test_what_is_told_of_a_variable(self, component: Component) -> None:
         info = component.variables["tether.rest_length"]
-        assert (info.unit, info.declared_unit, info.factor, info.dimension) == ("m", "mm", 0.001, LENGTH)
+        assert (info.unit, info.own) == ("m", Unit("mm", LENGTH, 0.001))
         assert component.variables["chaser.mass"].start == 2 * 2000.0 + 10.0
         assert (info.variability, info.initial) == ("fixed", "exact")
 

@@ -61,9 +61,9 @@ def fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_what_is_read_of_the_description(fmu: Path) -> None:
     with Archive(fmu) as archive:
         found = {name: archive.variables[name] for name in REALS}
-    assert {name for name, info in found.items() if info.relative} == set(DIFFERENCES)
+    assert {name for name, info in found.items() if info.own.relative} == set(DIFFERENCES)
     assert {info.unit for info in found.values()} == {"K"}
-    assert {info.declared_unit for info in found.values()} == {"degC"}
+    assert {info.own.name for info in found.values()} == {"degC"}
     assert {name: info.start for name, info in found.items()} == {
         name: 7.0 if name in DIFFERENCES else 280.15 for name in REALS
     }
@@ -98,9 +98,7 @@ def test_in_a_scene(fmu: Path, given: str, kelvin: float) -> None:
 
 
 def of(name: str, causality: str, unit: Unit) -> VariableInfo:
-    return VariableInfo(
-        name, 0, "Real", "K", causality, "", unit.name, TEMPERATURE, unit.factor, unit.offset, relative=unit.relative
-    )
+    return VariableInfo(name, 0, "Real", "K", causality, "", unit)
 
 
 @pytest.mark.parametrize(("out", "into"), [(CELSIUS, True), (Unit("K", TEMPERATURE), True), (CELSIUS, False)])

@@ -257,7 +257,7 @@ fmu = "{}"
     told = r"other\.catch\.mass is in %, removal\.reel\.tension in N: different dimensions"
     with pytest.raises(InputError, match=told):
         read(tmp_path, scene.format(fmus["%"]))
-    reel = VariableInfo("reel.tension", 0, "Real", "N", "input", "", "N", by_name("N").dimension)
+    reel = VariableInfo("reel.tension", 0, "Real", "N", "input", "", by_name("N"))
     for name, fits in (("kN", True), ("%", False)):
         with Archive(fmus[name]) as archive:
             why = mismatch("out", archive.variables["catch.mass"], "in", reel)
