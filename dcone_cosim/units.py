@@ -27,7 +27,7 @@ TEMPERATURE: Dimension = tuple(int(name == "K") for name in BASE)
 
 _SCALED = """
     mm 1e-3 m; cm 1e-2 m; km 1e3 m; um 1e-6 m; AU 149597870700 m; l 1e-3 m3
-    ms 1e-3 s; min 60 s; h 3600 s; d 86400 s; wk 604800 s; yr 31557600 s; Hz 1 1/s; g 1e-3 kg; t 1e3 kg
+    ms 1e-3 s; min 60 s; h 3600 s; d 86400 s; wk 604800 s; yr 31557600 s; day 86400 s; Hz 1 1/s; g 1e-3 kg; t 1e3 kg
     mrad 1e-3 rad; deg 0.017453292519943295 rad; arcmin 0.0002908882086657216 rad; arcsec 4.84813681109536e-06 rad
     N 1 kg.m/s2; mN 1e-3 N; kN 1e3 N; MN 1e6 N; Pa 1 N/m2; kPa 1e3 Pa; MPa 1e6 Pa; GPa 1e9 Pa; bar 1e5 Pa
     J 1 N.m; mJ 1e-3 J; kJ 1e3 J; MJ 1e6 J; W 1 J/s; mW 1e-3 W; kW 1e3 W; V 1 W/A; ohm 1 V/A
