@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
+from dcone_cosim.scenes.expected import TEXT, Expected, Unexpected, example_of
 from dcone_cosim.scenes.keys import Key, Slot
-from dcone_cosim.scenes.units import TEXT, Expected, Unexpected, example_of
 from dcone_cosim.units import by_name, si_name
 
 if TYPE_CHECKING:

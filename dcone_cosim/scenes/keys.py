@@ -12,9 +12,9 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.contract import HAND_OVER
+from dcone_cosim.scenes.expected import Expected, Unexpected, example_of
 from dcone_cosim.scenes.mistakes import Mistake, unknown
 from dcone_cosim.scenes.toml_lines import Path, dotted
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of
 from dcone_cosim.units import Unit
 
 SHARED = "orbit"

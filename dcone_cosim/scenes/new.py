@@ -14,12 +14,12 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.handoff import REMOVAL_SETS
 from dcone_cosim.line import ATTACHMENT
+from dcone_cosim.scenes.expected import Expected
 from dcone_cosim.scenes.keys import COUPLING_KEYS, HANDOFF_KEYS, MEANING, PHASE_KEYS, SHARED, Key, key_of, orbit_keys
 from dcone_cosim.scenes.parts import term_named
 from dcone_cosim.scenes.scene import PHASES
 from dcone_cosim.scenes.tables import EXAMPLE
 from dcone_cosim.scenes.toml_lines import dotted
-from dcone_cosim.scenes.units import Expected
 
 WIDTH = 120
 RESERVED = ("components", "coupling", "parameters")

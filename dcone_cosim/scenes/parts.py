@@ -13,13 +13,13 @@ from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
+from dcone_cosim.scenes.expected import LARGEST_INTEGER, TEXT
 from dcone_cosim.scenes.fmus import Offer
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, PHASE_KEYS, SHARED, Key, Slot, key_of, read_value
 from dcone_cosim.scenes.mistakes import Mistake, unknown
 from dcone_cosim.scenes.scene import TableFile
 from dcone_cosim.scenes.tables import EXAMPLE, table_of
 from dcone_cosim.scenes.toml_lines import Path, dotted, given_at
-from dcone_cosim.scenes.units import LARGEST_INTEGER, TEXT
 from dcone_cosim.units import by_name
 
 if TYPE_CHECKING:

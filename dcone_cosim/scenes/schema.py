@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dcone_cosim import build
+from dcone_cosim.scenes.expected import Expected
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,
@@ -26,7 +27,6 @@ from dcone_cosim.scenes.keys import (
     orbit_keys,
 )
 from dcone_cosim.scenes.scene import PHASES
-from dcone_cosim.scenes.units import Expected
 
 QUANTITY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s].*$"
 """A number and a unit."""

@@ -7,10 +7,10 @@ from pathlib import Path as File
 
 from dcone_cosim import build
 from dcone_cosim.files import regular
+from dcone_cosim.scenes.expected import Unexpected
 from dcone_cosim.scenes.fmus import file_of
 from dcone_cosim.scenes.scene import TableFile
 from dcone_cosim.scenes.toml_lines import Path
-from dcone_cosim.scenes.units import Unexpected
 
 EXAMPLE = "my-table.csv"
 """A path as a scene could have it."""

@@ -1,4 +1,4 @@
-"""Rows of a structure against the FMUs they are about: connectors, values and connections, everything SI afterwards."""
+"""Elements of a structure against the FMUs they are about: connectors, values and connections, all SI afterwards."""
 
 from __future__ import annotations
 

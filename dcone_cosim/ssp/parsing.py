@@ -1,4 +1,4 @@
-"""From the XML of a package to rows, each with its line.
+"""Reads the XML of a package.
 
 The schemas of SSP 1.0 say what may stand where, `BEYOND` what of it is not read here: a file that has passed both is
 walked without further checks.
@@ -73,7 +73,6 @@ BEYOND = {
 }
 """What SSP has and the subset has not: where it stands, and what is said of it, with the values of its attributes."""
 
-
 BINDING = "ssd:ParameterBindings/ssd:ParameterBinding"
 
 
@@ -99,8 +98,9 @@ class Document:
 
 
 def read(content: bytes, file: str, root_name: str, mistakes: Mistakes) -> etree._Element | None:
-    """Root of an XML file, such as `ssv:ParameterSet`, that has passed the schema and `BEYOND`; None with mistakes
-    noted. Entities, DTDs and the network are left alone.
+    """Root of an XML file, such as `ssv:ParameterSet`, that has passed the schema and `BEYOND`; None with mistakes.
+
+    Neither entities nor a document type definition are resolved, and nothing is fetched.
     """
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
@@ -120,10 +120,7 @@ def read(content: bytes, file: str, root_name: str, mistakes: Mistakes) -> etree
         mistakes.add(file, root.sourceline, text)
     elif not _schema().validate(root):
         for entry in _schema().error_log:
-            text = entry.message
-            for prefix, uri in READ.items():
-                text = text.replace(f"{{{uri}}}", f"{prefix}:")
-            mistakes.add(file, entry.line, text)
+            mistakes.add(file, entry.line, plain(entry.message))
     else:
         for path, text in BEYOND.items():
             for row in root.xpath(path, namespaces=READ):

@@ -11,11 +11,11 @@ from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, REMOVAL_SETS
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scenes.keys import COMPONENT_KEYS, COUPLING_KEYS, MOST_STEPS, isolation
+from dcone_cosim.scenes.expected import Expected, Unexpected, example_of
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, COUPLING_KEYS, MOST_STEPS, PHASE_KEYS, isolation
 from dcone_cosim.scenes.mistakes import Override
 from dcone_cosim.scenes.scene import PHASES
 from dcone_cosim.scenes.toml_lines import given_at
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part, owner_of
@@ -25,13 +25,7 @@ from dcone_cosim.ssp.parsing import Document, decimal
 RESERVED = (*PHASES, "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
 """Names of files in a run folder that a system's own name must not take."""
 
-SETTINGS: Mapping[str, Expected] = {
-    "macro_step": Expected("s", example="0.1 s", minimum=0.0, open_minimum=True),
-    "duration": Expected("s", example="30 s", minimum=0.0, open_minimum=True),
-    "after_capture": Expected("s", example="1 s", minimum=0.0),
-    "hand_over": Expected("1", choices=HAND_OVER),
-    "solver_tolerance": Expected("1", example="1e-6", minimum=0.0, open_minimum=True),
-}
+SETTINGS = {**PHASE_KEYS["capture"], "solver_tolerance": COMPONENT_KEYS["solver_tolerance"]}
 """What the command line may say of the phase, beside the values of its components."""
 OF_COMPONENT = {key: COMPONENT_KEYS[key] for key in ("isolate", "timeout")}
 """What it may say of how a component is run, unless its FMU has a variable of that name."""

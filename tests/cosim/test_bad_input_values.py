@@ -12,9 +12,9 @@ from dcone_cosim.fmu.component import CallError
 from dcone_cosim.loading import find, load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
+from dcone_cosim.scenes.expected import Expected, Unexpected
 from dcone_cosim.scenes.reading import parse
 from dcone_cosim.scenes.scene import Scene
-from dcone_cosim.scenes.units import Expected, Unexpected
 from fmu_src.net_capture.interface import MOST_NODES, NodeTerms, refusals
 from fmu_src.net_capture.nets.grid import node_count
 from tests.cosim.mock_components import MockCapture

@@ -16,8 +16,8 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.scenes.expected import Unexpected
 from dcone_cosim.scenes.fmus import offer
-from dcone_cosim.scenes.units import Unexpected
 from dcone_cosim.ssp import matching
 from dcone_cosim.ssp.values import Given
 from dcone_cosim.units import TEMPERATURE, Unit

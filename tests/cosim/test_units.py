@@ -10,8 +10,8 @@ import pytest
 from astropy import units
 
 from dcone_cosim.build import MODELS, defaults
+from dcone_cosim.scenes.expected import Expected, Unexpected, example_of
 from dcone_cosim.scenes.keys import expected_of
-from dcone_cosim.scenes.units import Expected, Unexpected, example_of
 from dcone_cosim.units import _PRODUCTS, _SYMBOLS, BASE, Unit, like, named, spoken
 
 LENGTH = Expected("m", example="24 m", refusal=lambda v: None if v > 0 else "must be greater than 0 m")
