@@ -152,7 +152,7 @@ def connections(
 ) -> tuple[Connection, ...]:
     """The connections from outputs to inputs, with the factor and offset between SI values."""
     made: list[Connection] = []
-    taken: dict[tuple[str, str], int] = {}
+    taken: dict[tuple[str, str], etree._Element] = {}
     for row in rows:
         start, end = _end(row, "start", parts, mistakes), _end(row, "end", parts, mistakes)
         if start is None or end is None:
@@ -162,13 +162,13 @@ def connections(
         output, into = source.variables.get(out.get("name")), target.variables.get(to.get("name"))
         if output is None or into is None:
             continue  # told with the connector
-        line = taken.setdefault((target.name, into.name), row.sourceline)
+        first = taken.setdefault((target.name, into.name), row)
         if (out.get("kind"), to.get("kind")) != ("output", "input"):
             problem = f"{out.get('kind')} to {to.get('kind')}; expected an output and an input"
         else:
             problem = _mismatch(row, output, into)
-        if not problem and line != row.sourceline:
-            problem = f"the input is connected in line {line} already"
+        if not problem and first is not row:
+            problem = f"the input is connected in line {first.sourceline} already"
         if problem:
             what = f"connection {source.name}.{output.name} -> {target.name}.{into.name}"
             mistakes.add(STRUCTURE, row.sourceline, f"{what}: {problem}")

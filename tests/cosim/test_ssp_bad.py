@@ -82,6 +82,17 @@ def test_the_package_that_is_damaged_here_is_good(good: Path) -> None:
             "<ssd:ParameterBinding/><ssd:ParameterBinding>",
             ("neither a source nor a <ssv:ParameterSet>",),
         ),
+        (
+            "<ssd:ParameterBinding>",
+            '<ssd:ParameterBinding source="SystemStructure.ssd"/><ssd:ParameterBinding>',
+            ("<ssd:SystemStructureDescription> is not the <ssv:ParameterSet>",),
+        ),
+        (
+            SYSTEM_END,
+            '<ssd:Component name="removal" source="resources/removal.fmu"/></ssd:Elements>',
+            ("<ssd:Component> 'removal': line", "has one of that name"),
+        ),
+        ('<ssc:BaseUnit m="1"/>', '<ssc:BaseUnit m="1" factor="0"/>', ("<ssc:Unit> 'm'", "factor 0")),
         (SET_END, SET_END + MAPPED.format(""), ("neither a source nor a <ssm:ParameterMapping>",)),
         (
             SET_END,
@@ -170,6 +181,12 @@ def test_one_fault_is_one_error_with_its_line(
         assert part in text
     assert "1 mistake" in text or "not well-formed" in text
     assert STRUCTURE in text
+
+
+def test_a_system_without_components(good: Path, tmp_path: Path) -> None:
+    text = contents(good)[STRUCTURE].decode()
+    elements = text[text.index("<ssd:Elements>") : text.index(SYSTEM_END) + len(SYSTEM_END)]
+    assert "line 3: the system holds no component" in refusal(changed(good, tmp_path / "bad.ssp", (elements, "")))
 
 
 def test_a_fault_is_told_with_the_line_it_stands_on(good: Path, tmp_path: Path) -> None:
