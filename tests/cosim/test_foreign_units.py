@@ -144,6 +144,16 @@ class TestComponent:
         assert (info.variability, info.initial) == ("fixed", "exact")
 
 
+def test_rates_have_the_factor_and_no_offset(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Archive(path) as archive, Component(archive, "it") as component:
+        handed: list[Any] = []
+        with monkeypatch.context() as patched:
+            patched.setattr(component, "_call", lambda *arguments: handed.extend(arguments))
+            component.set_rates({"start.relative_position[2]": 0.25, "chaser.mass": -3.0})
+        assert handed[0] == "setRealInputDerivatives"
+        assert handed[-1] == [250.0, -1.5]
+
+
 def test_si_values_pass_untouched(tmp_path: Path) -> None:
     odd = 0.1 + 0.2
     with Archive(build(tmp_path)) as archive, Component(archive, "it") as component:

@@ -176,3 +176,17 @@ def test_a_connection_has_its_direction_from_its_connectors(good: Path, tmp_path
         assert (made.output, made.input, made.factor, made.offset) == (*there, 1.0, 0.0)
     with pytest.raises(InputError, match=r"line \d+: connection .*: the input is connected in line \d+ already"):
         system.load(connected(good, tmp_path / "y.ssp", there, back))
+
+
+def test_a_linear_transformation_is_for_real(good: Path, tmp_path: Path) -> None:
+    flags = [VariableInfo(name, 0, "Boolean", "1", name, "") for name in ("output", "input")]
+    plain, scaled = (
+        etree.XML(f"<Connection {NAMESPACES}>{inner}</Connection>")
+        for inner in ("", '<ssc:LinearTransformation factor="2"/>')
+    )
+    assert matching._mismatch(plain, *flags) == ""
+    assert matching._mismatch(scaled, *flags) == "both are Boolean; a linear transformation is for Real"
+    mapping = MAPPING.format(namespaces=NAMESPACES, entries=ENTRY.format(how='factor="2"'))
+    value = '<ssv:Parameter name="push"><ssv:Integer value="1"/></ssv:Parameter>'
+    with pytest.raises(InputError, match="'push' is Integer: a linear transformation is for Real"):
+        system.load(of_component(good, tmp_path / "x.ssp", inline(value, mapping=mapping)))
