@@ -16,7 +16,7 @@ from typing import Any
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
-from dcone_cosim.scratch import clear_left, workplace
+from dcone_cosim.scratch import Scratch, clear_left
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.implied import Implied
@@ -291,7 +291,7 @@ def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], pla
         announce(text)
 
     try:
-        built = build_all(interfaces, cache_folder(), tell, list(platforms) or [host()], workplace)
+        built = build_all(interfaces, cache_folder(), tell, list(platforms) or [host()], Scratch)
     except BuildError as error:
         raise FmuError(str(error)) from None
     if announced and not platforms:
@@ -318,7 +318,9 @@ def platform_names(text: str) -> tuple[str, ...]:
     for name in names:
         if name not in PLATFORMS:
             expected = f"expected all, or some of {', '.join(PLATFORMS)}"
-            raise InputError(f"--platforms {text}: {name!r} is no platform; {expected}{did_you_mean(name, PLATFORMS)}")
+            raise InputError(
+                f"--platforms {text}: {name!r} is not a platform; {expected}{did_you_mean(name, PLATFORMS)}"
+            )
     return tuple(names)
 
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.scratch import clear_left, workplace
+from dcone_cosim.scratch import Scratch, clear_left
 
 DAY = 86400.0
 MENDED = "what should be here is built when it is needed"
@@ -122,7 +122,7 @@ class Times:
 
     def keep(self, seconds: float) -> None:
         """Add how long a build took; the last few count."""
-        with suppress(OSError), workplace(self._path.parent) as folder:
+        with suppress(OSError), Scratch(self._path.parent) as folder:
             draft = folder / self._path.name
             draft.write_text(json.dumps({"seconds": [*self._known(), round(seconds, 1)][-5:]}))
             draft.replace(self._path)

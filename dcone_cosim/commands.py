@@ -162,7 +162,7 @@ def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
     if not path.suffix:
         path = path.with_name(f"{path.name}.toml")
     if path.suffix != ".toml":
-        raise InputError(f"{path} is no name for a scene: expected one that ends in .toml")
+        raise InputError(f"{path} is not a name for a scene: expected one that ends in .toml")
     source = find(origin)
     scene = load(origin)
     if any(component.fmu is not None for phase in scene.phases for component in phase.components):
@@ -206,7 +206,7 @@ def write_schema(out: Path | None) -> str:
         except (OSError, ValueError, AttributeError):
             replaces = False
         if not replaces:
-            raise InputError(f"{out} is there already and is no schema of scenes; choose another name")
+            raise InputError(f"{out} is there already and is not a schema of scenes; choose another name")
     try:
         with Scratch(out.absolute().parent) as folder:
             draft = folder / "schema"

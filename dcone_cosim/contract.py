@@ -9,8 +9,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, spoken_dimension
 from dcone_cosim.names import nearest
+from dcone_cosim.units import PURE, Unit, by_name, misfit, spoken_dimension
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
@@ -189,9 +189,9 @@ def _faults(row: Asked, info: VariableInfo) -> list[str]:
     wanted = by_name(row.unit)
     dimension = PURE if wanted.dimension is None else wanted.dimension
     if info.kind == row.kind == "Real" and misfit(info.own, Unit(row.unit, dimension)):
-        theirs = spoken_dimension(info.dimension)
-        counted = f" ({theirs})" if theirs != info.declared_unit else ""
-        faults.append(f"its unit is {info.declared_unit}{counted}; expected {spoken_dimension(dimension)}")
+        theirs = spoken_dimension(info.own.dimension)
+        counted = f" ({theirs})" if theirs != info.own.name else ""
+        faults.append(f"its unit is {info.own.name}{counted}; expected {spoken_dimension(dimension)}")
     return faults
 
 

@@ -18,10 +18,10 @@ from dcone_cosim.build import shared_with_template
 from dcone_cosim.contract import NEEDS, TUG_PREFIX, Asked, asked
 from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.errors import InputError
-from dcone_cosim.fmu.units import BASE, by_name
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.phases import kinds
 from dcone_cosim.scratch import Scratch, clear_left
+from dcone_cosim.units import by_name
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -181,9 +181,7 @@ def _model_description(phase: str, model: str, guid: str, rows: Sequence[Asked])
     )
     units = ET.SubElement(root, "UnitDefinitions")
     for name in sorted({row.unit for row in rows if row.unit != "1"}):
-        dimension = by_name(name).dimension or ()
-        powers = {base: str(power) for base, power in zip(BASE, dimension, strict=True) if power}
-        ET.SubElement(ET.SubElement(units, "Unit", name=name), "BaseUnit", powers)
+        ET.SubElement(ET.SubElement(units, "Unit", name=name), "BaseUnit", by_name(name).definition)
     categories = ET.SubElement(root, "LogCategories")
     for category, sorted_in in LOG_CATEGORIES:
         ET.SubElement(categories, "Category", name=category, description=sorted_in)

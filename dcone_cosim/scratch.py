@@ -15,8 +15,7 @@ import shutil
 import sys
 import tempfile
 import weakref
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 if sys.platform == "win32":
@@ -67,13 +66,6 @@ class Scratch:
 
     def __exit__(self, *_: object) -> None:
         self.remove()
-
-
-@contextmanager
-def workplace(parent: Path) -> Iterator[Path]:
-    """A scratch folder for the time of a block."""
-    with Scratch(parent) as path:
-        yield path
 
 
 def _end(path: Path, old: Path, lock: _Lock | None) -> None:

@@ -108,7 +108,7 @@ class Coupled:
         self._length = self._length or size
         if not divides(self._length, size):
             raise FmuError(
-                f"{self.name}: the step of {size:.9g} s at t = {time:.9g} s is no whole number of steps of "
+                f"{self.name}: the step of {size:.9g} s at t = {time:.9g} s is not a whole number of steps of "
                 f"{self._length:.9g} s, and {one_length(self._one_length)}"
             )
 

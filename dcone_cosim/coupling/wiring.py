@@ -9,8 +9,8 @@ from typing import Protocol
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.steppable import Steppable, VariableInfo
-from dcone_cosim.fmu.units import Unit, misfit
 from dcone_cosim.names import did_you_mean, nearest
+from dcone_cosim.units import Unit, misfit
 
 CARRIED = {
     ("Real", "Real"),

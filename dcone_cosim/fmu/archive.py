@@ -23,9 +23,9 @@ import fmpy
 from dcone_cosim.errors import FmuError
 from dcone_cosim.files import regular
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import NO_UNIT, Unit, by_name, read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scratch import Scratch
+from dcone_cosim.units import Unit, by_name, read_units
 
 EXPECTED = "expected FMI 2.0 co-simulation"
 XML = "modelDescription.xml"
@@ -180,7 +180,7 @@ def _check_file(path: Path) -> None:
     if not head:
         raise FmuError(f"{path}: empty; expected an FMU")
     if head[:2] != LOCAL_HEADER[:2]:
-        raise FmuError(f"{path}: not a readable FMU: an FMU is a zip file, and this is none")
+        raise FmuError(f"{path}: not a readable FMU: an FMU is a zip file, and this is not one")
 
 
 def _check_name(path: Path, name: str) -> None:
@@ -198,15 +198,15 @@ def _description(path: Path, folder: Path) -> tuple[Any, ET.Element]:
         found = sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.name.lower() == XML.lower())
         if found:
             raise FmuError(f"{path}: no {XML} at its top; there is {found[0]}")
-        raise FmuError(f"{path}: no FMU: it has no {XML}")
+        raise FmuError(f"{path}: not an FMU: it has no {XML}")
     try:
         root = ET.parse(file).getroot()
     except ET.ParseError as error:
-        raise FmuError(f"{path}: its {XML} is no valid XML ({error})") from None
+        raise FmuError(f"{path}: its {XML} is not valid XML ({error})") from None
     version = root.get("fmiVersion")
     if root.tag != "fmiModelDescription" or version is None:
         told = ", without an fmiVersion" if version is None else f", fmiVersion {version}"
-        raise FmuError(f"{path}: its {XML} is of no FMU: it begins with <{root.tag}>{told}")
+        raise FmuError(f"{path}: its {XML} is not that of an FMU: it begins with <{root.tag}>{told}")
     if version != "2.0":
         raise FmuError(f"{path}: this is FMI {version}; {EXPECTED}")
     try:
@@ -250,7 +250,7 @@ def _variables(path: Path, description: Any, relative: Container[str]) -> dict[s
         kind = "Integer" if v.type == "Enumeration" else v.type
         name = (v.unit or (v.declaredType.unit if v.declaredType is not None else "") or "") if kind == "Real" else ""
         unit = units.get(name) or by_name(name)
-        label = unit.si_name if unit is not NO_UNIT else "1"
+        label = unit.si_name
         if v.name in relative:
             unit = unit.of_differences()
         found[v.name] = VariableInfo(
@@ -260,15 +260,11 @@ def _variables(path: Path, description: Any, relative: Container[str]) -> dict[s
             label,
             v.causality or "local",
             v.description or "",
-            name,
-            unit.dimension,
-            unit.factor,
-            unit.offset,
+            unit,
             v.variability or "",
             v.initial or "",
             _number(path, v.name, "start", v.start, kind, unit),
             *_bounds(path, v, kind, unit),
-            unit.relative,
         )
     return found
 
@@ -283,7 +279,7 @@ def _number(path: Path, name: str, what: str, text: Any, kind: str, unit: Unit) 
         value = float(text)
     except ValueError:
         raise FmuError(f"{path}: {what} of its variable {name!r} is {text!r}, no number") from None
-    return value if unit.is_si else unit.factor * value + unit.offset
+    return unit.to_si(value)
 
 
 def _bounds(path: Path, v: Any, kind: str, unit: Unit) -> tuple[float, float]:

@@ -154,7 +154,7 @@ class Component:
     def set_rates(self, rates: Mapping[str, float]) -> None:
         """Let inputs move at these rates [SI/s] over the next step."""
         infos = [self.reference(name) for name in rates]
-        numbers = [rate if info.is_si else rate / info.factor for info, rate in zip(infos, rates.values(), strict=True)]
+        numbers = [rate / info.own.factor for info, rate in zip(infos, rates.values(), strict=True)]
         self._call("setRealInputDerivatives", [info.reference for info in infos], [1] * len(infos), numbers)
 
     def get(self, names: Sequence[str]) -> dict[str, float]:
@@ -321,13 +321,13 @@ class Component:
 
     def not_finite(self, info: VariableInfo, value: float) -> CallError:
         """The error for an output that is no finite number."""
-        said = f"its output {info.name} is {value}, which is no finite number"
+        said = f"its output {info.name} is {value}, which is not a finite number"
         return CallError(self.name, f" at t = {self.time:.9g} s", said, self.archive.path.name)
 
 
 def _own(info: VariableInfo, value: float) -> float:
     """An SI value as the FMU counts it."""
-    return float(value) if info.is_si else (float(value) - info.offset) / info.factor
+    return info.own.from_si(float(value))
 
 
 class Reader:
@@ -350,8 +350,8 @@ class Reader:
         reals = [info for info in self._infos if info.kind == "Real"]
         self._reals = self.values[: len(reals)]
         self._to_si: tuple[Row, Row] | None = None
-        if not all(info.is_si for info in reals):
-            self._to_si = np.array([info.factor for info in reals]), np.array([info.offset for info in reals])
+        if not all(info.own.is_si for info in reals):
+            self._to_si = np.array([info.own.factor for info in reals]), np.array([info.own.offset for info in reals])
         self._blocks: list[tuple[Any, Any, int, Any, npt.NDArray[Any], slice]] = []
         begin = 0
         for kind, group in itertools.groupby(self._infos, key=lambda info: info.kind):

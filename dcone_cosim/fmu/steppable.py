@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu.units import Dimension, Unit
+from dcone_cosim.units import NO_UNIT, Unit
 
 Row = npt.NDArray[np.float64]
 KINDS = ("Real", "Integer", "Boolean")
@@ -23,12 +23,9 @@ class VariableInfo:
 
     kind            Real, Integer or Boolean (an Enumeration is an Integer), or String
     unit            SI unit of what is read and set, "1" for a pure number
-    declared_unit   unit the FMU itself counts in, "" for none
-    dimension       None when the FMU declares no unit, or one that is not known
-    factor, offset  SI value = factor * FMU's value + offset
+    own             unit the FMU itself counts in
     initial         exact, approx or calculated
     start           None when none is declared
-    relative        its values are differences (relativeQuantity)
     """
 
     name: str
@@ -37,26 +34,12 @@ class VariableInfo:
     unit: str
     causality: str
     description: str
-    declared_unit: str = ""
-    dimension: Dimension | None = None
-    factor: float = 1.0
-    offset: float = 0.0
+    own: Unit = NO_UNIT
     variability: str = ""
     initial: str = ""
     start: float | None = None
     minimum: float = -math.inf
     maximum: float = math.inf
-    relative: bool = False
-
-    @property
-    def is_si(self) -> bool:
-        """Whether the FMU counts in SI itself."""
-        return self.factor == 1.0 and self.offset == 0.0
-
-    @property
-    def own(self) -> Unit:
-        """The unit the FMU itself counts in."""
-        return Unit(self.declared_unit or self.unit, self.dimension, self.factor, self.offset, self.relative)
 
 
 class Readable(Protocol):

@@ -17,8 +17,8 @@ from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
+from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scene.mistakes import Mistake
-from dcone_cosim.scene.units import ANY, Expected
 
 NEEDED = ("target", "closing")
 """Tables of a scene without which no capture can ever be reported."""

@@ -18,9 +18,9 @@ from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
+from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake
 from dcone_cosim.scene.toml_lines import Path as KeyPath
-from dcone_cosim.scene.units import Expected
 
 Figure = tuple[str, Callable[[Path], object]]
 """File name, and what draws it there."""

@@ -75,7 +75,7 @@ def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
     )
     for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
         sampled = " (of rows)" if what in tension.sampled else ""
-        told: float | str = "not told: tugs fall between the rows" if value is None else value
+        told: float | str = "not reported: tugs fall between the rows" if value is None else value
         yield Finding(phase, f"tension_{what}", f"{what} tension, {when}{sampled}", told, "N")
     yield Finding(phase, "tension_window", window, tension.window, "s")
 
@@ -105,7 +105,7 @@ def _of_lowering(phase: str, result: PhaseResult) -> Iterator[Finding]:
     axis = recorder["center.semi_major_axis"]
     share = float(np.max(recorder["separation"])) / float(np.min(axis))
     if not 0.0 <= share <= NEAR:
-        text = f"not told: the pair is up to {share:.2g} of its orbit's radius apart, at most {NEAR:g} may be"
+        text = f"not reported: chaser and target are up to {share:.2g} of the orbit's radius apart, more than {NEAR:g}"
         yield Finding(phase, "lowered", "orbit lowered by", text)
         return
     lowered, elapsed = float(axis[0] - axis[-1]), result.end - result.start

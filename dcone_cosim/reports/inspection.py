@@ -15,8 +15,8 @@ from dcone_cosim.master import cannot_begin
 from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
-from dcone_cosim.scene.units import spoken
 from dcone_cosim.scene_fmus import isolated, opened
+from dcone_cosim.units import spoken
 
 if TYPE_CHECKING:
     from rich.console import Console

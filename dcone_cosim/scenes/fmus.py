@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError
-from dcone_cosim.scene.units import TEXT, Expected, Unexpected, example_of, is_unit
+from dcone_cosim.scene.expected import TEXT, Expected, Unexpected, example_of
 from dcone_cosim.scenes.keys import Key, Slot
+from dcone_cosim.units import by_name, si_name
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
@@ -37,7 +38,7 @@ def file_of(given: object, folder: Path, what: str = "FMU", example: str = "my.f
     if ADDRESS.match(given):
         raise Unexpected(f"is an address: nothing is fetched; download the {what} and give its path")
     if "\0" in given:
-        raise Unexpected("is no path: it holds a NUL")
+        raise Unexpected("is not a path: it holds a NUL")
     return folder / Path(given).expanduser()
 
 
@@ -64,7 +65,7 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
             names.setdefault(match[1] if match else info.name, []).append(info.name)
     keys: dict[str, Key] = {}
     for name, elements in names.items():
-        alike = len({variables[element].relative for element in elements}) == 1
+        alike = len({variables[element].own.relative for element in elements}) == 1
         if alike and sorted(elements) == sorted(f"{name}[{i + 1}]" for i in range(len(elements))):
             keys[name] = _key([f"{name}[{i + 1}]" for i in range(len(elements))], variables, len(elements))
         else:
@@ -74,12 +75,10 @@ def offer(variables: Mapping[str, VariableInfo], model: build.Model | None = Non
 
 def _unit(info: VariableInfo) -> str:
     """SI unit in which a value is read and compared; "1" for a pure number, and when nothing is known of the unit."""
-    from dcone_cosim.fmu.units import si_name
-
-    if info.dimension is None:
+    if info.own.dimension is None:
         return "1"
-    name = si_name(info.dimension)
-    return info.unit if is_unit(info.unit, like=name) else name
+    known = by_name(info.unit)
+    return info.unit if known.is_si and known.dimension == info.own.dimension else si_name(info.own.dimension)
 
 
 def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, choices: tuple[str, ...] = ()) -> Key:
@@ -97,6 +96,6 @@ def _key(names: list[str], variables: Mapping[str, VariableInfo], size: int, cho
         f"{start:g}" if first.kind == "Integer" else example_of(start, unit),
         max(info.minimum for info in infos),
         min(info.maximum for info in infos),
-        relative=first.relative,
+        relative=first.own.relative,
     )
     return Key(tuple(names), expected, starts, first.description)

@@ -110,5 +110,5 @@ def _read(path: Path) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read: {error}") from error
     if not isinstance(content, dict):
-        raise InputError(f"{path} is no provenance of a run: expected an object")
+        raise InputError(f"{path} is not the provenance of a run: expected an object")
     return content

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from dcone_cosim import build
-from dcone_cosim.fmu.units import Unit
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
+from dcone_cosim.scene.expected import Expected, Unexpected, example_of
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted
-from dcone_cosim.scene.units import Expected, Unexpected, example_of
+from dcone_cosim.units import Unit
 
 TOP = ("title", "phases", SHARED, "handoff")
 """Keys at the top of a scene, beside the phases."""

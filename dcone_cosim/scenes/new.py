@@ -14,9 +14,17 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
+from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scene.toml_lines import dotted
-from dcone_cosim.scene.units import ANY, Expected
-from dcone_cosim.scenes.keys import COUPLING_KEYS, HANDOFF_KEYS, MEANING, Key, key_of, orbit_keys, phase_keys
+from dcone_cosim.scenes.keys import (
+    COUPLING_KEYS,
+    HANDOFF_KEYS,
+    MEANING,
+    Key,
+    key_of,
+    orbit_keys,
+    phase_keys,
+)
 from dcone_cosim.scenes.parts import term_named
 from dcone_cosim.scenes.tables import EXAMPLE
 

@@ -13,14 +13,14 @@ from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
-from dcone_cosim.fmu.units import by_name
 from dcone_cosim.scene.data import SHARED, TableFile
+from dcone_cosim.scene.expected import LARGEST_INTEGER, TEXT
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted, given_at
-from dcone_cosim.scene.units import LARGEST_INTEGER, TEXT
 from dcone_cosim.scenes.fmus import Offer
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, Key, Slot, key_of, phase_keys, read_value
 from dcone_cosim.scenes.tables import EXAMPLE, table_of
+from dcone_cosim.units import by_name
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive

@@ -59,9 +59,9 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
         said = str(error).replace("(at end of document)", f"(line {last}, at the end of the file)")
         raise InputError(f"{source} is not valid TOML, or cut short: {said}") from error
     except RecursionError as error:
-        raise InputError(f"{source} is no scene: its lists or tables are nested too deeply") from error
+        raise InputError(f"{source} cannot be read as a scene: its lists or tables are nested too deeply") from error
     except ValueError as error:
-        raise InputError(f"{source} is no scene: a number in it has thousands of digits") from error
+        raise InputError(f"{source} cannot be read as a scene: a number in it has thousands of digits") from error
     from dcone_cosim.scenes.check import check  # astropy is loaded only for a text that parses
     from dcone_cosim.scenes.text import as_run, name_changes, override
 

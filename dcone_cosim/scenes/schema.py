@@ -15,7 +15,7 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
-from dcone_cosim.scene.units import ANY, Expected
+from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,

@@ -8,8 +8,8 @@ from pathlib import Path as File
 from dcone_cosim import build
 from dcone_cosim.files import regular
 from dcone_cosim.scene.data import TableFile
+from dcone_cosim.scene.expected import Unexpected
 from dcone_cosim.scene.toml_lines import Path
-from dcone_cosim.scene.units import Unexpected
 from dcone_cosim.scenes.fmus import file_of
 
 EXAMPLE = "my-table.csv"

@@ -28,7 +28,7 @@ def override(document: dict[str, Any], settings: Sequence[str]) -> list[Override
         for depth, name in enumerate(names[:-1], start=1):
             inner = table.setdefault(name, {})
             if not isinstance(inner, dict):
-                raise InputError(f"--set {setting}: {dotted(names[:depth])} is no table, it has no {names[depth]!r}")
+                raise InputError(f"--set {setting}: {dotted(names[:depth])} is not a table: it has no {names[depth]!r}")
             table = inner
         table[names[-1]] = value
         found.append(Override(names, setting))
@@ -45,7 +45,7 @@ def _split(setting: str) -> tuple[tuple[str, ...], Any]:
     try:
         nested: Any = tomllib.loads(f"{key}=0")
     except tomllib.TOMLDecodeError:
-        raise InputError(f"--set {setting}: {key!r} is no key; {FORM}") from None
+        raise InputError(f"--set {setting}: {key!r} is not a key; {FORM}") from None
     names: list[str] = []
     while isinstance(nested, dict):
         ((name, nested),) = nested.items()

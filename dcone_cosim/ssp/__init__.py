@@ -16,7 +16,7 @@ namespaces stand at the root.
 
     markup.py     names of the format             writing.py    the XML of a phase
     export.py     packages of a scene             package.py    the archive, read safely
-    parsing.py    from XML to rows                values.py     parameter sets and mappings
-    matching.py   rows against the FMUs           planning.py   times, steps and options of the phase
+    parsing.py    XML by the schema               values.py     parameter sets and mappings
+    matching.py   XML against the FMUs            planning.py   times, steps and options of the phase
     system.py     from a package to a scene
 """

@@ -20,13 +20,13 @@ from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import read_units
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
 from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
+from dcone_cosim.units import read_units
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The earliest time a zip archive can tell: what is written depends on the content alone."""
@@ -131,7 +131,7 @@ def _part(component: ComponentScene, archive: Archive, source: str, connected: s
     rows = {name: archive.variables[name] for name in kinds}
 
     def unit(name: str) -> str:
-        declared = rows[name].declared_unit
+        declared = rows[name].own.name
         return declared if kinds[name] == "Real" and declared in units else ""
 
     ports = [
@@ -141,7 +141,7 @@ def _part(component: ComponentScene, archive: Archive, source: str, connected: s
         or (row.causality == "input" and (connected is None or (component.name, row.name) in connected))
     ]
     values = [
-        Value(name, rows[name].kind, own_value(rows[name], value), unit(name))
+        Value(name, rows[name].kind, rows[name].own.from_si(value), unit(name))
         for name, value in component.parameters.items()
         if name in rows and not math.isnan(value)
     ]
@@ -151,15 +151,10 @@ def _part(component: ComponentScene, archive: Archive, source: str, connected: s
 def _wire(connection: Connection, out: VariableInfo, to: VariableInfo) -> Wire:
     """The connection between the values as the two FMUs count them; it is between SI values inside."""
     factor, offset = connection.factor, connection.offset
-    if not (out.is_si and to.is_si):
-        offset = (factor * out.offset + offset - to.offset) / to.factor
-        factor = factor * (out.factor / to.factor)
+    if not (out.own.is_si and to.own.is_si):
+        offset = to.own.from_si(factor * out.own.offset + offset)
+        factor = factor * (out.own.factor / to.own.factor)
     return Wire((connection.source, out.name), (connection.target, to.name), factor, offset)
-
-
-def own_value(info: VariableInfo, value: float) -> float:
-    """A value in SI in the unit that the FMU counts in."""
-    return value if info.is_si else (value - info.offset) / info.factor
 
 
 def _ours(phase: PhaseScene) -> dict[str, dict[str, str]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
@@ -39,8 +41,7 @@ def tag(prefix: str, name: str) -> str:
     return f"{{{READ[prefix]}}}{name}"
 
 
-def plain(name: str) -> str:
-    """An element's name as it stands in the file, with the usual prefix."""
-    space, _, local = name.rpartition("}")
-    prefix = next((p for p, uri in READ.items() if uri == space[1:]), "")
-    return f"{prefix}:{local}" if prefix else local
+def plain(text: str) -> str:
+    """A name or a message of lxml's as the file has it: prefixes in place of namespaces."""
+    prefixes = {uri: f"{prefix}:" for prefix, uri in READ.items()}
+    return re.sub(r"{(\w+:[^}]*)}", lambda found: prefixes.get(found[1], ""), text)

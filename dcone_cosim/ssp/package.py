@@ -9,14 +9,11 @@ from pathlib import Path, PurePosixPath
 from types import TracebackType
 from urllib.parse import unquote, urlsplit
 
-from lxml import etree
-
 from dcone_cosim.errors import InputError
 from dcone_cosim.files import regular
 from dcone_cosim.fmu.archive import LARGEST, MOST
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.scene.mistakes import TOLD, shortened
-from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp.markup import STRUCTURE
 
 LONGEST = 1000
@@ -73,7 +70,7 @@ class Package:
         try:
             self._archive = zipfile.ZipFile(regular(path))
         except zipfile.BadZipFile as error:
-            raise InputError(f"{path} is no SSP package: {error}; the file may be cut short") from error
+            raise InputError(f"{path} is not an SSP package: {error}; the file may be cut short") from error
         except OSError as error:
             raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
         try:
@@ -101,7 +98,7 @@ class Package:
         if STRUCTURE not in names:
             others = [n for n in names if n.endswith(".ssd")]
             hint = did_you_mean(STRUCTURE, others) if others else ""
-            raise InputError(f"{self.path} is no SSP package: it holds no {STRUCTURE}{hint}")
+            raise InputError(f"{self.path} is not an SSP package: it holds no {STRUCTURE}{hint}")
 
     @property
     def names(self) -> list[str]:
@@ -146,22 +143,3 @@ def entry_of(source: str, names: Iterable[str], mistakes: Mistakes) -> tuple[str
     if path not in known:
         return "", f"source {source!r} is not in the package{mistakes.near(path, known)}"
     return path, ""
-
-
-def parsed(content: bytes, name: str, mistakes: Mistakes) -> etree._Element | None:
-    """Root of an XML file, without entities, DTDs and network; None when it is not well formed."""
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True)
-    try:
-        root = etree.fromstring(content, parser)
-    except etree.XMLSyntaxError as error:
-        mistakes.add(name, error.lineno, f"not well-formed XML: {error.msg}")
-        return None
-    if root.getroottree().docinfo.doctype:
-        mistakes.add(name, 1, "a document type definition is not read; leave it out")
-        return None
-    return root
-
-
-def unpacked_folder() -> Scratch:
-    """A folder that is removed with the object that holds it, at the latest when the program ends."""
-    return Scratch.temporary()

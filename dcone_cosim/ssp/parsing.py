@@ -1,8 +1,12 @@
-"""From the XML of a structure to rows, each with its line; what lies outside the subset is noted as a mistake."""
+"""Reads the XML of a package.
+
+The schemas of SSP 1.0 say what may stand where, `BEYOND` what of it is not read here: a file that has passed both is
+walked without further checks.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -10,65 +14,82 @@ from pathlib import Path
 import fmpy.ssp
 from lxml import etree
 
-from dcone_cosim.fmu.units import BASE, Unit
-from dcone_cosim.ssp.markup import FMU_TYPE, KINDS, OMS_TYPE, OSP_TYPE, OUR_TYPE, READ, TEXT, VERSION, plain, tag
+from dcone_cosim.ssp.markup import (
+    FMU_TYPE,
+    KINDS,
+    MAPPING_TYPE,
+    OMS_TYPE,
+    OSP_TYPE,
+    OUR_TYPE,
+    READ,
+    TEXT,
+    VALUES_TYPE,
+    VERSION,
+    plain,
+    tag,
+)
 from dcone_cosim.ssp.package import Mistakes
+from dcone_cosim.units import Unit
 
-SCHEMA = Path(fmpy.ssp.__file__).parent / "schema"
-"""Schema files of SSP 1.0, as fmpy brings them."""
-PORT_KINDS = ("input", "output", "parameter", "calculatedParameter")
+SCHEMAS = {"ssd": "Description", "ssc": "Common", "ssv": "ParameterValues", "ssm": "ParameterMapping"}
+"""Schema of every namespace: `SystemStructure....xsd`, as fmpy brings it."""
 
+BEYOND = {
+    "//ssd:Elements/ssd:System": "a system within a system is not read; put its components into the one system",
+    "//ssd:SignalDictionaries | //ssd:SignalDictionaryReference": (
+        "signal dictionaries are not read; connect the components to one another"
+    ),
+    "/*/ssd:System/ssd:Connectors/ssd:Connector": (
+        "a connector of the system itself is not read; connect and set the components"
+    ),
+    f"//ssd:Component[@type != '{FMU_TYPE}']": f"type = {{type!r}}; expected an FMU, {FMU_TYPE!r}",
+    "//ssd:Component[@implementation = 'ModelExchange']": "implementation = {implementation!r}; expected co-simulation",
+    "//ssd:Connector[@kind = 'inout']": "kind = {kind!r}; expected input, output, parameter or calculatedParameter",
+    **{
+        f"//ssd:Connector[ssc:{kind}] | //ssv:Parameter[ssv:{kind}]": (
+            f"the type {kind} is not read; expected {', '.join(KINDS)} or {TEXT}"
+        )
+        for kind in ("Enumeration", "Binary")
+    },
+    **{
+        f"//ssd:Connection[not(@{end}Element)]": (
+            f"{end}Connector = {{{end}Connector!r}} is one of the system; name a component as {end}Element"
+        )
+        for end in ("start", "end")
+    },
+    "//ssc:*[contains(local-name(), 'MappingTransformation')]": "only a linear transformation is read",
+    f"//ssd:ParameterBinding[@type != '{VALUES_TYPE}']": f"type = {{type!r}}; expected {VALUES_TYPE!r}",
+    f"//ssd:ParameterMapping[@type != '{MAPPING_TYPE}']": f"type = {{type!r}}; expected {MAPPING_TYPE!r}",
+    "//ssd:*[@source and @sourceBase = 'component']": "sourceBase = {sourceBase!r}; expected a file of the package",
+    "//ssd:ParameterBinding[not(@source) and not(ssd:ParameterValues/ssv:ParameterSet)]": (
+        "neither a source nor a <ssv:ParameterSet> in it"
+    ),
+    "//ssd:ParameterMapping[not(@source) and not(ssm:ParameterMapping)]": (
+        "neither a source nor a <ssm:ParameterMapping> in it"
+    ),
+    f"//*[self::ssv:ParameterSet or self::ssm:ParameterMapping][@version != '{VERSION}']": (
+        f"version = {{version!r}}; expected {VERSION!r}, the one read here"
+    ),
+}
+"""What SSP has and the subset has not: where it stands, and what is said of it, with the values of its attributes."""
 
-@dataclass(frozen=True)
-class PortRow:
-    name: str
-    kind: str
-    type: str
-    unit: str
-    line: int
-
-
-@dataclass(frozen=True)
-class BindingRow:
-    """A parameter binding: `element` is its XML, to be read with the files it names."""
-
-    owner: str
-    prefix: str
-    element: etree._Element
-    line: int
-
-
-@dataclass(frozen=True)
-class ComponentRow:
-    name: str
-    source: str
-    ports: Mapping[str, PortRow]
-    bindings: tuple[BindingRow, ...]
-    step: float | None
-    line: int
-
-
-@dataclass(frozen=True)
-class ConnectionRow:
-    """As it stands: which end is the output follows from the connectors."""
-
-    start: tuple[str, str]
-    end: tuple[str, str]
-    factor: float
-    offset: float
-    suppress: bool
-    line: int
+BINDING = "ssd:ParameterBindings/ssd:ParameterBinding"
 
 
 @dataclass(frozen=True)
 class Document:
-    """A structure; times [s], None where it tells none. `ours`: attributes of our own annotation by element."""
+    """A structure; times [s], None where it tells none.
+
+    components, connections    their elements
+    bindings                   elements, each with the name of its component, "" for the system; a later one counts more
+    ours                       attributes of our own annotation by element
+    """
 
     name: str
     description: str
-    components: tuple[ComponentRow, ...]
-    connections: tuple[ConnectionRow, ...]
-    bindings: tuple[BindingRow, ...]
+    components: Mapping[str, etree._Element]
+    connections: Sequence[etree._Element]
+    bindings: Sequence[tuple[str, etree._Element]]
     units: Mapping[str, Unit]
     start: float | None
     stop: float | None
@@ -76,206 +97,117 @@ class Document:
     ours: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
 
-def document(root: etree._Element, file: str, mistakes: Mistakes) -> Document | None:
-    """The structure, or None with mistakes noted: first what is outside of the subset, then what the schema refuses."""
-    if not _is(root, "ssd", "SystemStructureDescription", file, mistakes):
-        return None
-    _refuse_beyond(root, file, mistakes)
-    if mistakes.rows:
-        return None
-    validate(root, "SystemStructureDescription.xsd", file, mistakes)
-    if mistakes.rows:
-        return None
-    system = root.find("ssd:System", READ)
-    assert system is not None, "the schema asks for it"
-    components = tuple(_component(row) for row in system.iterfind("ssd:Elements/ssd:Component", READ))
-    _refuse_twice(components, file, mistakes)
-    if not components:
-        mistakes.add(file, system.sourceline, "the system holds no component")
-    connections = tuple(_connection(row) for row in system.iterfind("ssd:Connections/ssd:Connection", READ))
-    experiment = root.find("ssd:DefaultExperiment", READ)
-    return Document(
-        system.get("name", ""),
-        system.get("description") or root.get("name", ""),
-        components,
-        connections,
-        tuple(_bindings(system, "")),
-        units(root, "ssd"),
-        _number(experiment, "startTime"),
-        _number(experiment, "stopTime"),
-        _step(root, system),
-        _ours(root),
+def read(content: bytes, file: str, root_name: str, mistakes: Mistakes) -> etree._Element | None:
+    """Root of an XML file, such as `ssv:ParameterSet`, that has passed the schema and `BEYOND`; None with mistakes.
+
+    Neither entities nor a document type definition are resolved, and nothing is fetched.
+    """
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
     )
-
-
-def _is(root: etree._Element, prefix: str, name: str, file: str, mistakes: Mistakes) -> bool:
-    """Whether a root is the element and version expected."""
-    if root.tag != tag(prefix, name):
-        mistakes.add(file, root.sourceline, f"<{plain(str(root.tag))}> is not <{prefix}:{name}> of SSP {VERSION}")
+    try:
+        root = etree.fromstring(content, parser)
+    except etree.XMLSyntaxError as error:
+        mistakes.add(file, error.lineno, f"not well-formed XML: {error.msg}")
+        return None
+    before = len(mistakes.rows)
+    if root.getroottree().docinfo.doctype:
+        mistakes.add(file, 1, "a document type definition is not read; leave it out")
+    elif root.tag != tag(*root_name.split(":")):
+        mistakes.add(file, root.sourceline, f"<{plain(root.tag)}> is not the <{root_name}> of SSP {VERSION}")
     elif root.get("version") != VERSION:
-        text = f"<{prefix}:{name}> has version = {root.get('version')!r}; expected {VERSION!r}, the one read here"
+        text = f"<{root_name}> has version = {root.get('version')!r}; expected {VERSION!r}, the one read here"
         mistakes.add(file, root.sourceline, text)
+    elif not _schema().validate(root):
+        for entry in _schema().error_log:
+            mistakes.add(file, entry.line, plain(entry.message))
     else:
-        return True
-    return False
-
-
-def validate(root: etree._Element, schema: str, file: str, mistakes: Mistakes) -> None:
-    """Note what the schema of SSP 1.0 says against a tree."""
-    rules = _schema(schema)
-    if not rules.validate(root):
-        for entry in rules.error_log:
-            text = entry.message
-            for prefix, uri in READ.items():
-                text = text.replace(f"{{{uri}}}", f"{prefix}:")
-            mistakes.add(file, entry.line, text)
+        for path, text in BEYOND.items():
+            for row in root.xpath(path, namespaces=READ):
+                name = f" {row.get('name')!r}" if row.get("name") else ""
+                mistakes.add(file, row.sourceline, f"<{plain(row.tag)}>{name}: {text.format_map(row.attrib)}")
+    return root if len(mistakes.rows) == before else None
 
 
 @cache
-def _schema(name: str) -> etree.XMLSchema:
-    return etree.XMLSchema(file=str(SCHEMA / name))
+def _schema() -> etree.XMLSchema:
+    """All of SSP 1.0 at once, so that a parameter set within a structure is checked with it."""
+    folder = Path(fmpy.ssp.__file__).parent / "schema"
+    rules = etree.Element("{http://www.w3.org/2001/XMLSchema}schema")
+    for prefix, name in SCHEMAS.items():
+        at = (folder / f"SystemStructure{name}.xsd").as_uri()
+        etree.SubElement(rules, "{http://www.w3.org/2001/XMLSchema}import", namespace=READ[prefix], schemaLocation=at)
+    return etree.XMLSchema(rules)
 
 
-def check_file(root: etree._Element, prefix: str, name: str, schema: str, file: str, mistakes: Mistakes) -> bool:
-    """Whether a parameter set or mapping is one, of this version and by the schema."""
-    if not _is(root, prefix, name, file, mistakes):
-        return False
-    before = len(mistakes.rows)
-    validate(root, schema, file, mistakes)
-    return len(mistakes.rows) == before
-
-
-def _refuse_beyond(root: etree._Element, file: str, mistakes: Mistakes) -> None:
-    """Note what SSP has and the subset has not."""
-
-    def refuse(row: etree._Element, text: str) -> None:
-        name = f" {row.get('name')!r}" if row.get("name") else ""
-        mistakes.add(file, row.sourceline, f"<{plain(str(row.tag))}>{name}: {text}")
-
-    system = "ssd:System"
-    for row in root.iterfind(f".//ssd:Elements/{system}", READ):
-        refuse(row, "a system within a system is not read; put its components into the one system")
-    for row in root.iterfind(f".//{system}/ssd:Elements/ssd:SignalDictionaryReference", READ):
-        refuse(row, "signal dictionaries are not read; connect the components to one another")
-    for row in root.iterfind(f".//{system}/ssd:SignalDictionaries", READ):
-        refuse(row, "signal dictionaries are not read")
-    for row in root.iterfind(f"./{system}/ssd:Connectors/ssd:Connector", READ):
-        refuse(row, "a connector of the system itself is not read; connect and set the components")
-    for component in root.iterfind(f"./{system}/ssd:Elements/ssd:Component", READ):
-        if component.get("type", FMU_TYPE) != FMU_TYPE:
-            refuse(component, f"type = {component.get('type')!r}; expected an FMU, {FMU_TYPE!r}")
-        if component.get("implementation") == "ModelExchange":
-            refuse(component, "implementation = 'ModelExchange'; expected co-simulation")
-        for port in component.iterfind("ssd:Connectors/ssd:Connector", READ):
-            kind, kinds = _port_type(port), " or ".join((", ".join(KINDS), TEXT))
-            if kind and kind not in (*KINDS, TEXT):
-                refuse(port, f"of {component.get('name')!r} is of the type {kind}; expected {kinds}")
-            if port.get("kind") not in PORT_KINDS:
-                refuse(
-                    port, f"of {component.get('name')!r} has kind = {port.get('kind')!r}; expected {PORT_KINDS[0]}, ..."
-                )
-    for row in root.iterfind(f"./{system}/ssd:Connections/ssd:Connection", READ):
-        for end in ("start", "end"):
-            if row.get(f"{end}Element") is None:
-                refuse(row, f"{end}Connector = {row.get(f'{end}Connector')!r} is one of the system; name a component")
-        for child in row:
-            if child.tag in [tag("ssc", f"{kind}MappingTransformation") for kind in (*KINDS, "Enumeration")]:
-                refuse(child, "only a linear transformation is read")
-
-
-def _port_type(port: etree._Element) -> str:
-    for child in port:
-        name = plain(str(child.tag))
-        if name.startswith("ssc:"):
-            return name[len("ssc:") :]
-    return ""
-
-
-def _refuse_twice(components: tuple[ComponentRow, ...], file: str, mistakes: Mistakes) -> None:
-    seen: dict[str, int] = {}
-    for row in components:
-        if row.name in seen:
-            text = f"<ssd:Component> {row.name!r}: line {seen[row.name]} has one of that name"
-            mistakes.add(file, row.line, text)
-        seen.setdefault(row.name, row.line)
-
-
-def _component(row: etree._Element) -> ComponentRow:
-    name = row.get("name", "")
-    ports = {}
-    for port in row.iterfind("ssd:Connectors/ssd:Connector", READ):
-        kind = _port_type(port)
-        typed = port.find(f"ssc:{kind}", READ) if kind else None
-        unit = typed.get("unit", "") if typed is not None else ""
-        ports[port.get("name", "")] = PortRow(port.get("name", ""), port.get("kind", ""), kind, unit, _line(port))
-    hint = _annotated(row, OSP_TYPE, "osp:StepSizeHint")
-    return ComponentRow(
-        name, row.get("source", ""), ports, tuple(_bindings(row, name)), _number(hint, "value"), _line(row)
+def document(root: etree._Element, file: str, mistakes: Mistakes) -> Document:
+    """The structure that a file holds; components of the same name, or none, are noted as mistakes."""
+    system = root.find("ssd:System", READ)
+    experiment = root.find("ssd:DefaultExperiment", READ)
+    components: dict[str, etree._Element] = {}
+    bindings = []
+    for row in system.iterfind("ssd:Elements/ssd:Component", READ):
+        name = row.get("name")
+        if components.setdefault(name, row) is not row:
+            text = f"<ssd:Component> {name!r}: line {components[name].sourceline} has one of that name"
+            mistakes.add(file, row.sourceline, text)
+        bindings += [(name, binding) for binding in row.iterfind(BINDING, READ)]
+    if not components:
+        mistakes.add(file, system.sourceline, "the system holds no component")
+    steps = (
+        "osp:Algorithm/osp:FixedStepAlgorithm/@baseStepSize",
+        "oms:Annotations/oms:SimulationInformation/@fixedStepSize",
+    )
+    step = annotated(experiment, OSP_TYPE, steps[0])
+    ours = root.xpath(f"ssd:Annotations/ssc:Annotation[@type = '{OUR_TYPE}'][1]/dcone:Phase/*", namespaces=READ)
+    return Document(
+        system.get("name"),
+        system.get("description") or root.get("name"),
+        components,
+        system.findall("ssd:Connections/ssd:Connection", READ),
+        [*bindings, *(("", binding) for binding in system.iterfind(BINDING, READ))],
+        units(root, file, mistakes),
+        decimal(experiment.get("startTime")) if experiment is not None else None,
+        decimal(experiment.get("stopTime")) if experiment is not None else None,
+        annotated(system, OMS_TYPE, steps[1]) if step is None else step,
+        {etree.QName(row).localname: dict(row.attrib) for row in ours},
     )
 
 
-def _bindings(row: etree._Element, owner: str) -> Iterator[BindingRow]:
-    for binding in row.iterfind("ssd:ParameterBindings/ssd:ParameterBinding", READ):
-        yield BindingRow(owner, binding.get("prefix", ""), binding, _line(binding))
+def linear(row: etree._Element) -> tuple[float, float]:
+    """Factor and offset of the linear transformation within an element, 1 and 0 without one."""
+    found = row.find("ssc:LinearTransformation", READ)
+    return (1.0, 0.0) if found is None else (float(found.get("factor", 1.0)), float(found.get("offset", 0.0)))
 
 
-def _connection(row: etree._Element) -> ConnectionRow:
-    linear = row.find("ssc:LinearTransformation", READ)
-    factor, offset = _number(linear, "factor"), _number(linear, "offset")
-    return ConnectionRow(
-        (row.get("startElement", ""), row.get("startConnector", "")),
-        (row.get("endElement", ""), row.get("endConnector", "")),
-        1.0 if factor is None else factor,
-        offset or 0.0,
-        row.get("suppressUnitConversion") in ("true", "1"),
-        _line(row),
-    )
+def flag(row: etree._Element, name: str) -> bool:
+    """An attribute of the type xs:boolean, false where there is none."""
+    return row.get(name, "false").strip() in ("true", "1")
 
 
-def _line(row: etree._Element) -> int:
-    return int(row.sourceline or 0)
-
-
-def _number(row: etree._Element | None, name: str) -> float | None:
-    given = row.get(name) if row is not None else None
-    try:
-        return float(given) if given is not None else None
-    except ValueError:
-        return None
-
-
-def units(root: etree._Element, prefix: str) -> dict[str, Unit]:
-    """Units that a file defines, by name."""
+def units(root: etree._Element, file: str, mistakes: Mistakes) -> dict[str, Unit]:
+    """Units that a structure or a parameter set defines, by name."""
     found = {}
-    for row in root.iterfind(f"{prefix}:Units/ssc:Unit", READ):
-        base = row.find("ssc:BaseUnit", READ)
-        if base is not None:
-            name, factor, offset = row.get("name", ""), _number(base, "factor"), _number(base, "offset")
-            dimension = tuple(int(base.get(key, 0)) for key in BASE)
-            found[name] = Unit(name, dimension, 1.0 if factor is None else factor, offset or 0.0)
+    for base in root.xpath("(ssd:Units | ssv:Units)/ssc:Unit/ssc:BaseUnit", namespaces=READ):
+        name = base.getparent().get("name")
+        try:
+            found[name] = Unit.defined(name, base.attrib)
+        except ValueError as error:
+            mistakes.add(file, base.sourceline, f"<ssc:Unit> {name!r}: {error}")
     return found
 
 
-def _annotated(row: etree._Element | None, kind: str, path: str) -> etree._Element | None:
-    """The element of that path in an annotation of that type."""
+def annotated(row: etree._Element | None, kind: str, path: str) -> float | None:
+    """The number at that path in the first annotation of a type, which no schema has checked."""
     if row is None:
         return None
-    for annotation in row.iterfind("ssd:Annotations/ssc:Annotation", READ):
-        if annotation.get("type") == kind:
-            return annotation.find(path, READ)
-    return None
+    found = row.xpath(f"ssd:Annotations/ssc:Annotation[@type = '{kind}'][1]/{path}", namespaces=READ)
+    return decimal(found[0]) if found else None
 
 
-def _step(root: etree._Element, system: etree._Element) -> float | None:
-    """Step size that libcosim's or OMSimulator's annotation tells."""
-    experiment = root.find("ssd:DefaultExperiment", READ)
-    osp = _annotated(experiment, OSP_TYPE, "osp:Algorithm/osp:FixedStepAlgorithm")
-    oms = _annotated(system, OMS_TYPE, "oms:Annotations/oms:SimulationInformation")
-    step = _number(osp, "baseStepSize")
-    return step if step is not None else _number(oms, "fixedStepSize")
-
-
-def _ours(root: etree._Element) -> dict[str, dict[str, str]]:
-    phase = _annotated(root, OUR_TYPE, "dcone:Phase")
-    rows = phase if phase is not None else ()
-    return {plain(str(row.tag)).partition(":")[2]: {str(k): str(v) for k, v in row.attrib.items()} for row in rows}
+def decimal(text: object) -> float | None:
+    """A number of an attribute, None when there is none or it is none."""
+    try:
+        return float(str(text)) if text is not None else None
+    except ValueError:
+        return None

@@ -10,29 +10,23 @@ from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.phases import kind_of, kinds
+from dcone_cosim.scene.expected import Expected, Unexpected, example_of
 from dcone_cosim.scene.mistakes import Override
 from dcone_cosim.scene.toml_lines import given_at
-from dcone_cosim.scene.units import Expected, Unexpected, example_of
-from dcone_cosim.scenes.keys import COMPONENT_KEYS, MOST_STEPS, isolation
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, COUPLING_KEYS, MOST_STEPS, isolation, phase_keys
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part, owner_of
 from dcone_cosim.ssp.package import Mistakes
-from dcone_cosim.ssp.parsing import Document
+from dcone_cosim.ssp.parsing import Document, decimal
 
 RESERVED = (*kinds(), "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
 """Names of files in a run folder that a system's own name must not take."""
 
-SETTINGS: dict[str, Expected] = {
-    "macro_step": Expected("s", example="0.1 s", minimum=0.0, open_minimum=True),
-    "duration": Expected("s", example="30 s", minimum=0.0, open_minimum=True),
-    "solver_tolerance": Expected("1", example="1e-6", minimum=0.0, open_minimum=True),
-}
-"""What the command line may say of any phase, beside the values of its components."""
+SETTINGS = {"solver_tolerance": COMPONENT_KEYS["solver_tolerance"]}
+"""What the command line may say of any phase, beside its times, what its kind has, and the values of its components."""
 OF_COMPONENT = {key: COMPONENT_KEYS[key] for key in ("isolate", "timeout")}
 """What it may say of how a component is run, unless its FMU has a variable of that name."""
-CHOICES = {"method": ("gauss_seidel", "jacobi"), "control": ("fixed", "error"), "extrapolation": ("constant", "linear")}
-"""Words of our annotation on the coupling; the first counts when there is none."""
 
 
 def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, str]:
@@ -57,7 +51,7 @@ def settings_of(
     document     values of `PHASE.macro_step`, `COMPONENT.isolate`, `COMPONENT.VARIABLE`
     arguments    where they are in it
     """
-    of_phase = SETTINGS | {key: known for key, known in kind_of(phase).keys.items() if not known.size}
+    of_phase = SETTINGS | {key: known for key, known in phase_keys(phase).items() if not known.size}
     told: dict[str, float] = {}
     run: dict[str, dict[str, float]] = {}
     values: dict[str, dict[str, float | str]] = {}
@@ -71,17 +65,17 @@ def settings_of(
                 continue
             owner, variable = owner_of(name, parts)
             if not owner:
-                raise Unexpected(f"is no variable of a component{did_you_mean(head, [phase, *parts])}")
+                raise Unexpected(f"is not a variable of a component{did_you_mean(head, [phase, *parts])}")
             info = parts[owner].variables.get(variable)
             if info is None and variable in OF_COMPONENT:
                 run.setdefault(owner, {})[variable] = cast(float, OF_COMPONENT[variable].read(given))
                 continue
             if info is None or info.causality not in ("parameter", "input"):
                 known = [n for n, v in parts[owner].variables.items() if v.causality in ("parameter", "input")]
-                raise Unexpected(f"is no parameter or input of its FMU{did_you_mean(variable, known)}")
+                raise Unexpected(f"is not a parameter or an input of its FMU{did_you_mean(variable, known)}")
             example = example_of(info.start or 0.0, info.unit)
             expected = Expected(
-                info.unit, info.kind, 0, (), example, info.minimum, info.maximum, relative=info.relative
+                info.unit, info.kind, 0, (), example, info.minimum, info.maximum, relative=info.own.relative
             )
             values.setdefault(owner, {})[variable] = cast(float | str, expected.read(given))
         except Unexpected as error:
@@ -125,7 +119,7 @@ def macro_step(
     """Communication step [s]: of an annotation, else the least that a component or its FMU asks for."""
     asked = [told.get("macro_step", _own_macro_step(content))]
     if asked == [None]:
-        asked = [part.row.step for part in parts.values()]
+        asked = [part.step for part in parts.values()]
     if asked == [None] * len(asked):
         asked = [_of_experiment(part.experiment, "stepSize") for part in parts.values()]
     step = min((s for s in asked if s is not None), default=None)
@@ -154,14 +148,6 @@ def _own_macro_step(content: Document) -> float | None:
 
 def _of_experiment(experiment: Any, name: str) -> float | None:
     return decimal(getattr(experiment, name, None)) if experiment is not None else None
-
-
-def decimal(text: object) -> float | None:
-    """A number of an attribute, None when there is none or it is none."""
-    try:
-        return float(str(text)) if text is not None else None
-    except ValueError:
-        return None
 
 
 def options(name: str, plan: Mapping[str, str], told: Mapping[str, float], mistakes: Mistakes) -> Any:
@@ -194,7 +180,8 @@ def coupling(told: Mapping[str, str], parts: Mapping[str, Part], mistakes: Mista
             mistakes.add(STRUCTURE, None, f"<dcone:Coupling> {key} = {told[key]!r}: expected a number, not negative")
         numbers[key] = getattr(plain, key) if number is None else number
     words = {}
-    for key, known in CHOICES.items():
+    for key in ("method", "control", "extrapolation"):
+        known = COUPLING_KEYS[key].choices
         words[key] = told.get(key, known[0])
         if words[key] not in known:
             mistakes.add(STRUCTURE, None, f"<dcone:Coupling> {key} = {words[key]!r}{did_you_mean(words[key], known)}")

@@ -18,12 +18,13 @@ from dcone_cosim.scene.mistakes import Places
 from dcone_cosim.scene.toml_lines import given_at
 from dcone_cosim.scenes.keys import isolation
 from dcone_cosim.scenes.text import override, setting, titled
+from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp import matching, planning
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
 from dcone_cosim.ssp.matching import Part
-from dcone_cosim.ssp.package import Mistakes, Package, entry_of, parsed, unpacked_folder
-from dcone_cosim.ssp.parsing import Document, document
+from dcone_cosim.ssp.package import Mistakes, Package, entry_of
+from dcone_cosim.ssp.parsing import Document, document, read
 from dcone_cosim.ssp.values import given_values
 
 
@@ -37,19 +38,18 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
     Checked  tests/cosim/test_ssp_bad.py, tests/cosim/test_ssp_export.py
     """
     mistakes = Mistakes(str(path))
-    folder = unpacked_folder()
+    folder = Scratch.temporary()
     with Package(path) as package:
         text = package.read(STRUCTURE)
-        root = parsed(text, STRUCTURE, mistakes)
-        content = document(root, STRUCTURE, mistakes) if root is not None else None
+        root = read(text, STRUCTURE, "ssd:SystemStructureDescription", mistakes)
         mistakes.check()
-        assert content is not None, "without a mistake there is a structure"
+        assert root is not None, "without a mistake there is a structure"
+        content = document(root, STRUCTURE, mistakes)
         parts = _parts(content, package, folder.path, mistakes)
         mistakes.check()
         for part in parts.values():
             matching.check_ports(part, content.units, mistakes)
-        bindings = [*(row for part in parts.values() for row in part.row.bindings), *content.bindings]
-        values = list(given_values(iter(bindings), package, mistakes))
+        values = list(given_values(content.bindings, package, mistakes))
     parameters = matching.parameters(values, parts, mistakes)
     connections = matching.connections(content.connections, parts, mistakes)
     name, main = planning.name_and_main(content, parts)
@@ -99,16 +99,16 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
 def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, Part]:
     """Every component with its FMU, unpacked and opened once to see what it offers."""
     parts = {}
-    for number, row in enumerate(content.components):
-        entry, reason = entry_of(row.source, package.names, mistakes)
+    for number, (name, row) in enumerate(content.components.items()):
+        entry, reason = entry_of(row.get("source"), package.names, mistakes)
         if reason:
-            mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {reason}")
+            mistakes.add(STRUCTURE, row.sourceline, f"<ssd:Component> {name!r}: {reason}")
             continue
         fmu = package.unpack(entry, folder, f"{number}-{identifier(Path(entry).stem)}")
         try:
             with Archive(fmu) as archive:
-                parts[row.name] = Part(row, fmu, archive.variables, archive.description.defaultExperiment)
+                parts[name] = Part(name, row, fmu, archive.variables, archive.description.defaultExperiment)
         except FmuError as error:
             said = str(error).replace(str(fmu), entry)
-            mistakes.add(STRUCTURE, row.line, f"<ssd:Component> {row.name!r}: {said}")
+            mistakes.add(STRUCTURE, row.sourceline, f"<ssd:Component> {name!r}: {said}")
     return parts

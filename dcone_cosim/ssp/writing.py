@@ -8,7 +8,6 @@ from importlib.metadata import version
 
 from lxml import etree
 
-from dcone_cosim.fmu.units import BASE, PURE, Unit
 from dcone_cosim.ssp.markup import (
     FMU_TYPE,
     NAMESPACES,
@@ -21,6 +20,7 @@ from dcone_cosim.ssp.markup import (
     VERSION,
     tag,
 )
+from dcone_cosim.units import Unit
 
 MASTER = "master"
 """Name of the stepping in OMSimulator's annotations."""
@@ -200,12 +200,7 @@ def _add_units(root: etree._Element, prefix: str, units: Mapping[str, Unit]) -> 
         return
     rows = _add(root, prefix, "Units")
     for name, unit in sorted(units.items()):
-        base = {key: str(power) for key, power in zip(BASE, unit.dimension or PURE, strict=True) if power}
-        if unit.factor != 1.0:
-            base["factor"] = repr(unit.factor)
-        if unit.offset != 0.0:
-            base["offset"] = repr(unit.offset)
-        _add(_add(rows, "ssc", "Unit", name=name), "ssc", "BaseUnit", **base)
+        _add(_add(rows, "ssc", "Unit", name=name), "ssc", "BaseUnit", **unit.definition)
 
 
 def _bytes(root: etree._Element) -> bytes:

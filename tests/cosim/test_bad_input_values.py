@@ -15,7 +15,7 @@ from dcone_cosim.master import run_scene
 from dcone_cosim.phases.capture import CaptureOptions
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.scene.units import Expected, Unexpected
+from dcone_cosim.scene.expected import Expected, Unexpected
 from dcone_cosim.scenes.reading import parse
 from fmu_src.net_capture.interface import MOST_NODES, NodeTerms, refusals
 from fmu_src.net_capture.nets.grid import node_count
@@ -52,9 +52,9 @@ def complaint(text: str) -> str:
     [
         # numbers that are none
         ("mission", "damping_ratio = 0.106", f"damping_ratio = {'9' * 400}", ["net.damping_ratio", "too large"]),
-        ("mission", 'side = "12 m"', 'side = "[1,2] m"', ['net.side = "[1,2] m"', "is no number with a unit"]),
-        ("mission", 'side = "12 m"', 'side = "1 99m"', ['net.side = "1 99m"', "is no number with a unit"]),
-        ("mission", MUZZLE, MUZZLE.replace("-12 m", "far"), ["element 2 is no number with a unit"]),
+        ("mission", 'side = "12 m"', 'side = "[1,2] m"', ['net.side = "[1,2] m"', "is not a number with a unit"]),
+        ("mission", 'side = "12 m"', 'side = "1 99m"', ['net.side = "1 99m"', "is not a number with a unit"]),
+        ("mission", MUZZLE, MUZZLE.replace("-12 m", "far"), ["element 2 is not a number with a unit"]),
         ("mission", "[handoff]", "[capture.solver]\nseed = 3000000000\n[handoff]", ["solver.seed", "2147483647"]),
         ("table1-capture", '"5.32 s"', "5", ["capture.snapshots", "element 2: a bare number"]),
         # bounds in the unit that was written

@@ -20,7 +20,7 @@ import pytest
 from dcone_cosim import build, offline, progress
 from dcone_cosim.cache import Times, age, clear, listing, spoken_age
 from dcone_cosim.errors import InputError
-from dcone_cosim.scratch import workplace
+from dcone_cosim.scratch import Scratch
 from fmu_src.packaging import start_values
 from tests.cosim.conftest import Dcone
 
@@ -50,7 +50,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setenv("DCONE_CACHE", str(tmp_path))
     keep(tmp_path, CAPTURE, 40.0)
     keep(tmp_path, REMOVAL, 2.0, "reel locked")
-    with workplace(tmp_path) as living:
+    with Scratch(tmp_path) as living:
         (living / "model.ll").write_text("half a model")
         (tmp_path / ".dcone-killed.lock").touch()
         (tmp_path / ".dcone-killed").mkdir()

@@ -10,6 +10,7 @@ from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.fmu.component import Terminated, output_names
+from dcone_cosim.units import NO_UNIT, Unit
 from tests.cosim.linear_components import LinearComponent, by_force, by_motion, coupled, error_at, run
 from tests.cosim.mock_components import MockComponent
 
@@ -70,15 +71,13 @@ def test_kinds_that_do_not_fit(kind: str, other: str) -> None:
 def test_dimensions_must_be_the_same() -> None:
     components, connections = by_force()
     first, second = components
-    first.variables["position"] = replace(
-        first.variables["position"], unit="m", declared_unit="mm", dimension=LENGTH, factor=1e-3
-    )
-    second.variables["position"] = replace(second.variables["position"], unit="m", dimension=LENGTH)
+    first.variables["position"] = replace(first.variables["position"], own=Unit("mm", LENGTH, 1e-3))
+    second.variables["position"] = replace(second.variables["position"], own=Unit("m", LENGTH))
     Coupled("tow", components, connections, Coupling())
-    second.variables["position"] = replace(second.variables["position"], unit="N", dimension=FORCE)
+    second.variables["position"] = replace(second.variables["position"], own=Unit("N", FORCE))
     with pytest.raises(InputError, match=r"position is in mm, position in N: different dimensions"):
         Coupled("tow", components, connections, Coupling())
-    second.variables["position"] = replace(second.variables["position"], unit="1", dimension=None)
+    second.variables["position"] = replace(second.variables["position"], own=NO_UNIT)
     Coupled("tow", components, connections, Coupling())
 
 
@@ -87,14 +86,14 @@ def test_turns_are_no_angle() -> None:
     components, connections = by_force()
     first, second = components
     frequency, angular = (0, 0, -1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 0, 0, 0, 1)
-    info = replace(first.variables["position"], unit="Hz", declared_unit="Hz", dimension=frequency)
-    second.variables["position"] = replace(second.variables["position"], unit="rad/s", dimension=angular)
+    info = replace(first.variables["position"], own=Unit("Hz", frequency))
+    second.variables["position"] = replace(second.variables["position"], own=Unit("rad/s", angular))
     first.variables["position"] = info
     with pytest.raises(InputError, match=r"position is in Hz, position in rad/s: Hz counts turns, rad/s an angle"):
         Coupled("tow", components, connections, Coupling())
     for other in (
-        replace(info, unit="1/s", declared_unit="1/s"),
-        replace(info, dimension=angular, factor=6.283185307179586),
+        replace(info, own=Unit("1/s", frequency)),
+        replace(info, own=Unit("Hz", angular, 6.283185307179586)),
     ):
         first.variables["position"] = other
         Coupled("tow", components, connections, Coupling())
@@ -317,7 +316,7 @@ def test_steps_of_one_length() -> None:
     whole = coupled(components, connections, step=0.3)
     assert not whole.can_vary_step
     with pytest.raises(
-        FmuError, match=r"step of 1 s at t = 0 s is no whole number of steps of 0\.3 s.* of second takes"
+        FmuError, match=r"step of 1 s at t = 0 s is not a whole number of steps of 0\.3 s.* of second takes"
     ):
         whole.step(0.0, 1.0)
     assert components[0].calls == []
@@ -325,7 +324,7 @@ def test_steps_of_one_length() -> None:
     assert {round(size, 12) for _, size in components[1].calls} == {0.1}
     whole = coupled(components, connections)
     whole.step(0.0, 0.3)
-    with pytest.raises(FmuError, match=r"step of 0\.2 s at t = 0\.3 s is no whole number of steps of 0\.3 s"):
+    with pytest.raises(FmuError, match=r"step of 0\.2 s at t = 0\.3 s is not a whole number of steps of 0\.3 s"):
         whole.step(0.3, 0.2)
 
 

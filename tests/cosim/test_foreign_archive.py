@@ -73,7 +73,7 @@ def test_no_such_file_names_the_nearest(tmp_path: Path) -> None:
 def test_a_folder_an_empty_file_and_a_text(tmp_path: Path) -> None:
     assert "a folder" in refusal(tmp_path)
     assert "empty" in refused(tmp_path, b"")
-    assert "is a zip file, and this is none" in refused(tmp_path, b"<html>not found</html>")
+    assert "is a zip file, and this is not one" in refused(tmp_path, b"<html>not found</html>")
 
 
 @pytest.mark.parametrize("share", [0.3, 0.7, 0.99])
@@ -95,8 +95,8 @@ def test_no_model_description(tmp_path: Path, description: str) -> None:
 
 def test_broken_xml(tmp_path: Path, description: str) -> None:
     cut = description[: len(description) // 2]
-    assert re.search(r"no valid XML \(.*line \d+", refused(tmp_path, {XML: cut, BINARY: ""}))
-    assert "is of no FMU: it begins with <html>" in refused(tmp_path, {XML: "<html/>", BINARY: ""})
+    assert re.search(r"not valid XML \(.*line \d+", refused(tmp_path, {XML: cut, BINARY: ""}))
+    assert "is not that of an FMU: it begins with <html>" in refused(tmp_path, {XML: "<html/>", BINARY: ""})
     odd = description.replace('valueReference="0"', 'valueReference="zero"', 1)
     assert "does not follow FMI 2.0" in refused(tmp_path, {XML: odd, BINARY: ""})
 

@@ -14,7 +14,7 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
 from dcone_cosim.fmu.isolation import IsolatedComponent
-from dcone_cosim.fmu.units import PURE, Unit, by_name, misfit, read_units, same_dimension, si_name
+from dcone_cosim.units import PURE, Unit, by_name, misfit, read_units, same_dimension, si_name
 from tests.cosim.fmus.build import build
 
 LENGTH = (0, 1, 0, 0, 0, 0, 0, 0)
@@ -139,9 +139,19 @@ class TestComponent:
 
     def test_what_is_told_of_a_variable(self, component: Component) -> None:
         info = component.variables["tether.rest_length"]
-        assert (info.unit, info.declared_unit, info.factor, info.dimension) == ("m", "mm", 0.001, LENGTH)
+        assert (info.unit, info.own) == ("m", Unit("mm", LENGTH, 0.001))
         assert component.variables["chaser.mass"].start == 2 * 2000.0 + 10.0
         assert (info.variability, info.initial) == ("fixed", "exact")
+
+
+def test_rates_have_the_factor_and_no_offset(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Archive(path) as archive, Component(archive, "it") as component:
+        handed: list[Any] = []
+        with monkeypatch.context() as patched:
+            patched.setattr(component, "_call", lambda *arguments: handed.extend(arguments))
+            component.set_rates({"start.relative_position[2]": 0.25, "chaser.mass": -3.0})
+        assert handed[0] == "setRealInputDerivatives"
+        assert handed[-1] == [250.0, -1.5]
 
 
 def test_si_values_pass_untouched(tmp_path: Path) -> None:

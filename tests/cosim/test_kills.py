@@ -267,7 +267,7 @@ def test_a_build(tmp_path: Path) -> None:
     cache = tmp_path / "cache"
 
     def build() -> Path:
-        return archive.build(interface, cache, workplace=scratch.workplace)
+        return archive.build(interface, cache, workplace=scratch.Scratch)
 
     for event in killed_everywhere(build):
         for path in cache.glob("*.fmu"):

@@ -193,6 +193,6 @@ class TestSchema:
         for _ in range(2):
             assert json.loads(write_schema(path)) == json.loads(path.read_text()) == schema()
         path.write_text("years of work")
-        with pytest.raises(InputError, match="is there already and is no schema"):
+        with pytest.raises(InputError, match="is there already and is not a schema"):
             write_schema(path)
         assert [p.name for p in tmp_path.iterdir()] == ["dcone-schema.json"]

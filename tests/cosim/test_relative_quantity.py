@@ -16,12 +16,11 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import TEMPERATURE, Unit
-from dcone_cosim.scene.units import Unexpected
+from dcone_cosim.scene.expected import Unexpected
 from dcone_cosim.scenes.fmus import offer
 from dcone_cosim.ssp import matching
-from dcone_cosim.ssp.parsing import PortRow
 from dcone_cosim.ssp.values import Given
+from dcone_cosim.units import TEMPERATURE, Unit
 from tests.cosim.fmus.build import build
 from tests.cosim.mock_components import MockComponent
 
@@ -62,9 +61,9 @@ def fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_what_is_read_of_the_description(fmu: Path) -> None:
     with Archive(fmu) as archive:
         found = {name: archive.variables[name] for name in REALS}
-    assert {name for name, info in found.items() if info.relative} == set(DIFFERENCES)
+    assert {name for name, info in found.items() if info.own.relative} == set(DIFFERENCES)
     assert {info.unit for info in found.values()} == {"K"}
-    assert {info.declared_unit for info in found.values()} == {"degC"}
+    assert {info.own.name for info in found.values()} == {"degC"}
     assert {name: info.start for name, info in found.items()} == {
         name: 7.0 if name in DIFFERENCES else 280.15 for name in REALS
     }
@@ -99,9 +98,7 @@ def test_in_a_scene(fmu: Path, given: str, kelvin: float) -> None:
 
 
 def of(name: str, causality: str, unit: Unit) -> VariableInfo:
-    return VariableInfo(
-        name, 0, "Real", "K", causality, "", unit.name, TEMPERATURE, unit.factor, unit.offset, relative=unit.relative
-    )
+    return VariableInfo(name, 0, "Real", "K", causality, "", unit)
 
 
 @pytest.mark.parametrize(("out", "into"), [(CELSIUS, True), (Unit("K", TEMPERATURE), True), (CELSIUS, False)])
@@ -113,7 +110,7 @@ def test_in_connections(out: Unit, into: bool) -> None:
     parts[1].variables = {"in": of("in", "input", wanted)}
     names = ["a", "b"]
     wrong, right = ("T", "dT") if into else ("dT", "T")
-    with pytest.raises(InputError, match=r"a difference of temperature \(relativeQuantity\) is no temperature"):
+    with pytest.raises(InputError, match=r"a difference of temperatures \(relativeQuantity\) is not a temperature"):
         wire("x", names, parts, [Connection("a", wrong, "b", "in")])
     assert len(wire("x", names, parts, [Connection("a", right, "b", "in")])) == 1
 
@@ -133,7 +130,6 @@ class TestInPackages:
         assert matching._in_si(given, self.RISE) == 11.0
 
     def test_a_connector_in_the_unit_by_another_name(self) -> None:
-        port = PortRow("dT", "parameter", "Real", "C", 1)
         units = {"C": Unit("C", TEMPERATURE, 1.0, 273.15), "K": Unit("K", TEMPERATURE)}
         for info in (self.RISE, self.LEVEL):
-            assert not matching._other_unit(port, matching.own_unit(info), units)
+            assert not matching._other_unit("C", info.own, units)

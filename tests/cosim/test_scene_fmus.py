@@ -13,9 +13,9 @@ from dcone_cosim.coupling.wiring import mismatch
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.fmu.units import by_name
 from dcone_cosim.loading import find, load
 from dcone_cosim.scene.data import Scene
+from dcone_cosim.units import by_name
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 
@@ -257,7 +257,7 @@ fmu = "{}"
     told = r"other\.catch\.mass is in %, removal\.reel\.tension in N: different dimensions"
     with pytest.raises(InputError, match=told):
         read(tmp_path, scene.format(fmus["%"]))
-    reel = VariableInfo("reel.tension", 0, "Real", "N", "input", "", "N", by_name("N").dimension)
+    reel = VariableInfo("reel.tension", 0, "Real", "N", "input", "", by_name("N"))
     for name, fits in (("kN", True), ("%", False)):
         with Archive(fmus[name]) as archive:
             why = mismatch("out", archive.variables["catch.mass"], "in", reel)

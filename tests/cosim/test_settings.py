@@ -61,8 +61,8 @@ def test_the_last_counts() -> None:
         ("capture.bullets.speed", 'expected KEY.KEY=VALUE, such as capture.bullets.speed="4 m/s"'),
         ("=3", "expected KEY.KEY=VALUE"),
         ("capture.bullets.speed=", "expected KEY.KEY=VALUE"),
-        ("capture..speed=3", "'capture..speed' is no key"),
-        ("capture.bullets.speed.x=3", "capture.bullets.speed is no table, it has no 'x'"),
+        ("capture..speed=3", "'capture..speed' is not a key"),
+        ("capture.bullets.speed.x=3", "capture.bullets.speed is not a table: it has no 'x'"),
         ("capture.bullets.speed=4 kg", '--set capture.bullets.speed=4 kg: capture.bullets.speed = "4 kg": is a mass'),
         (
             "capture.bullets.sped=4 m/s",

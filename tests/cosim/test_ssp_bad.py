@@ -14,6 +14,7 @@ from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.export import export_scene
+from dcone_cosim.ssp.markup import SSM
 from tests.cosim.ssp_packages import STRUCTURE, changed, contents, packed
 from tests.cosim.test_ssp_export import SHORT
 
@@ -21,6 +22,10 @@ TENSION = '<ssd:Connector name="tether.tension" kind="output">'
 LEVEL = '<ssv:Parameter name="thrust.level">'
 COMPONENT = '<ssd:Component name="removal"'
 SYSTEM_END = "</ssd:Elements>"
+CONNECTOR = f'{TENSION}\n            <ssc:Real unit="N"/>'
+REAL = '<ssv:Real value="-0.01" unit="N"/>'
+SET_END = "</ssd:ParameterValues>"
+MAPPED = "<ssd:ParameterMapping>{}</ssd:ParameterMapping>"
 LOOSE = (
     '<ssd:Connections><ssd:Connection startElement="{0}" startConnector="{1}" '
     'endElement="{2}" endConnector="{3}"/></ssd:Connections>'
@@ -58,20 +63,62 @@ def test_the_package_that_is_damaged_here_is_good(good: Path) -> None:
         (TENSION, TENSION.replace("tension", "tensoin"), ("'tether.tensoin'", "did you mean 'tether.tension'?")),
         (TENSION, TENSION.replace("output", "input"), ("kind = 'input'", "'output'")),
         (TENSION, TENSION.replace("output", "inout"), ("kind = 'inout'", "expected input")),
-        (f'{TENSION}\n            <ssc:Real unit="N"/>', f"{TENSION}<ssc:Integer/>", ("is Integer", "as Real")),
-        (f'{TENSION}\n            <ssc:Real unit="N"/>', f'{TENSION}<ssc:Real unit="m"/>', ("in 'm'", "in 'N'")),
+        (CONNECTOR, f"{TENSION}<ssc:Integer/>", ("is Integer", "as Real")),
+        (CONNECTOR, f'{TENSION}<ssc:Real unit="m"/>', ("in 'm'", "in 'N'")),
         (
-            f'{TENSION}\n            <ssc:Real unit="N"/>',
+            CONNECTOR,
             f'{TENSION}<ssc:Enumeration name="e"/>',
             ("type Enumeration", "Real, Integer, Boolean or String"),
         ),
+        (REAL, '<ssv:Binary value="00"/>', ("'thrust.level'", "type Binary", "Real, Integer, Boolean or String")),
+        ("<ssd:ParameterBinding>", '<ssd:ParameterBinding type="text/plain">', ("'text/plain'", "x-ssp-parameter-set")),
+        (
+            "<ssd:ParameterBinding>",
+            '<ssd:ParameterBinding source="x.ssv" sourceBase="component"/><ssd:ParameterBinding>',
+            ("sourceBase = 'component'", "a file of the package"),
+        ),
+        (
+            "<ssd:ParameterBinding>",
+            "<ssd:ParameterBinding/><ssd:ParameterBinding>",
+            ("neither a source nor a <ssv:ParameterSet>",),
+        ),
+        (
+            "<ssd:ParameterBinding>",
+            '<ssd:ParameterBinding source="SystemStructure.ssd"/><ssd:ParameterBinding>',
+            ("<ssd:SystemStructureDescription> is not the <ssv:ParameterSet>",),
+        ),
+        (
+            SYSTEM_END,
+            '<ssd:Component name="removal" source="resources/removal.fmu"/></ssd:Elements>',
+            ("<ssd:Component> 'removal': line", "has one of that name"),
+        ),
+        ('<ssc:BaseUnit m="1"/>', '<ssc:BaseUnit m="1" factor="0"/>', ("<ssc:Unit> 'm'", "factor 0")),
+        (SET_END, SET_END + MAPPED.format(""), ("neither a source nor a <ssm:ParameterMapping>",)),
+        (
+            SET_END,
+            SET_END + '<ssd:ParameterMapping type="text/plain" source="x.ssm"/>',
+            ("'text/plain'", "x-ssp-parameter-mapping"),
+        ),
+        (SET_END, SET_END + '<ssd:ParameterMapping source="x.ssm"/>', ("ssd:ParameterMapping", "'x.ssm' is not in")),
+        (
+            SET_END,
+            SET_END
+            + MAPPED.format(
+                f'<ssm:ParameterMapping xmlns:ssm="{SSM}" version="1.0"><ssm:MappingEntry source="a" target="b">'
+                '<ssc:BooleanMappingTransformation><ssc:MapEntry source="true" target="false"/>'
+                "</ssc:BooleanMappingTransformation></ssm:MappingEntry></ssm:ParameterMapping>"
+            ),
+            ("<ssc:BooleanMappingTransformation>", "only a linear transformation"),
+        ),
+        ('<ssv:ParameterSet version="1.0"', '<ssv:ParameterSet version="1.1"', ("'1.1'", "expected '1.0'")),
+        ('<ssv:ParameterSet version="1.0"', "<ssv:ParameterSet", ("ssv:ParameterSet", "'version' is required")),
         (LEVEL, LEVEL.replace("thrust.level", "tether.tension"), ("cannot be set", "'output'")),
-        ('<ssv:Real value="-0.01" unit="N"/>', '<ssv:Boolean value="true"/>', ("given as Boolean", "as Real")),
-        ('<ssv:Real value="-0.01" unit="N"/>', '<ssv:Real value="-0.01" unit="m"/>', ("given in 'm'", "in 'N'")),
-        ('<ssv:Real value="-0.01" unit="N"/>', '<ssv:Real value="-0.01" unit="lb"/>', ("'lb'", "does not define")),
-        ('<ssv:Real value="-0.01" unit="N"/>', '<ssv:Real value="NaN"/>', ("must be finite",)),
-        ('<ssv:Real value="-0.01" unit="N"/>', '<ssv:Real value="much"/>', ("much", "xs:double")),
-        ('<ssv:Real value="-0.01" unit="N"/>', '<ssv:String value="much"/>', ("given as String", "as Real")),
+        (REAL, '<ssv:Boolean value="true"/>', ("given as Boolean", "as Real")),
+        (REAL, '<ssv:Real value="-0.01" unit="m"/>', ("given in 'm'", "in 'N'")),
+        (REAL, '<ssv:Real value="-0.01" unit="lb"/>', ("'lb'", "does not define")),
+        (REAL, '<ssv:Real value="NaN"/>', ("must be finite",)),
+        (REAL, '<ssv:Real value="much"/>', ("much", "xs:double")),
+        (REAL, '<ssv:String value="much"/>', ("given as String", "as Real")),
         ('version="1.0" name="tow', 'version="2.0" name="tow', ("'2.0'", "expected '1.0'")),
         ('source="resources/removal.fmu"', 'source="resources/removl.fmu"', ("did you mean 'resources/removal.fmu'",)),
         ('source="resources/removal.fmu"', 'source="../removal.fmu"', ("not a file in the package",)),
@@ -92,6 +139,16 @@ def test_the_package_that_is_damaged_here_is_good(good: Path) -> None:
             ("'c'", "connector of the system"),
         ),
         (SYSTEM_END, SYSTEM_END + LOOSE.format("removal", "separation", "remove", "thrust.offset"), ("'remove'",)),
+        (
+            SYSTEM_END,
+            SYSTEM_END + LOOSE.format("removal", "separation", "", "thrust.offset").replace('endElement="" ', ""),
+            ("endConnector = 'thrust.offset' is one of the system", "endElement"),
+        ),
+        (
+            SYSTEM_END,
+            SYSTEM_END + LOOSE.format("", "separation", "removal", "thrust.offset").replace('startElement="" ', ""),
+            ("startConnector = 'separation' is one of the system", "startElement"),
+        ),
         (
             SYSTEM_END,
             SYSTEM_END + LOOSE.format("removal", "separation", "removal", "thrust.ofset"),
@@ -124,6 +181,12 @@ def test_one_fault_is_one_error_with_its_line(
         assert part in text
     assert "1 mistake" in text or "not well-formed" in text
     assert STRUCTURE in text
+
+
+def test_a_system_without_components(good: Path, tmp_path: Path) -> None:
+    text = contents(good)[STRUCTURE].decode()
+    elements = text[text.index("<ssd:Elements>") : text.index(SYSTEM_END) + len(SYSTEM_END)]
+    assert "line 3: the system holds no component" in refusal(changed(good, tmp_path / "bad.ssp", (elements, "")))
 
 
 def test_a_fault_is_told_with_the_line_it_stands_on(good: Path, tmp_path: Path) -> None:
@@ -179,8 +242,8 @@ def test_an_entry_that_would_leave_the_package_is_refused(
 def test_files_that_are_no_packages(good: Path, tmp_path: Path) -> None:
     whole = good.read_bytes()
     for name, content, said in (
-        ("empty.ssp", b"", "no SSP package"),
-        ("text.ssp", b"not a zip", "no SSP package"),
+        ("empty.ssp", b"", "not an SSP package"),
+        ("text.ssp", b"not a zip", "not an SSP package"),
         ("short.ssp", whole[: len(whole) // 2], "cut short"),
         ("flipped.ssp", whole.replace(b"tow_removal", b"tow_remuval", 1), "damaged"),
     ):
@@ -199,7 +262,7 @@ def test_the_command_line_says_what_it_cannot_set(good: Path) -> None:
         ("removal.thrust.level=1", "removal.thrust.level: a bare number has no unit; expected a force"),
         ("removal.thrust.level=1", 'such as "-0.01 N"'),
         ("removl.thrust.level=1 N", "did you mean 'removal'"),
-        ("zzz.thrust.level=1 N", "is no variable of a component; known: removal"),
+        ("zzz.thrust.level=1 N", "is not a variable of a component; known: removal"),
         ("removal.macro_step=0 s", "greater than 0"),
     ):
         with pytest.raises(InputError, match=r"^--set ") as caught:

@@ -6,9 +6,14 @@ import re
 from pathlib import Path
 
 import pytest
+from lxml import etree
 
+from dcone_cosim.coupling.options import Connection
 from dcone_cosim.errors import InputError
-from dcone_cosim.ssp import system
+from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.ssp import export, matching, system
+from dcone_cosim.ssp.values import Given
+from dcone_cosim.units import TEMPERATURE, Unit
 from tests.cosim.ssp_packages import STRUCTURE, changed, contents, packed
 from tests.cosim.test_ssp_bad import good
 
@@ -23,6 +28,9 @@ NAMESPACES = (
 )
 MILLI = '<ssv:Units><ssc:Unit name="mN"><ssc:BaseUnit kg="1" m="1" s="-2" factor="0.001"/></ssc:Unit></ssv:Units>'
 MAPPING = '<ssm:ParameterMapping version="1.0" {namespaces}>{entries}</ssm:ParameterMapping>'
+LENGTH = (0, 1, 0, 0, 0, 0, 0, 0)
+METRE, MM = Unit("m", LENGTH), Unit("mm", LENGTH, 1e-3)
+KELVIN, CELSIUS = Unit("K", TEMPERATURE), Unit("degC", TEMPERATURE, 1.0, 273.15)
 ENTRY = '<ssm:MappingEntry source="push" target="thrust.level"><ssc:LinearTransformation {how}/></ssm:MappingEntry>'
 
 
@@ -115,3 +123,70 @@ def test_the_step_and_the_stop_come_from_the_structure(good: Path, tmp_path: Pat
     assert (phase.start, phase.duration) == (5.0, 100.0)
     text = contents(good)[STRUCTURE].decode()
     assert 'baseStepSize="10.0"' in text
+
+
+def ends(out: Unit, into: Unit) -> tuple[VariableInfo, VariableInfo]:
+    return VariableInfo("out", 0, "Real", "m", "output", "", out), VariableInfo("in", 1, "Real", "m", "input", "", into)
+
+
+@pytest.mark.parametrize(
+    ("out", "into", "attributes", "linear", "value", "expected"),
+    [
+        (MM, METRE, "", "", 5.0, 5.0),
+        (MM, METRE, "", 'factor="2" offset="1"', 5.0, 2 * 5.0 + 1.0),
+        (METRE, MM, "", 'factor="2" offset="1"', 5.0, 2 * 5.0 + 0.001),
+        (MM, METRE, 'suppressUnitConversion="true"', 'factor="2" offset="1"', 5.0, 2 * 5000.0 + 1.0),
+        (METRE, MM, 'suppressUnitConversion="true"', 'factor="2" offset="1"', 5.0, (2 * 5.0 + 1.0) / 1000.0),
+        (CELSIUS, KELVIN, "", 'factor="2" offset="1"', 300.0, 2 * 300.0 + 1.0),
+        (KELVIN, CELSIUS, "", 'factor="2" offset="1"', 300.0, 2 * (300.0 - 273.15) + 1.0 + 273.15),
+        (CELSIUS, KELVIN, 'suppressUnitConversion="true"', 'factor="2"', 300.0, 2 * (300.0 - 273.15)),
+    ],
+)
+def test_a_connection_transforms_values_in_the_unit_of_its_target(
+    out: Unit, into: Unit, attributes: str, linear: str, value: float, expected: float
+) -> None:
+    """SSP: the unit is converted first, then the transformation applied; between SI values that is one factor."""
+    inner = f"<ssc:LinearTransformation {linear}/>" if linear else ""
+    row = etree.XML(f"<Connection {NAMESPACES} {attributes}>{inner}</Connection>")
+    factor, offset = matching._si_transformation(row, *ends(out, into))
+    assert factor * value + offset == pytest.approx(expected, rel=1e-12)
+    written = export._wire(Connection("a", "out", "b", "in", factor, offset), *ends(out, into))
+    of = out.from_si(value)
+    assert into.to_si(written.factor * of + written.offset) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_mapping_transforms_in_the_unit_of_its_target() -> None:
+    given = Given("a", "in", "Real", 2.0, METRE, "f", 1, factor=3.0, offset=500.0)
+    assert matching._in_si(given, ends(METRE, MM)[1]) == pytest.approx((3.0 * 2000.0 + 500.0) / 1000.0, rel=1e-15)
+
+
+LOOP = '<ssd:Connection startElement="removal" startConnector="{0}" endElement="removal" endConnector="{1}"/>'
+
+
+def connected(good: Path, target: Path, *ends: tuple[str, str]) -> Path:
+    """The tether's tension, a force, set as an offset of the thrust, by connections that name these ends."""
+    rows = "".join(LOOP.format(*pair) for pair in ends)
+    return changed(good, target, ("</ssd:Elements>", f"</ssd:Elements><ssd:Connections>{rows}</ssd:Connections>"))
+
+
+def test_a_connection_has_its_direction_from_its_connectors(good: Path, tmp_path: Path) -> None:
+    there, back = ("tether.tension", "thrust.offset"), ("thrust.offset", "tether.tension")
+    for pair in (there, back):
+        (made,) = system.load(connected(good, tmp_path / "x.ssp", pair)).phases[0].connections
+        assert (made.output, made.input, made.factor, made.offset) == (*there, 1.0, 0.0)
+    with pytest.raises(InputError, match=r"line \d+: connection .*: the input is connected in line \d+ already"):
+        system.load(connected(good, tmp_path / "y.ssp", there, back))
+
+
+def test_a_linear_transformation_is_for_real(good: Path, tmp_path: Path) -> None:
+    flags = [VariableInfo(name, 0, "Boolean", "1", name, "") for name in ("output", "input")]
+    plain, scaled = (
+        etree.XML(f"<Connection {NAMESPACES}>{inner}</Connection>")
+        for inner in ("", '<ssc:LinearTransformation factor="2"/>')
+    )
+    assert matching._mismatch(plain, *flags) == ""
+    assert matching._mismatch(scaled, *flags) == "both are Boolean; a linear transformation is for Real"
+    mapping = MAPPING.format(namespaces=NAMESPACES, entries=ENTRY.format(how='factor="2"'))
+    value = '<ssv:Parameter name="push"><ssv:Integer value="1"/></ssv:Parameter>'
+    with pytest.raises(InputError, match="'push' is Integer: a linear transformation is for Real"):
+        system.load(of_component(good, tmp_path / "x.ssp", inline(value, mapping=mapping)))

@@ -99,7 +99,7 @@ class TestLowering:
 
     def test_not_of_a_pair_far_apart(self, make_scene: MakeScene) -> None:
         rows = self.rows(make_scene, 20e3, 554.8, 1.0)
-        assert "not told" in str(rows["lowered"].value)
+        assert "not reported: chaser and target" in str(rows["lowered"].value)
         assert "lowering_rate" not in rows
 
     def test_no_rate_from_a_part_of_a_revolution(self, make_scene: MakeScene) -> None:

@@ -42,7 +42,7 @@ def package(folder: Path, grid: str, scene: str = SCENE) -> Path:
     told = {"coupling.method": "jacobi", "coupling.extrapolation": "constant", "coupling.step": step}
     told |= {"macro_step": step, "duration": f"{STEPS * GRIDS[grid]!r} s"}
     settings = [f"{MAIN}.{key}={value}" for key, value in told.items()]
-    (path,) = export_scene(scene, folder, Progress(), open_inputs=False, settings=settings).paths
+    (path,) = export_scene(loading.load(scene, settings), folder, Progress(), open_inputs=False).paths
     return path
 
 

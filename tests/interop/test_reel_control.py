@@ -95,7 +95,7 @@ def test_a_control_without_a_motor_acts_a_step_late(tool: str, tmp_path: Path) -
 
 def test_the_scenes_package_has_the_scenes_bits_and_its_coupling_step(tmp_path: Path) -> None:
     """As shipped, in macro steps of a minute: tools are told to exchange at the coupling step, we know both."""
-    (path,) = export_scene(SCENE, tmp_path, Progress()).paths
+    (path,) = export_scene(loading.load(SCENE), tmp_path, Progress()).paths
     root = etree.fromstring(contents(path)[STRUCTURE])
     (algorithm,) = root.iter("{*}FixedStepAlgorithm")
     scene = loading.load(SCENE)

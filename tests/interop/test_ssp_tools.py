@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from dcone_cosim.commands import run_and_write
+from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.ssp.export import export_scene
@@ -48,7 +49,7 @@ def spread(found: dict, own: Recorder, rows: int) -> float:
 @pytest.fixture(scope="module")
 def tow(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("tow")
-    (package,) = export_scene("table2-deorbit", folder, Progress(), open_inputs=False).paths
+    (package,) = export_scene(load("table2-deorbit"), folder, Progress(), open_inputs=False).paths
     return package
 
 
@@ -80,7 +81,7 @@ def test_a_tool_that_withholds_an_output_is_found_out(tow: Path) -> None:
 def mission(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
     folder = tmp_path_factory.mktemp("mission")
     run_and_write("mission", folder / "run", Progress(), with_figures=False)
-    return tuple(export_scene("mission", folder, Progress(), from_run=folder / "run", open_inputs=False).paths)
+    return tuple(export_scene(load("mission"), folder, Progress(), from_run=folder / "run", open_inputs=False).paths)
 
 
 @pytest.mark.slow

@@ -276,9 +276,9 @@ def test_kernels_are_worked_out_once_for_all_platforms(tmp_path, monkeypatch):
 def test_platforms_by_name():
     assert door.platform_names("all") == ("linux64", "win64", "darwin64", "linux-aarch64")
     assert door.platform_names("win64, linux64,win64") == ("win64", "linux64")
-    with pytest.raises(InputError, match=r"'win46' is no platform.*did you mean 'win64'"):
+    with pytest.raises(InputError, match=r"'win46' is not a platform.*did you mean 'win64'"):
         door.platform_names("linux64,win46")
-    with pytest.raises(InputError, match="'' is no platform"):
+    with pytest.raises(InputError, match="'' is not a platform"):
         door.platform_names("linux64,")
 
 
@@ -347,5 +347,5 @@ def test_unknown_platform_is_bad_input_and_leaves_nothing(without_tools, tmp_pat
     with pytest.raises(SystemExit) as stop:
         cli.main()
     assert stop.value.code == 2
-    assert "'macos' is no platform" in capsys.readouterr().err
+    assert "'macos' is not a platform" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -10,82 +10,20 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
 
-import astropy.units as u
+from dcone_cosim.units import NO_UNIT, Unit, by_name, like, named, spoken
 
 LARGEST_INTEGER = 2**31 - 1
 """An FMI Integer has 32 bits."""
 _QUANTITY = re.compile(r"\s*([+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|nan|inf))\s*([^\d\s].*)?", re.DOTALL)
 """A number, and a unit that does not begin with another number."""
 
-COMMON = (
-    *("m", "mm", "cm", "km", "um", "AU", "s", "ms", "min", "h", "d", "wk", "yr", "kg", "g", "t", "K", "deg_C"),
-    *("rad", "mrad", "deg", "arcmin", "arcsec", "m2", "cm2", "mm2", "m3", "l", "m/s", "mm/s", "cm/s", "km/s", "km/h"),
-    *(
-        "rad/s",
-        "deg/s",
-        "1/s",
-        "Hz",
-        "rad/s2",
-        "deg/s2",
-        "m/s2",
-        "N",
-        "mN",
-        "kN",
-        "MN",
-        "Pa",
-        "kPa",
-        "MPa",
-        "GPa",
-        "bar",
-    ),
-    *("N/m", "mN/m", "kN/m", "N s/m", "kg/s", "N s", "kg m/s", "N m", "N m s", "J", "mJ", "kJ", "MJ", "W", "mW", "kW"),
-    *("kg/m3", "g/cm3", "kg m2", "N/s", "A", "V", "ohm"),
-)
-"""Units that a message names as known, smallest words first."""
 TEXT = "String"
 """Kind of a variable whose values are texts."""
 
 
 class Unexpected(ValueError):
     """A value that does not fit; the text says what was expected."""
-
-
-@lru_cache(maxsize=256)
-def unit_of(fmi_unit: str) -> Any:
-    """The astropy unit of an FMI unit name such as "N.s/m"."""
-    return u.dimensionless_unscaled if fmi_unit == "1" else u.Unit(fmi_unit)
-
-
-def is_unit(name: str, like: str) -> bool:
-    """Whether a name is that of a unit of the same dimension as another, and as large."""
-    try:
-        return bool(unit_of(name) == unit_of(like))
-    except (ValueError, TypeError):
-        return False
-
-
-def spoken(fmi_unit: str) -> str:
-    """An FMI unit as a person writes it: "N.m.s" is "N m s"."""
-    return fmi_unit.replace(".", " ").replace("1/s", "/s") if fmi_unit != "1" else ""
-
-
-def dimension_of(unit: Any) -> str:
-    """Name of the dimension, the shortest astropy knows: "length", "pressure"; the unit itself when it has no name."""
-    if unit.is_equivalent(u.N / u.m):
-        return "stiffness"  # astropy knows it as a spectral flux density
-    if unit.is_equivalent(u.dimensionless_unscaled):
-        return "pure number"
-    names = [name for name in unit.physical_type if name != "unknown"]
-    preferred = {"speed", "pressure", "torque", "energy", "angular speed", "momentum", "force", "mass density"}
-    chosen = [name for name in names if name in preferred] or sorted(names, key=len)
-    return chosen[0] if chosen else f"quantity in {unit}"
-
-
-def _article(noun: str) -> str:
-    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
 ANY = -1
@@ -149,14 +87,14 @@ class Expected:
             return f"a whole number, such as {self.example}"
         if self.unit == "1":
             return f"a bare number, such as {self.example}"
-        return f'{_article(dimension_of(unit_of(self.unit)))} with its unit, such as "{self.example}"'
+        return f'{by_name(self.unit).noun} with its unit, such as "{self.example}"'
 
     def _scalar(self, value: object) -> float:
         if self.kind == TEXT:
             if not isinstance(value, str):
                 raise Unexpected(f"expected {self._wanted()}, in quotes")
             if "\0" in value:
-                raise Unexpected("is no text: it holds a NUL")
+                raise Unexpected("is not a text: it holds a NUL")
             return value  # type: ignore[return-value]  # who asks for a String knows it
         if self.choices:
             if value not in self.choices:
@@ -166,7 +104,7 @@ class Expected:
             if not isinstance(value, bool):
                 raise Unexpected(f"expected {self._wanted()}")
             return float(value)
-        number, unit = (self._bare(value), "") if self.unit == "1" else self._quantity(value)
+        number, unit = (self._bare(value), NO_UNIT) if self.unit == "1" else self._quantity(value)
         reason = self._out_of_bounds(number, unit) or self.refusal(number)
         if reason:
             raise Unexpected(f"{reason}; expected {self._wanted()}")
@@ -186,8 +124,8 @@ class Expected:
     def _number(self, value: float) -> str:
         if self.unit == "1":
             return f"{value:.10g}"
-        shown = self.display_unit or self.unit
-        return f"{unit_of(self.unit).to(unit_of(shown), value):.10g} {spoken(shown)}"
+        shown = by_name(self.display_unit or self.unit)
+        return f"{shown.from_si(value):.10g} {spoken(shown.name)}"
 
     def written(self, values: Sequence[float]) -> str:
         """SI values as TOML; what is read back are the same values."""
@@ -204,27 +142,14 @@ class Expected:
         if self.unit == "1":
             return repr(value)
         for shown in dict.fromkeys((self.display_unit or self.unit, self.unit)):
-            scaled = float(unit_of(self.unit).to(unit_of(shown), value))
+            scaled = by_name(shown).from_si(value)
             for digits in (6, 9, 12, 15, 16, 17):
                 text = f"{scaled:.{digits}g} {spoken(shown)}"
                 if self._quantity(text)[0] == value:
                     return f'"{text}"'
         return f'"{value!r} {spoken(self.unit)}"'
 
-    def _converted(self, value: float, of: Any, to: Any) -> float:
-        """A value in another unit; a difference of so many degC is one of as many K."""
-        if self.relative:
-            of, to = (u.K if unit == u.deg_C else unit for unit in (of, to))
-        return float(of.to(to, value, equivalencies=u.temperature()))
-
-    def _known_units(self) -> str:
-        """Units that would do, of those that are commonly written."""
-        known = [name for name in COMMON if u.Unit(name).is_equivalent(unit_of(self.unit), u.temperature())]
-        if not known:
-            return f"expected {self._wanted()}"
-        return f"known for {_article(dimension_of(unit_of(self.unit)))}: {', '.join(known)}"
-
-    def _out_of_bounds(self, number: float, unit: str) -> str | None:
+    def _out_of_bounds(self, number: float, unit: Unit) -> str | None:
         """Why an SI value is out of bounds, told in the unit it was written with."""
         if not math.isfinite(number):
             return "must be finite"
@@ -234,9 +159,7 @@ class Expected:
             words, bound = "at most", self.maximum
         else:
             return None
-        if unit:
-            bound = self._converted(bound, unit_of(self.unit), u.Unit(unit))
-        return f"must be {words} {bound:.10g}{unit and ' ' + unit}"
+        return f"must be {words} {unit.from_si(bound):.10g}{'' if unit is NO_UNIT else f' {unit.name}'}"
 
     def _bare(self, value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
@@ -250,35 +173,31 @@ class Expected:
         except OverflowError:
             raise Unexpected(f"is too large; expected {self._wanted()}") from None
 
-    def _quantity(self, value: object) -> tuple[float, str]:
-        """SI value, and the unit as written."""
+    def _quantity(self, value: object) -> tuple[float, Unit]:
+        """SI value, and the unit it was written with."""
         if isinstance(value, bool) or not isinstance(value, int | float | str):
             raise Unexpected(f"expected {self._wanted()}")
         if not isinstance(value, str):
             raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
         match = _QUANTITY.fullmatch(value)
         if match is None:
-            raise Unexpected(f"is no number with a unit; expected {self._wanted()}")
+            raise Unexpected(f"is not a number with a unit; expected {self._wanted()}")
         if match[2] is None:
             raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
-        written = match[2].strip()
-        try:
-            unit = u.Unit(written)
-        except (TypeError, ValueError, ArithmeticError):
-            raise Unexpected(f"has the unit {written!r}, which is not known; {self._known_units()}") from None
-        try:
-            number = self._converted(float(match[1]), unit, unit_of(self.unit))
-        except u.UnitConversionError:
-            raise Unexpected(f"is {_article(dimension_of(unit))}; expected {self._wanted()}") from None
-        except (TypeError, ValueError, ArithmeticError):
-            raise Unexpected(f"is no number with a unit; expected {self._wanted()}") from None
-        return number, written
+        unit, expected = named(match[2].strip()), by_name(self.unit)
+        if unit is None:
+            known = f"known for {expected.noun}: {', '.join(like(expected))}"
+            raise Unexpected(f"has the unit {match[2].strip()!r}, which is not known; {known}")
+        if unit.dimension != expected.dimension:
+            raise Unexpected(f"is {unit.noun}; expected {self._wanted()}")
+        if self.relative:
+            unit = unit.of_differences()
+        return unit.to_si(float(match[1])), unit
 
 
 def example_of(start: float, unit: str, display_unit: str = "") -> str:
     """A start value as a scene would write it: 7e10 Pa with display unit GPa is "70 GPa"; zero is shown as 1."""
     if unit == "1":
         return f"{start:g}"
-    shown = display_unit or unit
-    value = (start or 1.0) * unit_of(unit).to(unit_of(shown)) if start else 1.0
-    return f"{value:g} {spoken(shown)}"
+    shown = by_name(display_unit or unit)
+    return f"{shown.from_si(start) if start else 1.0:g} {spoken(shown.name)}"
