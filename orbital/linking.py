@@ -105,6 +105,10 @@ types.Record.__repr__ = cache(types.Record.__repr__)  # type: ignore[method-assi
 class PartContext(CPUContext):
     """Lowers, and makes no machine code."""
 
+    @cache  # noqa: B019: there are two contexts, which live as long as the process
+    def load_additional_registries(self) -> None:
+        super().load_additional_registries()  # type: ignore[no-untyped-call]
+
     def get_executable(self, library: Any, fndesc: Any, env: Any) -> Any:
         library._ensure_finalized()
         name = fndesc.qualname.rpartition(".")[2]
