@@ -36,7 +36,6 @@ from fmu_src.packaging import (
     documentation,
     kept,
     link,
-    picture,
     sources,
     start_values,
     table_file,
@@ -98,6 +97,8 @@ def build(
         if not wrong:
             return path
         announce(f"{path} is {wrong}; it is built again")
+    from fmu_src.packaging import picture  # Pillow, for a build alone
+
     with ExitStack() as stack:
         try:
             cache.mkdir(parents=True, exist_ok=True)
