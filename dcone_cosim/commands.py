@@ -114,7 +114,7 @@ def _load(with_figures: bool) -> None:
 
 
 GIVES_WAY = 1e-4
-"""How long the thread that imports lets the master wait after a step [s]: Python's 5 ms would be as long as the step."""
+"""How long the thread that imports lets the master wait after a step [s]: Python's 5 ms are as long as the step."""
 
 
 def _draw(result: RunResult, folder: Path) -> list[str]:

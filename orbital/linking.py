@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import copy
 import ctypes
+from collections.abc import Callable
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -25,7 +26,7 @@ from numba.core import types
 from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
 from numba.core.cpu import CPUContext
 from numba.core.registry import CPUDispatcher, cpu_target
-from numba.core.typing import Context
+from numba.core.typing.context import Context
 
 
 class PartLibrary(CPUCodeLibrary):
@@ -70,8 +71,13 @@ def _callers_first(libraries: list[Any]) -> list[Any]:
     return list(reversed(done))
 
 
+SCALAR = (types.Number, types.Boolean, types.Literal)
+_SIGNATURES: dict[tuple[Any, ...], Any] = {}
+"""What an operator or a function of numba's own gives for scalars, by it and their types."""
+
+
 class Typing(Context):
-    """numba's typing, which works out once what an operator or a function of its own gives for given scalars."""
+    """numba's typing, which works out once what comes of scalars."""
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
         if type(func) is not types.Function or kws or not all(isinstance(kind, SCALAR) for kind in args):
@@ -85,17 +91,12 @@ class Typing(Context):
         return found
 
 
-SCALAR = (types.Number, types.Boolean, types.Literal)
-_SIGNATURES: dict[tuple[Any, ...], Any] = {}
-
-
 class PartDispatcher(CPUDispatcher):
-    """A kernel that is compiled once for an argument's type, not once for each value that is known where it is called."""
+    """A kernel that is compiled once for an argument's type, not for each value of it that a caller knows."""
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        args = tuple(types.unliteral(kind) for kind in args)
-        kws = {name: types.unliteral(kind) for name, kind in kws.items()}
-        return super().get_call_template(args, kws)  # type: ignore[no-untyped-call]
+        plain: Callable[[Any], Any] = types.unliteral
+        return super().get_call_template(tuple(map(plain, args)), {name: plain(kind) for name, kind in kws.items()})
 
 
 # The long description of a record, which the compiler notes of every pass over every kernel, is written once.
@@ -105,7 +106,7 @@ types.Record.__repr__ = cache(types.Record.__repr__)  # type: ignore[method-assi
 class PartContext(CPUContext):
     """Lowers, and makes no machine code."""
 
-    @cache  # noqa: B019: there are two contexts, which live as long as the process
+    @cache  # noqa: B019 (of two contexts, which live as long as the process)
     def load_additional_registries(self) -> None:
         super().load_additional_registries()  # type: ignore[no-untyped-call]
 
