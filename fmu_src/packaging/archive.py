@@ -36,6 +36,7 @@ from fmu_src.packaging import (
     documentation,
     kept,
     link,
+    picture,
     sources,
     start_values,
     table_file,
@@ -97,8 +98,6 @@ def build(
         if not wrong:
             return path
         announce(f"{path} is {wrong}; it is built again")
-    from fmu_src.packaging import picture  # Pillow, for a build alone
-
     with ExitStack() as stack:
         try:
             cache.mkdir(parents=True, exist_ok=True)

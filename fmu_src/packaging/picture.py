@@ -6,8 +6,6 @@ import io
 import math
 from collections.abc import Callable, Mapping
 
-from PIL import Image, ImageDraw
-
 from fmu_src.interface import Interface
 
 WIDTH, HEIGHT, FINER, COLOURS = 480, 270, 4, 48
@@ -20,6 +18,8 @@ class Canvas:
     """Draws in picture points, finer than they are shown."""
 
     def __init__(self) -> None:
+        from PIL import Image, ImageDraw  # here, since an FMU of the cache has its picture
+
         self.image = Image.new("RGB", (WIDTH * FINER, HEIGHT * FINER), SKY)
         self._draw = ImageDraw.Draw(self.image)
 
@@ -133,6 +133,8 @@ def png(interface: Interface) -> bytes:
     else:
         causality = [v.causality for v in interface.variables for _ in range(v.size)]
         _block(canvas, causality.count("input"), causality.count("output"))
+    from PIL import Image
+
     small = canvas.image.resize((WIDTH, HEIGHT), Image.Resampling.BOX)
     data = io.BytesIO()
     small.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(data, "PNG", optimize=True)
