@@ -126,6 +126,8 @@ def png(interface: Interface) -> bytes:
 
     Checked  tests/packaging/test_page_and_picture.py
     """
+    from PIL import Image
+
     canvas = Canvas()
     draw = DRAWINGS.get(interface.model.name)
     if draw:
@@ -133,8 +135,6 @@ def png(interface: Interface) -> bytes:
     else:
         causality = [v.causality for v in interface.variables for _ in range(v.size)]
         _block(canvas, causality.count("input"), causality.count("output"))
-    from PIL import Image
-
     small = canvas.image.resize((WIDTH, HEIGHT), Image.Resampling.BOX)
     data = io.BytesIO()
     small.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(data, "PNG", optimize=True)
