@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -95,6 +96,7 @@ def run(
     130 or 143 interrupted, and there was nothing to keep.
     """
     _promise(offline)
+    gc.disable()  # while modules are imported nothing is garbage; `run_and_write` enables it again
     from dcone_cosim.commands import run_and_write
 
     progress = _progress()

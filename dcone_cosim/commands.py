@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import gc
+import sys
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -64,12 +66,14 @@ def run_and_write(
     folder = out if out is not None else default_folder(scene.name)
     left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
-    threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
     notes = list(scene.notes)
     with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
         if left + draft.removed:
             notes.append(LEFT_BEHIND)
         with SceneFmus(scene, progress) as archives:
+            gc.freeze()  # what has been imported by now stays
+            gc.enable()
+            threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
         notes += [*nothing_recorded(result), *remarks(facts)]
@@ -101,11 +105,18 @@ def nothing_recorded(result: RunResult) -> list[str]:
 
 def _load(with_figures: bool) -> None:
     """Import while the FMUs compute what is needed after them. What fails here fails again where it is needed."""
+    patience = sys.getswitchinterval()
+    sys.setswitchinterval(GIVES_WAY)
     with contextlib.suppress(Exception):
         import pyarrow.parquet  # noqa: F401
 
         if with_figures:
             style.load()
+    sys.setswitchinterval(patience)
+
+
+GIVES_WAY = 1e-4
+"""How long the thread that imports lets the master wait after a step [s]: Python's 5 ms are as long as the step."""
 
 
 def _draw(result: RunResult, folder: Path) -> list[str]:

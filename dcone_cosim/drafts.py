@@ -12,6 +12,7 @@ import json
 import os
 import shutil
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -124,8 +125,8 @@ def atomic_folder(folder: Path, force: bool = False) -> Iterator[Draft]:
         path.chmod(0o755)
         draft = Draft(path, folder, scratch.removed)
         yield draft
-        for file in [*path.rglob("*"), path]:
-            _to_disk(file)
+        with ThreadPoolExecutor() as pool:  # one wait for the disk, not one for each file
+            list(pool.map(_to_disk, [*path.rglob("*"), path]))
         with postponed():
             if not (force and _replace(scratch, place)):
                 draft.folder = folder.with_name(_take_name(scratch, place, empty).name)

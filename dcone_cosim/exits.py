@@ -6,6 +6,7 @@ Expected failures become one message on stderr, and with `--json` the same as an
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 import signal
 import sys
@@ -136,6 +137,7 @@ def run(app: Callable[..., Any]) -> NoReturn:
         code = 0
     finally:
         _on_terminate(before)
+        gc.freeze()  # or the interpreter looks through all that was imported once more as it ends: 0.15 s
     if code == BY_SIGINT:
         _fail("interrupted; " + placed.told(), BY_SIGINT)
     sys.exit(code or 0)

@@ -7,6 +7,7 @@ not reached is dropped, and what ties the text to this host (target, numba's own
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import re
@@ -27,6 +28,7 @@ ENVIRONMENT = {
     "NUMBA_OPT": "1",
     "NUMBA_DISABLE_JIT": "0",
     "NUMBA_DEBUGINFO": "0",
+    "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1",  # every overload that does not fit is an error, set in bold
     "PYTHONHASHSEED": "0",
 }
 
@@ -78,4 +80,5 @@ def _lower(module: str, terms: Mapping[str, str]) -> str:
 
 
 if __name__ == "__main__":
+    gc.disable()  # nearly all objects live to the end: to look through them takes a tenth of the time
     Path(sys.argv[3]).write_text(_lower(sys.argv[1], json.loads(sys.argv[2])))

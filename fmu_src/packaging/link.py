@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import fmpy
@@ -29,15 +30,18 @@ def _clang(arguments: Sequence[object]) -> None:
 
 def compile_kernels(ir: Path, target: Target, folder: Path) -> list[Path]:
     """Object files of a model's kernels in `folder`, one for each processor; the first bears the plain entry."""
-    objects = []
-    for processor in target.processors:
+
+    def compile_for(processor: str) -> Path:
         source = folder / f"kernel_{processor}.ll"
         plain = processor == target.processors[0]
         entry = ENTRY if plain else f"{ENTRY}_{SECOND_PATH[processor]}"
         source.write_text(ir.read_text().replace(f"@{ENTRY}", f"@{entry}"))
-        objects.append(source.with_suffix(".o"))
-        _clang(["-target", target.triple, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", objects[-1]])
-    return objects
+        machine_code = source.with_suffix(".o")
+        _clang(["-target", target.triple, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", machine_code])
+        return machine_code
+
+    with ThreadPoolExecutor() as pool:
+        return list(pool.map(compile_for, target.processors))
 
 
 def link(ir: Path, header: Path, library: Path, targets: Sequence[Target]) -> None:

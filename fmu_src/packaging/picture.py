@@ -6,8 +6,6 @@ import io
 import math
 from collections.abc import Callable, Mapping
 
-from PIL import Image, ImageDraw
-
 from fmu_src.interface import Interface
 
 WIDTH, HEIGHT, FINER, COLOURS = 480, 270, 4, 48
@@ -20,6 +18,8 @@ class Canvas:
     """Draws in picture points, finer than they are shown."""
 
     def __init__(self) -> None:
+        from PIL import Image, ImageDraw  # here, since an FMU of the cache has its picture
+
         self.image = Image.new("RGB", (WIDTH * FINER, HEIGHT * FINER), SKY)
         self._draw = ImageDraw.Draw(self.image)
 
@@ -126,6 +126,8 @@ def png(interface: Interface) -> bytes:
 
     Checked  tests/packaging/test_page_and_picture.py
     """
+    from PIL import Image
+
     canvas = Canvas()
     draw = DRAWINGS.get(interface.model.name)
     if draw:

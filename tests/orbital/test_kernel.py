@@ -89,3 +89,38 @@ def test_a_part_is_not_called_from_python():
     with pytest.raises(MemoryError):
         shared._part(3.0)
     assert shared(3.0) == 10.0
+
+
+@kernel
+def chosen(x, which, doubled):
+    return (2.0 if doubled else 1.0) * (x if which == 0 else float(which))
+
+
+def make_choosing():
+    @entry(RECORD)
+    def model_entry(command, records, work, time, step):
+        work[0] = chosen(time, 0, False)
+        work[1] = chosen(time, 3, True)
+        work[2] = chosen(time, command, True)
+        return 0
+
+    return model_entry
+
+
+def test_a_part_is_compiled_once_whatever_values_are_known_where_it_is_called():
+    work = np.zeros(3)
+    make_choosing()(5, np.zeros(1, RECORD), work, 0.25, 0.0)
+    assert work.tolist() == [0.25, 6.0, 10.0]
+    ((_, which, doubled),) = chosen._part.overloads
+    assert (str(which), str(doubled)) == ("int64", "bool")
+
+
+@kernel
+def of_all_kinds(n, x):
+    """The same operators for integers and doubles, and for values known in advance."""
+    return float(n // 3 + 7 % 3 + n * 2) + (x // 3.0 + 7.0 % 3.0 + x * 2) + n / 2 + abs(n) + abs(x)
+
+
+def test_an_operator_gives_each_kind_of_number_its_own():
+    for kinds in ((8, 8.5), (8.5, 8), (-8, -8.5)):
+        assert of_all_kinds(*kinds) == of_all_kinds.py_func(*kinds)
