@@ -1,12 +1,18 @@
-"""Models shared by the tests: compiled once per process."""
+"""Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
+import tempfile
 from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from fmu_src import instance
 from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL as NET
+from fmu_src.packaging import compile
+from tests import kernels
 
 FREE = {"net": "square", "gravity": "none"}
 CAPTURE = {
@@ -19,6 +25,29 @@ CAPTURE = {
     "settling": "speed",
 }
 CAPTURE_HILL = {**CAPTURE, "gravity": "hill"}
+
+FOLDER = pytest.StashKey[tempfile.TemporaryDirectory[str]]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Where the run's kernels are kept; a worker is told by the process that starts it, and there it ends with the run."""
+    given = getattr(config, "workerinput", {}).get("kernels")
+    if given is None:
+        config.stash[FOLDER] = tempfile.TemporaryDirectory(prefix="dcone-kernels-")
+        given = config.stash[FOLDER].name
+    kernels.share(Path(given))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    node.workerinput["kernels"] = node.config.stash[FOLDER].name
+
+
+@pytest.fixture
+def compiled_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a test that judges compiling: what it wants is compiled anew, and in this process where it is run here."""
+    monkeypatch.setattr(instance, "entry_of", kernels.in_process)
+    monkeypatch.setattr(compile, "emit", kernels.emit)
 
 
 @pytest.fixture

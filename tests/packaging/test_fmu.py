@@ -23,7 +23,7 @@ def test_description_is_valid(case):
     assert validate_fmu(str(case[1])) == []
 
 
-def test_binary_gives_the_kernels_bits(case):
+def test_binary_gives_the_kernels_bits(case, compiled_here):
     name, path, folder, terms, parameters, step, count = case
     driven = Driven(path, folder, parameters)
     twin = Instance(MODELS[name], terms, parameters).initialise()
