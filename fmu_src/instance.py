@@ -70,7 +70,7 @@ class Instance:
         self.record = self.interface.make_record()
         self.work: npt.NDArray[np.float64] = np.zeros(0)
         self.time = 0.0
-        self._entry = entry_of(model, self.interface.terms)
+        self.entry = entry_of(model, self.interface.terms)
         rows = list(self.interface.scalars())
         self._slots = {n: (slot, v.kind == "Real") for n, slot, v, _ in rows if v.at_interface}
         self._by_name = {n.removeprefix("@"): (slot, v) for n, slot, v, _ in rows}
@@ -99,9 +99,9 @@ class Instance:
 
     def _call(self, command: int, time: float, step: float) -> None:
         self.record["tables_at"] = self.interface.table_block.ctypes.data
-        status = self._entry(command, self.record, self.work, time, step)
+        status = self.entry(command, self.record, self.work, time, step)
         while status == UNDER_WAY:
-            status = self._entry(GO_ON, self.record, self.work, time, step)
+            status = self.entry(GO_ON, self.record, self.work, time, step)
         self.record["tables_at"] = 0
         if status:
             code = int(self.record["fault_code"][0])

@@ -26,11 +26,26 @@ CAPTURE = {
 }
 CAPTURE_HILL = {**CAPTURE, "gravity": "hill"}
 
+DEAREST = (
+    "tests/interop/test_tools.py",
+    "tests/consistency/test_readme.py",
+    "tests/cosim/test_built_fmus.py",
+    "tests/packaging/test_dependence.py",
+    "tests/net_capture/test_free_flight.py",
+    "tests/net_capture/test_contact.py",
+    "tests/packaging/test_platforms.py",
+    "tests/net_capture/test_captures_last.py",
+    "tests/cosim/test_digits.py",
+    "tests/packaging/test_fmu.py",
+    "tests/packaging/test_many.py",
+    "tests/net_capture/test_fast_nodes.py",
+)
+"""Files that take longest, the longest first, so that no worker is left with one when the others are done."""
 FOLDER = pytest.StashKey[tempfile.TemporaryDirectory[str]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Where the run's kernels are kept; a worker is told by the process that starts it, and there it ends with the run."""
+    """Give the run a folder for its kernels, which goes with the process that starts the workers."""
     given = getattr(config, "workerinput", {}).get("kernels")
     if given is None:
         config.stash[FOLDER] = tempfile.TemporaryDirectory(prefix="dcone-kernels-")
@@ -43,10 +58,15 @@ def pytest_configure_node(node: Any) -> None:
     node.workerinput["kernels"] = node.config.stash[FOLDER].name
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    place = {name: k for k, name in enumerate(DEAREST)}
+    items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
+
+
 @pytest.fixture
 def compiled_here(monkeypatch: pytest.MonkeyPatch) -> None:
     """For a test that judges compiling: what it wants is compiled anew, and in this process where it is run here."""
-    monkeypatch.setattr(instance, "entry_of", kernels.in_process)
+    monkeypatch.setattr(instance, "entry_of", instance.compiled)
     monkeypatch.setattr(compile, "emit", kernels.emit)
 
 

@@ -28,12 +28,18 @@ from fmu_src.catalogue import MODELS
 from fmu_src.interface import Model
 from fmu_src.packaging import archive, compile, link, platforms
 
-OWN_WAY = ("NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT")
-"""Under these kernels are other code than an FMU's: they are compiled where they run."""
+OTHER_CODE = ("NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT")
+"""Environment variables under which kernels are other code than an FMU's."""
 V3 = {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}
 """What a processor of the second code path has, by LLVM's names."""
 
-emit, in_process = compile.emit, instance.compiled
+emit = compile.emit
+"""What compiles, whatever the run has already."""
+
+
+def compiled_where_run() -> bool:
+    """Whether a developer has asked numba for code that no library holds: one that checks bounds, or none at all."""
+    return any(os.environ.get(name, "0") != "0" for name in OTHER_CODE)
 
 
 class Entry:
@@ -117,7 +123,7 @@ def share(folder: Path) -> None:
 
     def entry_of(model: Model, terms: Mapping[str, str]) -> Any:
         if MODELS.get(model.name) is not model:  # a test's own
-            return in_process(model, terms)
+            return instance.compiled(model, terms)
         return shared.entry(model.name, tuple(terms.items()))
 
     def emit_once(model: Model, terms: Mapping[str, str], path: Path) -> None:
@@ -126,6 +132,6 @@ def share(folder: Path) -> None:
         else:
             shutil.copyfile(shared.ir(model.name, tuple(terms.items())), path)
 
-    if not any(os.environ.get(name, "0") != "0" for name in OWN_WAY):
+    if not compiled_where_run():
         instance.entry_of = entry_of
     compile.emit = emit_once
