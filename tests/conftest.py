@@ -1,13 +1,9 @@
 """Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
-import tempfile
 from collections.abc import Callable, Mapping
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from fmu_src import instance
 from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL as NET
@@ -41,21 +37,6 @@ DEAREST = (
     "tests/net_capture/test_fast_nodes.py",
 )
 """Files that take longest, the longest first, so that no worker is left with one when the others are done."""
-FOLDER = pytest.StashKey[tempfile.TemporaryDirectory[str]]()
-
-
-def pytest_configure(config: pytest.Config) -> None:
-    """Give the run a folder for its kernels, which goes with the process that starts the workers."""
-    given = getattr(config, "workerinput", {}).get("kernels")
-    if given is None:
-        config.stash[FOLDER] = tempfile.TemporaryDirectory(prefix="dcone-kernels-")
-        given = config.stash[FOLDER].name
-    kernels.share(Path(given))
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_configure_node(node: Any) -> None:
-    node.workerinput["kernels"] = node.config.stash[FOLDER].name
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -63,10 +44,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
 
 
+@pytest.fixture(scope="session", autouse=True)
+def shared_kernels(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """One folder for all processes of a run, and for the runs of a single process."""
+    kernels.share(tmp_path_factory.getbasetemp().parent / "kernels")
+
+
 @pytest.fixture
-def compiled_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For a test that judges compiling: what it wants is compiled anew, and in this process where it is run here."""
-    monkeypatch.setattr(instance, "entry_of", instance.compiled)
+def compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a test that judges a build: its kernels are compiled, whether or not the run has them."""
     monkeypatch.setattr(compile, "emit", kernels.emit)
 
 

@@ -2,7 +2,7 @@
 
 What costs is numba's typing, half a minute for a net. Its result, the IR that goes into an FMU, is kept in a folder
 that all processes of the run share. An `Instance` loads its entry from a library made of that IR, and a build takes the
-IR as it is. The test of the FMUs' bits, and those that judge compiling, ask for `compiled_here`.
+IR as it is. A test that judges compiling asks for `compiled_anew`, or puts `instance.compiled` back.
 
 Checked  tests/packaging/test_fmu.py: the library's bits are those of the entry compiled in the process
 """
@@ -119,6 +119,7 @@ def _library(ir: Path, path: Path) -> None:
 
 def share(folder: Path) -> None:
     """Have this process take what is compiled from a folder, and put there what it compiles."""
+    folder.mkdir(exist_ok=True)
     shared = Shared(folder)
 
     def entry_of(model: Model, terms: Mapping[str, str]) -> Any:
