@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -31,8 +31,18 @@ class ModelFault(RuntimeError):
 
 
 @lru_cache(maxsize=32)
-def _entry(module: str, terms: tuple[tuple[str, str], ...]) -> Any:
+def _compiled(module: str, terms: tuple[tuple[str, str], ...]) -> Any:
     return importlib.import_module(module).make_entry(dict(terms))
+
+
+def compiled(model: Model, terms: Mapping[str, str]) -> Any:
+    """The model's entry, compiled in this process when it is first called."""
+    return _compiled(model.module, tuple(terms.items()))
+
+
+entry_of: Callable[[Model, Mapping[str, str]], Any] = compiled
+"""Where an instance has its entry from, `entry(command, record, work, time, step) -> status`: another source is put
+here by who has it in a library already."""
 
 
 def _aligned(size: int) -> npt.NDArray[np.float64]:
@@ -60,7 +70,7 @@ class Instance:
         self.record = self.interface.make_record()
         self.work: npt.NDArray[np.float64] = np.zeros(0)
         self.time = 0.0
-        self._entry = _entry(model.module, tuple(self.interface.terms.items()))
+        self.entry = entry_of(model, self.interface.terms)
         rows = list(self.interface.scalars())
         self._slots = {n: (slot, v.kind == "Real") for n, slot, v, _ in rows if v.at_interface}
         self._by_name = {n.removeprefix("@"): (slot, v) for n, slot, v, _ in rows}
@@ -89,9 +99,9 @@ class Instance:
 
     def _call(self, command: int, time: float, step: float) -> None:
         self.record["tables_at"] = self.interface.table_block.ctypes.data
-        status = self._entry(command, self.record, self.work, time, step)
+        status = self.entry(command, self.record, self.work, time, step)
         while status == UNDER_WAY:
-            status = self._entry(GO_ON, self.record, self.work, time, step)
+            status = self.entry(GO_ON, self.record, self.work, time, step)
         self.record["tables_at"] = 0
         if status:
             code = int(self.record["fault_code"][0])

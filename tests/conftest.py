@@ -1,4 +1,4 @@
-"""Models shared by the tests: compiled once per process."""
+"""Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
 from collections.abc import Callable, Mapping
 
@@ -7,6 +7,8 @@ import pytest
 from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL as NET
+from fmu_src.packaging import compile
+from tests import kernels
 
 FREE = {"net": "square", "gravity": "none"}
 CAPTURE = {
@@ -19,6 +21,39 @@ CAPTURE = {
     "settling": "speed",
 }
 CAPTURE_HILL = {**CAPTURE, "gravity": "hill"}
+
+DEAREST = (
+    "tests/interop/test_tools.py",
+    "tests/consistency/test_readme.py",
+    "tests/cosim/test_built_fmus.py",
+    "tests/packaging/test_dependence.py",
+    "tests/net_capture/test_free_flight.py",
+    "tests/net_capture/test_contact.py",
+    "tests/packaging/test_platforms.py",
+    "tests/net_capture/test_captures_last.py",
+    "tests/cosim/test_digits.py",
+    "tests/packaging/test_fmu.py",
+    "tests/packaging/test_many.py",
+    "tests/net_capture/test_fast_nodes.py",
+)
+"""Files that take longest, the longest first, so that no worker is left with one when the others are done."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    place = {name: k for k, name in enumerate(DEAREST)}
+    items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def shared_kernels(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """One folder for all processes of a run, and for the runs of a single process."""
+    kernels.share(tmp_path_factory.getbasetemp().parent / "kernels")
+
+
+@pytest.fixture
+def compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a test that judges a build: its kernels are compiled, whether or not the run has them."""
+    monkeypatch.setattr(compile, "emit", kernels.emit)
 
 
 @pytest.fixture

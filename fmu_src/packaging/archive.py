@@ -106,7 +106,7 @@ def build(
             raise OSError(error.errno, f"the FMU cache can not be written: {error.strerror}", str(cache)) from None
         identity = kept.as_guid(key)
         ir = folder / "model.ll"
-        known = _kernels(cache, name, key)
+        known = kernels(cache, name, key)
         if known is None:
             terms = ", ".join(interface.terms) or "no terms to choose"
             announce(f"building {name} with {terms} (once; kept in {cache})")
@@ -155,7 +155,7 @@ def described(interface: Interface, library: str, experiment: Experiment) -> dic
     }
 
 
-def _kernels(cache: Path, name: str, key: str) -> bytes | None:
+def kernels(cache: Path, name: str, key: str) -> bytes | None:
     """IR from an FMU of the same origin for another platform, if there is one."""
     for platform in PLATFORMS.values():
         path = cache / kept.file_name(name, key, platform)

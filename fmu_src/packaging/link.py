@@ -23,7 +23,8 @@ SECOND_PATH = {"x86_64_v3": "v3"}
 """What the entry of a second code path is called, for processor.h."""
 
 
-def _clang(arguments: Sequence[object]) -> None:
+def clang(arguments: Sequence[object]) -> None:
+    """Run it; BuildError with its last words if it fails."""
     command = [sys.executable, "-m", "ziglang", "cc", *map(str, arguments)]
     tools.run("clang", command)
 
@@ -37,7 +38,7 @@ def compile_kernels(ir: Path, target: Target, folder: Path) -> list[Path]:
         entry = ENTRY if plain else f"{ENTRY}_{SECOND_PATH[processor]}"
         source.write_text(ir.read_text().replace(f"@{ENTRY}", f"@{entry}"))
         machine_code = source.with_suffix(".o")
-        _clang(["-target", target.triple, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", machine_code])
+        clang(["-target", target.triple, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", machine_code])
         return machine_code
 
     with ThreadPoolExecutor() as pool:
@@ -68,4 +69,4 @@ def _link_one(ir: Path, header: Path, library: Path, target: Target) -> None:
         # without these, the folder of this build, and the names of internal functions
         system = [f"-Wl,-install_name,@rpath/{library.name}", "-Wl,-x"]
     search = ["-I", HEADERS, "-I", header.parent]
-    _clang(["-target", target.triple, *FLAGS, *SHIM_FLAGS, *search, *paths, *SHIM, *objects, "-o", library, *system])
+    clang(["-target", target.triple, *FLAGS, *SHIM_FLAGS, *search, *paths, *SHIM, *objects, "-o", library, *system])

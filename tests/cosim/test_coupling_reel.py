@@ -15,7 +15,9 @@ STEPS = (20.0, 10.0, 5.0, 2.5)
 
 
 def removal(law: str) -> KernelComponent:
-    return KernelComponent("removal", "removal", {"reel": law})
+    component = KernelComponent("removal", "removal", {"reel": law, "thrust": "along_track"})
+    component.set({"thrust.level": 0.0})
+    return component
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The same scene through the FMU, through the kernel in this process, and through fmpy's own loop: the same bits."""
+"""The same scene through the FMU, through its bare kernel, and through fmpy's own loop: the same bits."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import PhaseResult
 from dcone_cosim.scene.data import Scene
+from fmu_src import instance
 from tests.cosim.in_process import KernelComponent
 
 pytestmark = pytest.mark.slow
@@ -47,6 +48,15 @@ def test_kernel_and_fmu_give_the_same_bits(run_by_fmu: tuple[Scene, PhaseResult]
         np.testing.assert_array_equal(by_fmu.recorder[name], by_kernel.recorder[name], err_msg=name)
     for ours, theirs in zip(by_fmu.snapshots.nodes, by_kernel.snapshots.nodes, strict=True):
         np.testing.assert_array_equal(ours, theirs)
+
+
+@pytest.mark.evidence
+def test_a_kernel_compiled_in_this_process_gives_the_same_bits(
+    run_by_fmu: tuple[Scene, PhaseResult], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The thin slice are the two FMUs of tests/packaging/test_fmu.py."""
+    monkeypatch.setattr(instance, "entry_of", instance.compiled)
+    test_kernel_and_fmu_give_the_same_bits(run_by_fmu)
 
 
 def test_fmpy_gives_the_masters_numbers(run_by_fmu: tuple[Scene, PhaseResult]) -> None:

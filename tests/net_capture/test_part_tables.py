@@ -44,9 +44,9 @@ def steady(monkeypatch):
     group = replace(MODEL.groups["gravity"], terms={**MODEL.groups["gravity"].terms, "steady": part})
     made = replace(MODEL, groups={**MODEL.groups, "gravity": group})
     monkeypatch.setattr(model, "MODEL", made)
-    instance._entry.cache_clear()
+    instance._compiled.cache_clear()
     yield made
-    instance._entry.cache_clear()
+    instance._compiled.cache_clear()
 
 
 def moved(made, rows, time):

@@ -12,9 +12,11 @@ from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 
+from fmu_src import instance
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
 from fmu_src.packaging import archive
+from tests import kernels
 from tests.conftest import CAPTURE
 from tests.packaging.driven import CASES, REMOVAL, Driven
 
@@ -23,8 +25,11 @@ def test_description_is_valid(case):
     assert validate_fmu(str(case[1])) == []
 
 
-def test_binary_gives_the_kernels_bits(case):
+def test_binary_gives_the_kernels_bits(case, monkeypatch):
+    """And so does the library that all other tests run."""
     name, path, folder, terms, parameters, step, count = case
+    shared = Instance(MODELS[name], terms, parameters).initialise()
+    monkeypatch.setattr(instance, "entry_of", instance.compiled)
     driven = Driven(path, folder, parameters)
     twin = Instance(MODELS[name], terms, parameters).initialise()
     for _ in range(count):
@@ -42,6 +47,14 @@ def test_binary_gives_the_kernels_bits(case):
         for _ in range(count):
             other.step(step)
         assert any(outputs[n] != other[n] for n in outputs)
+    assert isinstance(shared.entry, kernels.Entry) != kernels.compiled_where_run()
+    assert not isinstance(twin.entry, kernels.Entry)
+    for _ in range(count):
+        shared.step(step)
+    assert shared.record.tobytes() == twin.record.tobytes()
+    assert shared.work.tobytes() == twin.work.tobytes()
+    shared.step(step)
+    assert shared.record.tobytes() != twin.record.tobytes()
 
 
 def test_fmpy_simulates_it_alike(case):

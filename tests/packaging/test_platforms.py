@@ -216,7 +216,7 @@ def run_entry(entry, model, case):
 
 
 @pytest.mark.slow
-def test_two_builds_give_the_same_bytes(cache, tmp_path, monkeypatch):
+def test_two_builds_give_the_same_bytes(cache, compiled_anew, tmp_path, monkeypatch):
     """Another folder, another cache, another order of hashes: the same FMU; other terms: another."""
     first = platform_cases.build(SMALL, platforms.LINUX64, cache)
     monkeypatch.setenv("PYTHONHASHSEED", "12345")

@@ -41,7 +41,15 @@ MINUTE = 60.0
 END = 95.0
 """Seconds from the shot for which every shot is followed at most: the latest captures are seen for a minute."""
 
-TABLE_1 = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic", "closing": "winches"}
+TABLE_1 = {
+    "net": "square",
+    "gravity": "none",
+    "target": "box",
+    "contact": "inelastic",
+    "closing": "winches",
+    "nodes": "625",
+}
+"""Terms of the scene, and so kernels that a test run compiles for it anyway; here no node is looked at."""
 MISSION = {**TABLE_1, "gravity": "hill", "tether": "slack"}
 MISSION_VALUES: Mapping[str, Value] = {
     "net.side": 12.0,

@@ -1,0 +1,138 @@
+"""Every choice of terms is compiled once in a whole test run, whichever process asks first.
+
+What costs is numba's typing, half a minute for a net. Its result, the IR that goes into an FMU, is kept in a folder
+that all processes of the run share. An `Instance` loads its entry from a library made of that IR, and a build takes the
+IR as it is. A test that judges compiling asks for `compiled_anew`, or puts `instance.compiled` back.
+
+Checked  tests/packaging/test_fmu.py: the library's bits are those of the entry compiled in the process
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from llvmlite import binding as llvm
+
+from dcone_cosim.build import cache_folder
+from fmu_src import instance
+from fmu_src.catalogue import MODELS
+from fmu_src.interface import Model
+from fmu_src.packaging import archive, compile, link, platforms
+
+OTHER_CODE = ("NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT")
+"""Environment variables under which kernels are other code than an FMU's."""
+V3 = {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}
+"""What a processor of the second code path has, by LLVM's names."""
+
+emit = compile.emit
+"""What compiles, whatever the run has already."""
+
+
+def compiled_where_run() -> bool:
+    """Whether a developer has asked numba for code that no library holds: one that checks bounds, or none at all."""
+    return any(os.environ.get(name, "0") != "0" for name in OTHER_CODE)
+
+
+class Entry:
+    """A model's entry in a loaded library, called as numba's is."""
+
+    def __init__(self, library: Path) -> None:
+        self._call = ctypes.CDLL(str(library))[compile.ENTRY]
+        whole, real, at = ctypes.c_int64, ctypes.c_double, ctypes.c_void_p
+        array = [at, at, whole, whole, at, whole, whole]
+        self._call.argtypes = [at, at, whole, *array, *array, real, real]
+        self._call.restype = ctypes.c_int32
+
+    def __call__(self, command: int, record: Any, work: Any, time: float, step: float) -> int:
+        result, exception = ctypes.c_int32(0), ctypes.c_void_p(None)
+        status = self._call(
+            ctypes.byref(result), ctypes.byref(exception), command,
+            None, None, 1, record.nbytes, record.ctypes.data, 1, record.nbytes,
+            None, None, work.size, 8, work.ctypes.data, work.size, 8,
+            time, step,
+        )  # fmt: skip
+        if status:
+            raise RuntimeError(f"the entry left with numba's status {status}")
+        return result.value
+
+
+def made_once(path: Path, make: Callable[[Path], None]) -> Path:
+    """A file that the first process to want it makes, while others wait for it."""
+    if not path.exists():
+        with path.with_name(path.name + ".lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not path.exists():
+                draft = path.with_name(path.name + ".draft")
+                make(draft)
+                draft.replace(path)
+    return path
+
+
+class Shared:
+    """What is compiled in one test run, in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self.entry = cache(self._entry)
+
+    def _path(self, name: str, terms: tuple[tuple[str, str], ...], suffix: str) -> Path:
+        key = archive.fingerprint(MODELS[name].interface(dict(terms)))
+        return self._folder / f"{name}-{key[:32]}{suffix}"
+
+    def ir(self, name: str, terms: tuple[tuple[str, str], ...]) -> Path:
+        """The IR of a model; that of an FMU which the user's cache has is as good."""
+        interface = MODELS[name].interface(dict(terms))
+
+        def make(path: Path) -> None:
+            known = archive.kernels(cache_folder(), name, archive.fingerprint(interface))
+            if known is None:
+                emit(interface.model, interface.terms, path)
+            else:
+                path.write_bytes(known)
+
+        return made_once(self._path(name, terms, ".ll"), make)
+
+    def _entry(self, name: str, terms: tuple[tuple[str, str], ...]) -> Entry:
+        return Entry(made_once(self._path(name, terms, ".so"), lambda path: _library(self.ir(name, terms), path)))
+
+
+def _library(ir: Path, path: Path) -> None:
+    """A shared library with the entry alone, for this processor."""
+    (target, *_) = platforms.host().places[0].targets
+    has = {name for name, there in llvm.get_host_cpu_features().items() if there}
+    best = target.processors[-1] if has >= V3 else target.processors[0]
+    with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+        visible = Path(folder) / "visible.ll"
+        visible.write_text(ir.read_text().replace("define hidden", "define"))
+        objects = link.compile_kernels(visible, replace(target, processors=(best,)), Path(folder))
+        link.clang(["-target", target.triple, *link.FLAGS, "-shared", *objects, "-o", path, "-lm"])
+
+
+def share(folder: Path) -> None:
+    """Have this process take what is compiled from a folder, and put there what it compiles."""
+    folder.mkdir(exist_ok=True)
+    shared = Shared(folder)
+
+    def entry_of(model: Model, terms: Mapping[str, str]) -> Any:
+        if MODELS.get(model.name) is not model:  # a test's own
+            return instance.compiled(model, terms)
+        return shared.entry(model.name, tuple(terms.items()))
+
+    def emit_once(model: Model, terms: Mapping[str, str], path: Path) -> None:
+        if MODELS.get(model.name) is not model:
+            emit(model, terms, path)
+        else:
+            shutil.copyfile(shared.ir(model.name, tuple(terms.items())), path)
+
+    if not compiled_where_run():
+        instance.entry_of = entry_of
+    compile.emit = emit_once
