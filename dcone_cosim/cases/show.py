@@ -1,0 +1,144 @@
+"""Sweeps and ensembles as tables on the terminal, and as plain data for machines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from dcone_cosim.cases.chief import chief
+from dcone_cosim.cases.statistics import CONFIDENCE, Share, Spread, Summary
+from dcone_cosim.cases.table import Column, Entry
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+MOST_ROWS = 40
+"""Cases of a sweep that are printed."""
+MOST_FIGURES = 4
+"""Figures of each that are."""
+MOST_FAILURES = 5
+"""Cases that failed that are told of one by one."""
+
+
+def show_sweep(entries: Sequence[Entry], columns: Sequence[Column], title: str, console: Console) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    keys = list(entries[0].varied)
+    shown = chief(columns, MOST_FIGURES)
+    table = Table(title=Text(title, style="table.title"), title_justify="left", box=None, pad_edge=False)
+    for key in keys:
+        table.add_column(Text(_broken(key)), justify="right", overflow="fold")
+    table.add_column("status")
+    for column in shown:
+        table.add_column(Text(_broken(column.name, column.unit)), justify="right", overflow="fold")
+    for place, entry in enumerate(entries[:MOST_ROWS]):
+        given = [Text(entry.varied[key].given) for key in keys]
+        figures = [_number(column.values[place]) for column in shown]
+        table.add_row(*given, Text(entry.row.status), *figures)
+    console.print(table)
+    if len(entries) > MOST_ROWS:
+        console.print(f"and {len(entries) - MOST_ROWS} more cases in the table", highlight=False)
+
+
+def _broken(name: str, unit: str = "1") -> str:
+    """The head of a column on several lines, so that it is narrow."""
+    return name.replace(".", ".\n") + ("" if unit == "1" else f"\n[{unit}]")
+
+
+def _number(value: Any) -> str:
+    if value is None:
+        return ""
+    return str(value) if isinstance(value, int) else f"{value:.6g}"
+
+
+def show_ensemble(summary: Summary, title: str, console: Console) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    heads = ("mean", "spread", "5 %", "median", "95 %")
+    table = Table(title=Text(title, style="table.title"), title_justify="left", box=None, pad_edge=False)
+    table.add_column("")
+    for head in heads:
+        table.add_column(head, justify="right")
+    table.add_column("")
+    table.add_column("")
+    for name, spread in summary.figures.items():
+        numbers = (spread.mean, spread.deviation, *spread.percentiles.values())
+        unit = "" if spread.unit == "1" else spread.unit
+        table.add_row(Text(name), *(f"{number:.6g}" for number in numbers), unit, Text(_lacking(spread)))
+    console.print(table)
+    for line in shares(summary):
+        console.print(Text(line), highlight=False)
+
+
+def _lacking(spread: Spread) -> str:
+    parts = []
+    if spread.missing:
+        parts.append(f"{spread.missing} without it")
+    if spread.not_finite:
+        parts.append(f"{spread.not_finite} not finite")
+    return f"of {spread.count}; {', '.join(parts)}" if parts else ""
+
+
+def shares(summary: Summary) -> list[str]:
+    """How many cases came out how, with the interval of the probability."""
+    lines = [f"{summary.cases} runs: {_counted(summary.statuses)} (95 % interval of the probability)"]
+    for name, told in summary.texts.items():
+        if name.endswith("outcome") or len(told) > 1:
+            lines.append(f"{name}: {_counted(told)}")
+    return lines
+
+
+def _counted(told: Mapping[str, Share]) -> str:
+    return ", ".join(
+        f"{one.count} {text} ({one.interval[0]:.3g} to {one.interval[1]:.3g})" for text, one in told.items()
+    )
+
+
+def failures(entries: Sequence[Entry]) -> list[str]:
+    """Which cases failed and why, the first of them in full sentences."""
+    failed = [entry for entry in entries if not entry.row.succeeded]
+    lines = [f"{_case(entry)}: {entry.row.message or entry.row.status}" for entry in failed[:MOST_FAILURES]]
+    if len(failed) > MOST_FAILURES:
+        lines.append(f"and {len(failed) - MOST_FAILURES} more failed; the table has the reason of each")
+    return lines
+
+
+def _case(entry: Entry) -> str:
+    parts = [f"{key} = {value.given}" for key, value in entry.varied.items()]
+    parts += [f"seed {entry.seed}"] if entry.seed is not None else []
+    return ", ".join(parts)
+
+
+def as_dict(summary: Summary, figures: bool) -> dict[str, Any]:
+    """For machines, numbers with all their digits; `figures`: those that are averaged as well."""
+    content: dict[str, Any] = {
+        "cases": summary.cases,
+        "confidence": CONFIDENCE,
+        "succeeded": _share(summary.succeeded),
+        "statuses": {status: _share(one) for status, one in summary.statuses.items()},
+    }
+    if not figures:
+        return content
+    content["figures"] = {name: _spread(one) for name, one in summary.figures.items()}
+    content["texts"] = {name: {text: _share(one) for text, one in told.items()} for name, told in summary.texts.items()}
+    return content
+
+
+def _share(one: Share) -> dict[str, Any]:
+    return {"count": one.count, "of": one.of, "share": one.share, "interval": list(one.interval)}
+
+
+def _spread(one: Spread) -> dict[str, Any]:
+    return {
+        "unit": one.unit,
+        "count": one.count,
+        "missing": one.missing,
+        "not_finite": one.not_finite,
+        "mean": one.mean,
+        "standard_deviation": one.deviation,
+        "interval_of_mean": None if math.isnan(one.interval[0]) else list(one.interval),
+        "percentiles": {f"{percent:g}": value for percent, value in one.percentiles.items()},
+    }
