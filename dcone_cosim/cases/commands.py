@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim import interrupts, placed
-from dcone_cosim.scene_fmus import SceneFmus, fmus_of, remarks
 from dcone_cosim.cases import ensemble as ensembles
 from dcone_cosim.cases import show, vary
 from dcone_cosim.cases.case import Case, Value, code, content, digest, identities, key_of
@@ -38,6 +37,7 @@ from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError, Interrupted
 from dcone_cosim.master import RunResult
 from dcone_cosim.progress import Progress
 from dcone_cosim.run import as_json, default_folder, provenance
+from dcone_cosim.scene_fmus import SceneFmus, fmus_of, remarks
 from dcone_cosim.scenes.kept import keep
 from dcone_cosim.scenes.scene import Scene
 from dcone_cosim.scratch import Scratch
@@ -237,7 +237,8 @@ def _result(plan: Plan, rows: Mapping[str, Row], folder: Path) -> Done:
         Entry(case if isinstance(case, Row) else rows[case.key], varied, seed) for case, varied, seed in plan.entries
     ]
     summary = summarise(entry.row for entry in entries)
-    told = {"scene": plan.base.name, "title": plan.title, **plan.about, **show.as_dict(summary, not plan.varied)}
+    what = show.as_dict(summary) if plan.kind == ENSEMBLE else show.counts(summary)
+    told = {"scene": plan.base.name, "title": plan.title, **plan.about, **what}
     told["failures"] = [
         {
             **{key: value.given for key, value in entry.varied.items()},

@@ -17,12 +17,16 @@ MOST = 6
 """Figures drawn."""
 MOST_LINES = 10
 """Values of the second key that are told apart by colour."""
+COLUMNS = 3
+"""Of the legend."""
 DECADES = 100.0
 """Ratio of largest to smallest value from which an axis is logarithmic."""
 
 
 def draw(entries: Sequence[Entry], columns: Sequence[Column], title: str, path: Path) -> str:
     """Draw to a file; returns why there is no picture, "" when there is one."""
+    from matplotlib import rc_context
+
     keys = list(entries[0].varied)
     if len(keys) > 2:
         return f"no figure is drawn of {len(keys)} varied keys; the table has them all"
@@ -30,13 +34,29 @@ def draw(entries: Sequence[Entry], columns: Sequence[Column], title: str, path: 
     if not shown:
         return "no figure is drawn: no figure of the summary is a number that changes"
     by_name = {column.name: column for column in columns}
-    across = keys[0] if keys[0] in by_name or len(keys) == 1 or keys[1] not in by_name else keys[1]
+    across = keys[0] if keys[0] in by_name or keys[-1] not in by_name else keys[1]
     second = next((key for key in keys if key != across), None)
+    with rc_context(style.SETTINGS):
+        figure = _figure(entries, shown, across, second, by_name)
+        style.head(figure, title)
+        style.save(figure, path)
+    return ""
+
+
+def _figure(
+    entries: Sequence[Entry], shown: Sequence[Column], across: str, second: str | None, by_name: Mapping[str, Column]
+) -> Any:
     places, names = _places(entries, across, by_name)
     width = 2 if len(shown) > 1 else 1
     height = math.ceil(len(shown) / width)
-    figure = _figure(4.6 * width, 2.5 * height + 0.9)
+    lines = min(len({entry.varied[second].given for entry in entries}), MOST_LINES) if second else 0
+    rows = math.ceil((lines + any(not entry.row.succeeded for entry in entries)) / COLUMNS)
+    top = 0.6 + style.LEGEND_ROW * rows
+    size = (4.6 * width, 2.3 * height + top + 0.55)
+    figure = style.new_figure(*size)
     grid = figure.subplots(height, width, squeeze=False, sharex=True)
+    figure.subplots_adjust(left=0.8 / size[0], right=1.0 - 0.15 / size[0])
+    figure.subplots_adjust(bottom=0.5 / size[1], top=1.0 - top / size[1], wspace=0.28, hspace=0.12)
     for axes, column in zip(grid.flat, shown, strict=False):
         _curves(axes, entries, places, second, column)
         _failures(axes, entries, places)
@@ -47,32 +67,13 @@ def draw(entries: Sequence[Entry], columns: Sequence[Column], title: str, path: 
             axes.set_xscale("log")
     for axes in list(grid.flat)[len(shown) :]:
         axes.set_visible(False)
-    unit = by_name[across].unit if across in by_name else "1"
-    for axes in grid[-1]:
+    for axes in list(grid.flat)[max(0, len(shown) - width) : len(shown)]:
+        unit = by_name[across].unit if across in by_name else "1"
         axes.set_xlabel(_labelled(across, unit), fontsize=8, parse_math=False)
-    if second is not None:
-        style.legend(grid[0, 0], columns=2)
-    style.head(figure, title)
-    _arrange(figure, width, height, second is not None)
-    style.save(figure, path)
-    return ""
-
-
-def _figure(width: float, height: float) -> Any:
-    from matplotlib import rc_context
-
-    with rc_context(style.SETTINGS):
-        return style.new_figure(width, height)
-
-
-def _arrange(figure: Any, width: int, height: int, with_legend: bool) -> None:
-    size = figure.get_size_inches()
-    top = 0.55 + (style.LEGEND_ROW * math.ceil(MOST_LINES / 4) if with_legend else 0.0)
-    figure.subplots_adjust(
-        left=0.85 / size[0], right=1.0 - 0.15 / size[0], bottom=0.55 / size[1], top=1.0 - top / size[1]
-    )
-    figure.subplots_adjust(wspace=0.28, hspace=0.12)
+        axes.tick_params(labelbottom=True)
+    style.legend(grid[0, 0], columns=COLUMNS)
     figure.align_ylabels()
+    return figure
 
 
 def _labelled(name: str, unit: str) -> str:

@@ -51,8 +51,8 @@ class Row:
         return self.status not in (LOST, FAULT)
 
     def as_text(self) -> str:
-        """One line of JSON, numbers with every bit, NaN and infinities as Python writes them."""
-        return json.dumps(asdict(self), sort_keys=True)
+        """One line of JSON, figures in their order, numbers with every bit, NaN and infinities as Python writes them."""
+        return json.dumps(asdict(self))
 
     @classmethod
     def from_text(cls, text: str) -> Row:

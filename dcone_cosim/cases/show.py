@@ -112,19 +112,25 @@ def _case(entry: Entry) -> str:
     return ", ".join(parts)
 
 
-def as_dict(summary: Summary, figures: bool) -> dict[str, Any]:
-    """For machines, numbers with all their digits; `figures`: those that are averaged as well."""
-    content: dict[str, Any] = {
+def counts(summary: Summary) -> dict[str, Any]:
+    """How many cases came out how, for machines. A grid is no sample: there is no probability to be told of."""
+    return {
+        "cases": summary.cases,
+        "succeeded": summary.succeeded.count,
+        "statuses": {status: one.count for status, one in summary.statuses.items()},
+    }
+
+
+def as_dict(summary: Summary) -> dict[str, Any]:
+    """Of an ensemble, for machines, numbers with all their digits."""
+    return {
         "cases": summary.cases,
         "confidence": CONFIDENCE,
         "succeeded": _share(summary.succeeded),
         "statuses": {status: _share(one) for status, one in summary.statuses.items()},
+        "figures": {name: _spread(one) for name, one in summary.figures.items()},
+        "texts": {name: {text: _share(one) for text, one in told.items()} for name, told in summary.texts.items()},
     }
-    if not figures:
-        return content
-    content["figures"] = {name: _spread(one) for name, one in summary.figures.items()}
-    content["texts"] = {name: {text: _share(one) for text, one in told.items()} for name, told in summary.texts.items()}
-    return content
 
 
 def _share(one: Share) -> dict[str, Any]:

@@ -32,6 +32,8 @@ from dcone_cosim.scratch import PREFIX, Scratch, clear_left
 STUDY, ROWS = "study.json", "rows"
 GATHERED = 1000
 """Rows of a segment."""
+AT_HAND = 8
+"""Segments in memory: rows are asked for about in the order in which they came."""
 _ROW = re.compile(r"([0-9a-f]{64})\.json")
 _SEGMENT = re.compile(r"many-[0-9a-f]{64}\.parquet")
 TOLD = 5
@@ -100,7 +102,7 @@ class Store:
                 self._gathered |= dict.fromkeys(self._segment(path), path)
 
     def _segment(self, path: Path) -> dict[str, str]:
-        """Texts of the rows of a segment by key; the one read last is kept."""
+        """Texts of the rows of a segment by key; the last few that were read are kept."""
         import pyarrow.parquet
 
         if path not in self._read:
@@ -108,7 +110,9 @@ class Store:
             with suppress(Exception):  # damaged: its rows are not there
                 table = pyarrow.parquet.read_table(path)
                 found = dict(zip(table["key"].to_pylist(), table["row"].to_pylist(), strict=True))
-            self._read = {path: found}
+            self._read[path] = found
+            while len(self._read) > AT_HAND:
+                del self._read[next(iter(self._read))]
         return self._read[path]
 
     def get(self, key: str) -> Row | None:
@@ -181,6 +185,7 @@ class Store:
         to_disk(draft)
         draft.replace(path)
         to_disk(self._rows)
+        self._read.pop(path, None)
         self._gathered |= dict.fromkeys(keys, path)
 
     def rows(self, keys: Iterable[str]) -> Iterator[Row]:

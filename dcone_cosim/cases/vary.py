@@ -187,7 +187,7 @@ def _need_to_work(values: Mapping[str, Sequence[Value]], found: Sequence[Combina
         for value in of:
             with_it = [c for c in found if c.values[key] is value]
             if not any(c.scene for c in with_it):
-                raise InputError(with_it[0].refusal)
+                raise InputError(f"--vary {key}={value.given}: it works in no case\n{with_it[0].refusal}")
 
 
 def _need_effects(name: str, found: Sequence[Combination]) -> None:

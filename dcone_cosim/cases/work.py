@@ -13,7 +13,6 @@ import traceback
 from contextlib import suppress
 from typing import Any
 
-from dcone_cosim.scene_fmus import SceneFmus, fmus_of
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.rows import FAULT, Row, of_summary, refused
 from dcone_cosim.errors import BAD_INPUT, FAILED_AFTER, FMU_FAILED, DconeError
@@ -21,6 +20,7 @@ from dcone_cosim.fmu.shelf import Shelf
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
+from dcone_cosim.scene_fmus import SceneFmus, fmus_of
 from dcone_cosim.scenes.scene import Scene
 
 FAILED_STATUS = "FMU failed"

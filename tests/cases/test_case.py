@@ -10,7 +10,9 @@ import pytest
 
 from dcone_cosim.cases import case
 from dcone_cosim.cases.case import Case, content, digest, identities, key_of
-from dcone_cosim.scenes.scene import Scene, TableFile, load, read_text, shipped
+from dcone_cosim.loading import load, shipped
+from dcone_cosim.scenes.reading import read_text
+from dcone_cosim.scenes.scene import Scene, TableFile
 
 FMUS = {"removal": "{1}"}
 
@@ -24,16 +26,15 @@ def key(name: str = "table2-deorbit", *settings: str, fmus: dict[str, str] = FMU
     [
         ("table2-deorbit", "removal.tether.rest_length=12.000001 m"),
         ("table2-deorbit", "removal.macro_step=30 s"),
-        ("table2-deorbit", "removal.duration=2 days"),
+        ("table2-deorbit", "removal.duration=2 d"),
         ("table2-deorbit", "removal.thrust.level=-0.02 N"),
-        ("table2-deorbit", "removal.thrust.direction=against_velocity"),
-        ("table2-deorbit", "removal.reel.law=linear"),
+        ("table2-deorbit", "removal.thrust.direction=velocity"),
         ("table2-deorbit", "removal.start.leading=chaser"),
         ("table2-deorbit", "orbit.altitude=801 km"),
-        ("table2-deorbit", "removal.solver.tolerance_position=1e-6 m"),
+        ("table2-deorbit", "removal.solver.tolerance_separation=1e-6 m"),
         ("mission", "handoff.spin_tolerance=0.2"),
         ("mission", "handoff.compare_without_recoil=false"),
-        ("mission", "capture.hand_over=settled"),
+        ("table1-capture", "capture.hand_over=none"),
         ("mission", 'phases=["capture"]'),
         ("mission", "capture.solver.seed=1"),
         ("reel-control", "removal.coupling.step=1 s"),
