@@ -51,7 +51,7 @@ class Row:
         return self.status not in (LOST, FAULT)
 
     def as_text(self) -> str:
-        """One line of JSON, figures in their order, numbers with every bit, NaN and infinities as Python writes them."""
+        """One line of JSON: figures in their order, numbers with every bit, NaN and infinities as Python has them."""
         return json.dumps(asdict(self))
 
     @classmethod
