@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim.cases.chief import chief
+from dcone_cosim.cases.show import short
 from dcone_cosim.cases.table import Column, Entry
 from dcone_cosim.reports import style
 
@@ -96,7 +97,7 @@ def _curves(axes: Any, entries: Sequence[Entry], places: Sequence[float], second
         chosen = [i for i in chosen if entries[i].row.succeeded]
         order = sorted(chosen, key=lambda i: places[i])
         colour = _colour(number, len(lines))
-        label = f"{second} = {line}" if second and number < MOST_LINES else None
+        label = f"{second} = {short(line)}" if second and number < MOST_LINES else None
         axes.plot(
             [places[i] for i in order], [values[i] for i in order], "o-", ms=3.5, lw=1.2, color=colour, label=label
         )

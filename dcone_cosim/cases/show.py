@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -26,15 +27,15 @@ def show_sweep(entries: Sequence[Entry], columns: Sequence[Column], title: str, 
     from rich.text import Text
 
     keys = list(entries[0].varied)
-    shown = chief(columns, MOST_FIGURES)
+    shown = chief(columns, max(1, MOST_FIGURES + 1 - len(keys)))
     table = Table(title=Text(title, style="table.title"), title_justify="left", box=None, pad_edge=False)
     for key in keys:
         table.add_column(Text(_broken(key)), justify="right", overflow="fold")
-    table.add_column("status")
+    table.add_column("status", no_wrap=True)
     for column in shown:
         table.add_column(Text(_broken(column.name, column.unit)), justify="right", overflow="fold")
     for place, entry in enumerate(entries[:MOST_ROWS]):
-        given = [Text(entry.varied[key].given) for key in keys]
+        given = [Text(short(entry.varied[key].given)) for key in keys]
         figures = [_number(column.values[place]) for column in shown]
         table.add_row(*given, Text(entry.row.status), *figures)
     console.print(table)
@@ -45,6 +46,11 @@ def show_sweep(entries: Sequence[Entry], columns: Sequence[Column], title: str, 
 def _broken(name: str, unit: str = "1") -> str:
     """The head of a column on several lines, so that it is narrow."""
     return name.replace(".", ".\n") + ("" if unit == "1" else f"\n[{unit}]")
+
+
+def short(given: str) -> str:
+    """A value as given, its number with six digits at most: of a range it may have twelve."""
+    return re.sub(r"\d+\.\d{5,}", lambda match: f"{float(match[0]):.6g}", given)
 
 
 def _number(value: Any) -> str:
@@ -107,7 +113,7 @@ def failures(entries: Sequence[Entry]) -> list[str]:
 
 
 def _case(entry: Entry) -> str:
-    parts = [f"{key} = {value.given}" for key, value in entry.varied.items()]
+    parts = [f"{key} = {short(value.given)}" for key, value in entry.varied.items()]
     parts += [f"seed {entry.seed}"] if entry.seed is not None else []
     return ", ".join(parts)
 

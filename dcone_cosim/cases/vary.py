@@ -23,6 +23,7 @@ import numpy as np
 from dcone_cosim.cases.case import Value, content, digest
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
+from dcone_cosim.scenes.mistakes import SceneError
 from dcone_cosim.scenes.scene import Scene
 
 FORM = 'expected KEY=VALUE,VALUE,... or KEY=FIRST..LAST:COUNT, such as removal.tether.rest_length="50 m,100 m"'
@@ -173,10 +174,7 @@ def grid(
         try:
             found.append(Combination(chosen, added, load(name, [*settings, *added])))
         except InputError as error:
-            told = str(error)
-            for setting in added:
-                told = told.replace(f"--set {setting}", f"--vary {setting}")
-            found.append(Combination(chosen, added, None, told))
+            found.append(Combination(chosen, added, None, _told(error, added)))
     _need_to_work(values, found)
     _need_effects(name, found)
     return found
@@ -187,7 +185,21 @@ def _need_to_work(values: Mapping[str, Sequence[Value]], found: Sequence[Combina
         for value in of:
             with_it = [c for c in found if c.values[key] is value]
             if not any(c.scene for c in with_it):
-                raise InputError(f"--vary {key}={value.given}: it works in no case\n{with_it[0].refusal}")
+                refusal, given = with_it[0].refusal, f"--vary {key}={value.given}: "
+                raise InputError(refusal if given in refusal else f"{given}it works in no case: {refusal}")
+
+
+def _told(error: InputError, settings: Sequence[str]) -> str:
+    """What is wrong with a scene, in one line that names no folder, and that calls what is varied so."""
+    told = str(error)
+    if isinstance(error, SceneError):
+        told = "; ".join(
+            f"{row['place'] and row['place'] + ': '}{row['key']} = {row['given']}: {row['expected']}"
+            for row in error.rows()
+        )
+    for setting in settings:
+        told = told.replace(f"--set {setting}", f"--vary {setting}")
+    return told
 
 
 def _need_effects(name: str, found: Sequence[Combination]) -> None:

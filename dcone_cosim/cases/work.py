@@ -77,7 +77,7 @@ class Fleet:
         except DconeError as error:
             self.shelf.clear()
             if error.exit_code == BAD_INPUT:
-                return refused(case.key, str(error))
+                return refused(case.key, str(error).removeprefix(f"{case.scene.source}: "))
             return Row(case.key, FAILED_STATUS, error.exit_code, str(error))
         except Exception:
             self.shelf.clear()
