@@ -160,6 +160,22 @@ def test_a_fleet_gives_what_runs_by_themselves_give(drift: Path, isolate: str) -
     fleet.close()
 
 
+def test_coupled_fmus_of_ours_are_reset_too() -> None:
+    """A removal and the law of its reel: three cases with one pair of instances, as if each had been alone."""
+    lengths = ("12 m", "12.5 m", "12 m")
+    scenes = [
+        load("reel-control", ["removal.duration=10 min", f"removal.components.controller.reel.length={length}"])
+        for length in lengths
+    ]
+    cases, fleet = [Case(str(i), scene) for i, scene in enumerate(scenes)], Fleet()
+    rows = [fleet.row(case) for case in cases]
+    fresh = [Fleet(new=True).row(case) for case in cases]
+    assert [row.figures for row in rows] == [row.figures for row in fresh]
+    assert rows[0].figures == rows[2].figures != rows[1].figures
+    assert (fleet.shelf.made, fleet.shelf.reused) == (2, 4)
+    fleet.close()
+
+
 def test_a_reset_that_leaves_something_behind_is_found_out(spoilt: Callable[[str], Path], tmp_path: Path) -> None:
     """It says that all is well, and the next case would have values of the case before where it gives none itself."""
     text = re.sub(r"relative_velocity = .*", "", SCENE)
