@@ -18,6 +18,8 @@ MOST_ROWS = 40
 """Cases of a sweep that are printed."""
 MOST_FIGURES = 4
 """Figures of each that are."""
+OUTCOMES = (".outcome", ".lasted")
+"""Figures that say how a phase came out."""
 MOST_FAILURES = 5
 """Cases that failed that are told of one by one."""
 
@@ -63,17 +65,23 @@ def show_ensemble(summary: Summary, title: str, console: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    heads = ("mean", "spread", "5 %", "median", "95 %")
     table = Table(title=Text(title, style="table.title"), title_justify="left", box=None, pad_edge=False)
-    table.add_column("")
-    for head in heads:
-        table.add_column(head, justify="right")
-    table.add_column("")
-    table.add_column("")
+    table.add_column("", overflow="fold", min_width=24)
+    for head in ("mean", "spread", "5 %", "median", "95 %"):
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    previous = ""
     for name, spread in summary.figures.items():
-        numbers = (spread.mean, spread.deviation, *spread.percentiles.values())
+        phase, _, figure = name.partition(".")
+        if phase != previous:
+            table.add_row(Text(phase, style="bold"))
+            previous = phase
+        numbers = [f"{spread.mean:.5g}"]
+        if spread.deviation > 0.0:
+            numbers += [f"{spread.deviation:.2g}", *(f"{value:.5g}" for value in spread.percentiles.values())]
+        numbers += [""] * (5 - len(numbers))
         unit = "" if spread.unit == "1" else spread.unit
-        table.add_row(Text(name), *(f"{number:.6g}" for number in numbers), unit, Text(_lacking(spread)))
+        table.add_row(Text(f"  {figure}{_lacking(spread)}"), *numbers, unit)
     console.print(table)
     for line in shares(summary):
         console.print(Text(line), highlight=False)
@@ -85,14 +93,14 @@ def _lacking(spread: Spread) -> str:
         parts.append(f"{spread.missing} without it")
     if spread.not_finite:
         parts.append(f"{spread.not_finite} not finite")
-    return f"of {spread.count}; {', '.join(parts)}" if parts else ""
+    return f" (of {spread.count} runs, {', '.join(parts)})" if parts else ""
 
 
 def shares(summary: Summary) -> list[str]:
     """How many cases came out how, with the interval of the probability."""
     lines = [f"{summary.cases} runs: {_counted(summary.statuses)} (95 % interval of the probability)"]
     for name, told in summary.texts.items():
-        if name.endswith("outcome") or len(told) > 1:
+        if name.endswith(OUTCOMES):
             lines.append(f"{name}: {_counted(told)}")
     return lines
 

@@ -61,7 +61,7 @@ def test_a_reset_instance_is_a_fresh_one_bit_for_bit(controller: Path, kind: Mak
         with kind(archive, "used") as used:
             used.set({"reel.length": 11.0, "motor.time_constant": 0.5, LENGTH: 14.0})
             used.initialise(0.0)
-            other = used.reader(["tension"])
+            other = used.reader([LENGTH])
             used.step(0.0, 0.7)
             other()
             used.save("kept")

@@ -62,6 +62,7 @@ def test_nothing_is_run_twice(store: Store, cases: Cases) -> None:
     again = run(store, here, [*cases(7), *cases(3)])
     assert here.done == [0, 1, 2, 3, 4, 5, 6]
     assert again.items() >= first.items()
+    assert len(list(Runner(store, here, 4, fakes.row_of).rows([*cases(3), *cases(3)]))) == 3
 
 
 def test_one_row_at_a_time(store: Store, cases: Cases) -> None:

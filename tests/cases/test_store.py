@@ -16,7 +16,8 @@ from dcone_cosim.cases.case import digest
 from dcone_cosim.cases.rows import Row, lost, of_summary
 from dcone_cosim.cases.store import Store, unlike
 from dcone_cosim.errors import InputError
-from tests.cosim.test_kills import killed_everywhere
+from dcone_cosim.scratch import PREFIX
+from tests.cosim.test_kills import WRITING, killed_everywhere
 
 STUDY = {
     "kind": "a sweep",
@@ -205,6 +206,8 @@ def test_killed_at_any_file_event(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
     seen = set()
     for event in killed_everywhere(work):
+        for path in (folder / "rows").glob("*.json"):
+            assert Row.from_text(path.read_text()) in rows, f"killed at {event}"
         with Store(folder, STUDY) as after:
             there = [after.get(row.key) for row in rows]
             seen.add(len([row for row in there if row is not None]))
@@ -218,6 +221,49 @@ def test_killed_at_any_file_event(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         folder.rmdir()
     assert seen == {0, 1, 2}
     assert event > 15
+
+
+def test_nothing_is_written_under_its_final_name(tmp_path: Path) -> None:
+    """What is opened for writing lies in a scratch folder: a kill between two writes cannot be had at a file event."""
+    opened: list[str] | None = []
+
+    def hook(event: str, arguments: object) -> None:
+        if opened is not None and event == "open" and arguments[2] & WRITING:  # type: ignore[index]
+            opened.append(str(arguments[0]))  # type: ignore[index]
+
+    sys.addaudithook(hook)
+    with Store(tmp_path, STUDY) as one:
+        one.put(row_of(1))
+        one.put(lost(row_of(2).key, "is gone"))
+        one.put(row_of(2))
+        one.gather()
+    found, opened = [name for name in opened if str(tmp_path) in name], None
+    assert len(found) >= 4
+    assert [name for name in found if PREFIX not in name] == []
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
+def test_killed_while_gathering(tmp_path: Path) -> None:
+    """Rows that were there are there at every instant: alone, in a segment, or both."""
+    import pyarrow.parquet  # noqa: F401
+
+    rows = [row_of(n) for n in range(3)]
+    with Store(tmp_path, STUDY) as one:
+        for row in rows:
+            one.put(row)
+
+    def work() -> None:
+        with Store(tmp_path, STUDY) as one:
+            one.gather()
+
+    found = set()
+    for event in killed_everywhere(work):
+        with Store(tmp_path, STUDY) as after:
+            assert [after.get(row.key) for row in rows] == rows, f"killed at {event}"
+            found.add(len(list((tmp_path / "rows").glob("*.json"))))
+            for row in rows:
+                after.put(row)
+    assert found >= {0, 1, 3} or found >= {1, 2, 3}
 
 
 WRITER = """
