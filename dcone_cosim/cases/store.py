@@ -16,7 +16,7 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -187,10 +187,6 @@ class Store:
         to_disk(self._rows)
         self._read.pop(path, None)
         self._gathered |= dict.fromkeys(keys, path)
-
-    def rows(self, keys: Iterable[str]) -> Iterator[Row]:
-        """The rows of these cases, as far as there are any."""
-        return (row for key in keys if (row := self.get(key)) is not None)
 
     def close(self) -> None:
         self._scratch.remove()
