@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from dcone_cosim.cases.case import Value
 from dcone_cosim.cases.rows import Row
-from dcone_cosim.run import headed
+from dcone_cosim.run import csv_head
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -139,6 +139,6 @@ def write(entries: Sequence[Entry], folder: Path) -> list[Column]:
     found = columns(entries)
     table = as_arrow(found)
     pyarrow.parquet.write_table(table, folder / "table.parquet")
-    pyarrow.csv.write_csv(table.rename_columns([headed(f) for f in table.schema]), folder / "table.csv")
+    pyarrow.csv.write_csv(table.rename_columns([csv_head(f) for f in table.schema]), folder / "table.csv")
     pyarrow.parquet.write_table(as_arrow(timings(entries)), folder / "timings.parquet")
     return found
