@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from dcone_cosim import exits
+from dcone_cosim import cli_cases, exits
 from dcone_cosim.cli_cache import cache_app
 from dcone_cosim.completion import phases_like, scenes_like
-from dcone_cosim.errors import BAD_INPUT, DconeError
+from dcone_cosim.errors import BAD_INPUT, DconeError, InputError
 from dcone_cosim.exits import complain as _complain
 from dcone_cosim.exits import reader_may_leave as _reader_may_leave
 
@@ -87,15 +87,31 @@ def run(
             show_default=False,
         ),
     ] = None,
+    ensemble: Annotated[
+        int | None,
+        typer.Option(
+            "--ensemble", metavar="N", help="Run it N times, each with a start that differs by 1 um: mean and spread."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", help="Of an ensemble's first run; the others count on.")] = 0,
+    jobs: cli_cases.Jobs = None,
     offline: Offline = False,
 ) -> None:
     """Run a scene and write its results.
 
+    With --ensemble the summary is mean, spread and percentiles of all figures, and a table has every run; the same
+    command goes on with the runs that are missing.
+
     Exit code: 0 success, 1 the results are complete but could not be told, 2 bad input, 3 the capture failed,
-    4 the hand-off was refused or violated, 5 an FMU failed, 6 interrupted, and what was reached is kept;
-    130 or 143 interrupted, and there was nothing to keep.
+    4 the hand-off was refused or violated, 5 an FMU failed, 6 interrupted, and what was reached is kept,
+    7 some runs of an ensemble failed; 130 or 143 interrupted, and there was nothing to keep.
     """
     _promise(offline)
+    if ensemble is not None:
+        if force:
+            raise InputError("--force: an ensemble goes on with what is in its folder; choose another with -o")
+        done = cli_cases.ensemble(scene, ensemble, seed, out, settings or [], jobs, isolate, _progress())
+        raise typer.Exit(cli_cases.tell(done, json, _console(), ensemble=True))
     gc.disable()  # while modules are imported nothing is garbage; `run_and_write` enables it again
     from dcone_cosim.commands import run_and_write
 
@@ -125,6 +141,37 @@ def run(
     if result.message:
         _complain(result.message)
     raise typer.Exit(result.exit_code)
+
+
+@app.command()
+def sweep(
+    scene: SceneName,
+    vary: cli_cases.Vary = None,
+    out: cli_cases.Out = None,
+    settings: Settings = None,
+    jobs: cli_cases.Jobs = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the chief figures.")] = True,
+    isolate: Annotated[
+        bool | None,
+        typer.Option(
+            "--isolate/--no-isolate", help="As for dcone run; a crash loses one case in any way.", show_default=False
+        ),
+    ] = None,
+    offline: Offline = False,
+) -> None:
+    """Run a scene with every combination of some values, on all cores, and write one table.
+
+    The folder has table.parquet and table.csv, one row per case with its values, status and figures; timings.parquet;
+    summary.json; sweep.png for one or two keys; and the rows themselves. Stop it whenever you like: the same command
+    goes on with the cases that are missing. A key that changes nothing is an error.
+
+    Exit code: 0 every case succeeded, 2 bad input, 6 interrupted, and the cases that are done are kept,
+    7 some cases failed, and the table has the reason of each.
+    """
+    _promise(offline)
+    done = cli_cases.sweep(scene, vary or [], out, settings or [], jobs, figures, isolate, _progress())
+    raise typer.Exit(cli_cases.tell(done, json, _console(), ensemble=False))
 
 
 @app.command()

@@ -126,12 +126,12 @@ def atomic_folder(folder: Path, force: bool = False) -> Iterator[Draft]:
         draft = Draft(path, folder, scratch.removed)
         yield draft
         with ThreadPoolExecutor() as pool:  # one wait for the disk, not one for each file
-            list(pool.map(_to_disk, [*path.rglob("*"), path]))
+            list(pool.map(to_disk, [*path.rglob("*"), path]))
         with postponed():
             if not (force and _replace(scratch, place)):
                 draft.folder = folder.with_name(_take_name(scratch, place, empty).name)
             placed.note(draft.folder)
-        _to_disk(place.parent)
+        to_disk(place.parent)
     finally:
         if scratch is not None:
             scratch.remove()
@@ -190,7 +190,8 @@ def _take_name(scratch: Scratch, place: Path, empty: bool) -> Path:
     raise AssertionError("there is always a next number")
 
 
-def _to_disk(path: Path) -> None:
+def to_disk(path: Path) -> None:
+    """Have the system write a file, or the names in a folder, to its disk now."""
     if os.name == "nt" and path.is_dir():
         return
     handle = os.open(path, os.O_RDONLY)

@@ -9,6 +9,7 @@ CAPTURE_FAILED = 3
 HANDOFF_FAILED = 4
 FMU_FAILED = 5
 INTERRUPTED = 6
+CASES_FAILED = 7
 
 
 class DconeError(Exception):

@@ -26,16 +26,17 @@ TOLD = (
 )
 
 _heeding = False
+_told = TOLD
 _noted: int = 0
 _since = 0.0
 _before: dict[int, Any] = {}
 
 
 @contextmanager
-def heeded() -> Iterator[None]:
-    """Around a run and the writing of its results: from `arm` on, the first signal is noted."""
-    global _heeding, _noted
-    _heeding, _noted = True, 0
+def heeded(told: bytes = TOLD) -> Iterator[None]:
+    """Around a run and the writing of its results: from `arm` on, the first signal is noted, and `told` is said."""
+    global _heeding, _noted, _told
+    _heeding, _noted, _told = True, 0, told
     try:
         yield
     finally:
@@ -62,7 +63,7 @@ def _note(number: int, _: object) -> None:
     _noted, _since = number, clock.monotonic()
     _disarm()
     with suppress(OSError):
-        os.write(STDERR, TOLD)
+        os.write(STDERR, _told)
 
 
 def noted() -> str:

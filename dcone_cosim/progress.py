@@ -35,6 +35,9 @@ class Progress:
     def end(self) -> None:
         """The phase is over."""
 
+    def count(self, what: str, done: int, total: int, state: str) -> None:
+        """So many of `total` are done; `state` tells how fast, and how long the rest will take. May be told often."""
+
     @contextmanager
     def working(self, what: str) -> Iterator[None]:
         """Around work that may take long and tells nothing of its course, such as building."""
@@ -66,9 +69,10 @@ class Lines(Progress):
     any more does not end the run."""
 
     def __init__(self) -> None:
-        self._phase = ""
+        self._phase = self._state = ""
         self._said = 0
         self._start = self._stop = self._reached = self._began = 0.0
+        self._counted = clock.perf_counter()
         self._reminder: _Reminder | None = None
 
     def say(self, text: str) -> None:
@@ -103,6 +107,12 @@ class Lines(Progress):
 
     def at(self, time: float) -> None:
         self._reached = time
+
+    def count(self, what: str, done: int, total: int, state: str) -> None:
+        now = clock.perf_counter()
+        if (done == total or now - self._counted >= REMINDER) and state != self._state:
+            self._counted, self._state = now, state
+            self.say(f"{what}: {state}")
 
     def end(self) -> None:
         self.close()
@@ -173,6 +183,12 @@ class Bar(Progress):
             self._shown = now
             self._show(time, now)
         self._last = time
+
+    def count(self, what: str, done: int, total: int, state: str) -> None:
+        self._stop_waiting()
+        if self._task is None:
+            self._task = self._bar.add_task(what, total=total, state="")
+        self._bar.update(self._task, completed=done, state=state)
 
     def _show(self, time: float, now: float) -> None:
         simulated = time - self._start

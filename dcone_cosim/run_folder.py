@@ -61,7 +61,7 @@ def fill(
     for name, table in _tables(run):
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet")
         if with_csv:
-            headed = table.rename_columns([_headed(f) for f in table.schema])
+            headed = table.rename_columns([csv_head(f) for f in table.schema])
             pyarrow.csv.write_csv(headed, folder / f"{name}.csv")
     for place, (name, handover) in enumerate(run.handovers.items()):
         _write_ledger(handover, folder / (f"ledger_{name}.json" if place else "ledger.json"))
@@ -72,7 +72,8 @@ def fill(
     _write_json(folder / PROVENANCE, provenance(run, fmus, started) | {"files": files})
 
 
-def _headed(field: pa.Field) -> str:
+def csv_head(field: pa.Field) -> str:
+    """Head of a column in a CSV: its name, with its unit if it has one."""
     unit = (field.metadata or {}).get(b"unit", b"1").decode()
     return str(field.name) if unit == "1" else f"{field.name} [{unit}]"
 

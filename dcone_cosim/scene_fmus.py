@@ -13,6 +13,7 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, Steppable
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.leaving import guard_exit
+from dcone_cosim.fmu.shelf import Shelf
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import places_named
@@ -20,13 +21,15 @@ from dcone_cosim.scratch import Scratch
 
 
 class SceneFmus:
-    """The unpacked FMU of every component of a scene; closing removes the temporary folders."""
+    """The unpacked FMU of every component of a scene; closing removes the temporary folders.
 
-    def __init__(self, scene: Scene, progress: Progress) -> None:
-        self._scene = scene
-        self._phases = {phase.name: phase for phase in scene.phases}
+    shelf     keeps instances that are closed, for the next scene that is `serve`d; without it each is freed
+    """
+
+    def __init__(self, scene: Scene, progress: Progress, shelf: Shelf | None = None) -> None:
         self._of: dict[tuple[str, str], Archive] = {}
-        self._coupled: dict[str, Any] = {}
+        self._shelf = shelf
+        self.serve(scene)
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
         try:
@@ -44,6 +47,12 @@ class SceneFmus:
         except BaseException:
             self.close()
             raise
+
+    def serve(self, scene: Scene) -> None:
+        """From now on instantiate for this scene, which must be of the same FMUs (`fmus_of`)."""
+        self._scene = scene
+        self._phases = {phase.name: phase for phase in scene.phases}
+        self._coupled: dict[str, Any] = {}
 
     def instantiate(self, phase: str, name: str) -> Steppable:
         """A component of that phase: its one FMU under this name, or all of its FMUs coupled.
@@ -96,7 +105,10 @@ class SceneFmus:
         apart = isolated(component, archive)
         if not apart and component.fmu is not None:
             guard_exit()
-        made = IsolatedComponent(archive, name, component.timeout) if apart else Component(archive, name)
+        if self._shelf is not None:
+            made = self._shelf.take(archive, name, apart, component.timeout)
+        else:
+            made = IsolatedComponent(archive, name, component.timeout) if apart else Component(archive, name)
         try:
             if component.texts:
                 made.set_texts(component.texts)
@@ -168,11 +180,25 @@ class SceneFmus:
 
     def close(self) -> None:
         isolation.dismiss()
+        if self._shelf is not None:
+            self._shelf.clear()
         for archive in self._of.values():
             archive.close()
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def fmus_of(scene: Scene) -> tuple[Any, ...]:
+    """What the archives of a scene hang on: scenes for which it is equal differ in values alone, not in FMUs."""
+    return tuple(
+        (
+            *(phase.name, c.name, c.model, tuple(c.terms.items()), c.fmu and c.fmu.absolute(), c.tolerance),
+            tuple((name, table.sha256) for name, table in c.tables.items()),
+        )
+        for phase in scene.phases
+        for c in phase.components
+    )
 
 
 def opened(path: Path, component: ComponentScene) -> Archive:

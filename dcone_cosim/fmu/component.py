@@ -226,6 +226,15 @@ class Component:
             del self._times[key], self._steps_of[key]
             self._call("freeFMUstate", state)
 
+    def reset(self) -> None:
+        """Back to how it was when it was made: every variable at its start value, no state kept, to be set and
+        initialised anew. Its texts too are those that it starts with."""
+        for key in list(self._states):
+            self.release(key)
+        self._call("reset")
+        self._stepping = False
+        self.time, self._steps = 0.0, 0
+
     def state_size(self) -> int:
         """Bytes of a serialised state: what an instance holds."""
         self.save()

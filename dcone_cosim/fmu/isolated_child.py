@@ -1,16 +1,13 @@
 """The child of `isolation`: one FMU, and a loop that does to it what the parent asks.
 
-Its first two streams carry the calls and the answers. They are moved away before the FMU is loaded, so that whatever it
-prints goes to the third. It ends when it is told to, when the stream of calls ends, or when its parent is gone, even if
-the FMU never returns.
+Its first two streams carry the calls and the answers (see `child`). It ends when it is told to, when the stream of
+calls ends, or when its parent is gone.
 """
 
 from __future__ import annotations
 
-import ctypes
 import os
 import signal
-import threading
 import time
 import traceback
 from collections.abc import Sequence
@@ -18,6 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from dcone_cosim.child import end_with_parent, own_streams
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.component import Archive, Component, Reader
 from dcone_cosim.fmu.frames import NEXT_CALL, Incoming, as_fields, receive, send
@@ -26,12 +24,10 @@ from dcone_cosim.fmu.messages import listeners
 CALLS = frozenset(
     {
         *("set", "set_texts", "set_rates", "get", "enter_initialisation", "exit_initialisation"),
-        *("save", "restore", "release", "state_size"),
+        *("save", "restore", "release", "state_size", "reset"),
     }
 )
 """Calls that go straight to the component."""
-LOOK_FOR_PARENT = 0.5
-"""How often to see whether the parent is still there [s]."""
 
 
 class Server:
@@ -63,6 +59,8 @@ class Server:
         if call == "reader":
             self.readers.append(self.component.reader(arguments[0]))
             return self.readers[-1].names
+        if call == "reset":
+            self.readers.clear()
         if call == "cpu":
             return time.process_time()
         if call not in CALLS:
@@ -123,32 +121,14 @@ class Server:
             send(answers, self.answers(asked))
 
 
-def _own_streams() -> tuple[Incoming, BinaryIO]:
-    """Take the streams of calls and answers out of the FMU's reach; what it prints goes to the third stream."""
-    calls, answers = Incoming(os.dup(0)), os.fdopen(os.dup(1), "wb")
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
-    os.dup2(2, 1)
-    with suppress(Exception):  # by lines, so that the last ones are out before a crash; only where the C library is so
-        library = ctypes.CDLL(None)
-        library.setvbuf(ctypes.c_void_p.in_dll(library, "stdout"), None, 1, ctypes.c_size_t(0))
-    return calls, answers
-
-
-def _end_with(parent: int) -> None:
-    while os.getppid() == parent:
-        time.sleep(LOOK_FOR_PARENT)
-    os._exit(1)
-
-
 def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    calls, answers = _own_streams()
-    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+    calls, answers = own_streams()
+    end_with_parent()
     server = Server()
     listeners.append(server.pass_on)
     with suppress(BrokenPipeError):
-        server.serve(calls, answers)
+        server.serve(Incoming(calls), os.fdopen(answers, "wb"))
     os._exit(0)
 
 

@@ -15,25 +15,24 @@ from __future__ import annotations
 
 import math
 import os
-import signal
 import subprocess
-import sys
 import threading
 import time as clock
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 
 from dcone_cosim import interrupts
+from dcone_cosim.child import how_it_ended, kill, start
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.frames import NEXT_CALL, Garbled, Incoming, from_fields, receive, send
 from dcone_cosim.fmu.steppable import CallError, Row, Terminated, VariableInfo
 
+CHILD = "dcone_cosim.fmu.isolated_child"
 LAST_WORDS = 600
 """Characters that an error quotes at most of the last three lines an FMU wrote."""
 START = 120.0
@@ -151,6 +150,16 @@ class IsolatedComponent:
         if self._times.pop(key, None) is not None:
             self._tell("release", key)
 
+    def reset(self) -> None:
+        """Back to how it was when it was made, in the same process; readers made before are of no more use."""
+        self._stepping = False
+        self._waiting.clear()
+        self._wanted.clear()
+        self._times.clear()
+        self._readers = 0
+        self._ask(" in fmi2Reset", "reset")
+        self.time = 0.0
+
     def state_size(self) -> int:
         """Bytes of a serialised state."""
         return int(self._ask("", "state_size"))
@@ -240,10 +249,8 @@ class IsolatedComponent:
             said = "its process wrote into the stream of our answers, which cannot be read any more, and was killed"
         elif alive:
             said = "its process closed the stream of our answers, and was killed"
-        elif code < 0:
-            said = f"its process was ended by {_signal_name(-code)}"
         else:
-            said = f"its process ended itself with exit code {code}"
+            said = f"its process {how_it_ended(code)}"
         noise = self._noise.rpartition(NEXT_CALL)[2].decode("utf-8", "replace")
         lines = [line.strip() for line in noise.splitlines() if line.strip()]
         if lines:
@@ -256,7 +263,7 @@ class IsolatedComponent:
     def _end(self) -> None:
         """Kill what is left of the child and of its own children, and close the streams."""
         self._over.set()
-        _kill(self._child)
+        kill(self._child)
         self._child.wait()
         self._listener.join(1.0)
         for stream in (self._child.stdin, self._child.stdout):
@@ -276,7 +283,7 @@ class IsolatedComponent:
         while not self._over.wait(min(0.2, 0.1 * self.timeout)):
             if clock.monotonic() > self._deadline or (self._deadline < math.inf and interrupts.overdue()):
                 self._late = True
-                _kill(self._child)
+                kill(self._child)
                 return
 
 
@@ -313,35 +320,12 @@ def _checked(call: str, frame: Any) -> tuple[FmuError | None, Any, list[str]]:
     raise Garbled
 
 
-def _signal_name(number: int) -> str:
-    """Name of a signal; those for real-time use have none of their own."""
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f"signal {number}"
-
-
-def _start_child() -> subprocess.Popen[bytes]:
-    """A fresh interpreter with `isolated_child`, in a session of its own: Ctrl-C is ours to handle."""
-    place = str(Path(__file__).parents[2])
-    path = os.pathsep.join([place, *filter(None, [os.environ.get("PYTHONPATH")])])
-    pipe = subprocess.PIPE
-    return subprocess.Popen(
-        [sys.executable, "-m", "dcone_cosim.fmu.isolated_child"],
-        stdin=pipe,
-        stdout=pipe,
-        stderr=pipe,
-        env=os.environ | {"PYTHONPATH": path},
-        start_new_session=True,
-    )
-
-
 _ready: list[subprocess.Popen[bytes]] = []
 
 
 def make_ready(count: int) -> None:
     """Start children ahead: to import what they need takes each 0.2 s, in which something else can be done."""
-    _ready.extend(_start_child() for _ in range(count))
+    _ready.extend(start(CHILD) for _ in range(count))
 
 
 def dismiss() -> None:
@@ -351,7 +335,7 @@ def dismiss() -> None:
         try:
             child.communicate(timeout=FAREWELL)  # it ends with the stream of its calls
         except subprocess.TimeoutExpired:
-            _kill(child)
+            kill(child)
             child.communicate()
 
 
@@ -362,12 +346,4 @@ def _next_child() -> subprocess.Popen[bytes]:
         if child.poll() is None:
             return child
         child.communicate()
-    return _start_child()
-
-
-def _kill(child: subprocess.Popen[bytes]) -> None:
-    """Kill the child, and what it started itself."""
-    if hasattr(os, "killpg"):
-        with suppress(OSError):
-            os.killpg(child.pid, signal.SIGKILL)
-    child.kill()
+    return start(CHILD)

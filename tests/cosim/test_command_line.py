@@ -288,14 +288,14 @@ def test_after_the_rename_nobody_says_that_nothing_was_written(
     code: int,
     told: str,
 ) -> None:
-    to_disk = drafts._to_disk
+    to_disk = drafts.to_disk
 
     def fails(path: Path) -> None:
         if path.name != "deep":
             return to_disk(path)
         raise error
 
-    monkeypatch.setattr(drafts, "_to_disk", fails)
+    monkeypatch.setattr(drafts, "to_disk", fails)
     given, _, err = dcone("run", "mock", "-o", "deep/out", "--no-figures")
     assert given == code
     assert f"{told}written before that, and complete: deep/out" in err
