@@ -105,7 +105,7 @@ def test_every_unit_of_the_models_is_understood(phase: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", [*_SYMBOLS.keys() - {"1"}, *_PRODUCTS.replace("\n", ";").split(";"), "mm-2 s2", "km / h"]
+    "name", [*sorted(_SYMBOLS.keys() - {"1"}), *_PRODUCTS.replace("\n", ";").split(";"), "mm-2 s2", "km / h"]
 )
 def test_symbols_are_those_of_astropy(name: str) -> None:
     """To the last bit, but for the litre, where astropy has 1.0000000000000002e-3 m3."""
