@@ -245,6 +245,14 @@ def test_stopped_and_gone_on_with(dcone: Dcone, drift: Path, tmp_path: Path) -> 
     assert not hidden(cut)
 
 
+def rows_there(folder: Path) -> int:
+    """How many rows there are, alone and in segments."""
+    keys = {path.stem for path in (folder / "rows").glob("*.json")}
+    for path in (folder / "rows").glob("many-*.parquet"):
+        keys |= set(pyarrow.parquet.read_table(path)["key"].to_pylist())
+    return len(keys)
+
+
 @pytest.mark.evidence
 @pytest.mark.parametrize("seed", [2026])
 def test_killed_ten_times(dcone: Dcone, tmp_path: Path, seed: int, capfd: pytest.CaptureFixture[str]) -> None:
@@ -254,13 +262,17 @@ def test_killed_ten_times(dcone: Dcone, tmp_path: Path, seed: int, capfd: pytest
     began = time.monotonic()
     assert dcone(*sweep, "-o", "whole")[0] == 0
     lasts, moments, done = time.monotonic() - began, random.Random(seed), []
-    for _ in range(10):
+    for kill in range(10):
         process = started(*sweep, "-o", "cut", cwd=tmp_path)
-        time.sleep(moments.uniform(0.05, 0.5) * lasts)
+        if kill % 2 and rows_there(tmp_path / "cut") < 110:  # once it runs cases, every other time
+            some_rows(tmp_path / "cut", rows_there(tmp_path / "cut") + 1)
+            time.sleep(moments.uniform(0.0, 0.15) * lasts)
+        else:
+            time.sleep(moments.uniform(0.0, 0.6) * lasts)
         process.kill()
         process.communicate()
-        done.append(len(list((tmp_path / "cut" / "rows").glob("*.json"))))
-        assert not (tmp_path / "cut" / "table.parquet").exists() or done[-1] in (0, 120)
+        done.append(rows_there(tmp_path / "cut"))
+        assert done[-1] == 120 or not (tmp_path / "cut" / "table.parquet").exists()
     with capfd.disabled():
         print(f"{lasts:.1f} s undisturbed; rows of 120 after each kill: {done}")
     assert len(set(done)) >= 4, "most of them in the midst of it"
