@@ -276,7 +276,7 @@ def _built(interfaces: Sequence[Interface], announce: Callable[[str], None], pla
 
     Before a build begins it is told how long it took before; how long it takes is kept.
     """
-    from fmu_src.packaging.archive import build_all
+    from fmu_src.packaging.builds import build_all
     from fmu_src.packaging.platforms import host
     from fmu_src.packaging.tools import BuildError
 
@@ -332,7 +332,7 @@ def write_fmus(
     With no platforms named they are for this machine. Linux on arm64 has archives of its own too. Values cost no build:
     the libraries are those of the cache.
     """
-    from fmu_src.packaging.archive import furnish
+    from fmu_src.packaging.builds import furnish
     from fmu_src.packaging.platforms import PLATFORMS, archives, host
 
     chosen = [PLATFORMS[name] for name in platforms] or [host()]
@@ -353,7 +353,7 @@ def write_fmus(
 
 def with_tables(fmu: Path, model: str, terms: Mapping[str, str], tables: Mapping[str, Any], folder: Path) -> Path:
     """An FMU of the cache written once more to a folder, with the tables of its parts."""
-    from fmu_src.packaging.archive import furnish
+    from fmu_src.packaging.builds import furnish
     from fmu_src.packaging.platforms import host
 
     interface = CATALOGUE[model].interface(terms).with_tables(tables)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from dcone_cosim.errors import FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
-from dcone_cosim.fmu.component import KINDS, CallError, Steppable
+from dcone_cosim.fmu.component import NUMBERS, CallError, Steppable
 from dcone_cosim.phases import kind_of
 from dcone_cosim.phases.phase import Instantiate, Loop, Stage
 from dcone_cosim.progress import Progress
@@ -131,7 +131,7 @@ def _leave(stage: Stage, component: Steppable) -> None:
 
 def standing(component: Steppable, causality: str) -> dict[str, float]:
     """Every parameter, or every input, of the component as it now stands, whether it was given or left at its start."""
-    names = [v.name for v in component.variables.values() if v.causality == causality and v.kind in KINDS]
+    names = [v.name for v in component.variables.values() if v.causality == causality and v.kind in NUMBERS]
     present = component.get(names) if names else {}
     return {name: present[name] for name in names}
 

@@ -26,7 +26,7 @@ from dcone_cosim.build import cache_folder
 from fmu_src import instance
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import Model
-from fmu_src.packaging import archive, compile, link, platforms
+from fmu_src.packaging import builds, compile, link, platforms
 
 OTHER_CODE = ("NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT")
 """Environment variables under which kernels are other code than an FMU's."""
@@ -85,7 +85,7 @@ class Shared:
         self.entry = cache(self._entry)
 
     def _path(self, name: str, terms: tuple[tuple[str, str], ...], suffix: str) -> Path:
-        key = archive.fingerprint(MODELS[name].interface(dict(terms)))
+        key = builds.fingerprint(MODELS[name].interface(dict(terms)))
         return self._folder / f"{name}-{key[:32]}{suffix}"
 
     def ir(self, name: str, terms: tuple[tuple[str, str], ...]) -> Path:
@@ -93,7 +93,7 @@ class Shared:
         interface = MODELS[name].interface(dict(terms))
 
         def make(path: Path) -> None:
-            known = archive.kernels(cache_folder(), name, archive.fingerprint(interface))
+            known = builds.kernels(cache_folder(), name, builds.fingerprint(interface))
             if known is None:
                 emit(interface.model, interface.terms, path)
             else:

@@ -31,7 +31,7 @@ from dcone_cosim.fmu.archive import XML, Archive
 from dcone_cosim.fmu.floating import Control
 from dcone_cosim.fmu.messages import STATUS, Messages
 from dcone_cosim.fmu.steppable import (
-    KINDS,
+    NUMBERS,
     CallError,
     Readable,
     Row,
@@ -42,7 +42,7 @@ from dcone_cosim.fmu.steppable import (
 )
 
 __all__ = [
-    "KINDS",
+    "NUMBERS",
     "Archive",
     "CallError",
     "Component",
@@ -124,7 +124,7 @@ class Component:
         Raises `FmuError` before any of them is set when a value does not fit the kind of its variable.
         """
         numbers = [(info, self._fitting(info, v)) for info, v in ((self.reference(n), v) for n, v in values.items())]
-        for kind in KINDS:
+        for kind in NUMBERS:
             chosen = [(info.reference, number) for info, number in numbers if info.kind == kind]
             if chosen:
                 self._call(f"set{kind}", [r for r, _ in chosen], [number for _, number in chosen])
@@ -142,7 +142,7 @@ class Component:
         """An SI value as the FMU counts it; one that its kind cannot hold is an error."""
         if info.kind == "Real":
             return _own(info, value)
-        if info.kind not in KINDS:
+        if info.kind not in NUMBERS:
             raise FmuError(
                 f"{self.name}: {info.name} is a {info.kind}; only numbers can be set, and {value!r} was given"
             )
@@ -349,10 +349,10 @@ class Reader:
     def __init__(self, component: Component, names: Sequence[str]) -> None:
         infos = [component.reference(name) for name in names]
         for info in infos:
-            if info.kind not in KINDS:
+            if info.kind not in NUMBERS:
                 raise FmuError(f"{component.name}: {info.name} is a {info.kind}; only numbers can be read")
         component._alive()
-        self._infos = sorted(infos, key=lambda info: KINDS.index(info.kind))
+        self._infos = sorted(infos, key=lambda info: NUMBERS.index(info.kind))
         self.names = tuple(info.name for info in self._infos)
         self.values: Row = np.zeros(len(self._infos))
         self._component = component

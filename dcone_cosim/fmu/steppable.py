@@ -14,7 +14,8 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.units import NO_UNIT, Unit
 
 Row = npt.NDArray[np.float64]
-KINDS = ("Real", "Integer", "Boolean")
+NUMBERS = ("Real", "Integer", "Boolean")
+"""Kinds of variable that a component reads and sets."""
 
 
 @dataclass(frozen=True)
@@ -129,5 +130,5 @@ def output_names(variables: Mapping[str, VariableInfo], without: Iterable[str] =
     return [
         v.name
         for v in variables.values()
-        if v.causality == "output" and v.kind in KINDS and not v.name.startswith(prefixes or ("\0",))
+        if v.causality == "output" and v.kind in NUMBERS and not v.name.startswith(prefixes or ("\0",))
     ]

@@ -21,6 +21,16 @@ from dcone_cosim.phases.phase import Document
 from dcone_cosim.scene.data import SHARED, ComponentScene, HandoffOptions, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
 from dcone_cosim.scene.toml_lines import Path
+from dcone_cosim.scenes.components import (
+    RESERVED,
+    ReadComponent,
+    follow,
+    of_fmu,
+    of_model,
+    read_files,
+    read_part,
+    reserved_of,
+)
 from dcone_cosim.scenes.coupling import about_components, about_one_length, read_connections, read_coupling
 from dcone_cosim.scenes.fmus import file_of, offer, opened
 from dcone_cosim.scenes.keys import (
@@ -37,7 +47,6 @@ from dcone_cosim.scenes.keys import (
     read_value,
     table_in,
 )
-from dcone_cosim.scenes.parts import RESERVED, Part, follow, of_fmu, of_model, read_files, read_part, reserved_of
 from dcone_cosim.scenes.relations import about_steps, about_values, phases_to_run
 
 
@@ -45,7 +54,7 @@ from dcone_cosim.scenes.relations import about_steps, about_values, phases_to_ru
 class _Component:
     """A part with its values."""
 
-    part: Part
+    part: ReadComponent
     options: dict[str, Any] = field(default_factory=dict)
     parameters: dict[str, float] = field(default_factory=dict)
 
@@ -141,7 +150,9 @@ def _read_phase(
     phase: str, tables: dict[str, Any], orbit: dict[str, Any], folder: File, mistakes: list[Mistake]
 ) -> _Phase:
     model, path = build.CATALOGUE[kind_of(phase).model], (phase,)
-    main = _read_component(Part(path, phase, model, reserved=reserved_of(phase)), tables, orbit, folder, mistakes)
+    main = _read_component(
+        ReadComponent(path, phase, model, reserved=reserved_of(phase)), tables, orbit, folder, mistakes
+    )
     read = _Phase(main, options=_options(phase, tables, mistakes))
     components = table_in(tables, (*path, "components"), mistakes)
     for name, table in components.items():
@@ -152,7 +163,9 @@ def _read_phase(
             text = "cannot be the name of a component: expected one without a dot, and not that of a phase"
             mistakes.append(Mistake(at, table, text))
         else:
-            read.others.append(_read_component(Part(at, name, reserved=RESERVED), table, orbit, folder, mistakes))
+            read.others.append(
+                _read_component(ReadComponent(at, name, reserved=RESERVED), table, orbit, folder, mistakes)
+            )
     parts = [main.part, *(component.part for component in read.others)]
     read.coupling = read_coupling(tables, path, parts, mistakes)
     mistakes += about_components(read.coupling, parts, tables)
@@ -174,7 +187,7 @@ def _options(phase: str, tables: dict[str, Any], mistakes: list[Mistake]) -> dic
 
 
 def _read_component(
-    part: Part, tables: dict[str, Any], orbit: Mapping[str, Any], folder: File, mistakes: list[Mistake]
+    part: ReadComponent, tables: dict[str, Any], orbit: Mapping[str, Any], folder: File, mistakes: list[Mistake]
 ) -> _Component:
     """What a component is, and what the scene says of it."""
     read = _Component(part)
@@ -200,7 +213,7 @@ def _read_component(
     return read
 
 
-def _foreign(part: Part, tables: dict[str, Any], folder: File, mistakes: list[Mistake]) -> bool:
+def _foreign(part: ReadComponent, tables: dict[str, Any], folder: File, mistakes: list[Mistake]) -> bool:
     """Take what the FMU file offers; false when there is none to read."""
     path = (*part.path, "fmu")
     if "model" in tables and "model" in part.reserved:
@@ -250,7 +263,7 @@ def _cautions(scene: Scene) -> dict[str, None]:
     return dict.fromkeys(found)
 
 
-def _named_model(part: Part, tables: dict[str, Any], mistakes: list[Mistake]) -> bool:
+def _named_model(part: ReadComponent, tables: dict[str, Any], mistakes: list[Mistake]) -> bool:
     """Take the model of ours that a further component names; false when there is none."""
     path, given = (*part.path, "model"), tables.get("model")
     if given is None:

@@ -10,15 +10,15 @@ from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.coupling.wiring import mismatch
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted
+from dcone_cosim.scenes.components import ReadComponent
 from dcone_cosim.scenes.keys import COUPLING_KEYS, phase_keys, read_table, table_in
-from dcone_cosim.scenes.parts import Part
 
 ARROW = "->"
 FORM = '"INSTANCE.VARIABLE -> INSTANCE.VARIABLE"'
 
 
 def read_connections(
-    given: object, path: Path, parts: Sequence[Part], mistakes: list[Mistake]
+    given: object, path: Path, parts: Sequence[ReadComponent], mistakes: list[Mistake]
 ) -> tuple[Connection, ...]:
     """The connections of a phase; a list on both sides connects element by element."""
     if not isinstance(given, list):
@@ -45,7 +45,9 @@ def read_connections(
     return tuple(connections)
 
 
-def _read_one(text: object, path: Path, parts: Mapping[str, Part], mistakes: list[Mistake]) -> list[Connection]:
+def _read_one(
+    text: object, path: Path, parts: Mapping[str, ReadComponent], mistakes: list[Mistake]
+) -> list[Connection]:
     sides = [side.strip() for side in text.split(ARROW)] if isinstance(text, str) else []
     if len(sides) != 2 or not all("." in side.strip(".") for side in sides):
         mistakes.append(Mistake(path, text, f"expected {FORM}"))
@@ -76,7 +78,7 @@ def _end(
     name: str,
     variable: str,
     causality: str,
-    parts: Mapping[str, Part],
+    parts: Mapping[str, ReadComponent],
     mistakes: list[Mistake],
 ) -> list[str]:
     """The variables at one end of a connection: one, or the elements of a list."""
@@ -102,7 +104,9 @@ def _end(
     return elements
 
 
-def read_coupling(tables: Mapping[str, Any], path: Path, parts: Sequence[Part], mistakes: list[Mistake]) -> Coupling:
+def read_coupling(
+    tables: Mapping[str, Any], path: Path, parts: Sequence[ReadComponent], mistakes: list[Mistake]
+) -> Coupling:
     """How the steps are taken; without further components there is nothing to couple."""
     path = (*path, "coupling")
     table = table_in(tables, path, mistakes)
@@ -121,7 +125,9 @@ def read_coupling(tables: Mapping[str, Any], path: Path, parts: Sequence[Part], 
     return Coupling(**found)
 
 
-def about_components(coupling: Coupling, parts: Sequence[Part], tables: Mapping[str, Any]) -> Iterator[Mistake]:
+def about_components(
+    coupling: Coupling, parts: Sequence[ReadComponent], tables: Mapping[str, Any]
+) -> Iterator[Mistake]:
     """Components that cannot be stepped as asked, or whose variables could not be told from those of the main one."""
     main, *others = parts
     if coupling.control == "error":
@@ -136,7 +142,7 @@ def about_components(coupling: Coupling, parts: Sequence[Part], tables: Mapping[
 
 
 def about_one_length(
-    options: Mapping[str, Any], coupling: Coupling, parts: Sequence[Part], tables: Mapping[str, Any]
+    options: Mapping[str, Any], coupling: Coupling, parts: Sequence[ReadComponent], tables: Mapping[str, Any]
 ) -> Iterator[Mistake]:
     """Steps that would have to be cut short for an FMU that takes steps of one length.
 
@@ -157,7 +163,7 @@ def about_one_length(
         yield Mistake((*path, "coupling", "step"), tables["coupling"]["step"], text)
 
 
-def _order(given: object, path: Path, parts: Sequence[Part], mistakes: list[Mistake]) -> tuple[str, ...]:
+def _order(given: object, path: Path, parts: Sequence[ReadComponent], mistakes: list[Mistake]) -> tuple[str, ...]:
     names = [part.name for part in parts]
     if isinstance(given, list) and sorted(map(str, given)) == sorted(names):
         return tuple(given)

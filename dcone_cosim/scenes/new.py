@@ -16,6 +16,7 @@ from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
 from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scene.toml_lines import dotted
+from dcone_cosim.scenes.components import term_named
 from dcone_cosim.scenes.keys import (
     COUPLING_KEYS,
     HANDOFF_KEYS,
@@ -25,7 +26,6 @@ from dcone_cosim.scenes.keys import (
     orbit_keys,
     phase_keys,
 )
-from dcone_cosim.scenes.parts import term_named
 from dcone_cosim.scenes.tables import EXAMPLE
 
 WIDTH = 120

@@ -19,13 +19,13 @@ from dcone_cosim.coupling.options import Connection
 from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.archive import Archive
-from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.fmu.steppable import NUMBERS, VariableInfo
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scratch import Scratch
-from dcone_cosim.ssp.markup import KINDS, RESOURCES, STRUCTURE
-from dcone_cosim.ssp.writing import Part, Port, Structure, Value, Wire, parameter_set, structure
+from dcone_cosim.ssp.markup import RESOURCES, STRUCTURE
+from dcone_cosim.ssp.writing import ComponentElement, Port, Structure, Value, Wire, parameter_set, structure
 from dcone_cosim.units import read_units
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -123,11 +123,13 @@ def identifier(name: str) -> str:
     return made if made[:1].isalpha() else f"_{made}"
 
 
-def _part(component: ComponentScene, archive: Archive, source: str, connected: set[tuple[str, str]] | None) -> Part:
+def _part(
+    component: ComponentScene, archive: Archive, source: str, connected: set[tuple[str, str]] | None
+) -> ComponentElement:
     """connected: inputs to list, by instance and name; None for all"""
     known = read_units(archive.description.unitDefinitions, str(archive.path))
     units = {name: unit for name, unit in known.items() if unit.dimension is not None}
-    kinds = {row.name: row.type for row in archive.description.modelVariables if row.type in KINDS}
+    kinds = {row.name: row.type for row in archive.description.modelVariables if row.type in NUMBERS}
     rows = {name: archive.variables[name] for name in kinds}
 
     def unit(name: str) -> str:
@@ -145,7 +147,7 @@ def _part(component: ComponentScene, archive: Archive, source: str, connected: s
         for name, value in component.parameters.items()
         if name in rows and not math.isnan(value)
     ]
-    return Part(component.name, source, ports, values, units)
+    return ComponentElement(component.name, source, ports, values, units)
 
 
 def _wire(connection: Connection, out: VariableInfo, to: VariableInfo) -> Wire:

@@ -33,7 +33,7 @@ OUR_TYPE = "urn:dcone-cosim"
 PARAMETER_SET = "initialValues"
 """Name of the parameter set; the one that users of libcosim and ecos give at the start."""
 
-KINDS, TEXT = ("Real", "Integer", "Boolean"), "String"
+TEXT = "String"
 
 
 def tag(prefix: str, name: str) -> str:

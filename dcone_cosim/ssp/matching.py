@@ -11,8 +11,8 @@ from typing import Any
 from lxml import etree
 
 from dcone_cosim.coupling.options import Connection
-from dcone_cosim.fmu.steppable import VariableInfo
-from dcone_cosim.ssp.markup import KINDS, OSP_TYPE, READ, STRUCTURE, TEXT
+from dcone_cosim.fmu.steppable import NUMBERS, VariableInfo
+from dcone_cosim.ssp.markup import OSP_TYPE, READ, STRUCTURE, TEXT
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import annotated, flag, linear
 from dcone_cosim.ssp.values import Given
@@ -20,7 +20,7 @@ from dcone_cosim.units import Unit, misfit, same_dimension
 
 
 @dataclass(frozen=True)
-class Part:
+class PackageComponent:
     """A component, `row`, beside its FMU; `experiment` is the FMU's own default, as fmpy reads it."""
 
     name: str
@@ -44,11 +44,11 @@ class Part:
         return {
             info.name: info.start
             for info in self.variables.values()
-            if info.causality in ("parameter", "input") and info.kind in KINDS and info.start is not None
+            if info.causality in ("parameter", "input") and info.kind in NUMBERS and info.start is not None
         }
 
 
-def check_ports(part: Part, units: Mapping[str, Unit], mistakes: Mistakes) -> None:
+def check_ports(part: PackageComponent, units: Mapping[str, Unit], mistakes: Mistakes) -> None:
     """Note connectors that the FMU has not, or has otherwise."""
     for name, port in part.ports.items():
         what, line = f"connector {name!r} of {part.name!r}", port.sourceline
@@ -79,7 +79,7 @@ def _other_unit(name: str, own: Unit, units: Mapping[str, Unit]) -> bool:
 
 
 def parameters(
-    values: Iterable[Given], parts: Mapping[str, Part], mistakes: Mistakes
+    values: Iterable[Given], parts: Mapping[str, PackageComponent], mistakes: Mistakes
 ) -> dict[str, dict[str, float | str]]:
     """Values by component and variable, SI, and texts; a later one replaces an earlier one."""
     found: dict[str, dict[str, float | str]] = {name: {} for name in parts}
@@ -108,7 +108,7 @@ def _not_found(given: Given, text: str, mistakes: Mistakes) -> None:
     (mistakes.add if given.mapped else mistakes.ignore)(given.file, given.line, text)
 
 
-def owner_of(name: str, parts: Mapping[str, Part]) -> tuple[str, str]:
+def owner_of(name: str, parts: Mapping[str, PackageComponent]) -> tuple[str, str]:
     """Component and variable of a name such as `reel.gain.proportional`; names of components may have dots."""
     for part in sorted(parts, key=len, reverse=True):
         if name.startswith(f"{part}."):
@@ -148,7 +148,7 @@ def _in_si(given: Given, info: VariableInfo) -> float:
 
 
 def connections(
-    rows: Iterable[etree._Element], parts: Mapping[str, Part], mistakes: Mistakes
+    rows: Iterable[etree._Element], parts: Mapping[str, PackageComponent], mistakes: Mistakes
 ) -> tuple[Connection, ...]:
     """The connections from outputs to inputs, with the factor and offset between SI values."""
     made: list[Connection] = []
@@ -180,8 +180,8 @@ def connections(
 
 
 def _end(
-    row: etree._Element, end: str, parts: Mapping[str, Part], mistakes: Mistakes
-) -> tuple[Part, etree._Element] | None:
+    row: etree._Element, end: str, parts: Mapping[str, PackageComponent], mistakes: Mistakes
+) -> tuple[PackageComponent, etree._Element] | None:
     """Component and connector at an end of a connection."""
     element, connector = row.get(f"{end}Element"), row.get(f"{end}Connector")
     if element not in parts:

@@ -14,9 +14,9 @@ from pathlib import Path
 import fmpy.ssp
 from lxml import etree
 
+from dcone_cosim.fmu.steppable import NUMBERS
 from dcone_cosim.ssp.markup import (
     FMU_TYPE,
-    KINDS,
     MAPPING_TYPE,
     OMS_TYPE,
     OSP_TYPE,
@@ -47,7 +47,7 @@ BEYOND = {
     "//ssd:Connector[@kind = 'inout']": "kind = {kind!r}; expected input, output, parameter or calculatedParameter",
     **{
         f"//ssd:Connector[ssc:{kind}] | //ssv:Parameter[ssv:{kind}]": (
-            f"the type {kind} is not read; expected {', '.join(KINDS)} or {TEXT}"
+            f"the type {kind} is not read; expected {', '.join(NUMBERS)} or {TEXT}"
         )
         for kind in ("Enumeration", "Binary")
     },

@@ -16,7 +16,7 @@ from dcone_cosim.scene.toml_lines import given_at
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, COUPLING_KEYS, MOST_STEPS, isolation, phase_keys
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
-from dcone_cosim.ssp.matching import Part, owner_of
+from dcone_cosim.ssp.matching import PackageComponent, owner_of
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import Document, decimal
 
@@ -29,7 +29,7 @@ OF_COMPONENT = {key: COMPONENT_KEYS[key] for key in ("isolate", "timeout")}
 """What it may say of how a component is run, unless its FMU has a variable of that name."""
 
 
-def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, str]:
+def name_and_main(content: Document, parts: Mapping[str, PackageComponent]) -> tuple[str, str]:
     """Name of the phase, and the component that it is about: the first when none meets a contract."""
     plan = content.ours.get("Plan", {})
     main = plan.get("main", "")
@@ -44,7 +44,7 @@ def name_and_main(content: Document, parts: Mapping[str, Part]) -> tuple[str, st
 
 
 def settings_of(
-    document: Mapping[str, Any], arguments: Sequence[Override], phase: str, parts: Mapping[str, Part]
+    document: Mapping[str, Any], arguments: Sequence[Override], phase: str, parts: Mapping[str, PackageComponent]
 ) -> tuple[dict[str, float], dict[str, dict[str, float]], dict[str, dict[str, float | str]]]:
     """What `--set` says of the phase, of how its components are run, and the values it gives them, SI, and texts.
 
@@ -88,7 +88,7 @@ def settings_of(
 
 
 def times(
-    content: Document, parts: Mapping[str, Part], told: Mapping[str, float], mistakes: Mistakes
+    content: Document, parts: Mapping[str, PackageComponent], told: Mapping[str, float], mistakes: Mistakes
 ) -> tuple[float, float]:
     """Start and duration [s]: of the system, or of the experiments that its FMUs have by default, from the first start
     to the last stop."""
@@ -114,7 +114,11 @@ def times(
 
 
 def macro_step(
-    content: Document, parts: Mapping[str, Part], duration: float, told: Mapping[str, float], mistakes: Mistakes
+    content: Document,
+    parts: Mapping[str, PackageComponent],
+    duration: float,
+    told: Mapping[str, float],
+    mistakes: Mistakes,
 ) -> float:
     """Communication step [s]: of an annotation, else the least that a component or its FMU asks for."""
     asked = [told.get("macro_step", _own_macro_step(content))]
@@ -170,7 +174,7 @@ def options(name: str, plan: Mapping[str, str], told: Mapping[str, float], mista
     return kind.options({key: value for key, value in found.items() if key in kind.keys}, None)
 
 
-def coupling(told: Mapping[str, str], parts: Mapping[str, Part], mistakes: Mistakes) -> Coupling:
+def coupling(told: Mapping[str, str], parts: Mapping[str, PackageComponent], mistakes: Mistakes) -> Coupling:
     """Coupling that our own annotation tells, otherwise the one there is by default."""
     plain = Coupling()
     numbers = {}

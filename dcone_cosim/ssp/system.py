@@ -22,7 +22,7 @@ from dcone_cosim.scratch import Scratch
 from dcone_cosim.ssp import matching, planning
 from dcone_cosim.ssp.export import identifier
 from dcone_cosim.ssp.markup import STRUCTURE
-from dcone_cosim.ssp.matching import Part
+from dcone_cosim.ssp.matching import PackageComponent
 from dcone_cosim.ssp.package import Mistakes, Package, entry_of
 from dcone_cosim.ssp.parsing import Document, document, read
 from dcone_cosim.ssp.values import given_values
@@ -96,7 +96,7 @@ def load(path: Path, settings: Sequence[str] = (), shown_name: str = "") -> Scen
     )
 
 
-def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, Part]:
+def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes) -> dict[str, PackageComponent]:
     """Every component with its FMU, unpacked and opened once to see what it offers."""
     parts = {}
     for number, (name, row) in enumerate(content.components.items()):
@@ -107,7 +107,7 @@ def _parts(content: Document, package: Package, folder: Path, mistakes: Mistakes
         fmu = package.unpack(entry, folder, f"{number}-{identifier(Path(entry).stem)}")
         try:
             with Archive(fmu) as archive:
-                parts[name] = Part(name, row, fmu, archive.variables, archive.description.defaultExperiment)
+                parts[name] = PackageComponent(name, row, fmu, archive.variables, archive.description.defaultExperiment)
         except FmuError as error:
             said = str(error).replace(str(fmu), entry)
             mistakes.add(STRUCTURE, row.sourceline, f"<ssd:Component> {name!r}: {said}")

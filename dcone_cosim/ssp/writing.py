@@ -52,7 +52,7 @@ class Value:
 
 
 @dataclass(frozen=True)
-class Part:
+class ComponentElement:
     """One component as it is written.
 
     source      path of its FMU in the archive
@@ -86,7 +86,7 @@ class Structure:
 
     name: str
     description: str
-    parts: Sequence[Part]
+    parts: Sequence[ComponentElement]
     wires: Sequence[Wire]
     start: float
     stop: float
@@ -145,7 +145,7 @@ def _add_oms(annotations: etree._Element, **attributes: str) -> None:
     _add(inner, "oms", "SimulationInformation", **attributes)
 
 
-def _add_part(elements: etree._Element, part: Part, step: float) -> None:
+def _add_part(elements: etree._Element, part: ComponentElement, step: float) -> None:
     component = _add(
         elements, "ssd", "Component", name=part.name, type=FMU_TYPE, source=part.source, implementation="CoSimulation"
     )
@@ -189,7 +189,7 @@ def _add_wire(connections: etree._Element, wire: Wire) -> None:
         _add(row, "ssc", "LinearTransformation", factor=repr(wire.factor), offset=repr(wire.offset))
 
 
-def _units_named(parts: Iterable[Part]) -> dict[str, Unit]:
+def _units_named(parts: Iterable[ComponentElement]) -> dict[str, Unit]:
     named = [(row.unit, part) for part in parts for row in part.ports if row.unit]
     named += [(row.unit, part) for part in parts for row in part.values if row.unit]
     return {name: part.units[name] for name, part in named}

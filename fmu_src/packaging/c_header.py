@@ -9,7 +9,7 @@ from fmu_src.interface import Fault, Interface, Variable
 from fmu_src.packaging.dependence import first_slots, partials, rates
 from fmu_src.packaging.description import LOG_CATEGORIES
 
-KINDS = {"Real": 1, "Integer": 2, "Boolean": 3}
+KIND_CODES = {"Real": 1, "Integer": 2, "Boolean": 3}
 ACCESS = {"state": 0, "output": 1, "parameter": 2, "input": 3}
 SEVERITY = {"error": 0, "discard": 1, "end": 2}
 STATE_HEAD = 152
@@ -25,7 +25,7 @@ def header(interface: Interface, identifier: str, library: str) -> str:
     Checked  tests/packaging/test_toy.py
     """
     scalars = list(interface.scalars())
-    codes = [str(KINDS[v.kind] + 4 * ACCESS[v.causality]) for _, _, v, _ in scalars]
+    codes = [str(KIND_CODES[v.kind] + 4 * ACCESS[v.causality]) for _, _, v, _ in scalars]
     rate_table = rates(interface)
     pairs = [(r.slot, r.rate) for r in rate_table]
     moving = [(r.slot, r.rate) for r in rate_table if r.is_input]

@@ -1,10 +1,10 @@
-"""The laws of the line's tension, by name: held by a locked reel, or given by a reel that works."""
+"""The laws of the line's tension, by name: held by a locked reel, or given by a reel that is controlled."""
 
 from __future__ import annotations
 
+from fmu_src.tethered_deorbit.controlled import make_commanded, make_linear
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.locked import make_locked
-from fmu_src.tethered_deorbit.working import make_commanded, make_linear
 
 LAWS = {"locked": make_locked, "linear": make_linear, "commanded": make_commanded}
 

@@ -25,7 +25,7 @@ from fmpy import extract
 
 from dcone_cosim.loading import load
 from fmu_src.catalogue import MODELS
-from fmu_src.packaging import archive
+from fmu_src.packaging import builds
 from tests.benchmarks.plain_net import DEFAULTS, PlainNet, compiled
 from tests.conftest import FREE
 from tests.net_capture.evidence.mouth_error import SCENES, TIMED, precisions, terms_of
@@ -73,7 +73,7 @@ class Hangar:
 
     def fmus(self, name: str, terms: Mapping[str, str]) -> dict[str, Path]:
         """Paths by label: the one of these terms as it is built now, and those of that name from elsewhere."""
-        built = archive.build(MODELS["net_capture"].interface(terms), self.cache)
+        built = builds.build(MODELS["net_capture"].interface(terms), self.cache)
         file = f"{name.replace(' ', '_')}.fmu"
         keep = os.environ.get("NET_FMUS_KEEP")
         if keep:

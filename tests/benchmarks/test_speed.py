@@ -10,7 +10,7 @@ import pytest
 
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
-from fmu_src.packaging import archive
+from fmu_src.packaging import builds
 from tests.conftest import FREE
 from tests.packaging.driven import Driven
 
@@ -28,7 +28,7 @@ def drive(tmp_path_factory):
     cache = Path(tmp_path_factory.getbasetemp()).parent / "fmus"
 
     def make(model, terms, parameters):
-        path = archive.build(MODELS[model].interface(terms), cache)
+        path = builds.build(MODELS[model].interface(terms), cache)
         return Driven(path, str(extract(str(path), unzipdir=str(tmp_path_factory.mktemp("fmu")))), parameters)
 
     return make

@@ -25,7 +25,7 @@ from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component, FmuError
 from dcone_cosim.loading import find
 from fmu_src.interface import Model
-from fmu_src.packaging import archive
+from fmu_src.packaging import builds
 from tests.cosim.conftest import Dcone
 
 Columns = dict[str, npt.NDArray[np.float64]]
@@ -247,8 +247,8 @@ def pretended(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     def name_of(library: Path) -> str:
         return library.stem
 
-    monkeypatch.setattr(archive.compile, "emit", emit)
-    monkeypatch.setattr(archive.link, "link", link)
+    monkeypatch.setattr(builds.compile, "emit", emit)
+    monkeypatch.setattr(builds.link, "link", link)
     monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "cache"))
     return called
 
@@ -316,7 +316,7 @@ def test_an_archive_that_was_changed_is_refused_with_its_reason(
     with zipfile.ZipFile(path) as content:
         files = {name: content.read(name) for name in content.namelist()}
     harm(files)
-    archive.pack(files, path)
+    builds.pack(files, path)
     with Archive(path) as unpacked, pytest.raises(FmuError, match=words):
         Component(unpacked, "tow")
 

@@ -156,7 +156,7 @@ class TestWaiting:
             announce("linking reel_control for linux64")
             return [[tmp_path / "x.fmu"] for _ in interfaces]
 
-        monkeypatch.setattr("fmu_src.packaging.archive.build_all", build_all)
+        monkeypatch.setattr("fmu_src.packaging.builds.build_all", build_all)
         said: list[str] = []
         wanted = ("reel_control", {})
         assert build.ensure([wanted, wanted], said.append) == [tmp_path / "x.fmu"] * 2

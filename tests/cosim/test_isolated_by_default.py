@@ -23,7 +23,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.run_folder import phase_table
 from dcone_cosim.scene.data import ComponentScene
 from dcone_cosim.scene_fmus import SceneFmus, isolated
-from fmu_src.packaging.archive import pack
+from fmu_src.packaging.builds import pack
 from tests.cosim.conftest import Dcone
 from tests.cosim.fmus.build import build
 from tests.cosim.ssp_packages import STRUCTURE, packed

@@ -29,7 +29,7 @@ from dcone_cosim.run_folder import as_json
 from dcone_cosim.scratch import PREFIX, Scratch, clear_left
 from dcone_cosim.ssp.export import export_scene
 from fmu_src.catalogue import MODELS
-from fmu_src.packaging import archive, kept
+from fmu_src.packaging import builds, kept
 from tests.cosim.mock_components import MockCapture
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
@@ -173,9 +173,9 @@ def test_without_a_replacement_finished_the_old_run_comes_back(place: Path) -> N
 @pytest.fixture
 def pretended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A compiler and a linker that only pretend, and a cache and a folder for what is temporary of their own."""
-    monkeypatch.setattr(archive.compile, "emit", lambda name, terms, ir: ir.write_text("; no kernels"))
-    monkeypatch.setattr(archive.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
-    monkeypatch.setattr(archive.picture, "png", lambda interface: b"picture")
+    monkeypatch.setattr(builds.compile, "emit", lambda name, terms, ir: ir.write_text("; no kernels"))
+    monkeypatch.setattr(builds.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
+    monkeypatch.setattr(builds.picture, "png", lambda interface: b"picture")
     monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "cache"))
     (tmp_path / "tmp").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
@@ -267,7 +267,7 @@ def test_a_build(tmp_path: Path) -> None:
     cache = tmp_path / "cache"
 
     def build() -> Path:
-        return archive.build(interface, cache, workplace=scratch.Scratch)
+        return builds.build(interface, cache, workplace=scratch.Scratch)
 
     for event in killed_everywhere(build):
         for path in cache.glob("*.fmu"):

@@ -6,7 +6,7 @@ import pytest
 from fmpy import extract
 
 from fmu_src.catalogue import MODELS
-from fmu_src.packaging import archive
+from fmu_src.packaging import builds
 from tests.packaging import toy
 from tests.packaging.driven import CASES, TERMS, VARIANTS
 from tests.packaging.raw import OK, Library, Raw
@@ -21,7 +21,7 @@ def fmu(tmp_path_factory):
     def make(name):
         if name not in made:
             model, terms = VARIANTS.get(name) or (name, TERMS[name])
-            path = archive.build(MODELS[model].interface(terms), cache)
+            path = builds.build(MODELS[model].interface(terms), cache)
             made[name] = (path, str(extract(str(path), unzipdir=str(tmp_path_factory.mktemp(name)))))
         return made[name]
 

@@ -10,7 +10,7 @@ import numpy as np
 from fmpy import read_model_description
 
 from fmu_src.catalogue import MODELS
-from fmu_src.packaging import archive, link
+from fmu_src.packaging import builds, link
 from tests.conftest import CAPTURE
 
 HOST = Path(__file__).parent / "platform_host.c"
@@ -38,7 +38,7 @@ CASES = {
 
 def build(model, platform, cache):
     """Path of the case's FMU for a platform."""
-    return archive.build(MODELS[model].interface(CASES[model].terms), cache, platform=platform)
+    return builds.build(MODELS[model].interface(CASES[model].terms), cache, platform=platform)
 
 
 def unpack(fmu, folder, place="*"):

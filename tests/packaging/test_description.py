@@ -12,7 +12,7 @@ from fmpy.validation import validate_model_description
 
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import Model, Variable
-from fmu_src.packaging import archive, c_header, dependence, description
+from fmu_src.packaging import builds, c_header, dependence, description
 from tests.conftest import CAPTURE, CAPTURE_HILL
 from tests.packaging import toy
 
@@ -47,7 +47,7 @@ def scalars(root):
 def test_it_is_valid(interface, tmp_path):
     """By fmpy's schema and its rules."""
     data = description.model_description(interface, interface.model.name, "{guid}", "1.0")
-    archive.pack({"modelDescription.xml": data}, tmp_path / "a.fmu")
+    builds.pack({"modelDescription.xml": data}, tmp_path / "a.fmu")
     about = read_model_description(str(tmp_path / "a.fmu"), validate=True)
     assert validate_model_description(about) == []
 

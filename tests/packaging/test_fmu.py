@@ -15,7 +15,7 @@ from fmpy.validation import validate_fmu
 from fmu_src import instance
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
-from fmu_src.packaging import archive
+from fmu_src.packaging import builds
 from tests import kernels
 from tests.conftest import CAPTURE
 from tests.packaging.driven import CASES, REMOVAL, Driven
@@ -176,10 +176,10 @@ def test_parameter_out_of_bounds_is_refused_with_its_name(case):
 
 def test_archive_depends_on_its_content_alone(tmp_path):
     files = {"modelDescription.xml": b"<x/>", "binaries/linux64/a.so": b"\0\1"}
-    archive.pack(files, tmp_path / "a.zip")
-    archive.pack(dict(reversed(files.items())), tmp_path / "b.zip")
+    builds.pack(files, tmp_path / "a.zip")
+    builds.pack(dict(reversed(files.items())), tmp_path / "b.zip")
     assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
-    archive.pack(files | {"modelDescription.xml": b"<y/>"}, tmp_path / "b.zip")
+    builds.pack(files | {"modelDescription.xml": b"<y/>"}, tmp_path / "b.zip")
     assert (tmp_path / "a.zip").read_bytes() != (tmp_path / "b.zip").read_bytes()
 
 
@@ -197,22 +197,22 @@ def test_term_left_out_is_not_in_the_fmu(fmu):
 
 def test_fingerprint_follows_terms_and_tools(monkeypatch):
     model = MODELS["net_capture"]
-    first = archive.fingerprint(model.interface(CAPTURE))
-    assert first == archive.fingerprint(model.interface(dict(reversed(CAPTURE.items()))))
-    assert first != archive.fingerprint(model.interface(CAPTURE | {"gravity": "hill"}))
-    monkeypatch.setattr(archive, "version", lambda name: "0")
-    assert first != archive.fingerprint(model.interface(CAPTURE))
+    first = builds.fingerprint(model.interface(CAPTURE))
+    assert first == builds.fingerprint(model.interface(dict(reversed(CAPTURE.items()))))
+    assert first != builds.fingerprint(model.interface(CAPTURE | {"gravity": "hill"}))
+    monkeypatch.setattr(builds, "version", lambda name: "0")
+    assert first != builds.fingerprint(model.interface(CAPTURE))
 
 
 def test_fingerprint_follows_the_packages_own_version(monkeypatch):
     """The description tells it, so an FMU of another version is another FMU."""
     interface = MODELS["net_capture"].interface(CAPTURE)
-    first = archive.fingerprint(interface)
-    found = archive.version
-    monkeypatch.setattr(archive, "version", lambda name: "9.9" if name == "dcone-cosim" else found(name))
-    assert archive.fingerprint(interface) != first
-    monkeypatch.setattr(archive, "version", lambda name: "9.9" if name == "pytest" else found(name))
-    assert archive.fingerprint(interface) == first
+    first = builds.fingerprint(interface)
+    found = builds.version
+    monkeypatch.setattr(builds, "version", lambda name: "9.9" if name == "dcone-cosim" else found(name))
+    assert builds.fingerprint(interface) != first
+    monkeypatch.setattr(builds, "version", lambda name: "9.9" if name == "pytest" else found(name))
+    assert builds.fingerprint(interface) == first
 
 
 def test_damaged_fmu_in_the_cache_is_built_again(fmu, tmp_path, monkeypatch):
@@ -221,16 +221,16 @@ def test_damaged_fmu_in_the_cache_is_built_again(fmu, tmp_path, monkeypatch):
     copy = tmp_path / path.name
     copy.write_bytes(path.read_bytes()[:5000])
     asked = []
-    monkeypatch.setattr(archive.compile, "emit", lambda *_: asked.append(True) or (_ for _ in ()).throw(KeyError))
+    monkeypatch.setattr(builds.compile, "emit", lambda *_: asked.append(True) or (_ for _ in ()).throw(KeyError))
     with pytest.raises(KeyError):
-        archive.build(interface, tmp_path)
+        builds.build(interface, tmp_path)
     assert asked
     assert [p.name for p in tmp_path.iterdir()] == [path.name]  # the half-built one is gone
     copy.write_bytes(path.read_bytes())
-    assert archive.build(interface, tmp_path) == copy
+    assert builds.build(interface, tmp_path) == copy
 
 
 def test_a_cache_that_can_not_be_written_says_so(tmp_path):
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(OSError, match="can not be written"):
-        archive.build(MODELS["tethered_deorbit"].interface(REMOVAL), tmp_path / "file" / "cache")
+        builds.build(MODELS["tethered_deorbit"].interface(REMOVAL), tmp_path / "file" / "cache")

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.catalogue import MODELS
-from fmu_src.packaging import archive, kept, platforms, start_values
+from fmu_src.packaging import builds, kept, platforms, start_values
 
 KEY = "0123456789abcdef" * 4
 LIBRARY = "binaries/linux64/net_capture.so"
@@ -36,7 +36,7 @@ def read(path: Path) -> dict[str, bytes]:
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / kept.file_name("net_capture", KEY, platforms.LINUX64)
-    archive.pack(content(), path)
+    builds.pack(content(), path)
     return path
 
 
@@ -71,14 +71,14 @@ def test_no_damage_of_any_kind_goes_unseen(file: Path) -> None:
 
 
 def test_what_is_not_what_its_name_says(file: Path) -> None:
-    archive.pack(content("fedcba9876543210" * 4), file)
+    builds.pack(content("fedcba9876543210" * 4), file)
     assert "another's" in kept.fault(file)
-    archive.pack({name: data for name, data in content().items() if name != LIBRARY}, file)
+    builds.pack({name: data for name, data in content().items() if name != LIBRARY}, file)
     assert "another's" in kept.fault(file)
     for name in content():
-        archive.pack({other: data for other, data in content().items() if other != name}, file)
+        builds.pack({other: data for other, data in content().items() if other != name}, file)
         assert "another's" in kept.fault(file)
-    archive.pack(content(), file.with_name("net_capture-0123456789abcdef-amiga.fmu"))
+    builds.pack(content(), file.with_name("net_capture-0123456789abcdef-amiga.fmu"))
     assert "name" in kept.fault(file.with_name("net_capture-0123456789abcdef-amiga.fmu"))
 
 
@@ -130,14 +130,14 @@ def test_a_binary_is_known_by_its_bytes(file: Path, tmp_path: Path) -> None:
 @pytest.fixture
 def build(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[], tuple[Path, list[str]]]:
     """Build reel control for this machine with a compiler and a linker that only pretend; returns what it said."""
-    monkeypatch.setattr(archive.compile, "emit", lambda model, terms, ir: ir.write_text("; no kernels"))
-    monkeypatch.setattr(archive.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
-    monkeypatch.setattr(archive.picture, "png", lambda interface: b"picture")
+    monkeypatch.setattr(builds.compile, "emit", lambda model, terms, ir: ir.write_text("; no kernels"))
+    monkeypatch.setattr(builds.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
+    monkeypatch.setattr(builds.picture, "png", lambda interface: b"picture")
 
     def run() -> tuple[Path, list[str]]:
         said: list[str] = []
         model = MODELS["reel_control"]
-        return archive.build(model.interface({}), tmp_path / "cache", said.append), said
+        return builds.build(model.interface({}), tmp_path / "cache", said.append), said
 
     return run
 
@@ -157,7 +157,7 @@ def flip_in_the_library(path: Path) -> None:
 
 
 def of_another(path: Path) -> None:
-    archive.pack(content(), path)
+    builds.pack(content(), path)
 
 
 def folder_there(path: Path) -> None:

@@ -19,7 +19,7 @@ from dcone_cosim import cli
 from dcone_cosim.errors import InputError
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
-from fmu_src.packaging import archive, compile, link, platforms, tools, universal
+from fmu_src.packaging import builds, compile, link, platforms, tools, universal
 from tests.packaging import platform_cases
 from tests.packaging.platform_cases import CASES
 
@@ -230,11 +230,11 @@ def test_two_builds_give_the_same_bytes(cache, compiled_anew, tmp_path, monkeypa
         everything = b"".join(content.read(n) for n in content.namelist())
     assert str(tmp_path).encode() not in everything
     other = MODELS[SMALL].interface({**CASES[SMALL].terms, "reel": "linear"})
-    assert archive.fingerprint(other) != archive.fingerprint(MODELS[SMALL].interface(CASES[SMALL].terms))
+    assert builds.fingerprint(other) != builds.fingerprint(MODELS[SMALL].interface(CASES[SMALL].terms))
 
 
 def small_fmu(path, **files):
-    archive.pack({"modelDescription.xml": b"<x/>"} | {n.replace("__", "/"): b for n, b in files.items()}, path)
+    builds.pack({"modelDescription.xml": b"<x/>"} | {n.replace("__", "/"): b for n, b in files.items()}, path)
     return path
 
 
@@ -243,16 +243,16 @@ def test_fmus_of_one_origin_are_united(tmp_path):
     two = small_fmu(tmp_path / "two", binaries__win64__a=b"2")
     everywhere = ("linux64", "win64")
     for k, order in enumerate(itertools.permutations([one, two])):
-        archive.pack(archive.unite(dict.fromkeys(order, everywhere)), tmp_path / f"both{k}")
+        builds.pack(builds.unite(dict.fromkeys(order, everywhere)), tmp_path / f"both{k}")
     assert (tmp_path / "both0").read_bytes() == (tmp_path / "both1").read_bytes()
     with zipfile.ZipFile(tmp_path / "both0") as content:
         assert set(content.namelist()) == {"modelDescription.xml", "binaries/linux64/a", "binaries/win64/a"}
     stranger = small_fmu(tmp_path / "three", binaries__win64__a=b"2", sources__model=b"3")
-    assert archive.unite(dict.fromkeys([one, stranger], everywhere))["sources/model"] == b"3"
+    assert builds.unite(dict.fromkeys([one, stranger], everywhere))["sources/model"] == b"3"
     four = small_fmu(tmp_path / "four", binaries__win64__a=b"other")
     with pytest.raises(ValueError, match="not of the same origin"):
-        archive.unite(dict.fromkeys([two, four], everywhere))
-    assert archive.unite({two: everywhere, four: ()}) == archive.unite({two: everywhere})
+        builds.unite(dict.fromkeys([two, four], everywhere))
+    assert builds.unite({two: everywhere, four: ()}) == builds.unite({two: everywhere})
 
 
 def test_kernels_are_worked_out_once_for_all_platforms(tmp_path, monkeypatch):
@@ -264,12 +264,12 @@ def test_kernels_are_worked_out_once_for_all_platforms(tmp_path, monkeypatch):
     interface = MODELS[SMALL].interface(CASES[SMALL].terms)
     told = []
     chosen = list(platforms.PLATFORMS.values())
-    ((*fmus,),) = archive.build_all([interface], tmp_path, told.append, chosen)
+    ((*fmus,),) = builds.build_all([interface], tmp_path, told.append, chosen)
     assert emitted == [SMALL]
     assert linked == [place.targets for p in chosen for place in p.places]
     assert len(set(fmus)) == 4
     assert any("win64" in line and "minutes" in line for line in told)
-    archive.build_all([interface], tmp_path, told.append, chosen)
+    builds.build_all([interface], tmp_path, told.append, chosen)
     assert len(linked) == 6
 
 

@@ -48,7 +48,7 @@ def asked(monkeypatch, tmp_path):
     for module, name in ((compile, "emit"), (instance, "entry_of")):
         monkeypatch.setattr(module, name, getattr(module, name))  # put back afterwards
     monkeypatch.setattr(kernels, "emit", lambda model, terms, ir: (asked.append(dict(terms)), emit(model, terms, ir)))
-    monkeypatch.setattr(kernels.archive, "kernels", lambda *_: None)
+    monkeypatch.setattr(kernels.builds, "kernels", lambda *_: None)
     kernels.share(tmp_path)
     return asked
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.catalogue import MODELS
-from fmu_src.packaging import archive, kept, start_values
+from fmu_src.packaging import builds, kept, start_values
 from fmu_src.packaging.description import Experiment
 from orbital import kernel
 from tests.conftest import FREE
@@ -296,14 +296,14 @@ def build(monkeypatch, tmp_path):
         called.append("linked")
         library.write_bytes(b"library")
 
-    monkeypatch.setattr(archive.compile, "emit", emit)
-    monkeypatch.setattr(archive.link, "link", link)
+    monkeypatch.setattr(builds.compile, "emit", emit)
+    monkeypatch.setattr(builds.link, "link", link)
     plain = MODELS["reel_control"].interface({})
 
     def write(name, values, scene="tow", cache="cache", step=2.0):
-        fmu = archive.build(plain, tmp_path / cache)
+        fmu = builds.build(plain, tmp_path / cache)
         path = tmp_path / name
-        archive.furnish({fmu: ["linux64"]}, plain.starting(values), Experiment(1.5, 7.5, step, scene), path)
+        builds.furnish({fmu: ["linux64"]}, plain.starting(values), Experiment(1.5, 7.5, step, scene), path)
         with zipfile.ZipFile(path) as content:
             return path, {name: content.read(name) for name in content.namelist()}
 
@@ -331,24 +331,24 @@ def test_the_guid_is_that_of_the_values_and_the_key_that_of_the_library(build):
     for guid, file in zip(guids, files, strict=True):
         assert file[start_values.PATH][64:112].rstrip(b"\0").decode() == guid
     (key,) = {start_values.library_of(f[start_values.PATH]) for f in files}
-    assert key == kept.as_guid(archive.fingerprint(MODELS["reel_control"].interface({})))
+    assert key == kept.as_guid(builds.fingerprint(MODELS["reel_control"].interface({})))
     assert key not in guids
     assert f'DCONE_LIBRARY "{key}"'.encode() in files[0]["sources/model.h"]
 
 
 def test_the_key_covers_every_file_of_the_model(monkeypatch, tmp_path):
     """Those of its parts too, each in a folder of its own: a changed part is another library."""
-    folder = shutil.copytree(archive.SOURCES, tmp_path / "fmu_src", ignore=shutil.ignore_patterns("__pycache__"))
+    folder = shutil.copytree(builds.SOURCES, tmp_path / "fmu_src", ignore=shutil.ignore_patterns("__pycache__"))
     interface = MODELS["net_capture"].interface(FREE)
-    own = archive.fingerprint(interface)
-    monkeypatch.setattr(archive, "SOURCES", folder)
+    own = builds.fingerprint(interface)
+    monkeypatch.setattr(builds, "SOURCES", folder)
     shutil.copytree(Path(kernel.__file__).parent, tmp_path / "orbital")
-    assert archive.fingerprint(interface) == own
+    assert builds.fingerprint(interface) == own
     for part in ("model.py", "nets/square.py", "contact/search.py"):
         with (folder / "net_capture" / part).open("a") as file:
             file.write("\n")
-        assert archive.fingerprint(interface) != own, part
-        own = archive.fingerprint(interface)
+        assert builds.fingerprint(interface) != own, part
+        own = builds.fingerprint(interface)
 
 
 def test_the_bytes_depend_on_the_values_alone(build, monkeypatch, tmp_path):

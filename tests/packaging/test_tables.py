@@ -18,7 +18,7 @@ import pytest
 from fmu_src import tables
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
-from fmu_src.packaging import archive, documentation, start_values, table_file
+from fmu_src.packaging import builds, documentation, start_values, table_file
 from fmu_src.packaging.description import Experiment
 from fmu_src.tables import Table
 from tests.packaging import lookup
@@ -389,17 +389,17 @@ def with_table():
 def write(monkeypatch, tmp_path):
     """Write such an FMU; compiler and linker only pretend, and are counted."""
     called = []
-    monkeypatch.setattr(archive.compile, "emit", lambda model, terms, ir: (called.append("compiled"), ir.touch()))
+    monkeypatch.setattr(builds.compile, "emit", lambda model, terms, ir: (called.append("compiled"), ir.touch()))
     monkeypatch.setattr(
-        archive.link, "link", lambda ir, header, library, targets: (called.append("linked"), library.touch())
+        builds.link, "link", lambda ir, header, library, targets: (called.append("linked"), library.touch())
     )
     plain = with_table().interface({"motor": "lag"})
 
     def make(name, given, stored=None):
-        fmu = archive.build(stored or plain, tmp_path / "cache")
+        fmu = builds.build(stored or plain, tmp_path / "cache")
         path = tmp_path / name
         experiment = Experiment(0.0, 7.5, 2.0, "tow")
-        archive.furnish({fmu: ["linux64"]}, plain.with_tables(given) if given else plain, experiment, path)
+        builds.furnish({fmu: ["linux64"]}, plain.with_tables(given) if given else plain, experiment, path)
         with zipfile.ZipFile(path) as content:
             return {name: content.read(name) for name in content.namelist()}
 
@@ -425,7 +425,7 @@ def test_another_table_costs_neither_compiler_nor_linker_and_is_another_guid(wri
 
 def test_no_fmu_is_written_without_its_tables(write, tmp_path):
     make, _, plain = write
-    archive.build(plain.with_tables({"torque": [5.0]}), tmp_path / "cache")
+    builds.build(plain.with_tables({"torque": [5.0]}), tmp_path / "cache")
     with pytest.raises(ValueError, match=r"this reel_control needs the table torque \(of the motor by its speed\)"):
         make("none", None)
     assert not (tmp_path / "none").exists()

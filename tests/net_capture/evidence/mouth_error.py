@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
-from fmu_src.packaging.archive import fingerprint
+from fmu_src.packaging.builds import fingerprint
 
 RESULT = Path(__file__).with_name("mouth_error.json")
 COMMAND = "python -m tests.net_capture.evidence.mouth_error"

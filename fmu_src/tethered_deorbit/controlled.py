@@ -1,4 +1,4 @@
-"""Reels that work: one follows a linear law of its own, the other gives the tension it is told. Their line is stiff."""
+"""Reels that control tension: one by a linear law of its own, the other as it is told. Their line is stiff."""
 
 from __future__ import annotations
 

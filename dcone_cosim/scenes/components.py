@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Part:
+class ReadComponent:
     """A component with its keys.
 
     path         of its table: ("capture",), or ("removal", "components", "controller")
@@ -80,7 +80,9 @@ class Part:
         return {key.names[0]: key.expected.choices for key in self.keys.values() if key.expected.choices}
 
 
-def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes: list[Mistake]) -> Part:
+def of_model(
+    part: ReadComponent, model: build.Model, tables: Mapping[str, Any], mistakes: list[Mistake]
+) -> ReadComponent:
     """The part as this model of ours; a wrong term is noted, and the check goes on with the likeliest."""
     part.model = model
     for group_name, group in model.groups.items():
@@ -134,7 +136,7 @@ def of_model(part: Part, model: build.Model, tables: Mapping[str, Any], mistakes
     return part
 
 
-def follow(part: Part, values: Mapping[str, float]) -> None:
+def follow(part: ReadComponent, values: Mapping[str, float]) -> None:
     """Take the terms that follow from the values, of which the scene may leave some at their defaults."""
     if part.model is None or not part.following:
         return
@@ -145,7 +147,7 @@ def follow(part: Part, values: Mapping[str, float]) -> None:
     _offer_slots(part, part.model)
 
 
-def _offer_slots(part: Part, model: build.Model) -> None:
+def _offer_slots(part: ReadComponent, model: build.Model) -> None:
     part.slots = {
         name: Slot(row.kind, by_name(row.unit), row.causality)
         for row in model.interface(part.terms).variables
@@ -154,7 +156,7 @@ def _offer_slots(part: Part, model: build.Model) -> None:
     }
 
 
-def of_fmu(part: Part, offer: Offer) -> Part:
+def of_fmu(part: ReadComponent, offer: Offer) -> ReadComponent:
     """The part as what an FMU file offers."""
     part.keys, part.slots = dict(offer.keys), dict(offer.slots)
     return part
@@ -167,7 +169,7 @@ def term_named(given: object) -> str:
     return given if isinstance(given, str) and not given.isdecimal() else ""
 
 
-def read_files(part: Part, tables: Mapping[str, Any], folder: File, mistakes: list[Mistake]) -> None:
+def read_files(part: ReadComponent, tables: Mapping[str, Any], folder: File, mistakes: list[Mistake]) -> None:
     """Read the files of tables that the scene names; one that it does not name is missing."""
     for name, table in part.files.items():
         path = (*part.path, *name.split("."))
@@ -183,7 +185,7 @@ def read_files(part: Part, tables: Mapping[str, Any], folder: File, mistakes: li
 
 
 def read_part(
-    part: Part, tables: Mapping[str, Any], orbit: Mapping[str, Any], mistakes: list[Mistake]
+    part: ReadComponent, tables: Mapping[str, Any], orbit: Mapping[str, Any], mistakes: list[Mistake]
 ) -> dict[str, float]:
     """SI values by FMI name of all that the scene says of the part: in its tables, its parameters, and the orbit."""
     found: dict[str, float] = {}
@@ -207,7 +209,9 @@ def read_part(
     return found
 
 
-def _leaves(table: Mapping[str, Any], part: Part, above: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+def _leaves(
+    table: Mapping[str, Any], part: ReadComponent, above: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], Any]]:
     """Keys and value of everything in a table of names, however it is nested."""
     for key, value in table.items():
         keys = (*above, key)
@@ -217,7 +221,9 @@ def _leaves(table: Mapping[str, Any], part: Part, above: tuple[str, ...] = ()) -
             yield keys, value
 
 
-def _walk(part: Part, names: tuple[str, ...], value: Any, found: dict[str, float], mistakes: list[Mistake]) -> None:
+def _walk(
+    part: ReadComponent, names: tuple[str, ...], value: Any, found: dict[str, float], mistakes: list[Mistake]
+) -> None:
     """Read what stands under a key, as deep as the names of variables go."""
     joined, path = ".".join(names), (*part.path, *names)
     ours = part.fmu is None
@@ -240,7 +246,7 @@ def _walk(part: Part, names: tuple[str, ...], value: Any, found: dict[str, float
         mistakes.append(_unknown(part, names, value) if ours else _no_variable(part, joined, path, value))
 
 
-def _look_at_choice(part: Part, names: tuple[str, ...], value: Any, mistakes: list[Mistake]) -> None:
+def _look_at_choice(part: ReadComponent, names: tuple[str, ...], value: Any, mistakes: list[Mistake]) -> None:
     """A term that is named beside an FMU, which has its terms built in: it says nothing, but must be one."""
     if part.fmu is None:
         return  # looked at by `of_model`
@@ -251,13 +257,15 @@ def _look_at_choice(part: Part, names: tuple[str, ...], value: Any, mistakes: li
         mistakes.append(unknown((*part.path, *names), value, text, str(value), shown))
 
 
-def _is_table(part: Part, names: tuple[str, ...]) -> bool:
+def _is_table(part: ReadComponent, names: tuple[str, ...]) -> bool:
     joined = ".".join(names)
     tables = {group.table or name for name, group in part.groups.items()}
     return joined in tables or (part.holds(joined) and not (part.fmu is None and joined == SHARED))
 
 
-def _take(part: Part, name: str, value: Any, path: Path, found: dict[str, float], mistakes: list[Mistake]) -> None:
+def _take(
+    part: ReadComponent, name: str, value: Any, path: Path, found: dict[str, float], mistakes: list[Mistake]
+) -> None:
     """Read the value of one key into the variables it sets."""
     key = part.keys[name]
     given = read_value(value, key.expected.read, path, mistakes)
@@ -276,7 +284,7 @@ def _take(part: Part, name: str, value: Any, path: Path, found: dict[str, float]
             found[variable] = number
 
 
-def _no_variable(part: Part, name: str, path: Path, value: object) -> Mistake:
+def _no_variable(part: ReadComponent, name: str, path: Path, value: object) -> Mistake:
     """Why a name is not one that can be set: an output, or no variable at all."""
     slot = part.slots.get(name) or part.slots.get(f"{name}[1]")
     what = part.fmu.name if part.fmu is not None else f"this {part.model.name if part.model else 'model'}"
@@ -287,7 +295,7 @@ def _no_variable(part: Part, name: str, path: Path, value: object) -> Mistake:
     return Mistake(path, value, f"{name!r} of {what} is {kind}: only parameters and inputs can be set")
 
 
-def _unknown(part: Part, names: tuple[str, ...], value: object) -> Mistake:
+def _unknown(part: ReadComponent, names: tuple[str, ...], value: object) -> Mistake:
     """Why a key or table is not known to a model of ours: misspelt, in the wrong place, or of a term not named."""
     path, key = (*part.path, *names), names[-1]
     if names[0] == SHARED:
@@ -302,7 +310,7 @@ def _unknown(part: Part, names: tuple[str, ...], value: object) -> Mistake:
     return unknown(path, value, "unknown key", key, keys)
 
 
-def _term_that_has(part: Part, names: tuple[str, ...]) -> str | None:
+def _term_that_has(part: ReadComponent, names: tuple[str, ...]) -> str | None:
     """The term, as a scene would name it, that brings a table or key which is not there now."""
     for group_name, group in part.groups.items():
         for term in group.terms:
