@@ -64,8 +64,9 @@ def _figure(
         axes.set_ylabel(_labelled(column.name, column.unit), fontsize=8, parse_math=False)
         if names:
             axes.set_xticks(range(len(names)), names, parse_math=False)
-        elif len(set(places)) > 2 and min(places) > 0.0 and max(places) / min(places) >= DECADES:
-            axes.set_xscale("log")
+        else:
+            axes.ticklabel_format(axis="y", useOffset=False)
+            _spread_decades(axes, places)
     for axes in list(grid.flat)[len(shown) :]:
         axes.set_visible(False)
     for axes in list(grid.flat)[max(0, len(shown) - width) : len(shown)]:
@@ -75,6 +76,18 @@ def _figure(
     style.legend(grid[0, 0], columns=COLUMNS)
     figure.align_ylabels()
     return figure
+
+
+def _spread_decades(axes: Any, places: Sequence[float]) -> None:
+    """A logarithmic axis for values of one sign over decades, be they negative."""
+    sizes = [abs(place) for place in places]
+    if len(set(places)) < 3 or min(sizes) == 0.0 or max(sizes) / min(sizes) < DECADES:
+        return
+    if min(places) > 0.0:
+        axes.set_xscale("log")
+    elif max(places) < 0.0:
+        axes.set_xscale("symlog", linthresh=min(sizes), linscale=0.2)
+        axes.set_xlim(right=-0.8 * min(sizes))
 
 
 def _labelled(name: str, unit: str) -> str:
