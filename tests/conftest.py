@@ -24,12 +24,12 @@ CAPTURE_HILL = {**CAPTURE, "gravity": "hill"}
 
 DEAREST = (
     "tests/consistency/test_readme.py",
-    "tests/cosim/test_built_fmus.py",
     "tests/packaging/test_dependence.py",
     "tests/packaging/test_platforms.py",
     "tests/net_capture/test_free_flight.py",
     "tests/packaging/test_fmu.py",
     "tests/net_capture/test_contact.py",
+    "tests/cosim/test_built_fmus.py",
     "tests/net_capture/test_nets.py",
     "tests/tethered_deorbit/test_attachment.py",
     "tests/interop/test_tools.py",
