@@ -23,18 +23,23 @@ CAPTURE = {
 CAPTURE_HILL = {**CAPTURE, "gravity": "hill"}
 
 DEAREST = (
-    "tests/interop/test_tools.py",
     "tests/consistency/test_readme.py",
-    "tests/cosim/test_built_fmus.py",
     "tests/packaging/test_dependence.py",
-    "tests/net_capture/test_free_flight.py",
-    "tests/net_capture/test_contact.py",
     "tests/packaging/test_platforms.py",
-    "tests/net_capture/test_captures_last.py",
-    "tests/cosim/test_digits.py",
+    "tests/net_capture/test_free_flight.py",
     "tests/packaging/test_fmu.py",
-    "tests/packaging/test_many.py",
-    "tests/net_capture/test_fast_nodes.py",
+    "tests/net_capture/test_contact.py",
+    "tests/cosim/test_built_fmus.py",
+    "tests/net_capture/test_nets.py",
+    "tests/tethered_deorbit/test_attachment.py",
+    "tests/interop/test_tools.py",
+    "tests/cosim/test_digits.py",
+    "tests/net_capture/test_captures_last.py",
+    "tests/net_capture/test_closing.py",
+    "tests/tethered_deorbit/test_terms.py",
+    "tests/net_capture/test_precision.py",
+    "tests/net_capture/test_order.py",
+    "tests/net_capture/test_sleep.py",
 )
 """Files that take longest, the longest first, so that no worker is left with one when the others are done."""
 
