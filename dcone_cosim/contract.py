@@ -176,7 +176,7 @@ def near_misses(archive: Archive, kind: Wanting) -> list[str]:
         if row.name not in archive.variables and row.need in OPTIONAL:
             for name in difflib.get_close_matches(row.name, spare, n=1, cutoff=ALIKE):
                 if archive.variables[name].causality == row.causality:
-                    found.append(f"{archive.path.name}: nobody looks for its {name!r}; did you mean {row.name!r}?")
+                    found.append(f"{archive.path.name}: its {name!r} is not used; did you mean {row.name!r}?")
     return found
 
 

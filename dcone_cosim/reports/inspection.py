@@ -107,7 +107,7 @@ def _other(phase: PhaseScene, component: ComponentScene) -> About:
         rows = [
             ("file", str(component.fmu)),
             ("says of itself", about.description or "nothing"),
-            ("made by", about.generationTool or "not told"),
+            ("made by", about.generationTool or "not stated"),
             ("binaries", ", ".join(platforms)),
             ("its state can be saved", "yes" if archive.can_save else "no"),
             ("variables", _counted(archive)),

@@ -14,6 +14,7 @@ import gc, sys
 from pathlib import Path
 import fmpy
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.component import Component
 
 path = sys.argv[1]
 with Archive(Path(path)) as archive, Component(archive, "ours") as component:
