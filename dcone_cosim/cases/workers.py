@@ -98,6 +98,7 @@ class _Worker:
         self._killed = False
         self._lock = threading.Lock()
         self._words = b""
+        self._listener: threading.Thread | None = None
         self.thread = threading.Thread(target=self._serve, daemon=True)
         self.thread.start()
 
@@ -129,7 +130,8 @@ class _Worker:
                 raise WorkerDied("was sent home")
             if self._child is None or self._child.poll() is not None:
                 self._child = child.start(CHILD, {name: os.environ.get(name, one) for name, one in ONE_CORE.items()})
-                threading.Thread(target=self._listen, args=(self._child,), daemon=True).start()
+                self._listener = threading.Thread(target=self._listen, args=(self._child,), daemon=True)
+                self._listener.start()
             return self._child
 
     def _listen(self, process: subprocess.Popen[bytes]) -> None:
@@ -144,6 +146,8 @@ class _Worker:
         with suppress(subprocess.TimeoutExpired):
             process.wait(FAREWELL)
         self._end(process)
+        if self._listener is not None:
+            self._listener.join(FAREWELL)  # something else may still hold the other end
         lines = [line.strip() for line in self._words.decode("utf-8", "replace").splitlines() if line.strip()]
         said = f"; its last words: {'; '.join(lines[-3:])}" if lines else ""
         return child.how_it_ended(process.returncode) + said
