@@ -100,6 +100,7 @@ class Phase:
     follows        kinds that can hand over to it
     alone          whether it can be the first of a scene
     keys           of its table that concern the master, beside `macro_step` and `duration`
+    handoff_keys   of the table [handoff], how it takes over
     examples       values of `macro_step` and `duration`, for advice
     wanted         variables that the master looks for in its FMU, by what they are needed for
     recognised_by  variables by which a component of a package is taken for the main one of such a phase
@@ -116,6 +117,7 @@ class Phase:
     follows: Sequence[str] = ()
     alone = True
     keys: Mapping[str, Expected] = {}
+    handoff_keys: Mapping[str, Expected] = {}
     examples = ("0.1 s", "30 s")
     wanted: Sequence[tuple[Need, Sequence[str]]] = ()
     recognised_by: Sequence[str] = ()

@@ -21,6 +21,7 @@ from dcone_cosim.phases.phase import Document, Figure, Phase, Stage
 from dcone_cosim.plots import tow
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import SHARED, PhaseScene
+from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake, shown
 from dcone_cosim.scene.toml_lines import Path, given_at
 from dcone_cosim.transaction import HandoffRecord, check_before
@@ -36,6 +37,10 @@ class Removal(Phase):
     name = "removal"
     model = "tethered_deorbit"
     follows: Sequence[str] = ("capture",)
+    handoff_keys: Mapping[str, Expected] = {
+        "spin_tolerance": Expected("1", example="0.1", minimum=0.0),
+        "compare_without_recoil": Expected("1", kind="Boolean"),
+    }
     examples = ("60 s", "1 day")
     own_clock = True
     wanted = (

@@ -26,6 +26,7 @@ from dcone_cosim.phases.phase import Document, Stage
 from dcone_cosim.phases.removal import EACH, RELATIVE, Removal
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
+from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
@@ -158,6 +159,7 @@ class SecondTow(Removal):
     name = "second_tow"
     follows = ("removal",)
     alone = False
+    handoff_keys: Mapping[str, Expected] = {}
     recognised_by = ()
     takes = (
         *("chaser.mass", "target.mass", TENSION),

@@ -35,10 +35,9 @@ from dcone_cosim.scenes.coupling import about_components, about_one_length, read
 from dcone_cosim.scenes.fmus import file_of, offer, opened
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
-    FLAG,
-    HANDOFF_KEYS,
     REQUIRED,
     TOP,
+    handoff_keys,
     isolation,
     orbit_keys,
     phase_keys,
@@ -107,7 +106,7 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
     known = (*TOP, *kinds())
     mistakes += [unknown((key,), document[key], "unknown key", key, known) for key in document if key not in known]
     title = read_value(document["title"], read_title, ("title",), mistakes) if "title" in document else ""
-    handoff = read_table(table_in(document, ("handoff",), mistakes), HANDOFF_KEYS, ("handoff",), mistakes)
+    handoff = read_table(table_in(document, ("handoff",), mistakes), handoff_keys(), ("handoff",), mistakes)
     orbit = _orbit(document, mistakes)
     present = [phase for phase in kinds() if isinstance(document.get(phase), dict)]
     phases = {phase: _read_phase(phase, document[phase], orbit, folder, mistakes) for phase in present}
@@ -122,7 +121,8 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
         made = [_phase_scene(phase, phases[phase]) for phase in chosen]
         for after in range(1, len(made)):
             made[after - 1 : after + 1] = kind_of(made[after].name).joined(made[after - 1], made[after])
-        handoff = {key: bool(value) if HANDOFF_KEYS[key] is FLAG else value for key, value in handoff.items()}
+        flags = {key for key, expected in handoff_keys().items() if expected.kind == "Boolean"}
+        handoff = {key: bool(value) if key in flags else value for key, value in handoff.items()}
         notes = tuple(_close_calls(whole, phases))
         scene = Scene(name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes)
         mistakes = [*about_steps(scene, document), *about_values(scene, document)]

@@ -6,7 +6,7 @@ from its rows of `Variable`, those of a foreign FMU from its model description: 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,6 +39,12 @@ def _one_of(*names: str) -> Expected:
 FLAG = Expected("1", kind="Boolean")
 
 
+def handoff_keys(taking_over: Iterable[str] | None = None) -> dict[str, Expected]:
+    """How these phases take over from those before them; all there are, if none are named."""
+    chosen = kinds() if taking_over is None else taking_over
+    return {key: expected for phase in chosen for key, expected in kind_of(phase).handoff_keys.items()}
+
+
 def phase_keys(phase: str) -> dict[str, Expected]:
     """What concerns a phase itself, not its components: its times, and what its kind has beside them."""
     kind = kind_of(phase)
@@ -47,10 +53,6 @@ def phase_keys(phase: str) -> dict[str, Expected]:
 
 
 REQUIRED = ("macro_step", "duration")
-HANDOFF_KEYS: Mapping[str, Expected] = {
-    "spin_tolerance": _not_negative("1", "0.1"),
-    "compare_without_recoil": FLAG,
-}
 COMPONENT_KEYS: Mapping[str, Expected] = {
     "isolate": FLAG,
     "timeout": _positive("s", "60 s"),

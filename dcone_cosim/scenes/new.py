@@ -19,9 +19,9 @@ from dcone_cosim.scene.toml_lines import dotted
 from dcone_cosim.scenes.components import term_named
 from dcone_cosim.scenes.keys import (
     COUPLING_KEYS,
-    HANDOFF_KEYS,
     MEANING,
     Key,
+    handoff_keys,
     key_of,
     orbit_keys,
     phase_keys,
@@ -60,10 +60,10 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
     lines += ["", f"[{SHARED}]", *_table(document.get(SHARED, {}), orbit)]
     for place, phase in enumerate(present):
         lines += ["", *_phase(phase, document[phase], skip=kind_of(phase).taken_over if place else ())]
-    if len(present) > 1:
+    keys = handoff_keys(present[1:])
+    if keys:
         given = document.get("handoff", {})
-        lines += ["", "[handoff]"]
-        lines += [_option(key, given.get(key), known) for key, known in HANDOFF_KEYS.items()]
+        lines += ["", "[handoff]", *(_option(key, given.get(key), known) for key, known in keys.items())]
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
 

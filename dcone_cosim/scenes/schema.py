@@ -19,9 +19,9 @@ from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,
-    HANDOFF_KEYS,
     MEANING,
     REQUIRED,
+    handoff_keys,
     key_of,
     orbit_keys,
     phase_keys,
@@ -47,7 +47,7 @@ def schema() -> Schema:
         },
         SHARED: _table(orbit, "the orbit, shared by the phases"),
         **{phase: _phase(phase) for phase in kinds()},
-        "handoff": _table(_options(HANDOFF_KEYS), "how a capture hands over to a removal"),
+        "handoff": _table(_options(handoff_keys()), "how a capture hands over to a removal"),
     }
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
