@@ -163,6 +163,17 @@ def spinning(make_scene: Make, spin: float, **handoff: float) -> RunResult:
     return run(make_scene("capture", "removal", **handoff), MockRemoval, capture)
 
 
+def test_what_is_told_of_the_energy_adds_up(make_scene: Make) -> None:
+    """What was there before is there after, was lost in the joining, or is the dropped spin's."""
+    record = spinning(make_scene, 5.0, spin_tolerance=1e3).handovers["removal"]
+    told = {row.key: row.value for row in record.findings()}
+    energy = next(row for row in record.rows if row.quantity == "kinetic energy")
+    assert told["spin_energy_dropped"] == pytest.approx(0.5 * 5.0**2 / 1500.0, rel=0.02)
+    assert told["energy_lost"] > 0.0
+    gone = told["energy_lost"] + told["spin_energy_dropped"]
+    assert energy.before - energy.after == pytest.approx(gone, rel=1e-9)
+
+
 def test_the_spin_is_judged_at_the_scene_s_tolerance(make_scene: Make) -> None:
     """By the mock's figures: 1500 kg m2 each way and a target that reaches 3.5 m from its centre of mass."""
     catch = -12.0 + 5.0 / 3.0 * INSTANT
