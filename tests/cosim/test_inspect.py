@@ -25,8 +25,7 @@ def implied(scene: str, *settings: str, phase: int = 0) -> dict[str, float]:
 def instance(scene: str, *settings: str, phase: int = 0) -> Instance:
     """The model of a scene's phase, initialised in this process."""
     chosen = load(scene, settings).phases[phase]
-    terms = {group: term for group, term in chosen.main.terms.items() if group != "nodes"}
-    return Instance(build.CATALOGUE[chosen.main.model], terms, chosen.main.parameters).initialise()
+    return Instance(build.CATALOGUE[chosen.main.model], chosen.main.terms, chosen.main.parameters).initialise()
 
 
 def close(found: Mapping[str, float], expected: Mapping[str, float]) -> None:

@@ -13,12 +13,12 @@ from fmpy.validation import validate_model_description
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import Model, Variable
 from fmu_src.packaging import builds, c_header, dependence, description
-from tests.conftest import CAPTURE, CAPTURE_HILL
+from tests.conftest import CAPTURE
 from tests.packaging import toy
 
 INTERFACES = {
     "net": MODELS["net_capture"].interface(CAPTURE),
-    "net, all terms": MODELS["net_capture"].interface(CAPTURE_HILL | {"nodes": "9"}),
+    "net, all terms": MODELS["net_capture"].interface(CAPTURE | {"gravity": "hill", "nodes": "9"}),
     "tug, locked": MODELS["tethered_deorbit"].interface({"reel": "locked", "thrust": "along_track"}),
     "tug, linear": MODELS["tethered_deorbit"].interface({"reel": "linear"}),
     "tug, commanded": MODELS["tethered_deorbit"].interface({"reel": "commanded"}),
