@@ -1,8 +1,8 @@
 """A second tow: the line of the removal is cut, and the chaser tows on with another, from where both bodies are.
 
-altitude = |r| - R,   cos i = h_z/h,   tan raan = h_x/(-h_y),   u from the node        the circle through the point
-start.center_velocity = (e_r . v, e_t . v - sqrt(mu/r), 0)                             as seen in its turning frame
-start.relative_velocity = rho' + (w - n) x rho,   w = h/r^2, n = sqrt(mu/r^3)          rho' in the removal's frame
+altitude = |r| - R,   tan i = |(h_x, h_y)|/h_z,   tan raan = h_x/(-h_y)         the circle through the point
+start.center_velocity = (e_r . v, e_t . v - sqrt(mu/r), 0)                      as seen in its turning frame
+start.relative_velocity = rho' + (w - n) x rho,   w = h/r^2, n = sqrt(mu/r^3)   rho' in the removal's frame
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def begun_again(left: Mapping[str, float]) -> dict[str, float]:
     found = {
         "orbit.altitude": radius - EARTH_EQUATORIAL_RADIUS,
         "orbit.eccentricity": 0.0,
-        "orbit.inclination": math.acos(min(1.0, max(-1.0, float(normal[2])))),
+        "orbit.inclination": math.atan2(math.hypot(normal[0], normal[1]), normal[2]),
         "orbit.raan": raan,
         "orbit.argument_of_perigee": 0.0,
         "orbit.true_anomaly": from_node,
