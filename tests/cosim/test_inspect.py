@@ -84,7 +84,7 @@ def test_table_2_by_hand() -> None:
     [
         ("table1-capture", ()),
         ("mission", ("capture.net.damping_ratio=0.3",)),
-        ("table1-capture", ("capture.net.segments=3", "capture.net.mesh=2 m", "capture.nodes.capacity=793")),
+        ("table1-capture", ("capture.net.segments=3", "capture.net.mesh=3 m")),
     ],
 )
 def test_the_net_is_that_of_the_model(scene: str, settings: tuple[str, ...]) -> None:
@@ -129,6 +129,7 @@ def test_a_reel_that_works_feeds_the_tide_forward(tmp_path) -> None:
             '[removal]\nmacro_step = "10 s"\nduration = "1 h"',
             '[removal.reel]\nlaw = "linear"\nlength = "15 m"',
             '[removal.start]\nseparation = "15 m"',
+            '[removal.thrust]\ndirection = "along_track"\nlevel = "0 N"',
         ]
     )
     (tmp_path / "mine.toml").write_text(text)
