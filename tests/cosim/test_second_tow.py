@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import pytest
 from dcone_cosim.errors import HANDOFF_FAILED, SUCCESS, HandoffError, InputError
 from dcone_cosim.loading import find
 from dcone_cosim.master import run_scene
+from dcone_cosim.phases.phase import Stage
 from dcone_cosim.phases.second_tow import SecondTow, TowHandover, begun_again
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import RunResult
@@ -165,8 +167,40 @@ def test_the_ledger_sees_what_is_not_held(wrong: str) -> None:
     record = TowHandover(0.0, 0.0, chosen.phases[1], left, None)
     record.close(Holding(left))  # type: ignore[arg-type]
     assert all(row.closed for row in record.rows)
+    assert {row.key: row.value for row in record.findings()}["ledger_closure"] == 0.0
     with pytest.raises(HandoffError, match="the ledger does not close"):
         record.close(Holding(left | {wrong: left[wrong] * (1.0 + 1e-9) + 1e-4}))  # type: ignore[arg-type]
+
+
+def test_the_attachment_stays_where_it_is() -> None:
+    """Cut and tied again with the same line, made fast 1 m from the target's centre of mass: one tow once more."""
+    same = ("removal.macro_step=50 s", "second_tow.macro_step=50 s", "removal.target.attachment_distance=1 m")
+    lines = ("removal.tether.rest_length=11 m", "second_tow.tether.rest_length=11 m")
+    one = run(scene("phases=['removal']", "removal.duration=4000 s", *same, *lines))
+    two = run(scene("removal.duration=2000 s", "second_tow.duration=2000 s", *same, *lines))
+    assert two.given["second_tow"]["target.attachment_distance"] == 1.0
+    for name, tolerance in (("relative.position", 1e-6), ("relative.velocity", 1e-8)):
+        assert last(two, "second_tow", name) == pytest.approx(last(one, "removal", name), abs=tolerance), name
+    near = run(scene("removal.duration=600 s", *same, lines[0], "second_tow.tether.rest_length=10 m"))
+    assert near.exit_code == SUCCESS, "10.8 m apart, and 1 m of the way is the target's"
+
+
+def test_it_begins_when_the_tow_before_ends_whatever_that_began_at() -> None:
+    chosen = scene()
+    run = RunResult(chosen)
+    run.left["removal"] = dict.fromkeys(SecondTow.takes, 0.0)
+    tow = SimpleNamespace(start=0.0, end=100.0, origin=8.78, outcome="completed")
+    run.phases["removal"] = tow  # type: ignore[assignment]
+    stage = Stage(run, chosen.phases[1], chosen.phases[0], None, lambda *_: None, Progress())  # type: ignore[arg-type, return-value]
+    record = SecondTow().take_over(stage)
+    assert record is not None
+    assert (record.time, record.start) == (100.0, 108.78)
+    assert run.handovers["second_tow"] is record
+
+
+def test_what_is_known_of_it_before_a_run() -> None:
+    heavy = scene("removal.target.mass=1500 kg").phases[0]
+    assert SecondTow().values_taken(heavy) == {"chaser.mass": 2000.0, "target.mass": 1500.0}
 
 
 def test_a_line_that_is_too_short_is_refused() -> None:
