@@ -5,7 +5,7 @@ What is chaotic comes out otherwise each time, and what is not comes out the sam
     a capture whose FMU has solver.jitter and solver.seed     folded nodes differ by 1 um, or by what the scene says
     a removal that begins with start.separation               the bodies begin nearer by 0 to 1 um
 
-These are the starts from which the scatter of single figures was measured (see `reports.chaos`).
+These are the starts from which the scatter of single figures was measured (see `phases.chaos`).
 """
 
 from __future__ import annotations

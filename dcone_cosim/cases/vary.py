@@ -2,7 +2,7 @@
 
     removal.tether.rest_length=50 m,100 m,200 m           values as --set takes them
     removal.tether.rest_length=10 m..100 m:10             ten values, evenly spread, ends included
-    removal.thrust.level=-1 mN..-1 N:7:log                seven, evenly spread in their logarithm
+    removal.thrust.level=-0.001 N..-1 N:7:log             seven, evenly spread in their logarithm
     capture.target.start_rate=["1 deg/s","0 deg/s","0 deg/s"],["0 deg/s","1 deg/s","0 deg/s"]
 
 A key that changes nothing in what reaches an FMU or the master is an error, as is a value that works in no case. A
@@ -105,7 +105,9 @@ def _expanded(argument: str, piece: str) -> list[str]:
         return [piece]
     match = _RANGE.fullmatch(piece)
     if match is None:
-        raise InputError(f"--vary {argument}: {piece!r} is no range; expected FIRST..LAST:COUNT, as in 10 m..100 m:10")
+        raise InputError(
+            f"--vary {argument}: {piece!r} is no range; expected FIRST..LAST:COUNT, as in 10 m..100 m:10"
+        )
     first, last = float(match[1]), float(match[3])
     unit, other = (match[2] or "").strip(), (match[4] or "").strip()
     count, _, spread = (match[5] or "").partition(":")

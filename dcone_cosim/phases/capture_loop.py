@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 from dcone_cosim import interrupts
 from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES
-from dcone_cosim.errors import FmuError, Interrupted
+from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import restoring
-from dcone_cosim.fmu.component import Readable, Row, Steppable, Terminated, output_names
+from dcone_cosim.fmu.component import Readable, Row, Steppable, output_names
 from dcone_cosim.holding import holding
-from dcone_cosim.phases.stepping import Stopwatch, coupling_of, grid_steps, length_of
+from dcone_cosim.phases.stepping import carried_out, grid_steps, length_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots
 from dcone_cosim.results import PhaseResult
@@ -96,16 +96,7 @@ class CaptureLoop:
         return OUTCOMES[number] if number in range(len(OUTCOMES)) else f"outcome {number}"
 
     def run(self) -> PhaseResult:
-        result = self.result
-        with Stopwatch(result, self.component):
-            try:
-                self._run()
-            except Terminated as end:
-                result.ended(end)
-            except (FmuError, Interrupted) as error:
-                result.error = interrupts.instead_of(error, result.name, result.end)
-        result.coupling = coupling_of(self.component)
-        return result
+        return carried_out(self.result, self.component, self._run)
 
     def _step(self, begin: float, end: float) -> None:
         """Between two times since the shot."""

@@ -33,14 +33,10 @@ _STATES = tuple(f"{body}.{what}" for body in ("chaser", "target", "center") for 
 RELATIVE = tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in EACH)
 
 
-class Removal(Phase):
-    name = "removal"
+class Tow(Phase):
+    """What all tows of two bodies are, wherever they begin: what they want of their FMU, and what is told of them."""
+
     model = "tethered_deorbit"
-    follows: Sequence[str] = ("capture",)
-    handoff_keys: Mapping[str, Expected] = {
-        "spin_tolerance": Expected("1", example="0.1", minimum=0.0),
-        "compare_without_recoil": Expected("1", kind="Boolean"),
-    }
     examples = ("60 s", "1 day")
     own_clock = True
     wanted = (
@@ -55,13 +51,11 @@ class Removal(Phase):
         ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
         ("hand-over", tuple(f"{whose}{each}" for whose in _STATES for each in EACH)),
     )
-    recognised_by: Sequence[str] = ("separation", *REMOVAL_SETS)
-    takes: Sequence[str] = (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)
-    takes_too: Sequence[str] = (LINE,)
     taken_over: Sequence[str] = ("start.", ATTACHMENT, *(name.partition("[")[0] for name in REMOVAL_SETS))
+    figure_names = ("orbital_radius.png", "tether_tension.png")
 
     def faults(self, document: Document) -> Iterator[Mistake]:
-        """Keys that the hand-off sets, and orbits on which the two phases do not fit together."""
+        """Keys that the hand-off sets."""
         before = document.before(self.name)
         if not before:
             return
@@ -77,10 +71,45 @@ class Removal(Phase):
         for variable, path in document.mains[self.name].given.items():
             if path[:2] == (*own, "parameters") and self.takes_over(variable):
                 yield Mistake(path, given_at(document.tables, path), text)
-        yield from self.orbit_faults(document)
 
-    def orbit_faults(self, document: Document) -> Iterator[Mistake]:
-        """An orbit that what comes before cannot have."""
+    def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
+        return removal_report.findings(run, self.name, result)
+
+    def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
+        return chaos.of_tow(result, isinstance(run.handovers.get(self.name), HandoffRecord))
+
+    def warnings(self, run: RunResult, result: PhaseResult) -> Iterator[str]:
+        record = run.handovers.get(self.name)
+        return removal_report.meeting(self.name, result, None if record is None else record.reach)
+
+    def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
+        """The orbit of both bodies, and the tension of the line."""
+        recorder, title = result.recorder, run.scene.title
+        if len(recorder) < 2:
+            return
+        since = "time since the hand-over" if self.name in run.handovers else f"time since the {self.spoken} began"
+        if {"chaser.radius", "target.radius"} <= set(recorder.names):
+            yield self.figure_names[0], partial(tow.orbit, result, since, title)
+        if "tether.tension" in recorder:
+            yield self.figure_names[1], partial(tow.tension, result, run.comparisons.get(self.name), since, title)
+
+
+class Removal(Tow):
+    name = "removal"
+    follows: Sequence[str] = ("capture",)
+    handoff_keys: Mapping[str, Expected] = {
+        "spin_tolerance": Expected("1", example="0.1", minimum=0.0),
+        "compare_without_recoil": Expected("1", kind="Boolean"),
+    }
+    recognised_by: Sequence[str] = ("separation", *REMOVAL_SETS)
+    takes: Sequence[str] = (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)
+    takes_too: Sequence[str] = (LINE,)
+
+    def faults(self, document: Document) -> Iterator[Mistake]:
+        """The same, and orbits on which capture and removal do not fit together."""
+        yield from super().faults(document)
+        if not document.before(self.name):
+            return
         orbit = document.tables.get(SHARED)
         eccentricity = orbit.get("eccentricity", 0.0) if isinstance(orbit, dict) else 0.0
         if eccentricity and isinstance(eccentricity, int | float):
@@ -195,31 +224,8 @@ class Removal(Phase):
             return super().clock(run)
         return f"since the hand-over, which was {record.time!r} s after the shot"
 
-    def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
-        return removal_report.findings(run, self.name, result)
-
-    def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
-        return chaos.of_tow(result, isinstance(run.handovers.get(self.name), HandoffRecord))
-
     def handover_spreads(self) -> Mapping[str, float]:
         return chaos.HAND_OFF
-
-    def warnings(self, run: RunResult, result: PhaseResult) -> Iterator[str]:
-        record = run.handovers.get(self.name)
-        return removal_report.meeting(self.name, result, None if record is None else record.reach)
-
-    def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
-        """The orbit of both bodies, and the tension of the line."""
-        recorder, title = result.recorder, run.scene.title
-        if len(recorder) < 2:
-            return
-        since = "time since the hand-over" if self.name in run.handovers else f"time since the {self.spoken} began"
-        if {"chaser.radius", "target.radius"} <= set(recorder.names):
-            yield self.figure_names[0], partial(tow.orbit, result, since, title)
-        if "tether.tension" in recorder:
-            yield self.figure_names[1], partial(tow.tension, result, run.comparisons.get(self.name), since, title)
-
-    figure_names = ("orbital_radius.png", "tether_tension.png")
 
 
 def _with(phase: PhaseScene, name: str, value: float | None) -> PhaseScene:

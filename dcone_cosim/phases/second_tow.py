@@ -8,7 +8,7 @@ start.relative_velocity = rho' + (w - n) x rho,   w = h/r^2, n = sqrt(mu/r^3)   
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,12 +22,10 @@ from dcone_cosim.handoff import Vector
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH
 from dcone_cosim.phases import removal
-from dcone_cosim.phases.phase import Document, Stage
-from dcone_cosim.phases.removal import EACH, RELATIVE, Removal
+from dcone_cosim.phases.phase import Stage
+from dcone_cosim.phases.removal import EACH, RELATIVE, Tow
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
-from dcone_cosim.scene.expected import Expected
-from dcone_cosim.scene.mistakes import Mistake
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
 BODIES = ("chaser", "target")
@@ -155,12 +153,10 @@ def _rows(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[L
                 yield LedgerRow(f"{quantity}, {body}, {axis}", unit, x, y, 0.0, "", size)
 
 
-class SecondTow(Removal):
+class SecondTow(Tow):
     name = "second_tow"
     follows = ("removal",)
     alone = False
-    handoff_keys: Mapping[str, Expected] = {}
-    recognised_by = ()
     takes = (
         *("chaser.mass", "target.mass", TENSION),
         *(f"{body}.{of}{each}" for body in (*BODIES, "center") for of in ("position", "velocity") for each in EACH),
@@ -169,23 +165,6 @@ class SecondTow(Removal):
     takes_too = (ATTACHMENT,)
     tugs_file = "second_tow_tugs"
     figure_names = ("second_tow_orbital_radius.png", "second_tow_tether_tension.png")
-
-    def orbit_faults(self, document: Document) -> Iterator[Mistake]:
-        """None: the tow before may be on any orbit."""
-        yield from ()
-
-    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
-        """None: its line is another than that of the tow before."""
-        yield from ()
-
-    def joined(self, before: PhaseScene, own: PhaseScene) -> tuple[PhaseScene, PhaseScene]:
-        return before, own
-
-    def notes(self, offered: Mapping[str, Any]) -> Sequence[str]:
-        return ()
-
-    def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
-        yield from ()
 
     def values_taken(self, before: PhaseScene) -> dict[str, float]:
         return {name: value for body in BODIES if (value := before.setting(name := f"{body}.mass")) is not None}
@@ -218,12 +197,6 @@ class SecondTow(Removal):
         """At least those of the tow before, where that is chaotic."""
         before = run.phases[removal.PHASE.name]
         return {**removal.PHASE.spreads(run, before), **super().spreads(run, result)}
-
-    def handover_spreads(self) -> Mapping[str, float]:
-        return {}
-
-    def afterwards(self, stage: Stage, result: PhaseResult) -> None:
-        """Nothing: there was no shot."""
 
 
 PHASE = SecondTow()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import time as clock
+from collections.abc import Callable
 
 from dcone_cosim import interrupts
 from dcone_cosim.contract import NODE_PREFIX, TUG_PREFIX
@@ -59,6 +60,19 @@ def length_of(size: float, component: Steppable, macro_step: float) -> float:
     return macro_step if same else size
 
 
+def carried_out(result: PhaseResult, component: Steppable, steps: Callable[[], None]) -> PhaseResult:
+    """The result of a phase once its steps are taken; the FMU's own end, a failure and an interrupt are noted in it."""
+    with Stopwatch(result, component):
+        try:
+            steps()
+        except Terminated as end:
+            result.ended(end)
+        except (FmuError, Interrupted) as error:
+            result.error = interrupts.instead_of(error, result.name, result.end)
+    result.coupling = coupling_of(component)
+    return result
+
+
 class PhaseLoop:
     """Steps a component for the duration of a phase, records a row at every communication point, and gathers its tugs.
 
@@ -88,17 +102,10 @@ class PhaseLoop:
         )
 
     def run(self) -> PhaseResult:
-        """Step to the end of the phase, or of its FMU; a failure and an interrupt are noted in the result."""
-        result = self.result
-        with Stopwatch(result, self.component):
-            try:
-                self._run()
-            except Terminated as end:
-                result.ended(end)
-            except (FmuError, Interrupted) as error:
-                result.error = interrupts.instead_of(error, result.name, result.end)
-                result.outcome = "stopped"
-        result.coupling = coupling_of(self.component)
+        """Step to the end of the phase, or of its FMU; see `carried_out`."""
+        result = carried_out(self.result, self.component, self._run)
+        if result.error is not None:
+            result.outcome = "stopped"
         return result
 
     def _record(self, time: float) -> None:
