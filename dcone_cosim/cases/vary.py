@@ -24,7 +24,9 @@ from dcone_cosim.cases.case import Value, content, digest
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
 from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene.expected import number_and_unit
 from dcone_cosim.scene.mistakes import SceneError
+from dcone_cosim.units import PURE, by_name, named, si_name
 
 FORM = 'expected KEY=VALUE,VALUE,... or KEY=FIRST..LAST:COUNT, such as removal.tether.rest_length="50 m,100 m"'
 MOST = 100_000
@@ -105,9 +107,7 @@ def _expanded(argument: str, piece: str) -> list[str]:
         return [piece]
     match = _RANGE.fullmatch(piece)
     if match is None:
-        raise InputError(
-            f"--vary {argument}: {piece!r} is no range; expected FIRST..LAST:COUNT, as in 10 m..100 m:10"
-        )
+        raise InputError(f"--vary {argument}: {piece!r} is no range; expected FIRST..LAST:COUNT, as in 10 m..100 m:10")
     first, last = float(match[1]), float(match[3])
     unit, other = (match[2] or "").strip(), (match[4] or "").strip()
     count, _, spread = (match[5] or "").partition(":")
@@ -140,8 +140,6 @@ def _number(value: float) -> str:
 
 def in_si(given: str) -> Value:
     """A value as given, and what it is in SI if it is a number with or without a unit."""
-    import astropy.units as u
-
     try:
         text = tomllib.loads(f"value={given}")["value"]
     except (tomllib.TOMLDecodeError, ValueError, KeyError):
@@ -150,12 +148,11 @@ def in_si(given: str) -> Value:
         return Value(given)
     if not isinstance(text, str):
         return Value(given, float(text), "1")
-    try:
-        quantity = u.Quantity(text).si
-        unit = quantity.unit.to_string().replace(" / ", "/").replace(" ", ".")
-        return Value(text, float(quantity.value), unit or "1")
-    except (TypeError, ValueError):
+    number, name = number_and_unit(text) or (math.nan, "")
+    unit = named(name) if name else by_name("1")
+    if math.isnan(number) or unit is None:
         return Value(text)
+    return Value(text, unit.to_si(number), si_name(unit.dimension or PURE))  # one name, whatever it is written in
 
 
 def grid(

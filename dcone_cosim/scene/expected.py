@@ -22,6 +22,12 @@ TEXT = "String"
 """Kind of a variable whose values are texts."""
 
 
+def number_and_unit(text: str) -> tuple[float, str] | None:
+    """A number and the name of the unit behind it, "" for none; None for any other text."""
+    match = _QUANTITY.fullmatch(text)
+    return None if match is None else (float(match[1]), (match[2] or "").strip())
+
+
 class Unexpected(ValueError):
     """A value that does not fit; the text says what was expected."""
 
@@ -179,20 +185,21 @@ class Expected:
             raise Unexpected(f"expected {self._wanted()}")
         if not isinstance(value, str):
             raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
-        match = _QUANTITY.fullmatch(value)
-        if match is None:
+        parts = number_and_unit(value)
+        if parts is None:
             raise Unexpected(f"is not a number with a unit; expected {self._wanted()}")
-        if match[2] is None:
+        number, name = parts
+        if not name:
             raise Unexpected(f"a bare number has no unit; expected {self._wanted()}")
-        unit, expected = named(match[2].strip()), by_name(self.unit)
+        unit, expected = named(name), by_name(self.unit)
         if unit is None:
             known = f"known for {expected.noun}: {', '.join(like(expected))}"
-            raise Unexpected(f"has the unit {match[2].strip()!r}, which is not known; {known}")
+            raise Unexpected(f"has the unit {name!r}, which is not known; {known}")
         if unit.dimension != expected.dimension:
             raise Unexpected(f"is {unit.noun}; expected {self._wanted()}")
         if self.relative:
             unit = unit.of_differences()
-        return unit.to_si(float(match[1])), unit
+        return unit.to_si(number), unit
 
 
 def example_of(start: float, unit: str, display_unit: str = "") -> str:
