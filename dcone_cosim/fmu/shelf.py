@@ -52,8 +52,8 @@ class Shelf:
                     lying.pop().free()
 
 
-class _Here(Component):
-    """An instance in this process that is laid aside when it is closed."""
+class _LaidAside:
+    """An instance that is laid aside when it is closed; mixed in before what it is an instance of."""
 
     shelf: list[Shelved] | None = None
 
@@ -61,25 +61,18 @@ class _Here(Component):
         if self.shelf is None:
             self.free()
         elif self not in self.shelf:
-            self.shelf.append(self)
+            self.shelf.append(self)  # type: ignore[arg-type]  # what it is mixed into
 
     def free(self) -> None:
-        super().close()
+        super().close()  # type: ignore[misc]
 
 
-class _Apart(IsolatedComponent):
-    """The same in a process of its own."""
+class _Here(_LaidAside, Component):
+    """One in this process."""
 
-    shelf: list[Shelved] | None = None
 
-    def close(self) -> None:
-        if self.shelf is None:
-            self.free()
-        elif self not in self.shelf:
-            self.shelf.append(self)
-
-    def free(self) -> None:
-        super().close()
+class _Apart(_LaidAside, IsolatedComponent):
+    """One in a process of its own."""
 
 
 Shelved = _Here | _Apart
