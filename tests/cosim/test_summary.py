@@ -16,6 +16,7 @@ import pytest
 from rich.console import Console
 
 from dcone_cosim import build
+from dcone_cosim.findings import SHOWN_IN, Finding
 from dcone_cosim.fmu.component import VariableInfo
 from dcone_cosim.master import run_scene
 from dcone_cosim.phases import capture_report
@@ -316,3 +317,25 @@ class TestShapesDrawn:
         wide = {"net.width": 6.0, "net.height": 2.0, "net.mesh": 1.0}
         lines, _ = build.net_drawing(wide, {}) or ([], [])
         assert sorted(map(len, lines)) == [3] * 7 + [7] * 3
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "shown_in", "shown"),
+    [
+        (799451.29, "m", "km", "799.451 km"),
+        (0.0170482, "m/s", "mm/s", "17.0482 mm/s"),
+        (554.84 / 86400.0, "m/s", "m/day", "554.84 m/day"),
+        (12.5, "N", "", "12.5 N"),
+    ],
+)
+def test_what_a_person_reads_is_the_si_value_in_another_unit(
+    value: float, unit: str, shown_in: str, shown: str
+) -> None:
+    assert Finding("removal", "key", "label", value, unit, shown_in=shown_in).shown() == shown
+
+
+def test_every_unit_that_a_person_reads_is_as_large_as_astropy_has_it() -> None:
+    import astropy.units as u
+
+    si = {"mm/s": u.m / u.s, "km": u.m, "m/day": u.m / u.s}
+    assert {name: u.Unit(name).to(si[name]) for name in SHOWN_IN} == pytest.approx(SHOWN_IN, rel=1e-14)
