@@ -22,6 +22,7 @@ from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Model, Term, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
+from fmu_src.net_capture import trade as net_capture_trade
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.net_capture.interface import NETS, TARGETS
 from fmu_src.packaging.c_header import STATE_HEAD
@@ -29,8 +30,10 @@ from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.sources import SHIM
 from fmu_src.tables import Table
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
+from fmu_src.tethered_deorbit import trade as tethered_deorbit_trade
 from fmu_src.tethered_deorbit.interface import HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
+from fmu_src.trade import Rung
 
 __all__ = [
     "CATALOGUE",
@@ -41,6 +44,7 @@ __all__ = [
     "Interface",
     "Model",
     "Range",
+    "Rung",
     "Table",
     "Variable",
 ]
@@ -48,6 +52,8 @@ __all__ = [
 CAUTIONS = {NET_CAPTURE.name: net_capture_cautions, TETHERED_DEORBIT.name: tethered_deorbit_cautions}
 """What a model has to say of a run, by its name."""
 
+TRADES = {NET_CAPTURE.name: net_capture_trade, TETHERED_DEORBIT.name: tethered_deorbit_trade}
+"""How a model trades accuracy for time, by its name."""
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
 
@@ -199,6 +205,21 @@ def implied(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -
 
     models = {NET_CAPTURE.name: of_net_capture, TETHERED_DEORBIT.name: of_tethered_deorbit}
     return list(models[model].rows(values, terms)) if model in models else []
+
+
+def numerics(model: str) -> Sequence[str]:
+    """Groups of a model of ours whose terms differ in how a thing is computed, not in what is computed."""
+    return TRADES[model].NUMERICS if model in TRADES else ()
+
+
+def rungs(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
+    """Settings of the scheme that the terms name, coarse to fine; see `fmu_src.trade`."""
+    return TRADES[model].rungs(values, terms) if model in TRADES else []
+
+
+def refinements(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
+    """Settings that refine a model of ours itself, by name."""
+    return TRADES[model].refinements(values, terms) if model in TRADES else {}
 
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:

@@ -175,6 +175,37 @@ def sweep(
 
 
 @app.command()
+def accuracy(
+    scene: SceneName,
+    out: cli_cases.Out = None,
+    settings: Settings = None,
+    runs: Annotated[
+        int | None, typer.Option("--runs", help="Runs of each setting; a chaotic phase takes 6, any other 3.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer settings and runs, for a first look.")] = False,
+    jobs: cli_cases.Jobs = None,
+    json: Json = False,
+    isolate: Annotated[
+        bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
+    ] = None,
+    offline: Offline = False,
+) -> None:
+    """Measure what each choice of how to compute a scene costs, and how far off it is.
+
+    Schemes, steps or tolerances, precision, macro steps, coupling steps, pieces of thread: each against a reference
+    that a second one judges, with its CPU time. The folder has report.html, a picture for each phase, the table, and
+    the rows themselves; the same command goes on with what is missing.
+
+    Exit code: 0 done, 2 bad input, 6 interrupted, and what is done is kept, 7 some settings failed.
+    """
+    _promise(offline)
+    code = cli_cases.accuracy(
+        scene, out, settings or [], runs, quick, jobs, isolate, json, _progress(), _console()
+    )  # fmt: skip
+    raise typer.Exit(code)
+
+
+@app.command()
 def build(
     scene: SceneName,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .fmu files.")],

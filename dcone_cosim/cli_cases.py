@@ -97,3 +97,37 @@ def sweep(
             return commands.sweep(scene, vary, out, progress, settings, jobs, figures, isolate)
     finally:
         progress.close()
+
+
+def accuracy(
+    scene: str,
+    out: Path | None,
+    settings: list[str],
+    runs: int | None,
+    quick: bool,
+    jobs: int | None,
+    isolate: bool | None,
+    json: bool,
+    progress: Progress,
+    console: Console,
+) -> int:
+    """Measure, and show what came out and where it is; returns the exit code."""
+    from dcone_cosim.accuracy import commands, show
+
+    try:
+        with exits.noise_apart():
+            done = commands.accuracy(scene, out, progress, settings, runs, quick, jobs, isolate)
+    finally:
+        progress.close()
+    with exits.reader_may_leave():
+        if json:
+            from dcone_cosim.run_folder import as_json
+
+            typer.echo(as_json({**done.content, "folder": str(done.folder), "notes": done.notes}))
+        else:
+            for report in done.reports:
+                show.show(report, console)
+            typer.echo(f"results in {done.folder}")
+    for note in done.notes:
+        complain(f"note: {note}")
+    return done.exit_code

@@ -274,7 +274,7 @@ def _write(plan: Plan, done: Done, folder: Path, started: datetime, with_figures
             "files": [str(path) for path in files],
         }
         (draft / PROVENANCE).write_text(as_json(about) + "\n", encoding="utf-8")
-        _publish(draft, [*files, Path(PROVENANCE)], folder)
+        publish(draft, [*files, Path(PROVENANCE)], folder)
 
 
 def _drawn(done: Done, path: Path) -> str:
@@ -285,7 +285,7 @@ def _drawn(done: Done, path: Path) -> str:
         return f"no figure could be drawn: {type(error).__name__}: {error}"
 
 
-def _publish(draft: Path, files: Iterable[Path], folder: Path) -> None:
+def publish(draft: Path, files: Iterable[Path], folder: Path) -> None:
     for file in files:
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
         to_disk(draft / file)

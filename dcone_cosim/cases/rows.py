@@ -31,6 +31,7 @@ class Row:
     figures    of the summary, by phase and key: "removal.tension_mean"; a text where one is told instead of a number
     units      of the numbers among them
     timings    CPU and wall time, of the case and of its phases [s]
+    samples    by quantity what a case was run for beside that: numbers in lists
     """
 
     key: str
@@ -40,6 +41,7 @@ class Row:
     figures: Mapping[str, Figure] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     timings: Mapping[str, float] = field(default_factory=dict)
+    samples: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def succeeded(self) -> bool:

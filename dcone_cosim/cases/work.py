@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time as clock
 import traceback
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -20,10 +21,18 @@ from dcone_cosim.fmu.shelf import Shelf
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
+from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus, fmus_of
 
 FAILED_STATUS = "FMU failed"
+Telling = Callable[[Case, RunResult, Mapping[str, float]], Row]
+"""Makes the row of a run, with what it cost [s]."""
+
+
+def tell_summary(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
+    """The row of a run with all figures of its summary."""
+    return of_summary(case.key, summary.as_dict(result), timings)
 
 
 class Fleet:
@@ -39,14 +48,14 @@ class Fleet:
         self._fmus: SceneFmus | None = None
         self._proved = False
 
-    def row(self, case: Case) -> Row:
+    def row(self, case: Case, tell: Telling = tell_summary) -> Row:
         """Run a case; whatever happens comes out as a row."""
         with_kept = self._get_ready(case.scene) and not self.new
-        row = self._run(case)
+        row = self._run(case, tell)
         if not with_kept or self._proved or not row.succeeded:
             return row
         self.shelf.clear()
-        fresh = self._run(case)
+        fresh = self._run(case, tell)
         self._proved = True
         if (row.figures, row.status) != (fresh.figures, fresh.status):
             self.new = True
@@ -66,14 +75,15 @@ class Fleet:
             self._proved = all(about["ours"] for about in _about(self._fmus))
         return False
 
-    def _run(self, case: Case) -> Row:
+    def _run(self, case: Case, tell: Telling) -> Row:
         began, cpu = clock.perf_counter(), clock.process_time()
         try:
             if self._fmus is None:
                 self._fmus = SceneFmus(case.scene, Progress(), self.shelf)
             result = run_scene(case.scene, self._fmus.instantiate, Progress())
-            told = summary.as_dict(result)
             apart = sum(max(phase.cpu, 0.0) for phase in result.phases.values())
+            spent = max(clock.process_time() - cpu, apart)
+            row = tell(case, result, {"cpu": spent, "wall": clock.perf_counter() - began})
         except DconeError as error:
             self.shelf.clear()
             if error.exit_code == BAD_INPUT:
@@ -84,8 +94,7 @@ class Fleet:
             return Row(case.key, FAULT, FAILED_AFTER, f"a fault of this program:\n{traceback.format_exc()}")
         if result.exit_code == FMU_FAILED or self.new:
             self.shelf.clear()
-        spent = clock.process_time() - cpu
-        return of_summary(case.key, told, {"cpu": max(spent, apart), "wall": clock.perf_counter() - began})
+        return row
 
     def close(self) -> None:
         fmus, self._fmus, self._of = self._fmus, None, ()
@@ -101,9 +110,9 @@ def _about(fmus: SceneFmus) -> list[Any]:
 _fleet: Fleet | None = None
 
 
-def run_case(case: Case) -> Row:
+def run_case(case: Case, tell: Telling = tell_summary) -> Row:
     """Run a case in this process, whose FMUs stay loaded for the next."""
     global _fleet
     if _fleet is None:
         _fleet = Fleet()
-    return _fleet.row(case)
+    return _fleet.row(case, tell)

@@ -12,9 +12,10 @@ from dcone_cosim.errors import CAPTURE_FAILED
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS
-from dcone_cosim.phases import capture_report, chaos
+from dcone_cosim.phases import capture_quantities, capture_report, chaos
 from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage
+from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import ANY, Expected
@@ -50,6 +51,7 @@ class Capture(Phase):
     }
     examples = ("0.02 s", "30 s")
     begins_at_zero = True
+    chaotic = True
     own_clock = True
     wanted = (
         ("captured", ("captured",)),
@@ -127,6 +129,9 @@ class Capture(Phase):
 
     def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         return capture_report.findings(run, result)
+
+    def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
+        return capture_quantities.quantities(result, run.parameters.get(self.name, {}), instants)
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         return chaos.CAPTURE

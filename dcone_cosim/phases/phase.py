@@ -16,6 +16,7 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
+from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import Expected
@@ -27,6 +28,8 @@ Figure = tuple[str, Callable[[Path], object]]
 Instantiate = Callable[[str, str], Steppable]
 """`instantiate(phase, name)` makes a component of that phase's FMU."""
 
+LEAST_RANGE = 1e-9
+"""Share of an output's size below which its range is rounding."""
 MOST_OUTPUTS = 12
 """Outputs of a plain phase that the summary shows; all are in its columns."""
 
@@ -110,6 +113,7 @@ class Phase:
     begins_at_zero whether its FMU has to be told to begin at 0
     own_clock      its times count from its begin, whatever time its FMU is told
     tugs_file      name of the table of its tugs
+    chaotic        its figures are samples: they part company however small a change is
     """
 
     name = ""
@@ -127,6 +131,7 @@ class Phase:
     begins_at_zero = False
     own_clock = False
     tugs_file = "tugs"
+    chaotic = False
 
     # the scene
 
@@ -214,6 +219,20 @@ class Phase:
         for output in [key for key in last if key != "time"][:MOST_OUTPUTS]:
             unit = recorder.units[output]
             yield Finding(name, output, f"{output} at the end", last[output], "" if unit == "1" else unit)
+
+    def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
+        """By what it is judged when it is computed in another way: of a phase that nothing is known of, its outputs.
+
+        instants    by its own times, at which curves are compared [s]
+        """
+        recorder = result.recorder
+        for name in recorder.names[1:] if len(recorder) else ():
+            if recorder.kinds[name] == "Real":
+                column = recorder[name]
+                scale = max(float(column.max() - column.min()), float(abs(column).max()) * LEAST_RANGE)
+                if scale > 0.0:
+                    curve = at(recorder, name, instants).tolist()
+                    yield Quantity(name, name, curve, recorder.units[name], scale, "its range")
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         """Relative spread [1] of those of its figures that are one sample of many, by key."""

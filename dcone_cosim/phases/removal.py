@@ -16,9 +16,10 @@ from dcone_cosim.errors import DconeError, FmuError, Interrupted
 from dcone_cosim.findings import Finding
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
-from dcone_cosim.phases import chaos, removal_report
+from dcone_cosim.phases import chaos, removal_quantities, removal_report
 from dcone_cosim.phases.phase import Document, Figure, Phase, Stage
 from dcone_cosim.plots import tow
+from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import SHARED, PhaseScene
 from dcone_cosim.scene.expected import Expected
@@ -74,6 +75,9 @@ class Tow(Phase):
 
     def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         return removal_report.findings(run, self.name, result)
+
+    def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
+        return removal_quantities.quantities(result, instants)
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         return chaos.of_tow(result, isinstance(run.handovers.get(self.name), HandoffRecord))

@@ -16,12 +16,17 @@ class Needs(NamedTuple):
     longest_step, accurate_step   kernels (stiffness_rate, damping_rate) -> the longest stable step at a node, and the
                               step that is accurate [s], see `formulas`; `solver.stability_bound`, the default substep
                               and what `inspect` tells follow from them
+    factors                   substeps over the default one at which its error is measured against its cost, coarse to
+                              fine; the last is for references
+    steepest                  the largest share of the bound among them
     """
 
     make_rouse: Any
     planes: int
     longest_step: Any = longest_step
     accurate_step: Any = accurate_step
+    factors: tuple[float, ...] = (6.0, 4.0, 3.0, 2.0, 1.4, 1.0, 0.7, 0.5, 0.25)
+    steepest: float = 0.95
 
 
 class Scheme(NamedTuple):

@@ -1,0 +1,136 @@
+"""The choices there are for computing a phase, as the settings that make them.
+
+They lie on axes. Along an axis errors are counted from its finest setting; what a scene errs by is the sum over all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from dcone_cosim import build
+from dcone_cosim.scene.data import PhaseScene
+
+NUMERICS, MACRO_STEP, COUPLING = "scheme and step", "macro step", "coupling step"
+MACRO_FACTORS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2)
+COUPLING_FACTORS = (4.0, 2.0, 1.0, 0.5, 0.2, 0.1)
+FEWEST_STEPS = 8
+"""Macro steps that a phase keeps."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One choice.
+
+    axis       along which it lies
+    family     those that differ in one number: a line of the figure
+    size       that number over its default, or over the scene's own: what the error falls with [1]
+    changes    `KEY=VALUE`, as `--set` takes them; none for the scene as it is
+    """
+
+    axis: str
+    family: str
+    size: float
+    changes: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        return f"{self.family} x {self.size:g}"
+
+
+def settings_of(phase: PhaseScene, refine: bool, notes: list[str]) -> list[Setting]:
+    """All settings of a phase by axes, each family coarse to fine, the first family of an axis that of the scene.
+
+    refine     those too that refine the model itself, which are dear
+    notes      gets which choices are not for this scene, and why
+    """
+    found = [] if phase.main.fmu is not None else list(_of_model(phase, notes))
+    if refine and phase.main.fmu is None:
+        found += _refinements(phase)
+    found += _macro_steps(phase)
+    found += _coupling_steps(phase)
+    return found
+
+
+def _of_model(phase: PhaseScene, notes: list[str]) -> Iterator[Setting]:
+    main = phase.main
+    own = {**main.defaults, **main.parameters}
+    yield from _rungs(phase, main.terms, own, ())
+    groups = build.CATALOGUE[main.model].groups
+    for name in build.numerics(main.model):
+        if name not in groups:
+            continue
+        group = groups[name]
+        for term in group.terms:
+            if term == main.terms.get(name):
+                continue
+            terms = {**main.terms, name: term}
+            clashing = [other for _, other in build.CATALOGUE[main.model].clashing(terms)]
+            if clashing:
+                tables = " and ".join(f"[{phase.name}.{other}]" for other in clashing)
+                notes.append(f"{phase.name}: {term} is not for this scene: it cannot go together with {tables}")
+                continue
+            interface = build.CATALOGUE[main.model].interface(terms)
+            values = {**build.defaults(interface), **main.parameters}
+            key = f"{phase.name}.{group.table or name}.{group.selector}"
+            yield from _rungs(phase, interface.terms, values, (f'{key}="{term}"',))
+
+
+def _refinements(phase: PhaseScene) -> Iterator[Setting]:
+    main = phase.main
+    own = {**main.defaults, **main.parameters}
+    for name, rungs in build.refinements(main.model, own, main.terms).items():
+        yield from (Setting(name, name, r.size, (*_following(phase, r), *_changes(phase, r.values))) for r in rungs)
+
+
+def _following(phase: PhaseScene, rung: build.Rung) -> Iterator[str]:
+    """Terms that follow from values, such as for how many nodes there are outputs."""
+    main = phase.main
+    for name, group in build.CATALOGUE[main.model].groups.items():
+        if name in main.terms and group.follows is not None:
+            term = group.follows(main.terms, {**main.defaults, **main.parameters, **rung.values})
+            yield f"{phase.name}.{group.table or name}.{group.selector}={term}"
+
+
+def _rungs(
+    phase: PhaseScene, terms: Mapping[str, str], values: Mapping[str, float], changes: tuple[str, ...]
+) -> Iterator[Setting]:
+    model = phase.main.model
+    family = ", ".join(terms[name] for name in build.numerics(model) if name in terms) or "tolerances"
+    for rung in build.rungs(model, values, terms):
+        yield Setting(NUMERICS, family, rung.size, (*changes, *_changes(phase, rung.values)))
+
+
+def _changes(phase: PhaseScene, values: Mapping[str, float]) -> tuple[str, ...]:
+    known = build.known_variables(phase.main.model)
+    return tuple(f"{phase.name}.{name}={in_words(value, known[name][0].unit)}" for name, value in values.items())
+
+
+def in_words(value: float, unit: str) -> str:
+    """A value as a scene says it."""
+    return f"{value:.6g}" if unit == "1" else f"{value:.6g} {unit}"
+
+
+def _macro_steps(phase: PhaseScene) -> Iterator[Setting]:
+    steps = phase.duration / phase.macro_step
+    coupled = bool(phase.connections)
+    for factor in MACRO_FACTORS:
+        if factor == 1.0:
+            yield Setting(MACRO_STEP, MACRO_STEP, factor, ())
+        elif steps / factor >= FEWEST_STEPS and not (coupled and phase.coupling.step == 0.0):
+            step = in_words(factor * phase.macro_step, "s")
+            yield Setting(MACRO_STEP, MACRO_STEP, factor, (f"{phase.name}.macro_step={step}",))
+
+
+def _coupling_steps(phase: PhaseScene) -> Iterator[Setting]:
+    if not phase.connections:
+        return
+    by_error = phase.coupling.control == "error"
+    size = phase.coupling.tolerance if by_error else phase.coupling.step or phase.macro_step
+    name = "tolerance" if by_error else "step"
+    for factor in COUPLING_FACTORS:
+        if factor == 1.0:
+            yield Setting(COUPLING, COUPLING, factor, ())
+        elif by_error or factor * size <= phase.macro_step * (1.0 + 1e-9):
+            value = in_words(factor * size, "1" if by_error else "s")
+            yield Setting(COUPLING, COUPLING, factor, (f"{phase.name}.coupling.{name}={value}",))

@@ -1,0 +1,39 @@
+"""One case run in a worker: the quantities of its phase, and the CPU time that its steps took."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+from dcone_cosim.cases.case import Case
+from dcone_cosim.cases.rows import Row
+from dcone_cosim.cases.work import run_case
+from dcone_cosim.phases import kind_of
+from dcone_cosim.results import RunResult
+
+CPU = "cpu of the steps"
+
+
+@dataclass(frozen=True)
+class Measured(Case):
+    """A case of one phase.
+
+    instants    at which curves are compared [s]
+    """
+
+    instants: tuple[float, ...] = ()
+
+
+def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
+    """The row of a run that is judged by its quantities."""
+    assert isinstance(case, Measured)
+    samples = {}
+    for name, phase in result.phases.items():
+        samples = {q.key: asdict(q) for q in kind_of(name).quantities(result, phase, case.instants)}
+        timings = {**timings, CPU: phase.cpu}
+    return Row(case.key, result.status, result.exit_code, result.message, timings=timings, samples=samples)
+
+
+def measure(case: Case) -> Row:
+    """Run a case in this process, whose FMUs stay loaded for the next."""
+    return run_case(case, tell)

@@ -1,0 +1,26 @@
+"""How the tow trades accuracy for time: all three tolerances together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from fmu_src.tethered_deorbit.interface import SOLVER
+from fmu_src.trade import Rung
+
+NUMERICS = ("solver",)
+FACTORS = (1e6, 1e5, 1e4, 1e3, 1e2, 10.0, 1.0, 0.1, 0.01)
+"""Of the tolerances over their defaults. The finest is for references: below it rounding is all that changes."""
+
+
+def rungs(values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
+    """All tolerances by one factor, each within its bounds."""
+    found = []
+    for factor in FACTORS:
+        chosen = {row.name: factor * float(row.starts()[0]) for row in SOLVER}
+        found.append(Rung(factor, {row.name: min(max(chosen[row.name], row.minimum), row.maximum) for row in SOLVER}))
+    return found
+
+
+def refinements(values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
+    """None: the line is one piece."""
+    return {}

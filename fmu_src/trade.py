@@ -1,0 +1,26 @@
+"""How a model trades accuracy for time: its settings from coarse to fine.
+
+A model that has such settings has a module `trade` with
+
+    NUMERICS                     groups whose terms differ in how a thing is computed, not in what is computed
+    rungs(values, terms)         settings of the scheme that the terms name, coarse to fine; the last is for references
+    refinements(values, terms)   by name, other settings that refine the model itself, each coarse to fine
+
+values are all parameters and inputs by FMI name, SI.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class Rung(NamedTuple):
+    """One setting.
+
+    size      what the error falls with, over that of the default setting: a step, a tolerance, a length [1]
+    values    parameters that make it, SI by FMI name
+    """
+
+    size: float
+    values: Mapping[str, float]
