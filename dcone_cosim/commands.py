@@ -6,8 +6,8 @@ import contextlib
 import gc
 import sys
 import threading
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from dcone_cosim.master import run_scene
 from dcone_cosim.plots import style
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.results import RunResult
+from dcone_cosim.results import Attained, RunResult
 from dcone_cosim.run_folder import default_folder, fill
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus, remarks
@@ -67,6 +67,13 @@ def run_and_write(
     left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
     notes = list(scene.notes)
+    attained: Mapping[str, Attained] = {}
+    if scene.accuracy is not None:
+        from dcone_cosim.accuracy.attain import attain
+
+        with interrupts.heeded():
+            changes, attained = attain(name, settings, scene, isolate, progress)
+        scene = replace(scene, phases=load(name, [*settings, *changes], choose=False).isolating(isolate).phases)
     with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
         if left + draft.removed:
             notes.append(LEFT_BEHIND)
@@ -76,6 +83,7 @@ def run_and_write(
             threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
             result = run_scene(scene, archives.instantiate, progress)
             facts = archives.facts()
+        result.attained = attained
         notes += [*nothing_recorded(result), *remarks(facts)]
         if Path(name) == Path(scene.source).parent:
             notes += unlike(Path(name), facts)

@@ -44,10 +44,11 @@ def find(name: str) -> Path:
     raise InputError(f"no scene named {name!r}{did_you_mean(name, known)}")
 
 
-def load(name: str, settings: Sequence[str] = ()) -> Scene:
+def load(name: str, settings: Sequence[str] = (), choose: bool = True) -> Scene:
     """The scene of that name or path, or of the run whose folder that is; a `SceneError` lists every mistake found.
 
     settings     `KEY.KEY=VALUE`, each in the place of what the file says
+    choose       whether the settings that its accuracy asks for are chosen
     """
     from dcone_cosim.scenes.kept import Kept, kept_in
 
@@ -60,7 +61,7 @@ def load(name: str, settings: Sequence[str] = ()) -> Scene:
         from dcone_cosim.ssp import system
 
         return system.load(kept.path, settings, kept.name)
-    return parse(read_text(kept.path), kept.name, str(kept.path), kept.path.parent, settings)
+    return parse(read_text(kept.path), kept.name, str(kept.path), kept.path.parent, settings, choose)
 
 
 def title_of(path: Path) -> str:

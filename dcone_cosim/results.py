@@ -88,6 +88,29 @@ class Handover(Protocol):
         """What `ledger.json` holds of it."""
 
 
+@dataclass(frozen=True)
+class Attained:
+    """How exact a phase is, by runs of it in other ways.
+
+    setting      with which it was computed
+    error        estimated, of the quantity that errs most, and which that is              [1]
+    scatter      standard deviation of one run, of the quantity that scatters most         [1]
+    runs         that its figures are the means of; 1: it is a single run
+    means        of each quantity that is one number: mean, standard deviation, unit; of several runs alone
+    made         runs that the estimate took
+    """
+
+    asked: float
+    setting: str
+    error: float
+    quantity: str
+    scatter: float
+    scattering: str
+    runs: int = 1
+    means: Mapping[str, tuple[str, float, float, str]] = field(default_factory=dict)
+    made: int = 0
+
+
 @dataclass
 class RunResult:
     """All that a run leaves behind.
@@ -98,6 +121,7 @@ class RunResult:
     left         what the phase after asked for of each phase that hands over, as it ended, SI
     handovers    by the phase that took over
     comparisons  by phase, the same once more, had the shot given no momentum
+    attained     by phase, where the scene asks for an accuracy
     """
 
     scene: Scene
@@ -108,6 +132,7 @@ class RunResult:
     left: dict[str, dict[str, float]] = field(default_factory=dict)
     handovers: dict[str, Handover] = field(default_factory=dict)
     comparisons: dict[str, PhaseResult] = field(default_factory=dict)
+    attained: Mapping[str, Attained] = field(default_factory=dict)
     status: str = "completed"
     message: str = ""
     exit_code: int = SUCCESS

@@ -264,3 +264,8 @@ def read_units(definitions: Iterable[Any], file: str) -> dict[str, Unit]:
         except ValueError as error:
             raise FmuError(f"{file}: its unit {given.name!r} cannot be read: {error}") from None
     return units
+
+
+def written(value: float, unit: str) -> str:
+    """An SI value as a scene says it, with six digits."""
+    return f"{value:.6g}" if unit == "1" else f"{value:.6g} {spoken(unit)}"

@@ -64,13 +64,19 @@ def accuracy(
     quick: bool = False,
     jobs: int | None = None,
     isolate: bool | None = None,
+    refine: bool = True,
 ) -> Done:
-    """Measure every phase of a scene and write the folder. Bad input raises and leaves nothing."""
+    """Measure every phase of a scene and write the folder. Bad input raises and leaves nothing.
+
+    refine     whether the models themselves are refined too, which is dear
+    """
     started = datetime.now(UTC)
     if runs is not None and not 2 <= runs <= MOST_RUNS:
         raise InputError(f"--runs {runs}: expected 2 to {MOST_RUNS}")
     usual = QUICK if quick else Effort()
-    effort = usual if runs is None else replace(usual, runs=runs, repeats=runs)
+    effort = replace(usual, refine=usual.refine and refine)
+    if runs is not None:
+        effort = replace(effort, runs=runs, repeats=runs)
     alone = Alone(name, settings, isolate)
     alone.begin(progress)
     progress.say("checking what there is to choose")

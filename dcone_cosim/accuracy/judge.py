@@ -25,6 +25,8 @@ from dcone_cosim.cases.rows import Row
 
 Array = npt.NDArray[np.float64]
 
+ROUNDING = 1e-12
+"""Relative size below which a scatter is the rounding of its mean [1]."""
 SIGMAS = 2.0
 """Standard errors below which a difference tells nothing."""
 LEAST_FOR_ORDER = 3
@@ -122,8 +124,8 @@ class Report:
 
 def judge(plan: PhasePlan, rows: Mapping[str, Row]) -> Report:
     """All axes of a phase."""
-    base = _sample(plan.base, rows)
-    samples = [_sample(planned, rows) for planned in plan.settings]
+    base = sample_of(plan.base, rows)
+    samples = [sample_of(planned, rows) for planned in plan.settings]
     names = list(dict.fromkeys(s.setting.axis for s in samples))
     axes = [_axis(name, [s for s in samples if s.setting.axis == name], base) for name in names]
     about: dict[str, Mapping[str, Any]] = {}
@@ -132,7 +134,7 @@ def judge(plan: PhasePlan, rows: Mapping[str, Row]) -> Report:
     return Report(plan, [axis for axis in axes if axis is not None], about)
 
 
-def _sample(planned: Planned, rows: Mapping[str, Row]) -> Sample:
+def sample_of(planned: Planned, rows: Mapping[str, Row]) -> Sample:
     found = Sample(planned.setting)
     mine = [rows[key] for key in planned.keys]
     good = [row for row in mine if row.samples and row.status not in ("refused", "fault", "lost", "FMU failed")]
@@ -184,15 +186,23 @@ def _axis(name: str, samples: list[Sample], base: Sample) -> Axis | None:
     )
 
 
-def _scatter(reference: Sample) -> tuple[float, str]:
-    found = (0.0, "")
-    for key, spread in reference.spreads.items():
-        about, mean = reference.about[key], np.abs(reference.means[key])
-        sizes = mean if about["scale"] == 0.0 else np.full(len(mean), about["scale"])
+def scatters(sample: Sample) -> dict[str, float]:
+    """Standard deviation of one run by quantity, where it is more than rounding [1]."""
+    found = {}
+    for key, spread in sample.spreads.items():
+        scale = sample.about[key]["scale"]
+        sizes = np.abs(sample.means[key]) if scale == 0.0 else np.full(len(spread), scale)
         there = np.isfinite(spread) & (sizes > 0.0)
-        if about["meant"] and there.any():
-            found = max(found, (float((spread[there] / sizes[there]).max()), str(about["label"])))
+        scatter = float((spread[there] / sizes[there]).max()) if there.any() else 0.0
+        if scatter > ROUNDING:
+            found[key] = scatter
     return found
+
+
+def _scatter(reference: Sample) -> tuple[float, str]:
+    about = reference.about
+    told = [(s, str(about[key]["label"])) for key, s in scatters(reference).items() if about[key]["meant"]]
+    return max(told, default=(0.0, ""))
 
 
 def _families(points: Sequence[Judged]) -> list[str]:
@@ -222,8 +232,8 @@ def _shrunk(value: float, second: Sample, reference: Sample) -> float:
 
 def _judge(sample: Sample, reference: Sample, agreement: Mapping[str, float]) -> Judged:
     errors, floors = {}, {}
-    for key, ref in reference.means.items():
-        error, floor = _error(sample, reference, key, ref)
+    for key in reference.means:
+        error, floor = error_of(sample, reference, key)
         if not math.isnan(error):
             errors[key] = error
             floors[key] = max(floor, agreement.get(key, 0.0))
@@ -237,9 +247,9 @@ def _worst(of: Mapping[str, float], reference: Sample) -> float:
     return max(meant or of.values(), default=math.nan)
 
 
-def _error(sample: Sample, reference: Sample, key: str, ref: Array) -> tuple[float, float]:
+def error_of(sample: Sample, reference: Sample, key: str) -> tuple[float, float]:
     """Error and floor of a quantity [1]; not a number where nothing can be compared."""
-    own = sample.means.get(key)
+    own, ref = sample.means.get(key), reference.means[key]
     if own is None or len(own) < len(ref):
         return math.inf, 0.0
     own = own[: len(ref)]

@@ -72,11 +72,14 @@ class Alone:
     """Makes scenes of one phase by itself, whatever is set.
 
     name, settings    the scene, and `--set` settings of all of them
+    choose            whether the settings that the scene's accuracy asks for are among these; they may be set otherwise
     """
 
-    def __init__(self, name: str, settings: Sequence[str], isolate: bool | None) -> None:
-        self._name, self._settings, self._isolate = name, tuple(settings), isolate
-        self.scene = load(name, settings).isolating(isolate)
+    def __init__(self, name: str, settings: Sequence[str], isolate: bool | None, choose: bool = True) -> None:
+        self._name, self._isolate = name, isolate
+        phases = load(name, settings).phases if choose else ()
+        self._settings = (*settings, *(c for p in phases if p.chosen is not None for c in p.chosen.changes))
+        self.scene = load(name, self._settings, choose=False).isolating(isolate)
         self._taken: dict[str, tuple[Mapping[str, float], float]] = {}
 
     def begin(self, progress: Progress) -> None:
@@ -97,7 +100,7 @@ class Alone:
 
     def scene_of(self, phase: str, changes: Sequence[str] = ()) -> Scene:
         """The scene with that phase alone; `InputError` for changes that it cannot have."""
-        scene = load(self._name, [*self._settings, *changes]).isolating(self._isolate)
+        scene = load(self._name, [*self._settings, *changes], choose=False).isolating(self._isolate)
         place = next(i for i, p in enumerate(scene.phases) if p.name == phase)
         own = scene.phases[place]
         if place + 1 < len(scene.phases):
@@ -108,34 +111,54 @@ class Alone:
         return replace(scene, phases=(own,))
 
 
+class Planner:
+    """Makes the cases of one phase.
+
+    base       the phase by itself, as it is
+    chaotic    its runs are samples: each starts a little differently
+    """
+
+    def __init__(self, alone: Alone, phase: str, progress: Progress) -> None:
+        self._alone, self._phase = alone, phase
+        self.base = alone.scene_of(phase)
+        self.own = self.base.phases[0]
+        self.chaotic = kind_of(phase).chaotic
+        self._instants = spread_instants(_first(self.own), self.own.duration, self.own.macro_step, INSTANTS)
+        self._fmus = _Fmus(progress)
+
+    def cases(self, planned: Planned, count: int) -> dict[str, Measured]:
+        """So many cases of a setting, whose keys it gets; `InputError` for one that the scene cannot have."""
+        found: dict[str, Measured] = {}
+        for number in range(count):
+            jitter = ensemble.jitter(self.base, number) if self.chaotic else ()
+            changes = (*planned.setting.changes, *jitter)
+            scene = self._alone.scene_of(self._phase, changes)
+            key = digest(key_of(scene, self._fmus.of(scene), number), self._instants)
+            found.setdefault(key, Measured(key, scene, changes, {}, number, self._instants))
+            planned.keys.append(key)
+        return found
+
+
 def plan(alone: Alone, phase: str, effort: Effort, progress: Progress) -> PhasePlan:
     """What is to be run of a phase."""
-    base = alone.scene_of(phase)
-    own = base.phases[0]
-    chaotic = kind_of(phase).chaotic
+    planner = Planner(alone, phase, progress)
     notes: list[str] = []
-    settings = _thinned(settings_of(own, effort.refine, notes), effort.thin)
-    instants = spread_instants(_first(own), own.duration, own.macro_step, INSTANTS)
-    fmus = _Fmus(progress)
+    settings = _thinned(settings_of(planner.own, effort.refine, notes), effort.thin)
     cases: dict[str, Measured] = {}
     here = Planned(Setting("", "the scene as it is", 1.0, ()))
     planned = [here, *(Planned(setting) for setting in settings)]
     finest = {min((s for s in settings if s.axis == axis), key=lambda s: s.size) for axis in {s.axis for s in settings}}
     for one in planned:
-        count = effort.runs * (2 if one.setting in finest else 1) if chaotic else effort.repeats
+        count = effort.runs * (2 if one.setting in finest else 1) if planner.chaotic else effort.repeats
         try:
-            for number in range(count):
-                changes = (*one.setting.changes, *(ensemble.jitter(base, number) if chaotic else ()))
-                scene = alone.scene_of(phase, changes)
-                key = digest(key_of(scene, fmus.of(scene), number), instants)
-                cases.setdefault(key, Measured(key, scene, changes, {}, number, instants))
-                one.keys.append(key)
+            cases |= planner.cases(one, count)
         except InputError as error:
             if one is here:
                 raise
             notes.append(f"{phase}: {one.setting.label} is left out: {str(error).splitlines()[-1].strip()}")
             one.keys.clear()
-    return PhasePlan(phase, base.title, chaotic, here, [p for p in planned[1:] if p.keys], list(cases.values()), notes)
+    kept = [p for p in planned[1:] if p.keys]
+    return PhasePlan(phase, planner.base.title, planner.chaotic, here, kept, list(cases.values()), notes)
 
 
 def _first(phase: PhaseScene) -> float:

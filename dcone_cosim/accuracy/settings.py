@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from dcone_cosim import build
 from dcone_cosim.scene.data import PhaseScene
+from dcone_cosim.units import written
 
 NUMERICS, MACRO_STEP, COUPLING = "scheme and step", "macro step", "coupling step"
 MACRO_FACTORS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2)
@@ -103,12 +104,7 @@ def _rungs(
 
 def _changes(phase: PhaseScene, values: Mapping[str, float]) -> tuple[str, ...]:
     known = build.known_variables(phase.main.model)
-    return tuple(f"{phase.name}.{name}={in_words(value, known[name][0].unit)}" for name, value in values.items())
-
-
-def in_words(value: float, unit: str) -> str:
-    """A value as a scene says it."""
-    return f"{value:.6g}" if unit == "1" else f"{value:.6g} {unit}"
+    return tuple(f"{phase.name}.{name}={written(value, known[name][0].unit)}" for name, value in values.items())
 
 
 def _macro_steps(phase: PhaseScene) -> Iterator[Setting]:
@@ -118,7 +114,7 @@ def _macro_steps(phase: PhaseScene) -> Iterator[Setting]:
         if factor == 1.0:
             yield Setting(MACRO_STEP, MACRO_STEP, factor, ())
         elif steps / factor >= FEWEST_STEPS and not (coupled and phase.coupling.step == 0.0):
-            step = in_words(factor * phase.macro_step, "s")
+            step = written(factor * phase.macro_step, "s")
             yield Setting(MACRO_STEP, MACRO_STEP, factor, (f"{phase.name}.macro_step={step}",))
 
 
@@ -132,5 +128,5 @@ def _coupling_steps(phase: PhaseScene) -> Iterator[Setting]:
         if factor == 1.0:
             yield Setting(COUPLING, COUPLING, factor, ())
         elif by_error or factor * size <= phase.macro_step * (1.0 + 1e-9):
-            value = in_words(factor * size, "1" if by_error else "s")
+            value = written(factor * size, "1" if by_error else "s")
             yield Setting(COUPLING, COUPLING, factor, (f"{phase.name}.coupling.{name}={value}",))

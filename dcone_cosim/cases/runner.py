@@ -8,17 +8,37 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from typing import Protocol
 
 from dcone_cosim import interrupts
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.rows import FAULT, Row, lost
-from dcone_cosim.cases.store import Store
 from dcone_cosim.cases.work import run_case
 from dcone_cosim.cases.workers import WorkerDied
 from dcone_cosim.errors import FAILED_AFTER, Interrupted
 
 LOOK = 0.2
 """How often to see whether a signal has come [s]."""
+
+
+class Rows(Protocol):
+    """Where rows are kept, by the hash of their case: a `Store`, or `Memory`."""
+
+    def get(self, key: str) -> Row | None: ...
+    def put(self, row: Row) -> None: ...
+
+
+class Memory:
+    """Rows that nobody asks for once this process has ended."""
+
+    def __init__(self) -> None:
+        self._rows: dict[str, Row] = {}
+
+    def get(self, key: str) -> Row | None:
+        return self._rows.get(key)
+
+    def put(self, row: Row) -> None:
+        self._rows[row.key] = row
 
 
 class Runner:
@@ -32,7 +52,7 @@ class Runner:
 
     def __init__(
         self,
-        store: Store,
+        store: Rows,
         executor: Executor,
         ahead: int,
         work: Callable[[Case], Row] = run_case,

@@ -10,6 +10,7 @@ import numpy as np
 from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import PhaseResult
 
+NAMES = ("mouth_area", "t80", "bullets", "impulse", "captured", "t_capture", "thread_peak")
 EACH = (1, 2, 3)
 BULLETS = (1, 2, 3, 4)
 

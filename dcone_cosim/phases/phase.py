@@ -114,6 +114,7 @@ class Phase:
     own_clock      its times count from its begin, whatever time its FMU is told
     tugs_file      name of the table of its tugs
     chaotic        its figures are samples: they part company however small a change is
+    judged_by      names of its quantities; none: those of its outputs
     """
 
     name = ""
@@ -132,6 +133,7 @@ class Phase:
     own_clock = False
     tugs_file = "tugs"
     chaotic = False
+    judged_by: Sequence[str] = ()
 
     # the scene
 

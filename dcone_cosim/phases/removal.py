@@ -53,6 +53,7 @@ class Tow(Phase):
         ("hand-over", tuple(f"{whose}{each}" for whose in _STATES for each in EACH)),
     )
     taken_over: Sequence[str] = ("start.", ATTACHMENT, *(name.partition("[")[0] for name in REMOVAL_SETS))
+    judged_by = removal_quantities.NAMES
     figure_names = ("orbital_radius.png", "tether_tension.png")
 
     def faults(self, document: Document) -> Iterator[Mistake]:

@@ -9,6 +9,7 @@ import numpy as np
 from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import PhaseResult
 
+NAMES = ("tug_times", "tug_peaks", "largest_tug", "mean_tension", "semi_major_axis", "radius", "separation")
 TUGS = 5
 """Tugs from the first on that are compared."""
 LEAST = 1.0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from dcone_cosim.findings import SAMPLE, Finding
 from dcone_cosim.phases import kind_of
 from dcone_cosim.reports.warnings import warnings
-from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.results import Attained, PhaseResult, RunResult
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -26,6 +26,7 @@ def findings(run: RunResult) -> list[Finding]:
         if name in run.phases:
             result = run.phases[name]
             of_phase += _with_spreads(kind.findings(run, result), kind.spreads(run, result))
+            of_phase += _of_accuracy(name, run.attained.get(name), name in run.handovers)
             of_phase += _of_effort(name, result)
         rows += of_phase
     return rows
@@ -73,6 +74,29 @@ def show(run: RunResult, console: Console) -> None:
     console.print(table)
     if any(row.spread for row in rows):
         console.print(f"{SAMPLE} one sample of a chaotic figure, with the digits that hold", highlight=False)
+
+
+def _share(name: str, key: str, label: str, value: float) -> Finding:
+    """An estimate has two digits."""
+    return Finding(name, key, label, float(f"{value:.2g}"), shown_in="%")
+
+
+def _of_accuracy(name: str, attained: Attained | None, taken_over: bool) -> Iterator[Finding]:
+    """How it was computed for the accuracy asked, and how exact it is."""
+    if attained is None:
+        return
+    yield _share(name, "accuracy.asked", "accuracy asked", attained.asked)
+    yield Finding(name, "accuracy.setting", "computed with", attained.setting)
+    given = ", for what was handed over" if taken_over else ""
+    yield _share(name, "accuracy.error", f"estimated error, {attained.quantity}{given}", attained.error)
+    if attained.scatter > 0.0:
+        label = f"scatter of one run, {attained.scattering}"
+        yield _share(name, "accuracy.scatter", label, attained.scatter)
+    yield Finding(name, "accuracy.made", "runs made for the estimate", attained.made)
+    for key, (label, mean, spread, unit) in attained.means.items():
+        shown = "" if unit == "1" else unit
+        yield Finding(name, f"mean.{key}", f"{label}, mean of {attained.runs} runs", mean, shown)
+        yield Finding(name, f"spread.{key}", "their standard deviation", spread, shown)
 
 
 def _of_coupling(name: str, counts: Mapping[str, float]) -> Iterator[Finding]:

@@ -29,6 +29,34 @@ class HandoffOptions:
 
 
 @dataclass(frozen=True)
+class Accuracy:
+    """How exact a run is to be.
+
+    asked        largest error, relative to what each quantity's error is relative to                  [1]
+    quantities   what it is the accuracy of, by their names; empty: those that each phase means by it
+    runs         how many runs may be made where one scatters too much                                 [1]
+    """
+
+    asked: float
+    quantities: tuple[str, ...] = ()
+    runs: int = 1
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The setting that an accuracy has chosen for a phase.
+
+    label      of the setting, as a person reads it
+    changes    `KEY=VALUE`, as `--set` would make it
+    error      that was measured with it, the largest of the quantities meant; NaN: not known   [1]
+    """
+
+    label: str
+    changes: tuple[str, ...]
+    error: float
+
+
+@dataclass(frozen=True)
 class TableFile:
     """A table of a part of ours, and the file it is from.
 
@@ -83,6 +111,7 @@ class PhaseScene:
     options      what concerns the master, of the class that its kind has for them
     keeps        what has to be there for as long as the phase is, such as a folder of unpacked FMUs
     start        when it begins [s], unless another phase hands over to it
+    chosen       what the scene's accuracy has chosen for it, None where it asks for none or nothing was measured
     """
 
     name: str
@@ -95,6 +124,7 @@ class PhaseScene:
     coupling: Coupling = field(default_factory=Coupling)
     start: float = 0.0
     keeps: object = field(default=None, repr=False, compare=False)
+    chosen: Chosen | None = field(default=None, compare=False)
 
     @property
     def components(self) -> tuple[ComponentScene, ...]:
@@ -130,6 +160,7 @@ class Scene:
     places: Places = field(default_factory=lambda: Places("", ""))
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
+    accuracy: Accuracy | None = None
 
     def isolating(self, isolate: bool | None) -> Scene:
         """The same with every FMU run in a child process, or none; as it is for None."""

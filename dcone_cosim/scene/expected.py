@@ -46,6 +46,7 @@ class Expected:
     example    a value as a scene would write it
     minimum    least permitted SI value; `open_minimum` excludes the bound itself
     relative   the value is a difference: 5 deg_C are 5 K
+    share      a pure number that may be told in per cent
     refusal    why else an SI value is refused, or None
     display_unit  FMI unit in which a person would write it, "" for the unit itself
     """
@@ -61,6 +62,7 @@ class Expected:
     refusal: Callable[[float], str | None] = lambda value: None
     display_unit: str = ""
     relative: bool = False
+    share: bool = False
 
     def read(self, value: object) -> float | list[float]:
         """SI value, or text, or `Unexpected`."""
@@ -91,6 +93,8 @@ class Expected:
             return "true or false"
         if self.kind == "Integer":
             return f"a whole number, such as {self.example}"
+        if self.share:
+            return f'a share, such as "{self.example}" or a bare number'
         if self.unit == "1":
             return f"a bare number, such as {self.example}"
         return f'{by_name(self.unit).noun} with its unit, such as "{self.example}"'
@@ -110,7 +114,10 @@ class Expected:
             if not isinstance(value, bool):
                 raise Unexpected(f"expected {self._wanted()}")
             return float(value)
-        number, unit = (self._bare(value), NO_UNIT) if self.unit == "1" else self._quantity(value)
+        if self.share and isinstance(value, str):
+            number, unit = self._per_cent(value), NO_UNIT
+        else:
+            number, unit = (self._bare(value), NO_UNIT) if self.unit == "1" else self._quantity(value)
         reason = self._out_of_bounds(number, unit) or self.refusal(number)
         if reason:
             raise Unexpected(f"{reason}; expected {self._wanted()}")
@@ -166,6 +173,12 @@ class Expected:
         else:
             return None
         return f"must be {words} {unit.from_si(bound):.10g}{'' if unit is NO_UNIT else f' {unit.name}'}"
+
+    def _per_cent(self, value: str) -> float:
+        number, unit = number_and_unit(value) or (math.nan, "")
+        if unit != "%":
+            raise Unexpected(f"expected {self._wanted()}")
+        return number / 100.0
 
     def _bare(self, value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):

@@ -18,7 +18,7 @@ from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.phases.phase import Document
-from dcone_cosim.scene.data import SHARED, ComponentScene, HandoffOptions, PhaseScene, Scene
+from dcone_cosim.scene.data import SHARED, Accuracy, ComponentScene, HandoffOptions, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
 from dcone_cosim.scene.toml_lines import Path
 from dcone_cosim.scenes.components import (
@@ -36,6 +36,8 @@ from dcone_cosim.scenes.fmus import file_of, offer, opened
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     REQUIRED,
+    SOLVER,
+    SOLVER_KEYS,
     TOP,
     handoff_keys,
     isolation,
@@ -108,6 +110,7 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
     title = read_value(document["title"], read_title, ("title",), mistakes) if "title" in document else ""
     handoff = read_table(table_in(document, ("handoff",), mistakes), handoff_keys(), ("handoff",), mistakes)
     orbit = _orbit(document, mistakes)
+    accuracy = _accuracy(document, mistakes)
     present = [phase for phase in kinds() if isinstance(document.get(phase), dict)]
     phases = {phase: _read_phase(phase, document[phase], orbit, folder, mistakes) for phase in present}
     chosen = phases_to_run(document, present, mistakes)
@@ -124,13 +127,26 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
         flags = {key for key, expected in handoff_keys().items() if expected.kind == "Boolean"}
         handoff = {key: bool(value) if key in flags else value for key, value in handoff.items()}
         notes = tuple(_close_calls(whole, phases))
-        scene = Scene(name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes)
+        scene = Scene(
+            name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes, (), accuracy
+        )
         mistakes = [*about_steps(scene, document), *about_values(scene, document)]
         for before, own in pairs(scene):
             mistakes += kind_of(own.name).value_faults(before, own, document)
         if not mistakes:
             return replace(scene, cautions=tuple(_cautions(scene)))
     raise SceneError(mistakes, places)
+
+
+def _accuracy(document: dict[str, Any], mistakes: list[Mistake]) -> Accuracy | None:
+    """How exact the run is to be, None where the scene does not say."""
+    table = table_in(document, (SOLVER,), mistakes)
+    found = read_table(table, SOLVER_KEYS, (SOLVER,), mistakes)
+    if table and "accuracy" not in table:
+        mistakes.append(Mistake((SOLVER, "accuracy"), None, 'expected, such as "1 %"'))
+    if "accuracy" not in found:
+        return None
+    return Accuracy(found["accuracy"], tuple(found.get("quantities", ())), int(found.get("runs", 1)))
 
 
 def pairs(scene: Scene) -> Iterator[tuple[PhaseScene | None, PhaseScene]]:

@@ -13,12 +13,14 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
-from dcone_cosim.scene.expected import Expected, Unexpected, example_of
+from dcone_cosim.scene.expected import ANY, TEXT, Expected, Unexpected, example_of
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted
 from dcone_cosim.units import Unit
 
-TOP = ("title", "phases", SHARED, "handoff")
+SOLVER = "solver"
+"""Table at the top that says how exact the run is to be."""
+TOP = ("title", "phases", SHARED, SOLVER, "handoff")
 """Keys at the top of a scene, beside the phases."""
 MOST_STEPS = 5_000_000
 """Macro steps of a phase: each leaves a row, and a run keeps all rows in memory."""
@@ -59,6 +61,11 @@ COMPONENT_KEYS: Mapping[str, Expected] = {
     "solver_tolerance": _positive("1", "1e-6"),
 }
 """Keys of every component, main or other; `fmu` and `model` say what it is and are read first."""
+SOLVER_KEYS: Mapping[str, Expected] = {
+    "accuracy": Expected("1", example="1 %", minimum=0.0, maximum=0.5, open_minimum=True, share=True),
+    "quantities": Expected("1", TEXT, size=ANY),
+    "runs": Expected("1", "Integer", example="16", minimum=1.0, maximum=10000.0),
+}
 COUPLING_KEYS: Mapping[str, Expected] = {
     "method": _one_of("gauss_seidel", "jacobi"),
     "step": _positive("s", "1 s"),
@@ -71,6 +78,9 @@ COUPLING_KEYS: Mapping[str, Expected] = {
 MEANING: Mapping[str, str] = {
     "title": "what the scene is about, for tables and figures",
     "phases": "which phases to run, in order; all that have a table if not given",
+    "accuracy": "how exact the run is to be: scheme, step and tolerances are chosen for it, and its error is estimated",
+    "quantities": "what it is the accuracy of; those that each phase means by it if not given",
+    "runs": "how many runs may be made where a single one scatters more than that; one if not given",
     "macro_step": "the grid of the results: every output is recorded this often",
     "duration": "the phase ends after this at the latest",
     "hand_over": "what ends the capture and begins the next phase; none: flown to its end",

@@ -20,6 +20,8 @@ from dcone_cosim.scenes.components import term_named
 from dcone_cosim.scenes.keys import (
     COUPLING_KEYS,
     MEANING,
+    SOLVER,
+    SOLVER_KEYS,
     Key,
     handoff_keys,
     key_of,
@@ -58,6 +60,10 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
     lines.append(_line("phases", _toml(document.get("phases", present)), MEANING["phases"]))
     orbit = {key: known for key, known in orbit_keys().items() if _somewhere(document, f"{SHARED}.{key}")}
     lines += ["", f"[{SHARED}]", *_table(document.get(SHARED, {}), orbit)]
+    given = document.get(SOLVER, {})
+    mark = "" if given else "# "
+    lines += ["", f"{mark}[{SOLVER}]"]
+    lines += [_option(key, given.get(key), known) for key, known in SOLVER_KEYS.items() if known.size != ANY]
     for place, phase in enumerate(present):
         lines += ["", *_phase(phase, document[phase], skip=kind_of(phase).taken_over if place else ())]
     keys = handoff_keys(present[1:])

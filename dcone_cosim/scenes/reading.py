@@ -41,11 +41,14 @@ def read_text(path: Path) -> str:
         raise InputError(f"{path} cannot be read as text: {what}; save it as UTF-8") from error
 
 
-def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Sequence[str] = ()) -> Scene:
+def parse(
+    text: str, name: str, source: str, folder: Path = Path(), settings: Sequence[str] = (), choose: bool = True
+) -> Scene:
     """A scene from its text.
 
     source       names it in messages
     folder       paths of FMUs are relative to it
+    choose       whether the settings that its accuracy asks for are chosen
     """
     if not text.strip():
         raise InputError(f"{source} is empty; expected a scene with at least [capture] or [removal]")
@@ -69,5 +72,9 @@ def parse(text: str, name: str, source: str, folder: Path = Path(), settings: Se
     name_changes(text, document, overrides)
     places = Places(source, text, tuple(overrides))
     scene = check(document, name, places, folder)
+    if scene.accuracy is not None and choose:
+        from dcone_cosim.scenes.choosing import settled
+
+        scene = settled(scene, document, name, places, folder)
     tables = {table.path: table.file for table in scene.tables}
     return replace(scene, text=as_run(text, document, overrides, folder, tables))

@@ -15,12 +15,14 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
-from dcone_cosim.scene.expected import ANY, Expected
+from dcone_cosim.scene.expected import ANY, TEXT, Expected
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,
     MEANING,
     REQUIRED,
+    SOLVER,
+    SOLVER_KEYS,
     handoff_keys,
     key_of,
     orbit_keys,
@@ -29,6 +31,7 @@ from dcone_cosim.scenes.keys import (
 
 QUANTITY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s].*$"
 """A number and a unit."""
+PERCENT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*%\s*$"
 CONNECTION = r"^\s*[^.\s]+\..+->\s*[^.\s]+\..+$"
 Schema = dict[str, Any]
 
@@ -47,6 +50,7 @@ def schema() -> Schema:
         },
         SHARED: _table(orbit, "the orbit, shared by the phases"),
         **{phase: _phase(phase) for phase in kinds()},
+        SOLVER: _table(_options(SOLVER_KEYS), "how exact the run is to be"),
         "handoff": _table(_options(handoff_keys()), "how a capture hands over to a removal"),
     }
     return {
@@ -91,6 +95,10 @@ def _scalar(expected: Expected) -> Schema:
         return {"enum": list(expected.choices)}
     if expected.kind == "Boolean":
         return {"type": "boolean"}
+    if expected.kind == TEXT:
+        return {"type": "string"}
+    if expected.share:
+        return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": PERCENT}], "examples": [expected.example]}
     if expected.unit != "1":
         return {"type": "string", "pattern": QUANTITY, "examples": [expected.example]}
     found: Schema = {"type": "integer" if expected.kind == "Integer" else "number"}

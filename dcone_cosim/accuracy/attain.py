@@ -1,0 +1,251 @@
+"""The accuracy that a scene asks for: met, and shown to be met by runs of its own; or refused, with what would do.
+
+What was measured of other scenes says where to begin. Each phase is then run with that setting and with one twice as
+coarse (twice as fine where there is none), a chaotic one several times each, with jittered starts:
+
+    error <= |difference| q,   q = r/(1 - r) of a coarser one, 1/(1 - r) of a finer one,   r = finer size/coarser size
+
+for errors that fall with the first power of the size at least. If that is too much, the next finer setting is tried.
+What one run scatters no setting mends: two standard deviations are added to the error, and are brought down by the
+mean of n runs where the scene allows so many.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from dcone_cosim.accuracy.judge import SIGMAS, Sample, error_of, sample_of, scatters
+from dcone_cosim.accuracy.plan import Alone, Planned, Planner
+from dcone_cosim.accuracy.settings import COUPLING, MACRO_STEP, NUMERICS, Setting, settings_of
+from dcone_cosim.accuracy.show import percent
+from dcone_cosim.accuracy.work import Measured, measure
+from dcone_cosim.cases.rows import Row
+from dcone_cosim.cases.runner import Memory, Runner
+from dcone_cosim.cases.workers import Workers, cores
+from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.progress import Progress
+from dcone_cosim.results import Attained
+from dcone_cosim.scene.data import Accuracy, PhaseScene, Scene
+
+RUNS = 3
+"""Of a chaotic phase with each of two settings."""
+APART = 1.9
+"""Ratio of the sizes of two settings whose difference tells an error."""
+MARGIN = 1.3
+"""More runs than the scatter asks for, which is known from few."""
+Make = Callable[[Sequence[Planned], int], list[Sample]]
+"""Runs each of some settings so many times."""
+
+
+@dataclass
+class Ladder:
+    """The settings of an axis, coarse to fine, and which of them is chosen."""
+
+    axis: str
+    settings: list[Setting]
+    place: int
+
+    @property
+    def here(self) -> Setting:
+        return self.settings[self.place]
+
+    @property
+    def partner(self) -> Setting | None:
+        """The nearest setting that is twice as coarse, or twice as fine."""
+        size = self.here.size
+        coarser = [s for s in self.settings if s.size >= APART * size]
+        finer = [s for s in self.settings if s.size * APART <= size]
+        return min(coarser, key=lambda s: s.size, default=max(finer, key=lambda s: s.size, default=None))
+
+
+@dataclass
+class Estimate:
+    """Errors [1] and scatter [1] by quantity, how the quantities are called, and the runs that told it."""
+
+    errors: dict[str, float] = field(default_factory=dict)
+    scatters: dict[str, float] = field(default_factory=dict)
+    labels: dict[str, str] = field(default_factory=dict)
+    made: int = 0
+
+    def add(self, other: Estimate) -> None:
+        """Of another axis: errors add up."""
+        for key, error in other.errors.items():
+            self.errors[key] = self.errors.get(key, 0.0) + error
+        self.scatters |= other.scatters
+        self.labels |= other.labels
+        self.made += other.made
+
+    def of_mean(self, key: str, runs: int) -> float:
+        """What the mean of so many runs errs by [1]."""
+        return self.errors.get(key, 0.0) + SIGMAS * self.scatters.get(key, 0.0) / math.sqrt(runs)
+
+    def worst(self, runs: int) -> str:
+        return max(self.errors, key=lambda key: self.of_mean(key, runs))
+
+
+def attain(
+    name: str, settings: Sequence[str], scene: Scene, isolate: bool | None, progress: Progress
+) -> tuple[list[str], dict[str, Attained]]:
+    """Settings of a scene that meet its accuracy, and how exact each phase is with them; `InputError` if none does.
+
+    name, settings    with which the scene was loaded
+    """
+    assert scene.accuracy is not None
+    changes = [change for phase in scene.phases if phase.chosen is not None for change in phase.chosen.changes]
+    found: dict[str, Attained] = {}
+    with Workers(cores()) as workers:
+        for place, phase in enumerate(scene.phases):
+            alone = Alone(name, [*settings, *changes], isolate, choose=False)
+            if place:
+                alone.begin(progress)
+            attempt = _Attempt(alone, phase.name, scene.accuracy, workers, progress)
+            more, found[phase.name] = attempt.attained()
+            changes += more
+    return changes, found
+
+
+class _Attempt:
+    """One phase, with the settings that were found for those before it."""
+
+    def __init__(self, alone: Alone, phase: str, accuracy: Accuracy, workers: Workers, progress: Progress) -> None:
+        self._phase, self._accuracy, self._progress = phase, accuracy, progress
+        self._planner = Planner(alone, phase, progress)
+        self._ladders = _ladders(self._planner.own)
+        self._runner = Runner(Memory(), workers, 2 * cores(), measure)
+
+    def attained(self) -> tuple[list[str], Attained]:
+        """Settings of the phase, beside those that the scene has already, and how exact it is with them."""
+        asked = self._accuracy.asked
+        if not self._ladders:
+            return [], Attained(asked, "as it is", math.nan, "", 0.0, "")
+        begun = [ladder.place for ladder in self._ladders]
+        told = self._refined()
+        steps = zip(self._ladders, begun, strict=True)
+        changes = [change for ladder, place in steps if ladder.place != place for change in ladder.here.changes]
+        label = "; ".join(ladder.here.label for ladder in self._ladders)
+        scatter, noisy = max(((s, told.labels.get(k, "")) for k, s in told.scatters.items()), default=(0.0, ""))
+        key = told.worst(1)
+        if told.of_mean(key, 1) <= asked:
+            error, what = told.of_mean(key, 1), told.labels[key]
+            return changes, Attained(asked, label, error, what, scatter, noisy, made=told.made)
+        room = [asked - error for error in told.errors.values() if error < asked]
+        needed = math.ceil(MARGIN * (SIGMAS * scatter / min(room, default=asked)) ** 2)
+        if needed > self._accuracy.runs:
+            allowed = self._accuracy.runs
+            how = "allow them with solver.runs" if allowed == 1 else f"solver.runs allows {allowed}"
+            raise InputError(
+                f"solver.accuracy = {percent(asked)} is more than one run can tell\n"
+                f"  {self._phase}: {noisy} scatters by {percent(scatter)} (standard deviation) from run to run, "
+                f"whatever the step; the mean of about {needed:,} runs would do ({how}), or name other quantities "
+                "in solver.quantities"
+            )
+        return changes, self._of_many(told, needed, label, noisy)
+
+    def _refined(self) -> Estimate:
+        """The estimate with settings fine enough that only scatter is left to be too much."""
+        asked = self._accuracy.asked
+        while True:
+            axes = {ladder.axis: self._axis(ladder) for ladder in self._ladders}
+            told = Estimate()
+            for estimate in axes.values():
+                told.add(estimate)
+            if not told.errors:
+                raise InputError(f"{self._phase}: it has none of {', '.join(self._accuracy.quantities)}")
+            key = max(told.errors, key=lambda key: told.errors[key])
+            error, noise = told.errors[key], SIGMAS * told.scatters.get(key, 0.0) * math.sqrt(2.0 / RUNS)
+            if error <= max(asked, noise):
+                return told
+            worst = max(self._ladders, key=lambda ladder: axes[ladder.axis].errors.get(key, 0.0))
+            if worst.place + 1 >= len(worst.settings):
+                raise InputError(
+                    f"solver.accuracy = {percent(asked)} cannot be met\n  {self._phase}: {told.labels[key]} errs by "
+                    f"{percent(error)} with the finest setting there is, {worst.here.label}"
+                )
+            worst.place += 1
+            self._progress.say(f"{self._phase}: {told.labels[key]} {percent(error)} off; trying {worst.here.label}")
+
+    def _axis(self, ladder: Ladder) -> Estimate:
+        """Errors along one axis, with the others as they are chosen."""
+        partner = ladder.partner
+        if partner is None:
+            return Estimate()
+        rest = [change for other in self._ladders if other is not ladder for change in other.here.changes]
+        here, there = self._run([_with(rest, ladder.here), _with(rest, partner)], RUNS if self._planner.chaotic else 1)
+        ratio = min(partner.size, ladder.here.size) / max(partner.size, ladder.here.size)
+        factor = (ratio if partner.size > ladder.here.size else 1.0) / (1.0 - ratio)
+        told = Estimate(made=here.runs + there.runs)
+        own, other = scatters(here), scatters(there)
+        for key, about in here.about.items():
+            error = error_of(there, here, key)[0] * factor if self._counts(key, about["meant"]) else math.nan
+            if not math.isnan(error):
+                told.errors[key], told.labels[key] = error, str(about["label"])
+                if own.get(key, 0.0) > 0.0:
+                    told.scatters[key] = math.sqrt(0.5 * (own[key] ** 2 + other.get(key, own[key]) ** 2))
+        return told
+
+    def _counts(self, key: str, meant: bool) -> bool:
+        names = self._accuracy.quantities
+        return key in names if names else meant
+
+    def _of_many(self, told: Estimate, runs: int, label: str, noisy: str) -> Attained:
+        """How exact the mean of many runs is, with their own scatter."""
+        (sample,) = self._run([_with([c for ladder in self._ladders for c in ladder.here.changes], None)], runs)
+        own = {key: s for key, s in scatters(sample).items() if key in told.errors}
+        many = Estimate({k: min(e, SIGMAS * own.get(k, e)) for k, e in told.errors.items()}, own, told.labels)
+        key = many.worst(runs)
+        means = {
+            name: (
+                str(about["label"]),
+                float(sample.means[name][0]),
+                float(sample.spreads[name][0]),
+                str(about["unit"]),
+            )
+            for name, about in sample.about.items()
+            if len(sample.means[name]) == 1
+        }
+        error, scatter = many.of_mean(key, runs), max(own.values(), default=0.0)
+        made = told.made + runs
+        return Attained(self._accuracy.asked, label, error, told.labels[key], scatter, noisy, runs, means, made)
+
+    def _run(self, planned: Sequence[Planned], runs: int) -> list[Sample]:
+        cases: dict[str, Measured] = {}
+        for one in planned:
+            cases |= self._planner.cases(one, runs)
+        self._progress.say(f"{self._phase}: {len(cases)} runs for the estimate of its error")
+        rows: dict[str, Row] = {row.key: row for row, _ in self._runner.rows(cases.values())}
+        samples = [sample_of(one, rows) for one in planned]
+        for sample in samples:
+            if sample.failed:
+                raise FmuError(f"{self._phase}, run for the estimate of its error: {sample.failed}")
+        return samples
+
+
+def _with(rest: Sequence[str], setting: Setting | None) -> Planned:
+    own = setting if setting is not None else Setting("", "", 1.0, ())
+    return Planned(Setting(own.axis, own.family, own.size, (*rest, *own.changes)))
+
+
+def _ladders(phase: PhaseScene) -> list[Ladder]:
+    """The axes along which a phase is refined: that of its model, or its macro step; and its coupling step."""
+    settings = settings_of(phase, False, [])
+    axes = {axis: [s for s in settings if s.axis == axis] for axis in dict.fromkeys(s.axis for s in settings)}
+    if NUMERICS in axes or COUPLING in axes:
+        axes.pop(MACRO_STEP, None)
+    found = []
+    for axis, of in axes.items():
+        family = [s for s in of if s.family == of[0].family]
+        found.append(Ladder(axis, family, _place(family, phase)))
+    return found
+
+
+def _place(settings: Sequence[Setting], phase: PhaseScene) -> int:
+    """Which of them the phase has; the default one, or the nearest to it, if it has none of theirs."""
+    for place, setting in enumerate(settings):
+        told: Mapping[str, str] = dict(change.split("=", 1) for change in setting.changes)
+        own = {key: phase.setting(key.partition(".")[2]) for key in told}
+        numbers = {key: float(text.split()[0]) for key, text in told.items()}
+        if told and all(math.isclose(own[k] or 0.0, v, rel_tol=1e-4) for k, v in numbers.items()):
+            return place
+    return min(range(len(settings)), key=lambda i: abs(math.log(settings[i].size)))

@@ -1,0 +1,226 @@
+"""A scene's accuracy: what is chosen for it, what is estimated of it, and when it is refused."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dcone_cosim import measured
+from dcone_cosim.accuracy import attain as attaining
+from dcone_cosim.accuracy.attain import APART, Ladder, _Attempt
+from dcone_cosim.accuracy.judge import Sample
+from dcone_cosim.accuracy.plan import Alone, Planned
+from dcone_cosim.accuracy.settings import NUMERICS, Setting
+from dcone_cosim.commands import run_and_write
+from dcone_cosim.errors import InputError
+from dcone_cosim.loading import load
+from dcone_cosim.measured import Entry
+from dcone_cosim.progress import Progress
+from dcone_cosim.reports import summary
+from dcone_cosim.scene.data import Accuracy
+from dcone_cosim.scene.mistakes import SceneError
+from tests.consistency.test_table2 import REFERENCE
+
+LEAPFROG = {"solver": "leapfrog", "precision": "double"}
+SINGLE = LEAPFROG | {"precision": "single"}
+ENTRIES = (
+    Entry(LEAPFROG, 3.0, {"mouth_area": 0.02, "t80": 0.003}, 0.34),
+    Entry(LEAPFROG, 2.0, {"mouth_area": 0.008, "t80": 0.002}, 0.51),
+    Entry(LEAPFROG, 1.0, {"mouth_area": 0.002, "t80": 0.001}, 1.0),
+    Entry(LEAPFROG, 0.5, {"mouth_area": 0.0004, "t80": 0.0002}, 2.0),
+    Entry(SINGLE, 1.0, {"mouth_area": 0.003, "t80": 0.001}, 0.68),
+)
+"""Of a net that was never measured: errors that fall with the square of the step."""
+
+
+@pytest.fixture
+def entries(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measured, "table", lambda model: ENTRIES if model == "net_capture" else ())
+
+
+def step_ratio(*settings: str) -> tuple[float, str]:
+    """What a deployment is computed with: its ratio over that at the default step, and its precision."""
+    main = load("deployment", settings).phases[0].main
+    plain = load("deployment").phases[0]
+    from dcone_cosim import build
+
+    values = {**plain.main.defaults, **plain.main.parameters}
+    default = next(r for r in build.rungs("net_capture", values, plain.main.terms) if r.size == 1.0)
+    return main.parameters["solver.step_ratio"] / default.values["solver.step_ratio"], main.terms["precision"]
+
+
+@pytest.mark.parametrize(
+    ("settings", "size", "precision"),
+    [
+        (["solver.accuracy=1 %"], 2.0, "double"),  # the single one is dearer
+        (["solver.accuracy=0.5 %"], 1.0, "single"),
+        (["solver.accuracy=0.25 %"], 1.0, "double"),
+        (["solver.accuracy=0.1 %"], 0.5, "double"),
+        (["solver.accuracy=0.005"], 1.0, "single"),
+        (["solver.accuracy=0.5 %", 'capture.solver.precision="double"'], 1.0, "double"),  # the scene says so
+        (["solver.accuracy=0.5 %", 'solver.quantities=["t80"]'], 2.0, "double"),  # three times is not stable here
+        (["solver.accuracy=0.001 %"], 0.5, "double"),  # nothing is: the nearest, and the run will say
+    ],
+)
+@pytest.mark.usefixtures("entries")
+def test_the_cheapest_that_is_exact_enough_is_chosen(settings: list[str], size: float, precision: str) -> None:
+    found = step_ratio(*settings)
+    assert found[0] == pytest.approx(size, rel=1e-5)
+    assert found[1] == precision
+
+
+@pytest.mark.usefixtures("entries")
+def test_a_scene_says_what_was_chosen_and_what_is_known_of_it() -> None:
+    scene = load("deployment", ["solver.accuracy=1 %"])
+    chosen = scene.phases[0].chosen
+    assert chosen is not None
+    assert chosen.label == "leapfrog, double x 2"
+    assert chosen.error == 0.008
+    assert scene.accuracy == Accuracy(0.01)
+    assert load("deployment").accuracy is None
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        (["solver.accuracy=1 %", "capture.solver.step_ratio=0.3"], "is chosen by solver.accuracy"),
+        (["solver.accuracy=1 %", 'solver.quantities=["mouth_aera"]'], "did you mean 'mouth_area'"),
+        (["solver.accuracy=1 %", 'solver.quantities=["tug_times"]'], "no phase of this scene is judged by it"),
+        (["solver.accuracy=0 %"], "must be greater than 0"),
+        (["solver.accuracy=60 %"], "must be at most"),
+        (["solver.accuracy=1 mm"], "expected a share"),
+        (["solver.acuracy=1 %"], "did you mean 'accuracy'"),
+        (["solver.runs=4"], "solver.accuracy missing"),
+        (["solver.accuracy=1 %", "solver.runs=0"], "must be at least 1"),
+    ],
+)
+@pytest.mark.usefixtures("entries")
+def test_what_cannot_be_asked_is_told(settings: list[str], said: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        load("deployment", settings)
+    assert said in str(caught.value)
+
+
+def test_a_setting_is_judged_by_one_twice_as_coarse() -> None:
+    sizes = (6.0, 4.0, 3.0, 2.0, 1.4, 1.0, 0.7, 0.5, 0.25)
+    settings = [Setting(NUMERICS, "leapfrog", size, ()) for size in sizes]
+    for place, size in enumerate(sizes):
+        partner = Ladder(NUMERICS, settings, place).partner
+        assert partner is not None
+        ratio = partner.size / size
+        assert ratio >= APART or 1.0 / ratio >= APART
+        assert (ratio > 1.0) == (size <= 3.0)
+    assert Ladder(NUMERICS, settings[:1], 0).partner is None
+
+
+Truth = Callable[[float, int], float]
+
+
+class Faked:
+    """An attempt whose runs are made up: of a size and a number follows what they find."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, truth: Truth, accuracy: Accuracy) -> None:
+        self.truth, self.made = truth, list[float]()
+        alone = Alone("deployment", [], None)
+        monkeypatch.setattr(_Attempt, "_run", lambda _, planned, runs: [self.sample(one, runs) for one in planned])
+        self.attempt = _Attempt(alone, "capture", accuracy, None, Progress())  # type: ignore[arg-type]
+
+    def sample(self, planned: Planned, runs: int) -> Sample:
+        told = {key: float(value) for key, value in (c.split("=") for c in planned.setting.changes)}
+        default = next(s for s in self.attempt._ladders[0].settings if s.size == 1.0)
+        size = told["capture.solver.step_ratio"] / float(default.changes[0].split("=")[1])
+        self.made.append(round(size, 3))
+        values = np.array([[self.truth(size, number)] for number in range(runs)])
+        about: dict[str, Any] = {"label": "mouth area", "scale": 0.0, "meant": True, "unit": "m2"}
+        spread = values.std(axis=0, ddof=1) if runs > 1 else np.zeros(1)
+        return Sample(planned.setting, runs, 1.0, {"q": values.mean(axis=0)}, {"q": spread}, {"q": about})
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0, 4.0])
+def test_it_is_refined_until_it_is_exact_enough(monkeypatch: pytest.MonkeyPatch, power: float) -> None:
+    """An error of 3 % at the default step: the setting found has the accuracy asked, and the estimate is no less."""
+    faked = Faked(monkeypatch, lambda size, _: 100.0 * (1.0 + 0.03 * size**power), Accuracy(0.01))
+    changes, attained = faked.attempt.attained()
+    size = faked.made[-2]
+    truly = 0.03 * size**power / (1.0 + 0.03 * size**power)
+    assert truly <= attained.error * (1.0 + 1e-4) <= 0.01
+    assert len(changes) == 1
+    assert size < 1.0
+    assert attained.runs == 1
+
+
+def test_what_no_setting_meets_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    faked = Faked(monkeypatch, lambda size, _: 100.0 * (1.0 + 0.3 * size), Accuracy(0.001))
+    with pytest.raises(InputError, match=r"cannot be met\n.*mouth area errs by .* with the finest setting"):
+        faked.attempt.attained()
+
+
+def scattered(size: float, number: int) -> float:
+    """Scatter of 3 %, whatever the size."""
+    return 100.0 + 3.0 * (-1.0, 0.2, 0.8, -0.9, 1.3, -0.4)[(number + round(size * 8)) % 6]
+
+
+def test_scatter_is_refused_with_the_runs_that_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    faked = Faked(monkeypatch, scattered, Accuracy(0.01))
+    with pytest.raises(InputError, match=r"more than one run can tell\n.*scatters by .* the mean of about \d+ runs"):
+        faked.attempt.attained()
+
+
+def test_scatter_is_met_by_the_mean_of_as_many_as_are_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    faked = Faked(monkeypatch, scattered, Accuracy(0.02, runs=200))
+    _, attained = faked.attempt.attained()
+    assert attained.runs > 4
+    label, mean, spread, unit = attained.means["q"]
+    assert (label, unit) == ("mouth area", "m2")
+    assert abs(mean / 100.0 - 1.0) <= attained.error
+    assert 2.0 * spread / mean / math.sqrt(attained.runs) <= attained.error
+    assert attained.scatter == pytest.approx(spread / mean)
+    refused = Faked(monkeypatch, scattered, Accuracy(0.02, runs=attained.runs - 1))
+    with pytest.raises(InputError, match=f"solver.runs allows {attained.runs - 1}"):
+        refused.attempt.attained()
+
+
+def test_a_tow_is_as_exact_as_asked(tmp_path: Path) -> None:
+    """And as exact as it says: against quadruple precision."""
+    settings = ("removal.duration=70 min", "removal.macro_step=2 min", "solver.accuracy=0.1 %")
+    written = run_and_write("table2-deorbit", tmp_path / "out", Progress(), False, False, settings=settings)
+    attained = written.result.attained["removal"]
+    assert attained.error <= 0.001
+    assert written.result.phases["removal"].tugs is not None
+    rows = written.result.phases["removal"].tugs.rows
+    tugs = np.array([rows[n] for n in sorted(rows)][:5])
+    exact = np.array(REFERENCE["B"][1])
+    assert np.abs(tugs[:, 0] / exact[:, 0] - 1.0).max() <= attained.error
+    assert np.abs(tugs[:, 1] / exact[:, 2] - 1.0).max() <= max(attained.error, 1e-8)
+    told = summary.as_dict(written.result)["removal"]
+    assert told["accuracy.asked"]["value"] == 0.001
+    assert told["accuracy.setting"]["value"].startswith("tolerances x ")
+    # the folder runs again to the same
+    again = run_and_write(str(tmp_path / "out"), tmp_path / "again", Progress(), False, False)
+    assert again.result.attained == written.result.attained
+
+
+def test_a_tow_that_scatters_in_no_way_needs_one_run_of_each() -> None:
+    settings = ["removal.duration=30 min", "solver.accuracy=1 %"]
+    _, found = attaining.attain("table2-deorbit", settings, load("table2-deorbit", settings), None, Progress())
+    assert found["removal"].made == 2
+    assert found["removal"].scatter == 0.0
+
+
+def test_quantities_of_every_phase_are_those_that_can_be_asked_for() -> None:
+    """What a run is judged by has the names that a scene may ask for."""
+    from dcone_cosim.master import run_scene
+    from dcone_cosim.phases import kind_of
+    from dcone_cosim.scene_fmus import SceneFmus
+
+    scene = load("mission", ["removal.duration=20 min"])
+    with SceneFmus(scene, Progress()) as fmus:
+        run = run_scene(scene, fmus.instantiate, Progress())
+    for name, result in run.phases.items():
+        keys = {q.key for q in kind_of(name).quantities(run, result, (1.0, 2.0, 3.0))}
+        assert keys == set(kind_of(name).judged_by)
