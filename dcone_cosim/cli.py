@@ -254,7 +254,7 @@ def export_ssp(
     settings: Settings = None,
 ) -> None:
     """Write one package in the format SSP 1.0 per phase of a scene, for use in other tools."""
-    from dcone_cosim.commands import named
+    from dcone_cosim.loading import named
     from dcone_cosim.ssp.export import export_scene
 
     progress = _progress()
@@ -289,7 +289,7 @@ def inspect(scene: SceneName, settings: Settings = None, json: Json = False, off
     substeps; of an FMU from elsewhere what it tells of itself.
     """
     _promise(offline)
-    from dcone_cosim.commands import named
+    from dcone_cosim.loading import named
     from dcone_cosim.reports import inspection
 
     progress = _progress()
@@ -338,7 +338,7 @@ def validate(
 
     Exit code: 0 all are good, 2 there is a mistake.
     """
-    from dcone_cosim.commands import named
+    from dcone_cosim.loading import named
 
     answers = []
     for name in scenes:

@@ -15,14 +15,13 @@ from dcone_cosim import build, interrupts, placed
 from dcone_cosim.apart import ours, phases_apart
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
-from dcone_cosim.loading import find, load
+from dcone_cosim.loading import find, load, named
 from dcone_cosim.master import run_scene
 from dcone_cosim.plots import style
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
 from dcone_cosim.results import Attained, RunResult
 from dcone_cosim.run_folder import default_folder, fill
-from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus, remarks
 from dcone_cosim.scenes.kept import unlike
 from dcone_cosim.scenes.reading import parse, read_text
@@ -41,13 +40,6 @@ class Written:
     result: RunResult
     folder: Path
     notes: list[str] = field(default_factory=list)
-
-
-def named(scene: str, settings: Sequence[str] = ()) -> Scene:
-    """The scene of that name or file, with settings `KEY.KEY=VALUE` in the place of what it says."""
-    if not scene.strip():
-        raise InputError("the name of the scene is empty; `dcone list` shows the scenes there are")
-    return load(scene, settings)
 
 
 def run_and_write(

@@ -64,6 +64,13 @@ def load(name: str, settings: Sequence[str] = (), choose: bool = True) -> Scene:
     return parse(read_text(kept.path), kept.name, str(kept.path), kept.path.parent, settings, choose)
 
 
+def named(scene: str, settings: Sequence[str] = ()) -> Scene:
+    """The scene that a command line names: see `load`."""
+    if not scene.strip():
+        raise InputError("the name of the scene is empty; `dcone list` shows the scenes there are")
+    return load(scene, settings)
+
+
 def title_of(path: Path) -> str:
     """The title of a scene file, without checking the rest."""
     return str(tomllib.loads(read_text(path)).get("title", ""))

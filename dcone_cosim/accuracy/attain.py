@@ -17,10 +17,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from dcone_cosim.accuracy.judge import SIGMAS, Sample, error_of, sample_of, scatters
-from dcone_cosim.accuracy.plan import Alone, Planned, Planner
+from dcone_cosim.accuracy.plan import Planned, Planner
 from dcone_cosim.accuracy.settings import COUPLING, MACRO_STEP, NUMERICS, Setting, settings_of
 from dcone_cosim.accuracy.show import percent
 from dcone_cosim.accuracy.work import Measured, measure
+from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.cases.runner import Memory, Runner
 from dcone_cosim.cases.workers import Workers, cores

@@ -14,8 +14,9 @@ from dcone_cosim import measured
 from dcone_cosim.accuracy import attain as attaining
 from dcone_cosim.accuracy.attain import APART, Ladder, _Attempt
 from dcone_cosim.accuracy.judge import Sample
-from dcone_cosim.accuracy.plan import Alone, Planned
+from dcone_cosim.accuracy.plan import Planned
 from dcone_cosim.accuracy.settings import NUMERICS, Setting
+from dcone_cosim.cases.alone import Alone
 from dcone_cosim.commands import run_and_write
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load

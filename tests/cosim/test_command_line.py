@@ -53,7 +53,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, make_scene: Callable[..., Scene]) 
         pass
 
     monkeypatch.setattr(commands, "SceneFmus", SceneFmus)
-    monkeypatch.setattr(commands, "load", lambda *_: make_scene("capture", "removal"))
+    monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture", "removal"))
     return SceneFmus
 
 
@@ -215,7 +215,7 @@ PROGRAM = """
     from dcone_cosim import cli, commands
     from tests.cosim.conftest import scene_of
     from tests.cosim.test_command_line import NoArchives
-    commands.SceneFmus, commands.load = NoArchives, lambda *_: scene_of("capture", "removal")
+    commands.SceneFmus, commands.named = NoArchives, lambda *_: scene_of("capture", "removal")
     NoArchives.meanwhile = staticmethod(lambda: {act})
     sys.argv = ["dcone", "run", "mock", "-o", "deep/out", "--no-figures"]
     cli.main()

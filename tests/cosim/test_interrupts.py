@@ -53,7 +53,7 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch, make_scene: Callable[..., Scene])
                 return (coming.pop(0) if coming else MockRemoval)(tugs=[(12.0, 5.0, 0.01)])
 
         monkeypatch.setattr(commands, "SceneFmus", SceneFmus)
-        monkeypatch.setattr(commands, "load", lambda *_: make_scene("capture", "removal"))
+        monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture", "removal"))
 
     return use
 
@@ -138,7 +138,7 @@ SLOW = """
             time.sleep({pause})
             super().step(at, size)
     NoArchives.instantiate = lambda self, phase, name: MockCapture() if phase == "capture" else Slow(tugs=[])
-    commands.SceneFmus, commands.load = NoArchives, lambda *_: scene_of("capture", "removal")
+    commands.SceneFmus, commands.named = NoArchives, lambda *_: scene_of("capture", "removal")
     progress.REMINDER = {reminder}
     sys.argv = ["dcone", "run", "mock", "-o", "out", "--no-figures"]
     cli.main()

@@ -298,7 +298,7 @@ PROGRAM = """
     from tests.cosim.mock_components import MockCapture, MockRemoval
     from tests.cosim.test_kills import Unpacking, kill_at
     Unpacking.instantiate = lambda self, phase, name: MockCapture() if phase == "capture" else MockRemoval(tugs=[])
-    commands.SceneFmus, commands.load = Unpacking, lambda *_: scene_of("capture", "removal")
+    commands.SceneFmus, commands.named = Unpacking, lambda *_: scene_of("capture", "removal")
     sys.argv = ["dcone", "run", "mock", "-o", "runs/out", "--csv", *sys.argv[2:]]
     kill_at(int({event}))
     cli.main()
