@@ -131,3 +131,25 @@ def accuracy(
     for note in done.notes:
         complain(f"note: {note}")
     return done.exit_code
+
+
+def physics(
+    scene: str, settings: list[str], jobs: int | None, json: bool, progress: Progress, console: Console
+) -> None:
+    """Measure what each piece of physics changes and costs, and show it."""
+    from dcone_cosim.accuracy import physics as effects
+
+    try:
+        with exits.noise_apart():
+            found = effects.measured(scene, settings, progress, jobs)
+    finally:
+        progress.close()
+    with exits.reader_may_leave():
+        if json:
+            from dcone_cosim.run_folder import as_json
+
+            typer.echo(as_json(effects.as_dict(found)))
+        else:
+            effects.show(found, console)
+    for note in (note for one in found for note in one.notes):
+        complain(f"note: {note}")

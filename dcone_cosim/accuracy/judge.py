@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from dcone_cosim.accuracy.plan import PhasePlan, Planned
 from dcone_cosim.accuracy.settings import NUMERICS, Setting
-from dcone_cosim.accuracy.work import CPU
+from dcone_cosim.accuracy.work import CPU, STEPS
 from dcone_cosim.cases.rows import Row
 
 Array = npt.NDArray[np.float64]
@@ -43,12 +43,14 @@ class Sample:
 
     means, spreads    of each quantity, value by value; `about` is how it is told
     cpu               median of the steps' CPU time [s]
+    steps             median of the solver's steps; 0: its FMU tells of none
     failed            of those that did not come to an end, why
     """
 
     setting: Setting
     runs: int = 0
     cpu: float = math.nan
+    steps: float = 0.0
     means: dict[str, Array] = field(default_factory=dict)
     spreads: dict[str, Array] = field(default_factory=dict)
     about: dict[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -143,6 +145,7 @@ def sample_of(planned: Planned, rows: Mapping[str, Row]) -> Sample:
     if not good or found.failed:
         return found
     found.cpu = float(np.median([row.timings[CPU] for row in good]))
+    found.steps = float(np.median([row.timings[STEPS] for row in good]))
     for key in dict.fromkeys(key for row in good for key in row.samples):
         told = [row.samples[key] for row in good if key in row.samples]
         longest = max(len(one["values"]) for one in told)

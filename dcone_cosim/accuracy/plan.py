@@ -69,11 +69,15 @@ class Planner:
 
     base       the phase by itself, as it is
     chaotic    its runs are samples: each starts a little differently
+    changes, without    settings of all its cases, and tables that all leave out
     """
 
-    def __init__(self, alone: Alone, phase: str, progress: Progress) -> None:
+    def __init__(
+        self, alone: Alone, phase: str, progress: Progress, changes: Sequence[str] = (), without: Sequence[str] = ()
+    ) -> None:
         self._alone, self._phase = alone, phase
-        self.base = alone.scene_of(phase)
+        self._rest, self._without = tuple(changes), tuple(without)
+        self.base = alone.scene_of(phase, changes, without)
         self.own = self.base.phases[0]
         self.chaotic = kind_of(phase).chaotic
         self._instants = spread_instants(_first(self.own), self.own.duration, self.own.macro_step, INSTANTS)
@@ -84,8 +88,8 @@ class Planner:
         found: dict[str, Measured] = {}
         for number in range(count):
             jitter = ensemble.jitter(self.base, number) if self.chaotic else ()
-            changes = (*planned.setting.changes, *jitter)
-            scene = self._alone.scene_of(self._phase, changes)
+            changes = (*self._rest, *planned.setting.changes, *jitter)
+            scene = self._alone.scene_of(self._phase, changes, self._without)
             key = digest(key_of(scene, self._fmus.of(scene), number), self._instants)
             found.setdefault(key, Measured(key, scene, changes, {}, number, self._instants))
             planned.keys.append(key)

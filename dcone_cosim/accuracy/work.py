@@ -12,6 +12,9 @@ from dcone_cosim.phases import kind_of
 from dcone_cosim.results import RunResult
 
 CPU = "cpu of the steps"
+STEPS, END = "steps of the solver", "end of the phase"
+TOLD = "solver.steps"
+"""Output that counts them."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,8 @@ def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
     samples = {}
     for name, phase in result.phases.items():
         samples = {q.key: asdict(q) for q in kind_of(name).quantities(result, phase, case.instants)}
-        timings = {**timings, CPU: phase.cpu}
+        steps = phase.recorder.last().get(TOLD, 0.0) if len(phase.recorder) else 0.0
+        timings = {**timings, CPU: phase.cpu, STEPS: steps, END: phase.end - phase.start}
     return Row(case.key, result.status, result.exit_code, result.message, timings=timings, samples=samples)
 
 

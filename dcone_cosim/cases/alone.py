@@ -72,7 +72,7 @@ class Alone:
         scene = scene.isolating(self._isolate)
         place = next(i for i, p in enumerate(scene.phases) if p.name == phase)
         own = scene.phases[place]
-        if place + 1 < len(scene.phases):
+        if phase != self.phases[-1]:
             own = kind_of(phase).by_itself(own)
         if phase in self._taken:
             given, start = self._taken[phase]
@@ -80,11 +80,20 @@ class Alone:
         return replace(scene, phases=(own,))
 
     def _without(self, phase: str, changes: Sequence[str], tables: Collection[str]) -> Scene:
+        """What the phase cannot do then for those after it does not matter: these are left out too."""
         base = self.scene
         document = tomllib.loads(base.text)
+        kept = self.phases[: self.phases.index(phase) + 1]
+        document = {name: value for name, value in document.items() if name not in self.phases or name in kept}
         left = {name: value for name, value in document[phase].items() if name not in tables}
-        text = tomlkit.dumps({**document, phase: left})
-        return parse(text, base.name, base.source, Path(base.source).parent, changes, choose=False)
+        text = tomlkit.dumps({**document, "phases": kept, phase: left})
+        scene = parse(text, base.name, base.source, Path(base.source).parent, changes, choose=False)
+        *before, own = scene.phases
+        # what a phase after it has told of it, such as the length of their one line
+        told = base.phases[len(before)].main.parameters
+        known = {name: value for name, value in told.items() if name in own.main.defaults}
+        own = replace(own, main=replace(own.main, parameters={**known, **own.main.parameters}))
+        return replace(scene, phases=(*before, own))
 
 
 class Fmus:

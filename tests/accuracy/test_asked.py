@@ -139,7 +139,9 @@ class Faked:
         values = np.array([[self.truth(size, number)] for number in range(runs)])
         about: dict[str, Any] = {"label": "mouth area", "scale": 0.0, "meant": True, "unit": "m2"}
         spread = values.std(axis=0, ddof=1) if runs > 1 else np.zeros(1)
-        return Sample(planned.setting, runs, 1.0, {"q": values.mean(axis=0)}, {"q": spread}, {"q": about})
+        return Sample(
+            planned.setting, runs, 1.0, means={"q": values.mean(axis=0)}, spreads={"q": spread}, about={"q": about}
+        )
 
 
 @pytest.mark.parametrize("power", [1.0, 2.0, 4.0])

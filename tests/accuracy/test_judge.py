@@ -13,7 +13,7 @@ from dcone_cosim.accuracy.judge import Report, cheapest, front, judge
 from dcone_cosim.accuracy.plan import PhasePlan, Planned
 from dcone_cosim.accuracy.settings import MACRO_STEP, NUMERICS, Setting
 from dcone_cosim.accuracy.show import sentences
-from dcone_cosim.accuracy.work import CPU
+from dcone_cosim.accuracy.work import CPU, STEPS
 from dcone_cosim.cases.rows import Row
 
 SIZES = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
@@ -42,7 +42,7 @@ class Made:
             samples = {} if value is None else {"q": told(value, **of)}
             status, code = ("completed", 0) if samples else ("FMU failed", 5)
             self.rows[key] = Row(
-                key, status, code, "" if samples else "it fell over", timings={CPU: cpu}, samples=samples
+                key, status, code, "" if samples else "it fell over", timings={CPU: cpu, STEPS: 0.0}, samples=samples
             )
             planned.keys.append(key)
         self.settings.append(planned)

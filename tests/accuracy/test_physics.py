@@ -1,0 +1,53 @@
+"""`dcone inspect --measure`: what a term changes and costs, where both are known."""
+
+from __future__ import annotations
+
+import pytest
+
+from dcone_cosim.accuracy import physics
+from dcone_cosim.accuracy.physics import Found, Variant, variants_of
+from dcone_cosim.cases.alone import Alone
+from dcone_cosim.loading import load
+from dcone_cosim.progress import Progress
+
+
+@pytest.fixture(scope="module")
+def tow() -> Found:
+    (found,) = physics.measured("table2-deorbit", ["removal.duration=3 h"], Progress())
+    return found
+
+
+def test_thrust_lowers_the_orbit_and_nothing_else_does(tow: Found) -> None:
+    """Without it the semi-major axis keeps all of the change that it has with it, but for the pair's own motion."""
+    here, without = tow.effects
+    assert (here.label, without.label) == ("as it is", "without thrust")
+    assert here.change == 0.0
+    assert without.quantity
+    assert without.change > 0.9
+
+
+def test_what_is_left_out_is_not_there(tow: Found) -> None:
+    here, without = tow.effects
+    assert without.bytes < here.bytes - 1000
+    # its two parameters, the input and its output of propellant
+    assert here.variables - without.variables == 4
+    assert without.memory < here.memory
+    assert without.cpu < 1.1 * here.cpu
+
+
+def test_every_term_of_a_scene_is_tried() -> None:
+    found = {v.label: v for v in variants_of(load("mission").phases[0])}
+    assert found["without target, and so without contact"].without == ("target", "contact")
+    assert found["gravity = none"].changes == ('capture.gravity.law="none"',)
+    assert {"without contact", "without closing", "without tether", "without nodes"} <= found.keys()
+    assert found["with settling: speed"] == Variant("with settling: speed", ('capture.settling.by="speed"',))
+    assert not any("solver" in label or "precision" in label for label in found)  # they change no physics
+
+
+def test_a_phase_goes_without_what_the_one_after_it_needs() -> None:
+    """And keeps what that one tells of it: the length of their one line."""
+    alone = Alone("mission", ['capture.closing.drive="winches"'], None)
+    own = alone.scene_of("capture", (), ("target", "contact")).phases[0]
+    assert "target" not in own.main.terms
+    assert own.main.parameters["tether.length"] == 14.0
+    assert own.options.after_capture == 0.0
