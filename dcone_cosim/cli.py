@@ -183,6 +183,9 @@ def accuracy(
         int | None, typer.Option("--runs", help="Runs of each setting; a chaotic phase takes 6, any other 3.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Fewer settings and runs, for a first look.")] = False,
+    peers: Annotated[
+        bool, typer.Option("--peers", help="Try other programs too, as far as they are installed and can do it.")
+    ] = False,
     jobs: cli_cases.Jobs = None,
     json: Json = False,
     isolate: Annotated[
@@ -200,7 +203,7 @@ def accuracy(
     """
     _promise(offline)
     code = cli_cases.accuracy(
-        scene, out, settings or [], runs, quick, jobs, isolate, json, _progress(), _console()
+        scene, out, settings or [], runs, quick, peers, jobs, isolate, json, _progress(), _console()
     )  # fmt: skip
     raise typer.Exit(code)
 

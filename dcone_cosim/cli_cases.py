@@ -105,6 +105,7 @@ def accuracy(
     settings: list[str],
     runs: int | None,
     quick: bool,
+    peers: bool,
     jobs: int | None,
     isolate: bool | None,
     json: bool,
@@ -116,7 +117,7 @@ def accuracy(
 
     try:
         with exits.noise_apart():
-            done = commands.accuracy(scene, out, progress, settings, runs, quick, jobs, isolate)
+            done = commands.accuracy(scene, out, progress, settings, runs, quick, jobs, isolate, peers=peers)
     finally:
         progress.close()
     with exits.reader_may_leave():

@@ -66,16 +66,18 @@ def accuracy(
     jobs: int | None = None,
     isolate: bool | None = None,
     refine: bool = True,
+    peers: bool = False,
 ) -> Done:
     """Measure every phase of a scene and write the folder. Bad input raises and leaves nothing.
 
     refine     whether the models themselves are refined too, which is dear
+    peers      whether other programs are tried too, where they are installed
     """
     started = datetime.now(UTC)
     if runs is not None and not 2 <= runs <= MOST_RUNS:
         raise InputError(f"--runs {runs}: expected 2 to {MOST_RUNS}")
     usual = QUICK if quick else Effort()
-    effort = replace(usual, refine=usual.refine and refine)
+    effort = replace(usual, refine=usual.refine and refine, peers=peers)
     if runs is not None:
         effort = replace(effort, runs=runs, repeats=runs)
     alone = Alone(name, settings, isolate)
@@ -108,15 +110,15 @@ def accuracy(
         }
         notes = [*scene.notes, *dict.fromkeys(note for one in plans for note in one.notes)]
         done = Done(folder, reports, told, notes)
-        _write(done, alone, folder, started, _command(name, settings, runs, quick))
+        _write(done, alone, folder, started, _command(name, settings, runs, quick, peers))
     return done
 
 
-def _command(name: str, settings: Sequence[str], runs: int | None, quick: bool) -> str:
+def _command(name: str, settings: Sequence[str], runs: int | None, quick: bool, peers: bool) -> str:
     """What makes the report again."""
     parts = ["dcone", "accuracy", name, *(part for setting in settings for part in ("--set", setting))]
     parts += [] if runs is None else ["--runs", str(runs)]
-    return shlex.join([*parts, *(["--quick"] if quick else [])])
+    return shlex.join([*parts, *(["--quick"] if quick else []), *(["--peers"] if peers else [])])
 
 
 def _write(done: Done, alone: Alone, folder: Path, started: datetime, command: str) -> None:

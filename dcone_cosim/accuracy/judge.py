@@ -161,6 +161,7 @@ def _axis(name: str, samples: list[Sample], base: Sample) -> Axis | None:
     if not able:
         return None
     own = able[0].setting.family
+    assert not able[0].setting.peer
     reference = min((s for s in able if s.setting.family == own), key=lambda s: s.setting.size)
     second = _second(able, reference)
     compared = [_judge(sample, reference, {}) for sample in samples]
@@ -171,7 +172,7 @@ def _axis(name: str, samples: list[Sample], base: Sample) -> Axis | None:
         agreement = {key: min(value, _shrunk(value, second, reference)) for key, value in agreement.items()}
     points = [_judge(one.sample, reference, agreement) for one in compared]
     here = _judge(base, reference, agreement)
-    typical = float(np.median([p.floor for p in points if math.isfinite(p.worst)] or [0.0]))
+    typical = float(np.median([p.floor for p in points if math.isfinite(p.worst) and not p.setting.peer] or [0.0]))
     for point in (*points, here):
         point.typical = typical
     orders = {family: _order([p for p in points if p.setting.family == family]) for family in _families(points)}
@@ -215,7 +216,7 @@ def _families(points: Sequence[Judged]) -> list[str]:
 def _second(able: Sequence[Sample], reference: Sample) -> Sample | None:
     """The finest of another scheme if there is one, else the next finer one."""
     of = reference.setting
-    others = [s for s in able if s.setting.family != of.family and not _coarse(s)]
+    others = [s for s in able if s.setting.family != of.family and not (s.setting.peer or _coarse(s))]
     if of.axis == NUMERICS and others:
         return min(others, key=lambda s: s.setting.size)
     rest = [s for s in able if s.setting.family == of.family and s is not reference]
@@ -236,6 +237,8 @@ def _shrunk(value: float, second: Sample, reference: Sample) -> float:
 def _judge(sample: Sample, reference: Sample, agreement: Mapping[str, float]) -> Judged:
     errors, floors = {}, {}
     for key in reference.means:
+        if sample.setting.peer and sample.means and key not in sample.means:
+            continue  # it knows nothing of that
         error, floor = error_of(sample, reference, key)
         if not math.isnan(error):
             errors[key] = error
@@ -261,7 +264,9 @@ def error_of(sample: Sample, reference: Sample, key: str) -> tuple[float, float]
     both = np.isfinite(own) & np.isfinite(ref) & (sizes > 0.0)
     if not both.any():
         return math.nan, 0.0
-    scatter = sample.spreads[key][: len(ref)] ** 2 / max(sample.runs, 1)
+    # a single run scatters as those of the reference do
+    spread = reference.spreads[key] if sample.runs == 1 else sample.spreads[key][: len(ref)]
+    scatter = spread**2 / max(sample.runs, 1)
     scatter = scatter + reference.spreads[key] ** 2 / max(reference.runs, 1)
     error = np.abs(own - ref)[both] / sizes[both]
     return float(error.max()), float(SIGMAS * (np.sqrt(scatter[both]) / sizes[both]).max())
@@ -274,6 +279,18 @@ def _order(points: Sequence[Judged]) -> float:
         return math.nan
     slope = np.polyfit(np.log([p.setting.size for p in clear]), np.log([p.worst for p in clear]), 1)[0]
     return float(slope)
+
+
+def own(points: Sequence[Judged]) -> list[Judged]:
+    """Those of our models."""
+    return [point for point in points if not point.setting.peer]
+
+
+def better_peers(points: Sequence[Judged]) -> list[Judged]:
+    """Settings of other programs that no setting of ours is as cheap and as exact as."""
+    peers = [p for p in points if p.setting.peer and math.isfinite(p.bound)]
+    ours = own(points)
+    return [p for p in peers if not any(q.bound <= p.bound and q.sample.cpu <= p.sample.cpu for q in ours)]
 
 
 def front(points: Sequence[Judged]) -> list[Judged]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim.accuracy import show
-from dcone_cosim.accuracy.judge import Report, front
+from dcone_cosim.accuracy.judge import Report, front, own
 
 
 def write(reports: Sequence[Report], notes: Sequence[str], about: Mapping[str, Any], folder: Path) -> None:
@@ -33,7 +33,7 @@ def _phase(report: Report, folder: Path) -> dict[str, Any]:
                 "points": [
                     {
                         "label": point.setting.label,
-                        "best": point in front(axis.points) and axis is report.numerics,
+                        "best": point in front(own(axis.points)) and axis is report.numerics,
                         "worst": point.sample.failed or show.told(point.worst, point.floor),
                         "errors": [
                             show.percent(point.errors[k]) if k in point.errors else "" for k in report.quantities

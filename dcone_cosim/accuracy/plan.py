@@ -5,19 +5,22 @@ What is chaotic is run with several jittered starts, what is not several times, 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from dcone_cosim.accuracy.settings import Setting, settings_of
-from dcone_cosim.accuracy.work import Measured
+from dcone_cosim.accuracy.peers import peers_of
+from dcone_cosim.accuracy.settings import NUMERICS, Setting, settings_of
+from dcone_cosim.accuracy.work import Measured, OfPeer
 from dcone_cosim.cases import ensemble
 from dcone_cosim.cases.alone import Alone, Fmus
 from dcone_cosim.cases.case import digest, key_of
 from dcone_cosim.errors import InputError
+from dcone_cosim.fmu.component import NUMBERS
 from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.quantities import spread_instants
 from dcone_cosim.scene.data import PhaseScene
+from dcone_cosim.scene_fmus import SceneFmus
 
 INSTANTS = 120
 """At which curves are compared, at most."""
@@ -31,12 +34,14 @@ class Effort:
     repeats    of any other, for its CPU time
     thin       every how many-th setting is tried; the finest always is
     refine     whether the model itself is refined too
+    peers      whether other programs are tried too
     """
 
     runs: int = 6
     repeats: int = 3
     thin: int = 1
     refine: bool = True
+    peers: bool = False
 
 
 @dataclass
@@ -95,6 +100,33 @@ class Planner:
             planned.keys.append(key)
         return found
 
+    def by_peers(self, notes: list[str]) -> Iterator[tuple[Planned, Measured]]:
+        """A case of every peer for each of its tolerances, begun where our FMU begins."""
+        found = list(peers_of(self.own, notes))
+        if not found:
+            return
+        values = self._begun()
+        for what, peer in found:
+            for size in peer.sizes:
+                key = digest(key_of(self.base, self._fmus.of(self.base), None), what, peer.name, size, self._instants)
+                case = OfPeer(key, self.base, (), {}, None, self._instants, what, peer.name, size, values)
+                yield Planned(Setting(NUMERICS, peer.name, size, (), True), [key]), case
+
+    def _begun(self) -> dict[str, float]:
+        """Parameters, and outputs at the start, of the phase's FMU."""
+        with SceneFmus(self.base, Progress()) as fmus:
+            component = fmus.instantiate(self._phase, self._phase)
+            try:
+                component.set(self.own.main.parameters)
+                component.enter_initialisation(self.own.start, self.own.start + self.own.duration)
+                component.exit_initialisation()
+                found: dict[str, float] = component.get(
+                    [v.name for v in component.variables.values() if v.kind in NUMBERS]
+                )
+                return found
+            finally:
+                component.close()
+
 
 def plan(alone: Alone, phase: str, effort: Effort, progress: Progress) -> PhasePlan:
     """What is to be run of a phase."""
@@ -114,6 +146,10 @@ def plan(alone: Alone, phase: str, effort: Effort, progress: Progress) -> PhaseP
                 raise
             notes.append(f"{phase}: {one.setting.label} is left out: {str(error).splitlines()[-1].strip()}")
             one.keys.clear()
+    if effort.peers:
+        for one, case in planner.by_peers(notes):
+            planned.append(one)
+            cases[case.key] = case
     kept = [p for p in planned[1:] if p.keys]
     return PhasePlan(phase, planner.base.title, planner.chaotic, here, kept, list(cases.values()), notes)
 

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from dcone_cosim.accuracy.judge import Axis, Judged, Report, front
+from dcone_cosim.accuracy.judge import Axis, Judged, Report, front, own
 from dcone_cosim.plots import style
 
 WIDTH = 2
@@ -73,12 +73,13 @@ def _panel(axes: Any, axis: Axis, key: str | None) -> None:
         errors = [max(_value(p, key)[0], LEAST) for p in points]
         costs = [p.sample.cpu for p in points]
         colour, mark = COLOURS[number % len(COLOURS)], MARKS[number % len(MARKS)]
-        axes.plot(errors, costs, mark + "-", ms=4, lw=1.1, color=colour, label=family)
+        dash = ":" if points and points[0].setting.peer else "-"
+        axes.plot(errors, costs, mark + dash, ms=4, lw=1.1, color=colour, label=family)
     floor = max((_value(p, key)[1] for p in axis.points if math.isfinite(_value(p, key)[0])), default=0.0)
     if floor > LEAST:
         axes.axvspan(LEAST / 100.0, floor, color=style.MUTED, alpha=0.15, lw=0, label="below what can be told")
     if key is None:
-        best = [p for p in front(axis.points) if p.setting != axis.reference]
+        best = [p for p in front(own(axis.points)) if p.setting != axis.reference]
         axes.plot(
             [max(p.worst, LEAST) for p in best], [p.sample.cpu for p in best], "--", lw=2.4, color="black", alpha=0.35,
             label="the best",

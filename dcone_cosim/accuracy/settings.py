@@ -28,12 +28,14 @@ class Setting:
     family     those that differ in one number: a line of the figure
     size       that number over its default, or over the scene's own: what the error falls with [1]
     changes    `KEY=VALUE`, as `--set` takes them; none for the scene as it is
+    peer       it is another program's
     """
 
     axis: str
     family: str
     size: float
     changes: tuple[str, ...]
+    peer: bool = False
 
     @property
     def label(self) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
-from dcone_cosim.accuracy.judge import SIGMAS, Axis, Judged, Report, cheapest, front
+from dcone_cosim.accuracy.judge import SIGMAS, Axis, Judged, Report, better_peers, cheapest, front, own
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -43,7 +43,7 @@ def sentences(report: Report) -> Iterator[str]:
     """What to use for which accuracy, what the scene errs by as it is, and how far the reference can be trusted."""
     phase, axis = report.plan.phase, report.numerics
     for accuracy in ASKED:
-        best = cheapest(axis.points, accuracy)
+        best = cheapest(own(axis.points), accuracy)
         if best is None:
             yield f"{phase}: {_beyond(axis, accuracy)}"
             continue
@@ -53,6 +53,7 @@ def sentences(report: Report) -> Iterator[str]:
             f"{phase}: for {percent(accuracy)} use {best.setting.label}: {how}; {seconds(best.sample.cpu)} of CPU "
             f"time, error {error}"
         )
+    yield from (f"{phase}: {line}" for line in _of_peers(axis))
     parts = ", ".join(f"{a.name} {told(a.here.worst, a.here.floor)}" for a in report.axes)
     cost = seconds(report.numerics.here.sample.cpu)
     yield f"{phase}: as it is the scene errs by {percent(report.here)} at most ({parts}) and takes {cost} of CPU time"
@@ -60,9 +61,23 @@ def sentences(report: Report) -> Iterator[str]:
         yield f"{phase}: {_reference(axis, report.plan.chaotic)}"
 
 
+def _of_peers(axis: Axis) -> Iterator[str]:
+    """How other programs stand, where some were tried."""
+    if len(own(axis.points)) == len(axis.points):
+        return
+    better = better_peers(axis.points)
+    if not better:
+        yield "no other program that was tried is as exact at less CPU time"
+    for point in better:
+        yield (
+            f"{point.setting.label} is more exact than any setting of ours as cheap: {percent(point.worst)} in "
+            f"{seconds(point.sample.cpu)}"
+        )
+
+
 def _beyond(axis: Axis, accuracy: float) -> str:
     """Why nothing is as accurate as that, and what would be."""
-    able = [p for p in axis.points if math.isfinite(p.bound)]
+    able = [p for p in own(axis.points) if math.isfinite(p.bound)]
     nearest = min(able, key=lambda p: p.bound, default=None)
     if nearest is None:
         return "nothing tried comes to what the reference comes to"
@@ -109,12 +124,13 @@ def show(report: Report, console: Console) -> None:
     for head, side in heads:
         table.add_column(head, justify=side, overflow="fold")
     for axis in report.axes:
-        best = {id(p) for p in front(axis.points)} if axis is report.numerics else set()
+        best = {id(p) for p in front(own(axis.points))} if axis is report.numerics else set()
         table.add_row(Text(axis.name, style="bold"))
         for point in axis.points:
             error = "failed" if point.sample.failed else told(point.worst, point.floor)
             row = (f"  {point.setting.label}", error, _worst_of(report, point), seconds(point.sample.cpu))
-            table.add_row(*map(Text, (*row, "best" if id(point) in best else "")))
+            mark = "peer" if point.setting.peer else "best" if id(point) in best else ""
+            table.add_row(*map(Text, (*row, mark)))
     console.print(table)
     for sentence in sentences(report):
         console.print(Text(sentence), highlight=False, soft_wrap=True)
@@ -142,6 +158,6 @@ def _axis(axis: Axis) -> dict[str, Any]:
         "second": axis.second.label if axis.second else None,
         "agreement": axis.agreement,
         "orders": axis.orders,
-        "front": [p.setting.label for p in front(axis.points)],
+        "front": [p.setting.label for p in front(own(axis.points))],
         "here": {"error": axis.here.worst, "floor": axis.here.floor},
     }

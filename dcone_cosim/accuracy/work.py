@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.cases.work import run_case
+from dcone_cosim.errors import FAILED_AFTER
 from dcone_cosim.phases import kind_of
 from dcone_cosim.results import RunResult
 
@@ -27,6 +28,21 @@ class Measured(Case):
     instants: tuple[float, ...] = ()
 
 
+@dataclass(frozen=True)
+class OfPeer(Measured):
+    """A case of another program.
+
+    what, peer    what it computes, and its name there (`peers.PEERS`)
+    size          its tolerance or step
+    values        parameters, and outputs at the start, of our FMU
+    """
+
+    what: str = ""
+    peer: str = ""
+    size: float = 0.0
+    values: Mapping[str, float] = field(default_factory=dict)
+
+
 def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
     """The row of a run that is judged by its quantities."""
     assert isinstance(case, Measured)
@@ -40,4 +56,15 @@ def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
 
 def measure(case: Case) -> Row:
     """Run a case in this process, whose FMUs stay loaded for the next."""
-    return run_case(case, tell)
+    return _by_peer(case) if isinstance(case, OfPeer) else run_case(case, tell)
+
+
+def _by_peer(case: OfPeer) -> Row:
+    from dcone_cosim.accuracy import peers
+
+    try:
+        found = peers.run(case.what, case.peer, case.values, case.size, case.instants)
+    except Exception as error:
+        return Row(case.key, "failed", FAILED_AFTER, f"{case.peer}: {type(error).__name__}: {error}")
+    samples = {q.key: asdict(q) for q in found.quantities}
+    return Row(case.key, "completed", timings={CPU: found.cpu, STEPS: 0.0, END: 0.0}, samples=samples)

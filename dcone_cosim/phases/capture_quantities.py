@@ -10,7 +10,7 @@ import numpy as np
 from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import PhaseResult
 
-NAMES = ("mouth_area", "t80", "bullets", "impulse", "captured", "t_capture", "thread_peak")
+NAMES = ("mouth_area", "t80", "bullets", "impulse", "captured", "t_capture", "energy_book", "thread_peak")
 EACH = (1, 2, 3)
 BULLETS = (1, 2, 3, 4)
 
@@ -37,10 +37,14 @@ def quantities(result: PhaseResult, parameters: Mapping[str, float], instants: S
         impulse = parameters["target.mass"] * float(np.linalg.norm(velocity[-1] - velocity[0]))
         if impulse > 0.0:
             yield Quantity("impulse", "impulse on the target by the end", [impulse], "N.s")
-    if "captured" in last:
+    if "captured" in last and "mouth.girth" in last:
         yield Quantity("captured", "whether it is captured", [float(last["captured"] > 0.0)], "1", 1.0, "1")
         if last.get("t_capture", -1.0) >= 0.0:
             yield Quantity("t_capture", "captured at", [last["t_capture"]], "s")
+    if "energy.remainder" in recorder and recorder["energy.total"][0] > 0.0:
+        shot = float(recorder["energy.total"][0])
+        left = [last["energy.remainder"]]
+        yield Quantity("energy_book", "left over in the energy book", left, "J", shot, "the shot's energy", False)
     if "thread.tension_max" in last:
         yield Quantity("thread_peak", "largest tension of a thread", [last["thread.tension_max"]], "N", meant=False)
 
