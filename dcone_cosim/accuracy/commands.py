@@ -53,7 +53,7 @@ class Done:
     @property
     def exit_code(self) -> int:
         lost = [p for r in self.reports for axis in r.axes for p in axis.points if p.sample.failed]
-        return CASES_FAILED if lost else SUCCESS
+        return CASES_FAILED if lost or any(report.failure for report in self.reports) else SUCCESS
 
 
 def accuracy(

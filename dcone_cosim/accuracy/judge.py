@@ -107,11 +107,15 @@ class Axis:
 
 @dataclass
 class Report:
-    """A phase, judged."""
+    """A phase, judged.
+
+    failure    why nothing could be judged, "" if something could; then it has no axes
+    """
 
     plan: PhasePlan
     axes: list[Axis]
     quantities: dict[str, Mapping[str, Any]]
+    failure: str = ""
 
     @property
     def numerics(self) -> Axis:
@@ -133,7 +137,9 @@ def judge(plan: PhasePlan, rows: Mapping[str, Row]) -> Report:
     about: dict[str, Mapping[str, Any]] = {}
     for sample in samples:
         about |= {key: told for key, told in sample.about.items() if key not in about}
-    return Report(plan, [axis for axis in axes if axis is not None], about)
+    judged = [axis for axis in axes if axis is not None]
+    failures = [sample.failed for sample in (base, *samples) if sample.failed]
+    return Report(plan, judged, about, "" if judged else next(iter(failures), "it is judged by nothing"))
 
 
 def sample_of(planned: Planned, rows: Mapping[str, Row]) -> Sample:

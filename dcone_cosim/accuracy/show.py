@@ -41,6 +41,9 @@ def seconds(value: float) -> str:
 
 def sentences(report: Report) -> Iterator[str]:
     """What to use for which accuracy, what the scene errs by as it is, and how far the reference can be trusted."""
+    if report.failure:
+        yield f"{report.plan.phase}: no setting came to an end: {report.failure}"
+        return
     phase, axis = report.plan.phase, report.numerics
     for accuracy in ASKED:
         best = cheapest(own(axis.points), accuracy)
@@ -139,6 +142,8 @@ def show(report: Report, console: Console) -> None:
 
 def as_dict(report: Report) -> dict[str, Any]:
     """For machines, errors as shares."""
+    if report.failure:
+        return {"failure": report.failure, "sentences": list(sentences(report)), "notes": report.plan.notes}
     return {
         "here": {"value": report.here, "unit": "1"},
         "quantities": {key: _quantity(about) for key, about in report.quantities.items()},

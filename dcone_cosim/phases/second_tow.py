@@ -171,7 +171,8 @@ class SecondTow(Tow):
 
     def take_over(self, stage: Stage) -> Handover | None:
         """Where the tow before left both bodies; `HandoffError` where the new line is too short for that."""
-        assert stage.before is not None, "it is no scene's first"
+        if stage.before is None:  # taken out of its scene, with what was handed over as its own values
+            return None
         run, phase, tow = stage.run, stage.phase, stage.run.phases[stage.before.name]
         left, earlier = run.left[stage.before.name], run.handovers.get(stage.before.name)
         reach = None if earlier is None else earlier.reach

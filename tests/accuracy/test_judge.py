@@ -178,3 +178,12 @@ def test_errors_of_all_axes_add_up() -> None:
     steps = report.axes[1].here
     assert steps.worst == pytest.approx(0.002 / 1.003, rel=1e-6)
     assert report.here == pytest.approx(0.001 + steps.bound, rel=1e-6)
+
+
+def test_nothing_that_ran_is_told_as_such() -> None:
+    made = Made()
+    one = made.add("plain", 1.0, [None], 1.0)
+    made.add("plain", 0.5, [None], 1.0)
+    report = made.judged(one)
+    assert report.axes == []
+    assert list(sentences(report)) == ["tow: no setting came to an end: it fell over"]
