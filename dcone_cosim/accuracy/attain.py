@@ -63,20 +63,23 @@ class Ladder:
 
 @dataclass
 class Estimate:
-    """Errors [1] and scatter [1] by quantity, how the quantities are called, and the runs that told it."""
+    """By quantity: error [1], standard deviation of one run [1], how much of the error may be chance [1], how it is
+    called, and mean, standard deviation and unit of those that are one number."""
 
     errors: dict[str, float] = field(default_factory=dict)
     scatters: dict[str, float] = field(default_factory=dict)
+    noises: dict[str, float] = field(default_factory=dict)
     labels: dict[str, str] = field(default_factory=dict)
-    made: int = 0
+    means: dict[str, tuple[str, float, float, str]] = field(default_factory=dict)
 
     def add(self, other: Estimate) -> None:
         """Of another axis: errors add up."""
         for key, error in other.errors.items():
             self.errors[key] = self.errors.get(key, 0.0) + error
         self.scatters |= other.scatters
+        self.noises |= other.noises
         self.labels |= other.labels
-        self.made += other.made
+        self.means |= other.means
 
     def of_mean(self, key: str, runs: int) -> float:
         """What the mean of so many runs errs by [1]."""
@@ -114,6 +117,7 @@ class _Attempt:
         self._phase, self._accuracy, self._progress = phase, accuracy, progress
         self._planner = Planner(alone, phase, progress)
         self._ladders = _ladders(self._planner.own)
+        self._made = 0
         self._runner = Runner(Memory(), workers, 2 * cores(), measure)
 
     def attained(self) -> tuple[list[str], Attained]:
@@ -122,40 +126,51 @@ class _Attempt:
         if not self._ladders:
             return [], Attained(asked, "as it is", math.nan, "", 0.0, "")
         begun = [ladder.place for ladder in self._ladders]
-        told = self._refined()
+        told, runs = self._refined(), 1
+        scatter, noisy = max(((s, told.labels.get(k, "")) for k, s in told.scatters.items()), default=(0.0, ""))
+        while told.of_mean(told.worst(runs), runs) > asked:
+            # half of what is asked is left to the scatter of the mean
+            needed = max(math.ceil(MARGIN * (2.0 * SIGMAS * scatter / asked) ** 2), RUNS + 1, math.ceil(1.5 * runs))
+            if needed > self._accuracy.runs:
+                raise InputError(self._beyond(scatter, noisy, needed))
+            told, runs = self._estimate(needed), needed
         steps = zip(self._ladders, begun, strict=True)
         changes = [change for ladder, place in steps if ladder.place != place for change in ladder.here.changes]
-        label = "; ".join(ladder.here.label for ladder in self._ladders)
-        scatter, noisy = max(((s, told.labels.get(k, "")) for k, s in told.scatters.items()), default=(0.0, ""))
-        key = told.worst(1)
-        if told.of_mean(key, 1) <= asked:
-            error, what = told.of_mean(key, 1), told.labels[key]
-            return changes, Attained(asked, label, error, what, scatter, noisy, made=told.made)
-        room = [asked - error for error in told.errors.values() if error < asked]
-        needed = math.ceil(MARGIN * (SIGMAS * scatter / min(room, default=asked)) ** 2)
-        if needed > self._accuracy.runs:
-            allowed = self._accuracy.runs
-            how = "allow them with solver.runs" if allowed == 1 else f"solver.runs allows {allowed}"
-            raise InputError(
-                f"solver.accuracy = {percent(asked)} is more than one run can tell\n"
-                f"  {self._phase}: {noisy} scatters by {percent(scatter)} (standard deviation) from run to run, "
-                f"whatever the step; the mean of about {needed:,} runs would do ({how}), or name other quantities "
-                "in solver.quantities"
-            )
-        return changes, self._of_many(told, needed, label, noisy)
+        label, key = "; ".join(ladder.here.label for ladder in self._ladders), told.worst(runs)
+        error, what = told.of_mean(key, runs), told.labels[key]
+        means = told.means if runs > 1 else {}
+        return changes, Attained(asked, label, error, what, scatter, noisy, runs, means, self._made)
+
+    def _beyond(self, scatter: float, noisy: str, needed: int) -> str:
+        """Why one run, or as many as are allowed, cannot tell it."""
+        allowed = self._accuracy.runs
+        few = "one run" if allowed == 1 else f"the {allowed} runs that solver.runs allows"
+        return (
+            f"solver.accuracy = {percent(self._accuracy.asked)} is more than {few} can tell\n"
+            f"  {self._phase}: {noisy} scatters by {percent(scatter)} (standard deviation) from run to run, whatever "
+            f"the step; the mean of about {needed:,} runs would do: allow them with solver.runs, or name other "
+            "quantities in solver.quantities"
+        )
+
+    def _estimate(self, runs: int) -> Estimate:
+        """Errors of all axes together."""
+        told = Estimate()
+        for ladder in self._ladders:
+            told.add(self._axis(ladder, runs))
+        return told
 
     def _refined(self) -> Estimate:
         """The estimate with settings fine enough that only scatter is left to be too much."""
         asked = self._accuracy.asked
         while True:
-            axes = {ladder.axis: self._axis(ladder) for ladder in self._ladders}
+            axes = {ladder.axis: self._axis(ladder, RUNS) for ladder in self._ladders}
             told = Estimate()
             for estimate in axes.values():
                 told.add(estimate)
             if not told.errors:
                 raise InputError(f"{self._phase}: it has none of {', '.join(self._accuracy.quantities)}")
             key = max(told.errors, key=lambda key: told.errors[key])
-            error, noise = told.errors[key], SIGMAS * told.scatters.get(key, 0.0) * math.sqrt(2.0 / RUNS)
+            error, noise = told.errors[key], told.noises.get(key, 0.0)
             if error <= max(asked, noise):
                 return told
             worst = max(self._ladders, key=lambda ladder: axes[ladder.axis].errors.get(key, 0.0))
@@ -167,54 +182,40 @@ class _Attempt:
             worst.place += 1
             self._progress.say(f"{self._phase}: {told.labels[key]} {percent(error)} off; trying {worst.here.label}")
 
-    def _axis(self, ladder: Ladder) -> Estimate:
-        """Errors along one axis, with the others as they are chosen."""
+    def _axis(self, ladder: Ladder, runs: int) -> Estimate:
+        """Errors along one axis, with the others as they are chosen, from so many runs of each of two settings."""
         partner = ladder.partner
         if partner is None:
             return Estimate()
         rest = [change for other in self._ladders if other is not ladder for change in other.here.changes]
-        here, there = self._run([_with(rest, ladder.here), _with(rest, partner)], RUNS if self._planner.chaotic else 1)
+        here, there = self._run([_with(rest, ladder.here), _with(rest, partner)], runs if self._planner.chaotic else 1)
         ratio = min(partner.size, ladder.here.size) / max(partner.size, ladder.here.size)
         factor = (ratio if partner.size > ladder.here.size else 1.0) / (1.0 - ratio)
-        told = Estimate(made=here.runs + there.runs)
+        told = Estimate()
         own, other = scatters(here), scatters(there)
         for key, about in here.about.items():
             error = error_of(there, here, key)[0] * factor if self._counts(key, about["meant"]) else math.nan
-            if not math.isnan(error):
-                told.errors[key], told.labels[key] = error, str(about["label"])
-                if own.get(key, 0.0) > 0.0:
-                    told.scatters[key] = math.sqrt(0.5 * (own[key] ** 2 + other.get(key, own[key]) ** 2))
+            if math.isnan(error):
+                continue
+            told.errors[key], told.labels[key] = error, str(about["label"])
+            if own.get(key, 0.0) > 0.0:
+                scatter = math.sqrt(0.5 * (own[key] ** 2 + other.get(key, own[key]) ** 2))
+                told.scatters[key], told.noises[key] = scatter, SIGMAS * scatter * math.sqrt(2.0 / runs) * factor
+            if len(here.means[key]) == 1:
+                mean, spread = float(here.means[key][0]), float(here.spreads[key][0])
+                told.means[key] = (told.labels[key], mean, spread, str(about["unit"]))
         return told
 
     def _counts(self, key: str, meant: bool) -> bool:
         names = self._accuracy.quantities
         return key in names if names else meant
 
-    def _of_many(self, told: Estimate, runs: int, label: str, noisy: str) -> Attained:
-        """How exact the mean of many runs is, with their own scatter."""
-        (sample,) = self._run([_with([c for ladder in self._ladders for c in ladder.here.changes], None)], runs)
-        own = {key: s for key, s in scatters(sample).items() if key in told.errors}
-        many = Estimate({k: min(e, SIGMAS * own.get(k, e)) for k, e in told.errors.items()}, own, told.labels)
-        key = many.worst(runs)
-        means = {
-            name: (
-                str(about["label"]),
-                float(sample.means[name][0]),
-                float(sample.spreads[name][0]),
-                str(about["unit"]),
-            )
-            for name, about in sample.about.items()
-            if len(sample.means[name]) == 1
-        }
-        error, scatter = many.of_mean(key, runs), max(own.values(), default=0.0)
-        made = told.made + runs
-        return Attained(self._accuracy.asked, label, error, told.labels[key], scatter, noisy, runs, means, made)
-
     def _run(self, planned: Sequence[Planned], runs: int) -> list[Sample]:
         cases: dict[str, Measured] = {}
         for one in planned:
             cases |= self._planner.cases(one, runs)
         self._progress.say(f"{self._phase}: {len(cases)} runs for the estimate of its error")
+        self._made += len(cases)
         rows: dict[str, Row] = {row.key: row for row, _ in self._runner.rows(cases.values())}
         samples = [sample_of(one, rows) for one in planned]
         for sample in samples:

@@ -180,11 +180,11 @@ def test_scatter_is_met_by_the_mean_of_as_many_as_are_allowed(monkeypatch: pytes
     assert attained.runs > 4
     label, mean, spread, unit = attained.means["q"]
     assert (label, unit) == ("mouth area", "m2")
-    assert abs(mean / 100.0 - 1.0) <= attained.error
+    assert abs(mean / 100.0 - 1.0) <= attained.error <= 0.02
     assert 2.0 * spread / mean / math.sqrt(attained.runs) <= attained.error
-    assert attained.scatter == pytest.approx(spread / mean)
+    assert attained.scatter == pytest.approx(spread / mean, rel=0.5)  # it was told by six runs
     refused = Faked(monkeypatch, scattered, Accuracy(0.02, runs=attained.runs - 1))
-    with pytest.raises(InputError, match=f"solver.runs allows {attained.runs - 1}"):
+    with pytest.raises(InputError, match=f"more than the {attained.runs - 1} runs that solver.runs allows can tell"):
         refused.attempt.attained()
 
 
