@@ -93,8 +93,11 @@ def next_step(step: float, error: float, previous_error: float) -> float:
 
 @kernel
 def reach(damping: float) -> float:
-    """Longest step in radians of an oscillation [-], whatever its damping: that to which the iteration is quick."""
-    return 1.5
+    """Longest step in radians of an oscillation [-], whatever its damping: that to which the iteration is quick.
+
+    Checked  tests/tethered_deorbit/test_integrator.py: its stages are found there
+    """
+    return REACH
 
 
 def make_gauss(

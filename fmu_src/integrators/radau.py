@@ -92,7 +92,10 @@ _FIRST, _SECOND = float(_C[0]), float(_C[1])
 
 @kernel
 def reach(damping: float) -> float:
-    """Longest step in radians of an oscillation [-]: there is none."""
+    """Longest step in radians of an oscillation [-]: there is none.
+
+    Checked  tests/tethered_deorbit/test_field_free.py: what is stiff costs nothing
+    """
     return math.inf
 
 

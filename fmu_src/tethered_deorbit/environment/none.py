@@ -82,7 +82,10 @@ def along_track(record: Any, state: Array) -> tuple[float, float, float]:
 
 @kernel
 def fallen(position: Array) -> float:
-    """There is no ground."""
+    """There is no ground: -1.
+
+    Checked  tests/tethered_deorbit/test_field_free.py: a centre of mass at the origin
+    """
     return -1.0
 
 
@@ -130,7 +133,10 @@ def make_none(interface: Interface) -> Environment:
 
     @kernel
     def same_orbit(record: Any, state: Array) -> int:
-        """Never asked for: `check` has refused it."""
+        """The fault of one that has none: `check` has refused it before.
+
+        Checked  tests/tethered_deorbit/test_field_free.py
+        """
         return NO_ORBIT
 
     return Environment(
