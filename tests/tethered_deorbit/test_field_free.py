@@ -28,6 +28,7 @@ FREQUENCY = natural_frequency(STIFFNESS, reduced_mass(CHASER, TARGET))
 PERIOD = math.tau / FREQUENCY
 STEADY = FORCE * TARGET / (CHASER + TARGET)
 """Tension of the line that tows without a vibration [N]."""
+FREQUENCY_OF_12 = natural_frequency(line_stiffness(60e9, 1e-3, 12.0), reduced_mass(2000.0, 1000.0))
 LEFT = 1.433722
 """Relative speed that a pulse of half a period leaves, 2 F/(m_c omega) [m/s]."""
 
@@ -179,6 +180,19 @@ def test_spinning_pair() -> None:
 
 
 @uncompiled
+def test_axes_turn_by_a_quarter_of_a_radian_at_most() -> None:
+    """A pair that whirls steadily has nothing that holds a step of radau down, but that the axes turn with it."""
+    stretch = 0.0025 * 12.0 / (FREQUENCY_OF_12**2 - 0.0025)
+    whirl = {"start_relative_position": [12.0 + stretch, 0.0, 0.0], "start_relative_velocity": [0.0, 0.6, 0.0]}
+    whirl["start_relative_velocity"][1] += 0.05 * stretch
+    i = free("radau", whirl | {"start.condition": HANDED_OVER, "thrust.level": 0.0, "tether.damping_ratio": 1.0})
+    i.step(400.0)
+    assert i["separation"] == pytest.approx(12.0 + stretch, abs=1e-9)
+    assert math.remainder(i["tether.angle"] - 20.0, math.tau) == pytest.approx(0.0, abs=1e-9)
+    assert 20.0 / 0.25 < i["solver.steps"] < 160
+
+
+@uncompiled
 def test_frame_and_outputs() -> None:
     """Axes at rest: what is handed over is what is seen. Of an orbit nothing is there, and nothing is not a number."""
     given = {
@@ -248,6 +262,19 @@ def test_controlled_reels(reel: str, settles: float) -> None:
     assert i["tether.tension"] == settles
     i.step(20.0)
     assert i["separation"] == pytest.approx(10.0 - 0.5 * settles / reduced_mass(2000.0, 1000.0) * 400.0, rel=1e-12)
+
+
+@each
+@uncompiled
+def test_a_command_that_moves(scheme: str) -> None:
+    """Tension from -0.2 N at 0.1 N/s: taut after two seconds; J = 0.05 t^2 from there, and they close by J/m_r."""
+    i = free(scheme, {"start.condition": EQUAL_VELOCITY, "thrust.level": 0.0, "reel.tension": -0.2}, reel="commanded")
+    i.set_rates({"reel.tension": 0.1})
+    i.step(5.0)
+    assert i["tug[1].time"] == pytest.approx(2.0, rel=1e-12)
+    assert i["tether.impulse"] == pytest.approx(0.45, rel=1e-10)
+    assert -i["tether.length_rate"] == pytest.approx(0.45 / reduced_mass(2000.0, 1000.0), rel=1e-9)
+    assert i["tether.impulse"] != pytest.approx(0.4501, rel=1e-10)
 
 
 def test_compiled(request: pytest.FixtureRequest) -> None:

@@ -299,13 +299,16 @@ def test_gauss_takes_nothing_off() -> None:
 def test_gauss_iteration() -> None:
     """It finds its stages below h |lambda| = 6, at a rate of 0.166 h |lambda| a sweep; otherwise it says so."""
     matrix = gauss._A.reshape(4, 4)
-    assert max(abs(np.linalg.eigvals(matrix))) == pytest.approx(0.1654, abs=1e-4)
+    rate = max(abs(np.linalg.eigvals(matrix)))
+    assert rate == pytest.approx(0.1654, abs=1e-4)
     small = SCHEMES["gauss"].make(oscillator, squared, 2)
     for step, found in ((1.5, True), (3.0, True), (6.3, False)):
         _, end, stages = steps_of(oscillator, small, np.array([1.0, 0.0]), step)
         error = small.error(np.zeros(1), end, step, stages, np.zeros(2), np.zeros(2))
         assert math.isfinite(error) == found
     assert small.shorter_step(1.0, error) == 0.2
+    assert small.reach(0.0) == small.reach(5.0) == 1.5  # a quarter is left by each sweep
+    assert rate * small.reach(0.0) < 0.25 < rate * 1.02 * small.reach(0.0)
 
 
 @uncompiled
@@ -444,6 +447,31 @@ def test_radau_is_that_of_another_implementation() -> None:
         right = rates(0.0, START) + radau._E @ z / step
         expected = np.linalg.norm(np.linalg.solve(radau.REAL / step * np.eye(6) - jacobian, right))
         assert error == pytest.approx(expected, rel=1e-3)
+
+
+@uncompiled
+def test_what_is_stiff_is_filtered_out_of_the_estimate() -> None:
+    """Above 1 the estimate is formed once more, with f where the first says that the state was to begin."""
+    zeta, step, start = 50.0, 0.5, np.array([0.0, 1.0])
+    system, unit = np.array([[0.0, 1.0], [-1.0, -2.0 * zeta]]), np.eye(2)
+
+    def estimate(factor: float) -> float:
+        @kernel
+        def scaled(context: Any, state: Any, error: Any) -> float:
+            return float(squared(context, state, error) * factor * factor)
+
+        scheme = SCHEMES["radau"].make(oscillator, scaled, 2)
+        _, end, stages = steps_of(oscillator, scheme, start, step, context=np.array([zeta]))
+        return float(scheme.error(np.array([zeta]), end, step, stages, np.zeros(2), np.zeros(2)) / factor)
+
+    found = np.linalg.solve(np.kron(np.eye(3), unit) - step * np.kron(radau._A.reshape(3, 3), system),
+                            step * np.kron(radau._CF, system @ start))  # fmt: skip
+    drawn = radau._E @ found.reshape(3, 2) / step
+    once = np.linalg.solve(radau.REAL / step * unit - system, system @ start + drawn)
+    twice = np.linalg.solve(radau.REAL / step * unit - system, system @ (start + once) + drawn)
+    assert np.linalg.norm(twice) < 0.3 * np.linalg.norm(once)
+    assert estimate(0.9 / np.linalg.norm(once)) == pytest.approx(np.linalg.norm(once), rel=1e-3)
+    assert estimate(1.1 / np.linalg.norm(once)) == pytest.approx(np.linalg.norm(twice), rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["gauss", "radau"])
