@@ -262,6 +262,28 @@ def test_counted_components_are_integrals(name: str) -> None:
     assert ends[0][6] != pytest.approx(0.3 + 0.025 * math.sqrt(0.96 * 1.05), abs=1e-9)
 
 
+@uncompiled
+def test_what_radau_counts_is_counted_at_the_stages_it_found() -> None:
+    """Also where the iteration ended early: the derivatives of an iteration before would be those of other states."""
+
+    @kernel
+    def with_square(context: Any, state: Any, rate: Any, elapsed: float) -> None:
+        kepler(context, state, rate, elapsed)
+        rate[6] = state[0] * state[0]
+
+    @kernel
+    def loose(context: Any, state: Any, error: Any) -> float:
+        return 1e-4 * float(squared(context, state, error[0:6]))
+
+    start = np.append(START, 0.3)
+    _, end, stages = steps_of(with_square, SCHEMES["radau"].make(with_square, loose, 6, 1), start, 0.8)
+    places = 0.95 + stages[2 * 7 : 5 * 7].reshape(3, 7)[:, 0]
+    weights = np.array([(16 - math.sqrt(6)) / 36, (16 + math.sqrt(6)) / 36, 1 / 9])
+    assert end[6] == pytest.approx(0.3 + 0.8 * weights @ places**2, abs=1e-15)
+    tight = steps_of(with_square, SCHEMES["radau"].make(with_square, strict, 6, 1), start, 0.8)[1]
+    assert abs(end[6] - tight[6]) > 1e-9, "the iteration has ended early"
+
+
 def growth(name: str, step: float, zeta: float) -> float:
     """Largest factor by which a step multiplies a state of the oscillator."""
     small = SCHEMES[name].make(oscillator, strict, 2)
@@ -422,6 +444,25 @@ def test_size_of_the_estimated_error() -> None:
         rows = stages[: 13 * SIZE].reshape(-1, SIZE)
         expected = math.sqrt(SIZE) * peer._estimate_error_norm(rows, step, np.ones(SIZE))
         assert error == pytest.approx(expected, rel=1e-9, abs=0.0)
+
+
+def divided(nodes: Any, values: Any) -> Any:
+    """Divided difference over all nodes, by recursion."""
+    if len(nodes) == 1:
+        return values[0]
+    return (divided(nodes[1:], values[1:]) - divided(nodes[:-1], values[:-1])) / (nodes[-1] - nodes[0])
+
+
+@uncompiled
+def test_size_of_the_estimated_error_of_gauss() -> None:
+    """h |e5|^2/sqrt(|e5|^2 + 0.01 |e3|^2), the differences formed anew."""
+    scheme, step = SCHEMES["gauss"].make(kepler, squared, SIZE), 0.4
+    _, end, stages = steps_of(kepler, scheme, START, step)
+    rates, nodes = stages[: 10 * SIZE].reshape(-1, SIZE), 0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0]
+    fifth = np.linalg.norm(divided(np.linspace(0.0, 1.0, 6), rates[[0, 6, 7, 8, 9, 5]]) / 384.0)
+    third = np.linalg.norm(divided(nodes, rates[1:5]) / 32.0)
+    error = scheme.error(np.zeros(1), end, step, stages, np.zeros(SIZE), np.zeros(SIZE))
+    assert error == pytest.approx(step * fifth**2 / math.hypot(fifth, 0.1 * third), rel=1e-8)
 
 
 @uncompiled
