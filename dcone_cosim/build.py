@@ -31,7 +31,7 @@ from fmu_src.packaging.sources import SHIM
 from fmu_src.tables import Table
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit import trade as tethered_deorbit_trade
-from fmu_src.tethered_deorbit.interface import HANDED_OVER
+from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 from fmu_src.trade import Rung
 
@@ -159,6 +159,9 @@ def cannot_work(
         return [Refusal(*row) for row in refusals(terms, values, duration)]
     if model != TETHERED_DEORBIT.name or handed_over or values["start.condition"] == HANDED_OVER:
         return []
+    if terms.get("environment") == "none" and values["start.condition"] != EQUAL_VELOCITY:
+        given = CONDITIONS[int(values["start.condition"])]
+        return [Refusal("start.condition", given, "needs an orbit; without a field take equal_velocity or handed_over")]
     separation, attachment = values["start.separation"], values["target.attachment_distance"]
     rest_length = values.get("tether.rest_length", math.inf)
     longest = rest_length + attachment

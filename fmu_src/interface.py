@@ -165,8 +165,11 @@ def numbered(faults: Iterable[Fault]) -> tuple[Fault, ...]:
 class Term:
     """One physics term a scene may name: its variables, and a sentence on what it adds.
 
+    A variable with the name of one that the model always has takes its place.
+
     needs    groups without a term of which it has nothing to act on
     excludes groups with any term of which it cannot go together
+    lacks    variables that the model has otherwise, and that mean nothing with it
     states   outputs that are states with it: they begin with what their inputs say, and follow them over a step only
     faults   for which its kernels may stop
     tables   that its kernels read, each given when an FMU or an instance is made
@@ -179,6 +182,7 @@ class Term:
     variables: tuple[Variable, ...] = ()
     needs: tuple[str, ...] = ()
     excludes: tuple[str, ...] = ()
+    lacks: tuple[str, ...] = ()
     states: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
     tables: tuple[Table, ...] = ()
@@ -288,9 +292,12 @@ class Model:
         for group, other in self.clashing(terms):
             raise ValueError(f"{self.name}: {group} = {terms[group]!r} cannot go together with {other}")
         ordered = {name: terms[name] for name in self.groups if name in terms}
-        variables = list(HEAD + self.base)
-        for name, term in ordered.items():
-            variables += [v for v in self.groups[name].terms[term].variables if v not in variables]
+        chosen = [self.groups[name].terms[term] for name, term in ordered.items()]
+        lacking = {name for part in chosen for name in part.lacks}
+        own = {v.name: v for part in chosen for v in part.variables}
+        variables = [own.get(v.name, v) for v in HEAD + self.base if v.name not in lacking]
+        for part in chosen:
+            variables += [v for v in part.variables if v not in variables]
         inputs = {v.name for v in variables if v.causality == "input"}
         states = {output for name, term in ordered.items() for output in self.groups[name].terms[term].states}
         return Interface(self, ordered, tuple(_reduced(v, inputs, v.name in states) for v in variables))

@@ -61,6 +61,10 @@ class Tow(Phase):
         before = document.before(self.name)
         if not before:
             return
+        for phase in (before, self.name):
+            if document.mains[phase].terms.get("environment") == "none":
+                text = f"has no orbit on which the {before} could hand over; run the phases apart"
+                yield Mistake((phase, "environment", "field"), "none", text)
         own = (self.name,)
         text = f"is set by the hand-off from the {before}; leave it out"
         if self.alone:

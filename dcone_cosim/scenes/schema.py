@@ -139,7 +139,9 @@ def _tables(model: build.Model) -> dict[str, Schema]:
         if row.causality in build.SETTABLE and row.section != SHARED:
             key = key_of(row)
             value = _value(key.expected, key.description, key.starts)
-            tables.setdefault(row.section, {}).setdefault(row.key, value)
+            known = tables.setdefault(row.section, {}).setdefault(row.key, value)
+            if key.description not in known["description"]:
+                known["description"] += f"; or {key.description}"  # it means something else with another term
     for table in build.all_tables(model):
         home, _, name = table.name.partition(".")
         tables.setdefault(home, {})[name] = {"type": "string", "description": f"path of a file: {table.description}"}

@@ -17,9 +17,10 @@ Values = Mapping[str, float]
 
 def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> Iterator[Caution]:
     """From what the scene says."""
-    axis = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]
-    for sentence in low(axis * (1.0 - values["orbit.eccentricity"]) - EARTH_EQUATORIAL_RADIUS):
-        yield Caution("orbit.altitude", f"the perigee at {sentence}" if values["orbit.eccentricity"] else sentence)
+    if "orbit.altitude" in values:
+        axis = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]
+        for sentence in low(axis * (1.0 - values["orbit.eccentricity"]) - EARTH_EQUATORIAL_RADIUS):
+            yield Caution("orbit.altitude", f"the perigee at {sentence}" if values["orbit.eccentricity"] else sentence)
     yield from heavily_damped("tether.damping_ratio", values.get("tether.damping_ratio"), "the line's going taut")
     if "thrust" not in terms:
         return
@@ -67,4 +68,5 @@ def _force(values: Values) -> float:
 
 def _raises(values: Values, terms: Mapping[str, str]) -> bool:
     """Whether the thrust is sure to raise the orbit."""
-    return terms.get("thrust") in ("along_track", "velocity") and _force(values) > 0.0
+    on_orbit = terms.get("environment") != "none"
+    return on_orbit and terms.get("thrust") in ("along_track", "velocity") and _force(values) > 0.0

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.command import make_command, make_shortest
-from fmu_src.tethered_deorbit.faults import blame, own_slot
-from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS
+from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
 from orbital.oscillators import natural_frequency
@@ -23,7 +24,7 @@ def _no_limit(record: Any) -> float:
     return math.inf
 
 
-def make_linear() -> Reel:
+def make_linear(interface: Interface) -> Reel:
     """A reel that controls tension, its line stiff against what it does.
 
         T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt),   T_ff = 3 n^2 m_r (l_c + a),   l_c = commanded length + offset
@@ -36,7 +37,7 @@ def make_linear() -> Reel:
     Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, test_ramps.py
     """
-    offset_slot = own_slot("reel.length_offset", REELS.terms["linear"].variables)
+    offset_slot = interface.references["reel.length_offset"]
 
     asked, leave = make_command("reel_length_offset")
     shortest_on_the_way = make_shortest(offset_slot)
@@ -66,7 +67,7 @@ def make_linear() -> Reel:
         r.state_frequency = max(
             natural_frequency(r.state_stiffness, r.state_reduced_mass), r.state_damping / r.state_reduced_mass
         )
-        r.state_frequency = max(r.state_frequency, r.state_mean_motion)
+        r.state_frequency = max(r.state_frequency, r.state_pace)
         r.state_taut_tolerance = r.solver_tolerance_separation
         return 0
 
@@ -182,7 +183,7 @@ def make_linear() -> Reel:
     )
 
 
-def make_commanded() -> Reel:
+def make_commanded(interface: Interface) -> Reel:
     """A reel that gives the tension it is told; its line has no length of its own.
 
         T = max(0, u),   u the command: reel.tension, moving at its rate
@@ -193,7 +194,7 @@ def make_commanded() -> Reel:
     Source   ours
     Checked  tests/tethered_deorbit/test_commanded.py
     """
-    command_slot = own_slot("reel.tension", REELS.terms["commanded"].variables)
+    command_slot = interface.references["reel.tension"]
 
     asked, leave = make_command("reel_tension")
 
@@ -215,7 +216,7 @@ def make_commanded() -> Reel:
         r.state_stiffness = 0.0
         r.state_damping = 0.0
         r.state_feed_forward = value
-        r.state_frequency = r.state_mean_motion
+        r.state_frequency = r.state_pace
         r.state_taut_tolerance = r.solver_tolerance_separation
         return 0
 

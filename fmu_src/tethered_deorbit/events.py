@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.integrators import AdaptiveScheme
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.tether import length_acceleration, length_rate, line_length
@@ -52,6 +52,7 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
     Valid    steps in which the signals turn at most once in an eighth of the step
     Checked  tests/tethered_deorbit/test_robust.py
     """
+    _, dense_begin, work_end = layout.places_of(scheme)
 
     @kernel
     def signals(record: Any, state: Array, rate: Array, elapsed: float) -> Signals:
@@ -90,8 +91,8 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
                 work[layout.BEGIN : layout.END],
                 work[layout.END : layout.HERE],
                 r.state_step,
-                work[layout.STAGES : layout.DENSE],
-                work[layout.DENSE : layout.WORK],
+                work[layout.STAGES : dense_begin],
+                work[dense_begin:work_end],
                 work[layout.LOW : layout.HIGH],
             )
             r.state_dense_ready = 1
@@ -102,7 +103,7 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
 
         Checked  tests/tethered_deorbit/test_robust.py: a line that is touched for a moment within a step
         """
-        dense = work[layout.DENSE : layout.WORK]
+        dense = work[dense_begin:work_end]
         here = work[layout.HERE : layout.SLOPE]
         slope = work[layout.SLOPE : layout.LOW]
         scheme.dense_value(work[layout.BEGIN : layout.END], dense, fraction, 6, 6, here[6:12])

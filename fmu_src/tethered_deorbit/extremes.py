@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.integrators import DOP853_STAGES
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.events import RATE, RATE_SLOPE, SEPARATION, TENSION, TENSION_SLOPE, Events
 from fmu_src.tethered_deorbit.outputs import note_pull
@@ -36,12 +36,12 @@ class Extremes(NamedTuple):
     publish: Callable[..., Any]
 
 
-def make_extremes(events: Events) -> Extremes:
+def make_extremes(events: Events, scheme: AdaptiveScheme) -> Extremes:
     """The kernels for one law of the line and one integrator.
 
     Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
     """
-    end_rate = layout.STAGES + DOP853_STAGES * layout.SIZE
+    end_rate = layout.places_of(scheme).last
 
     @kernel
     def begin_anew(record: Any) -> None:
@@ -158,7 +158,9 @@ def make_extremes(events: Events) -> Extremes:
         r = record[0]
         if r.state_step == 0.0:
             return
-        begin = events.signals(record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.DENSE], 0.0)
+        begin = events.signals(
+            record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE], 0.0
+        )
         end = events.signals(
             record, work[layout.END : layout.HERE], work[end_rate : end_rate + layout.SIZE], r.state_step
         )

@@ -5,20 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fmu_src.interface import HEAD, Interface, Variable
-from fmu_src.tethered_deorbit.interface import MODEL
 from orbital.kernel import kernel
-
-
-def base_slot(name: str) -> int:
-    """Value reference of a variable that every choice of terms has in the same place."""
-    return Interface(MODEL, {}, HEAD + MODEL.base).references[name]
-
-
-def own_slot(name: str, *groups: tuple[Variable, ...]) -> int:
-    """Value reference of a variable of the first group that has it; the groups follow the base in this order."""
-    variables = HEAD + MODEL.base + tuple(v for group in groups for v in group)
-    return Interface(MODEL, {}, variables).references[name]
 
 
 @kernel
@@ -33,4 +20,18 @@ def blame(record: Any, code: int, index: int, value: float) -> int:
     r = record[0]
     r.fault_index = index
     r.fault_value = value if math.isfinite(value) else 0.0
+    return code
+
+
+@kernel
+def fail(record: Any, code: int, time: float) -> int:
+    """The code, with when [s] put in the record.
+
+    `time` counts from the start of the instance, as everywhere below the entry; the importer is told its own.
+
+    Checked  tests/tethered_deorbit/test_macro_step.py: at a late start; test_robust.py
+    """
+    r = record[0]
+    r.fault_code = code
+    r.fault_time = r.state_start + time
     return code

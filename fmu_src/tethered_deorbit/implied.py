@@ -23,7 +23,6 @@ def axial_stiffness(values: Mapping[str, float]) -> float:
 def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Implied]:
     """Masses, line and orbit of the pair."""
     reduced = reduced_mass(values["chaser.mass"], values["target.mass"])
-    rate = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
     yield Implied("pair.reduced_mass", "reduced mass of the pair", reduced, "kg")
     length, stiffness = 0.0, 0.0
     if terms["reel"] == "locked":
@@ -40,6 +39,9 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
     if stiffness > 0.0:
         period = 2.0 * math.pi / natural_frequency(stiffness, reduced)
         yield Implied("line.period", "period of the pair on the taut line, undamped", period, "s")
+    if "orbit.altitude" not in values:
+        return
+    rate = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
     yield Implied("orbit.period", "period of the orbit", 2.0 * math.pi / rate, "s")
     if length > 0.0:
         tide = equilibrium_tension(rate, length, reduced)

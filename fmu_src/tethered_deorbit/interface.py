@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
-from fmu_src.interface import Fault, Group, Model, Term
+from fmu_src.interface import Fault, Group, Model, Term, Variable
 from fmu_src.rows import (
     angle,
     choice,
@@ -34,7 +36,7 @@ regulator about the equilibrium (unit weights, lengths in l0, times in 1/n) for 
 held only while k_p > 3 n^2 m_r, here 2.2e-3 N/m: farther out the tide pulls harder."""
 
 NOT_FINITE, STEP_NOT_MET, TOO_MANY_EVENTS, TIME_GAP, GROUND = range(1, 6)
-BAD_ORBIT, BAD_CHORD, START_STRETCHED, NO_LENGTH, NO_LINE, BAD_PARAMETER = range(11, 17)
+BAD_ORBIT, BAD_CHORD, START_STRETCHED, NO_LENGTH, NO_LINE, BAD_PARAMETER, NO_ORBIT = range(11, 18)
 
 FAULTS = (
     Fault(NOT_FINITE, "error", "the state is no longer finite; look at the parameters and inputs last set"),
@@ -58,6 +60,9 @@ FAULTS = (
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),
     Fault(NO_LINE, "error", "start.relative_position is zero: the line has no direction", True),
     Fault(BAD_PARAMETER, "error", "a parameter or input is out of its bounds or not finite", True),
+    Fault(
+        NO_ORBIT, "error", "start.condition needs an orbit, and there is none; take equal_velocity or handed_over", True
+    ),
 )
 
 
@@ -181,7 +186,8 @@ STATE = (
     state("state.reduced_mass", "kg", "of the pair"),
     state("state.chaser_share", "1", "chaser's part of the mass"),
     state("state.target_share", "1", "target's part of the mass"),
-    state("state.mean_motion", "rad/s", "of the reference orbit"),
+    state("state.mean_motion", "rad/s", "of the reference orbit, zero without one"),
+    state("state.pace", "rad/s", "by which tolerances of velocities and first steps follow"),
     state("state.thrust", "N", "in force"),
     state("state.since", "s", "from when the inputs in force began to move to the begin of the current step"),
     state("state.command", "1", "the reel's input in force, as the step began [m] or [N]"),
@@ -268,11 +274,59 @@ THRUSTS = Group(
     optional=True,
 )
 
+BASE = BODIES + ORBIT + START + SOLVER + OUTPUTS + STATE
+
+
+def _told(name: str, description: str, **changed: Any) -> Variable:
+    """A row that every FMU has, under its name, with another description."""
+    return replace(next(v for v in BASE if v.name == name), description=description, **changed)
+
+
+ENVIRONMENTS = Group(
+    {
+        "central": Term("gravity of the Earth as a point mass, on each of the two bodies"),
+        "none": Term(
+            "no field: two free bodies in an inertial frame, for closed forms and the low-friction table",
+            (
+                _told("start.condition", "equal_velocity: the line along axis 2, both bodies at rest; handed_over: the "
+                      "states below; the others need an orbit, and are refused", start=EQUAL_VELOCITY),
+                _told("start.leading", "the body at the larger coordinate 2 (not for handed_over)"),
+                _told("start.center_position[#]", "handed over: centre of mass, inertial"),
+                _told("start.center_velocity[#]", "handed over: its velocity, inertial"),
+                _told("start.relative_position[#]", "handed over: target minus chaser, inertial"),
+                _told("start.relative_velocity[#]", "handed over: its rate"),
+                _told("tether.angle", "of the line chaser to target in the plane of axes 1 and 2, from axis 1 towards "
+                      "axis 2"),
+                _told("relative.position[#]", "target minus chaser, inertial"),
+                _told("relative.velocity[#]", "its rate"),
+                _told("energy.relative", "kinetic energy of the relative motion with the line's elastic energy; "
+                      "constant without thrust and damping"),
+            ),
+            lacks=(
+                *(v.name for v in ORBIT),
+                *("chaser.radius", "target.radius", "center.semi_major_axis", "altitude", "energy.orbital"),
+            ),
+        ),
+    },
+    selector="field",
+    default="central",
+)  # fmt: skip
+
+SCHEMES = Group(
+    {
+        "dop853": Term("Dormand-Prince 8(5,3), explicit: the fastest wherever nothing is stiff"),
+        "gauss": Term("Gauss-Legendre of order 8, symplectic at steps of one size: for long undamped motion"),
+        "radau": Term("Radau IIA of order 5, implicit and L-stable: for stiff lines that are damped hard"),
+    },
+    selector="scheme",
+    default="dop853",
+)
+
 MODEL = Model(
     name="tethered_deorbit",
     summary="A chaser with a thruster and a reel tows a captured target on a tether.",
-    base=BODIES + ORBIT + START + SOLVER + OUTPUTS + STATE,
-    groups={"reel": REELS, "thrust": THRUSTS},
+    base=BASE,
+    groups={"reel": REELS, "thrust": THRUSTS, "environment": ENVIRONMENTS, "solver": SCHEMES},
     faults=FAULTS,
     module="fmu_src.tethered_deorbit.model",
     stop_time=86400.0,

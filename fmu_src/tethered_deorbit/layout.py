@@ -8,7 +8,9 @@ The state is one centre of mass and one relative vector (target minus chaser), i
 
 from __future__ import annotations
 
-from fmu_src.integrators import DOP853_DENSE_ROWS, DOP853_ROWS
+from typing import NamedTuple
+
+from fmu_src.integrators.scheme import AdaptiveScheme
 
 VECTORS = 12
 """Components that the equations depend on, four vectors."""
@@ -26,6 +28,23 @@ SLOPE = HERE + SIZE
 LOW = SLOPE + SIZE
 HIGH = LOW + SIZE
 STAGES = HIGH + SIZE
-DENSE = STAGES + DOP853_ROWS * SIZE
-WORK = DENSE + DOP853_DENSE_ROWS * SIZE
-"""Doubles of work memory in all."""
+"""Stage memory of the scheme, as long as it wants; behind it its dense output."""
+
+
+class Places(NamedTuple):
+    """What lies behind STAGES, where the sizes are the scheme's.
+
+    last    derivative at the end of the current step
+    dense   dense output of that step
+    end     of the work memory: doubles in all
+    """
+
+    last: int
+    dense: int
+    end: int
+
+
+def places_of(scheme: AdaptiveScheme) -> Places:
+    """The places for one scheme."""
+    dense = STAGES + scheme.stages
+    return Places(STAGES + scheme.last, dense, dense + scheme.dense)

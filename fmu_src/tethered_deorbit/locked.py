@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.command import make_command, make_shortest
-from fmu_src.tethered_deorbit.faults import blame, own_slot
-from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS
+from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
 from orbital.oscillators import dashpot, line_stiffness, natural_frequency
 
 
-def make_locked() -> Reel:
+def make_locked(interface: Interface) -> Reel:
     """An elastic line with fixed ends.
 
         T = k (l - l0) + c (dl/dt - dl0/dt)   while l > l0 and T > 0, otherwise 0
@@ -29,8 +30,8 @@ def make_locked() -> Reel:
     Source   D-CoNe paper, eq. 1 and 3; the clamp at zero and the moving rest length are ours
     Checked  tests/tethered_deorbit/test_snap.py, test_ramps.py
     """
-    own = REELS.terms["locked"].variables
-    diameter_slot, offset_slot = own_slot("tether.diameter", own), own_slot("reel.length_offset", own)
+    diameter_slot = interface.references["tether.diameter"]
+    offset_slot = interface.references["reel.length_offset"]
 
     asked, leave = make_command("reel_length_offset")
     shortest_on_the_way = make_shortest(offset_slot)

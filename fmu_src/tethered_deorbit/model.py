@@ -6,29 +6,26 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from numba import njit
-
-from fmu_src.integrators import make_dop853
 from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, STEP, UNDER_WAY, check_implemented
 from fmu_src.limits import make_limits
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
-from fmu_src.tethered_deorbit.environment import add_gravity
+from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
+from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.extremes import make_extremes
-from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.faults import blame, fail
+from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, make_reel
-from fmu_src.tethered_deorbit.start import start_state
-from fmu_src.tethered_deorbit.tether import add_tension, length_rate, line_length
+from fmu_src.tethered_deorbit.schemes import SCHEMES
+from fmu_src.tethered_deorbit.start import make_start
+from fmu_src.tethered_deorbit.tether import length_rate
 from fmu_src.tethered_deorbit.thrust import DIRECTIONS, Thrust, make_thrust
-from fmu_src.tethered_deorbit.trajectory import ROUNDING, make_squared_error, make_trajectory
-from fmu_src.tethered_deorbit.turning import add_turning
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
-from orbital.kernel import OPTIONS, entry, kernel
+from fmu_src.tethered_deorbit.trajectory import make_squared_error, make_trajectory
+from orbital.kernel import entry, kernel
 from orbital.oscillators import reduced_mass
-from orbital.twobody import mean_motion
 from orbital.vectors import Array, norm
 
 EVENT_LIMIT = 1_000_000
@@ -57,89 +54,37 @@ LIMITED = (
 )
 """Parameters whose limits the kernel minds too; out of theirs, others end in a fault of their own."""
 
-IMPLEMENTED = {"reel": tuple(LAWS), "thrust": tuple(DIRECTIONS)}
+IMPLEMENTED = {"reel": tuple(LAWS), "thrust": DIRECTIONS, "environment": FIELDS, "solver": tuple(SCHEMES)}
 """Terms that are composed here."""
 
 
 def make_entry(terms: Mapping[str, str]) -> Any:
     """The compiled entry `(command, record, work, time, step) -> status` of the model with the given terms.
 
-    terms         {"reel": ..., "thrust": ...}; without "thrust" there is no thruster in it
+    terms         {"reel": ..., "thrust": ..., "environment": ..., "solver": ...}; without "thrust" there is no thruster
+                  in it, and the others have defaults
 
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
-    check_implemented(MODEL, IMPLEMENTED, terms)
-    reel = make_reel(terms["reel"])
     interface = MODEL.interface(terms)
+    terms = interface.terms
+    check_implemented(MODEL, IMPLEMENTED, terms)
+    environment = make_environment(terms["environment"], interface)
+    reel = make_reel(terms["reel"], interface)
     command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     limits = make_limits(interface, *LIMITED)
-    thrust = make_thrust(terms["thrust"], terms["reel"]) if "thrust" in terms else Thrust()
+    thrust = make_thrust(terms["thrust"], environment.along_track, interface) if "thrust" in terms else Thrust()
 
-    # `derivative` is where the time goes: as a call of its own, which a second caller would make it, it costs 10 %.
-    @njit(inline="always", **OPTIONS)  # type: ignore[untyped-decorator]
-    def inertial(record: Any, state: Array, rate: Array, since: float) -> None:
-        """rate = rate of the state along inertial axes, or axes at rest in which it stands just now.
-
-        state, rate   R, V, rho, rho', J  of `layout`                (13,)
-        since         since the inputs in force began to move        [s]
-
-        Source   `add_gravity`, the thrust and `add_tension`; dJ/dt = T
-        Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_extremes.py: J
-        """
-        add_gravity(record, state, rate)
-        thrust.add(record, state, rate, since)
-        rate[layout.IMPULSE] = 0.0
-        if record[0].state_taut:
-            separation = norm(state[6:9])
-            speed = length_rate(state[6:9], state[9:12], separation)
-            tension = reel.tension(record, line_length(record, separation), speed, since)
-            add_tension(record, state, rate, tension, separation)
-            rate[layout.IMPULSE] = tension
-
-    @kernel
-    def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:
-        """rate = rate of the state along the axes of the step, which turn with a taut line.
-
-        elapsed       since the begin of the step                    [s]
-        The others as in `inertial`.
-
-        Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_turning.py
-        """
-        inertial(record, state, rate, record[0].state_since + elapsed)
-        if record[0].state_taut:
-            add_turning(record, state, rate, -1.0)
-
-    scheme = make_dop853(derivative, make_squared_error(), layout.VECTORS, layout.SIZE - layout.VECTORS)
+    inertial, derivative = make_equations(environment, reel, thrust)
+    scheme = SCHEMES[terms["solver"]](derivative, make_squared_error(), layout.VECTORS, layout.SIZE - layout.VECTORS)
+    work_size = layout.places_of(scheme).end
     events = make_events(reel, scheme)
-    extremes = make_extremes(events)
+    extremes = make_extremes(events, scheme)
     trajectory = make_trajectory(derivative, scheme, events)
-    publish = make_publish(reel)
-    differentiate = make_differentiate(inertial, reel)
-
-    @kernel
-    def fail(record: Any, code: int, time: float) -> int:
-        """The code, with when [s] put in the record.
-
-        `time` counts from the start of the instance, as everywhere below the entry; the importer is told its own.
-
-        Checked  tests/tethered_deorbit/test_macro_step.py: at a late start; test_robust.py
-        """
-        r = record[0]
-        r.fault_code = code
-        r.fault_time = r.state_start + time
-        return code
-
-    @kernel
-    def judge_line(record: Any, state: Array) -> float:
-        """Decide afresh whether the line is taut, from the law alone; returns its rate of lengthening [m/s].
-
-        Checked  tests/tethered_deorbit/test_start.py, test_macro_step.py: a changed length
-        """
-        r = record[0]
-        separation = norm(state[6:9])
-        speed: float = length_rate(state[6:9], state[9:12], separation)
-        r.state_taut = 1 if reel.taut(record, line_length(record, separation), speed) else 0
-        return speed
+    inputs = make_inputs(reel, thrust, trajectory, extremes, command_slot)
+    start_state = make_start(environment, interface)
+    publish = make_publish(reel, environment)
+    differentiate = make_differentiate(inertial, reel, environment)
 
     @kernel
     def finite(state: Array) -> bool:
@@ -166,7 +111,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_chaser_share = r.chaser_mass / r.state_total_mass
         r.state_target_share = r.target_mass / r.state_total_mass
         r.state_reduced_mass = reduced_mass(r.chaser_mass, r.target_mass)
-        r.state_mean_motion = mean_motion(EARTH_EQUATORIAL_RADIUS + r.orbit_altitude, EARTH_MU)
+        environment.begin(record)
         command, _ = reel.asked(record)
         code = reel.prepare(record, command, 0.0, 0.0)
         if code != 0:
@@ -189,7 +134,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.solver_steps = 0
         r.solver_rejected = 0
         clear_tugs(record)
-        speed = judge_line(record, end)
+        speed = inputs.judge_line(record, end)
         r.state_step = 0.0
         trajectory.restart(record, work, 0.0)
         r.state_since = 0.0
@@ -200,88 +145,6 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         extremes.start(record)
         thrust.publish(record, 0.0)
         return 0
-
-    @kernel
-    def begin_anew(record: Any, work: Array, duration: float) -> int:
-        """Put what the inputs say in force, and begin the trajectory anew, at the last communication point.
-
-        What was published stands; the rest of the step did not happen. Returns 0 or a fault.
-
-        duration      for which the inputs move                      [s]
-
-        Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py: a ramp does not see what ran ahead
-        """
-        r = record[0]
-        here = work[layout.HERE : layout.SLOPE]
-        trajectory.state_at(record, work, r.state_published, here)
-        for i in range(layout.SIZE):
-            work[layout.END + i] = here[i]
-        extremes.begin_anew(record)
-        command, command_rate = reel.asked(record)
-        code = reel.prepare(record, command, command_rate, duration)
-        if code == 0:
-            code = thrust.check(record)
-        if code != 0:
-            return fail(record, code, r.state_published)
-        force, force_rate = thrust.asked(record)
-        thrust.account(record, r.state_published)
-        thrust.put(record, force, force_rate)
-        trajectory.restart(record, work, r.state_published)
-        r.state_since = 0.0
-        return 0
-
-    @kernel
-    def take_inputs(record: Any, work: Array, duration: float) -> int:
-        """Begin anew when an input has changed, or moves, or has moved; then decide afresh whether the line is taut.
-
-        duration      of the macro step                              [s]
-
-        Returns 0 or a fault.
-
-        Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py; test_commanded.py: a changed command is
-                 one tug
-        """
-        r = record[0]
-        command, command_rate = reel.asked(record)
-        force, force_rate = thrust.asked(record)
-        changed = not (command == r.state_command and force == r.state_thrust)
-        moving = not (command_rate == 0.0 and force_rate == 0.0)
-        moved = not (r.state_command_rate == 0.0 and r.state_thrust_rate == 0.0)
-        if not (changed or moving or moved):
-            return 0
-        if not math.isfinite(command + command_rate):
-            return fail(record, blame(record, BAD_PARAMETER, command_slot, command), r.state_published)
-        was_taut = r.state_taut
-        code = begin_anew(record, work, duration)
-        if code != 0:
-            return code
-        speed = judge_line(record, work[layout.END : layout.HERE])
-        # The first step after a change of the line is a short one.
-        trajectory.restart(record, work, r.state_published)
-        if r.state_taut and not was_taut:
-            begin_tug(record, r.state_published, speed)
-        return 0
-
-    @kernel
-    def leave_inputs(record: Any, work: Array, duration: float) -> int:
-        """After a step in which inputs moved: they stay where they have come to, as if they were to go on moving.
-
-        The line is judged only when it is known how the next step begins. Returns 0 or a fault.
-
-        duration      of the macro step                              [s]
-
-        Checked  tests/tethered_deorbit/test_ramps.py: two ramps make one; test_tugs.py: ramps that end at zero
-        """
-        r = record[0]
-        command, command_rate = reel.asked(record)
-        if command_rate != 0.0:
-            reached = command + command_rate * duration
-            # A ramp that ends at zero to rounding, of the times too, ends at zero: 1e-19 N would be a taut line.
-            times = abs(r.state_start) + r.state_published
-            exact = abs(reached) > ROUNDING * (abs(command) + abs(command_rate) * times)
-            reel.leave(record, reached if exact else 0.0)
-        thrust.leave(record, duration)
-        return int(begin_anew(record, work, 0.0))
 
     @kernel
     def change_line(record: Any, work: Array) -> None:
@@ -321,7 +184,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return 0
         duration = target - r.state_published
         if anew:
-            code = take_inputs(record, work, duration)
+            code: int = inputs.take(record, work, duration)
             if code != 0:
                 return code
             extremes.begin_macro_step(record)
@@ -332,8 +195,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 r.fault_time = r.state_start + r.state_end
                 return UNDER_WAY
             left -= 1
-            radius = norm(work[layout.END : layout.END + 3])
-            if radius < EARTH_EQUATORIAL_RADIUS:
+            radius = environment.fallen(work[layout.END : layout.END + 3])
+            if radius >= 0.0:
                 return fail(record, blame(record, GROUND, 0, radius), r.state_end)
             extremes.note(record, work, r.state_end)
             if r.state_event:
@@ -352,8 +215,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         separation, speed = trajectory.state_at(record, work, target, here)
         if not finite(here):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), target)
-        radius = norm(here[0:3])
-        if radius < EARTH_EQUATORIAL_RADIUS:
+        radius = environment.fallen(here[0:3])
+        if radius >= 0.0:
             return fail(record, blame(record, GROUND, 0, radius), target)
         publish(record, here, separation, speed, r.state_since + (target - r.state_begin))
         thrust.publish(record, target)
@@ -361,7 +224,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_changes = 0
         extremes.publish(record)
         if moving:
-            return int(leave_inputs(record, work, duration))
+            return int(inputs.leave(record, work, duration))
         return 0
 
     @kernel
@@ -389,7 +252,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             code = reel.prepare(record, asked, asked_rate, 0.0)
             if code != 0:
                 return fail(record, code, r.state_published)
-            judge_line(record, here)
+            inputs.judge_line(record, here)
         if differentiating:
             asked_force, asked_force_rate = thrust.asked(record)
             thrust.put(record, asked_force, force_rate if asked_force == force else asked_force_rate)
@@ -414,7 +277,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.fault_time = 0.0
         r.fault_value = 0.0
         if command == SIZE:
-            r.work_size = layout.WORK
+            r.work_size = work_size
             return 0
         if command == INITIALISE:
             r.state_start = time

@@ -7,15 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.interface import TUGS
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.tether import line_length
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
-from orbital.frames import orbital_basis, relative_to_orbital
+from orbital.frames import relative_to_orbital
 from orbital.hill import hill_jacobi
 from orbital.kernel import kernel
-from orbital.twobody import semi_major_axis, specific_energy
-from orbital.vectors import Array, norm
+from orbital.vectors import Array
 
 
 @kernel
@@ -76,7 +75,7 @@ def note_pull(record: Any, tension: float) -> None:
     r.tether_tug_count += 1
 
 
-def make_publish(reel: Reel) -> Callable[..., Any]:
+def make_publish(reel: Reel, environment: Environment) -> Callable[..., Any]:
     """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
 
     @kernel
@@ -107,14 +106,10 @@ def make_publish(reel: Reel) -> Callable[..., Any]:
             r.chaser_velocity[i] = state[3 + i] - r.state_target_share * velocity[i]
             r.target_position[i] = state[i] + r.state_chaser_share * position[i]
             r.target_velocity[i] = state[3 + i] + r.state_chaser_share * velocity[i]
-        r.chaser_radius = norm(r.chaser_position)
-        r.target_radius = norm(r.target_position)
-        r.altitude = norm(r.center_position) - EARTH_EQUATORIAL_RADIUS
-        r.center_semi_major_axis = semi_major_axis(r.center_position, r.center_velocity, EARTH_MU)
-        turning = orbital_basis(r.state_basis, r.center_position, r.center_velocity)
+        environment.publish(record)
+        turning = environment.frame(record, r.center_position, r.center_velocity)
         relative_to_orbital(r.relative_position, r.relative_velocity, r.state_basis, turning, position, velocity)
         r.tether_angle = math.atan2(r.relative_position[1], r.relative_position[0])
-        r.energy_orbital = r.state_total_mass * specific_energy(r.center_position, r.center_velocity, EARTH_MU)
         r.energy_relative = r.state_reduced_mass * hill_jacobi(r.relative_position, r.relative_velocity, turning)
         if r.state_taut:
             r.energy_relative += reel.energy(record, length, since)

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.tethered_deorbit.faults import blame, own_slot
-from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, REELS, THRUST
+from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from orbital.constants import STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -83,59 +84,39 @@ def _add_along(record: Any, rate: Array, since: float, x: float, y: float, z: fl
 
 
 @kernel
-def _add_along_track(record: Any, state: Array, rate: Array, since: float) -> None:
-    """Add the thrust along the chaser's along-track.
+def _along_velocity(record: Any, state: Array) -> tuple[float, float, float]:
+    """Direction of the chaser's inertial velocity [m/s].
 
-        u = (h x r)/|h x r|,   h = r x v,   so h x r = v (r.r) - r (r.v)
+        u = v
 
-    state, rate   R, V, rho, rho'  of `layout`                   (12,)
+    state         R, V, rho, rho'  of `layout`                   (12,)
 
-    Valid    r and v of the chaser not parallel
-    Source   as `_add_along`
+    Valid    at rest it has no direction, and there is no thrust
+    Source   v = V - (m_t/M) rho'
     Checked  tests/tethered_deorbit/test_terms.py; test_uncompiled.py: its work round an ellipse
     """
     share = record[0].state_target_share
-    x, y, z = state[0] - share * state[6], state[1] - share * state[7], state[2] - share * state[8]
-    u, v, w = state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
-    radial = (x * u + y * v + z * w) / (x * x + y * y + z * z)
-    _add_along(record, rate, since, u - radial * x, v - radial * y, w - radial * z)
+    return state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
 
 
 @kernel
-def _add_along_velocity(record: Any, state: Array, rate: Array, since: float) -> None:
-    """Add the thrust along the chaser's inertial velocity.
+def _along_tether(record: Any, state: Array) -> tuple[float, float, float]:
+    """Direction of the line, towards the target [m].
 
-        u = v/|v|
+        u = rho
 
-    state, rate   R, V, rho, rho'  of `layout`                   (12,)
-
-    Source   as `_add_along`
-    Checked  tests/tethered_deorbit/test_terms.py; test_uncompiled.py: its work round an ellipse
-    """
-    share = record[0].state_target_share
-    _add_along(
-        record, rate, since, state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
-    )
-
-
-@kernel
-def _add_along_tether(record: Any, state: Array, rate: Array, since: float) -> None:
-    """Add the thrust along the line, positive towards the target.
-
-        u = rho/|rho|
-
-    state, rate   R, V, rho, rho'  of `layout`                   (12,)
+    state         R, V, rho, rho'  of `layout`                   (12,)
 
     Source   as `_add_along`
     Checked  tests/tethered_deorbit/test_terms.py, test_uncompiled.py
     """
-    _add_along(record, rate, since, state[6], state[7], state[8])
+    return state[6], state[7], state[8]
 
 
-DIRECTIONS = {"along_track": _add_along_track, "velocity": _add_along_velocity, "tether": _add_along_tether}
+DIRECTIONS = ("along_track", "velocity", "tether")
 
 
-def make_thrust(direction: str, reel: str = "locked") -> Thrust:
+def make_thrust(name: str, along_track: Callable[..., Any], interface: Interface) -> Thrust:
     """A thruster on the chaser.
 
         R'' += F u/M,   rho'' -= F u/m_c,   F = level + offset,   propellant = integral of |F|/(Isp g0)
@@ -145,15 +126,29 @@ def make_thrust(direction: str, reel: str = "locked") -> Thrust:
     Masses stay constant. The propellant of a tow from 800 to 200 km at 3000 s is 1.1 % of the pair's mass; keeping it
     aboard makes the tow 0.6 % longer than `orbital.references.spiral_time` with its exhaust speed says.
 
-    direction     along_track, velocity or tether
-    reel          the law of the line, whose variables come before the thruster's
+    name          of the direction: along_track, velocity or tether
+    along_track   kernel of the environment that gives this one
+    interface     whose record it is for
 
     Valid    point masses: no torque, no plume on the target
     Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, test_ramps.py
     """
-    add = DIRECTIONS[direction]
-    offset_slot = own_slot("thrust.offset", REELS.terms[reel].variables, THRUST)
+    direction = {"along_track": along_track, "velocity": _along_velocity, "tether": _along_tether}[name]
+    offset_slot = interface.references["thrust.offset"]
+
+    @kernel
+    def add(record: Any, state: Array, rate: Array, since: float) -> None:
+        """Add the thrust along its direction to the rate of the state.
+
+        state, rate   R, V, rho, rho'  of `layout`               (12,)
+        since         since the force was set                    [s]
+
+        Source   as `_add_along`
+        Checked  tests/tethered_deorbit/test_terms.py, test_uncompiled.py
+        """
+        x, y, z = direction(record, state)
+        _add_along(record, rate, since, x, y, z)
 
     @kernel
     def reset(record: Any) -> None:

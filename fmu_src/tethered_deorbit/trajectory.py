@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.integrators import DOP853_STAGES, AdaptiveScheme
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.events import CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, Events, Signals
 from fmu_src.tethered_deorbit.faults import blame
@@ -21,14 +21,11 @@ from fmu_src.tethered_deorbit.turning import add_turning, set_turning, turn_back
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
-TAUT_STEP = 3.0
-"""Longest step of a taut line, in radians of its fastest motion: inside stability (5.97), so that it damps."""
-UNDAMPED_TAUT_STEP = 1.0
-FULL_STEP_DAMPING = 0.05
-"""Damping ratio from which the longest step is allowed."""
 FIRST_TAUT_STEP = 0.3
 FIRST_FREE_STEP = 0.05
 """First step after a change: in radians of the line's, or of the orbit's motion."""
+WIDEST_TURN = 0.25
+"""Greatest angle by which the axes of a step may turn [rad]: inside the series of `turn_back`."""
 SHORTEST_CONTACT = 1.0e-6
 """Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
 LANDING_ITERATIONS = 5
@@ -53,12 +50,12 @@ def make_squared_error() -> Callable[..., Any]:
 
         state, error     R, V, rho, rho'  of `layout`            (12,)
 
-        Valid    n the reference orbit's mean motion, omega the taut line's frequency
+        Valid    n the pace of the environment, on an orbit its mean motion, omega the taut line's frequency
         Source   ours
         Checked  tests/tethered_deorbit/test_integrator.py
         """
         r = record[0]
-        n = r.state_mean_motion
+        n = r.state_pace
         orbit = r.solver_tolerance_orbit + ROUNDING * norm(state[0:3])
         orbit_rate = r.solver_tolerance_orbit * n + ROUNDING * norm(state[3:6])
         length = norm(state[6:9])
@@ -82,22 +79,25 @@ def make_squared_error() -> Callable[..., Any]:
     return squared_error
 
 
-@kernel
-def longest_taut_step(record: Any) -> float:
-    """Longest step [s] of a taut line: the scheme's own damping stays about a hundredth of the line's.
+def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
+    """The kernel that says how long a step of a taut line may be, of a scheme with this `AdaptiveScheme.reach`."""
 
-        h omega <= 3 (20 zeta)^(1/8),   held between 1 and 3;   zeta = c / (2 m_r omega)
+    @kernel
+    def longest_taut_step(record: Any) -> float:
+        """Longest step [s] of a taut line: as far as the scheme reaches over its vibration.
 
-    In h omega radians the scheme takes about 2.4e-8 (h omega)^10 off a vibration, the line takes zeta h omega.
+            h omega <= reach(zeta),   zeta = c / (2 m_r omega)
 
-    Valid    omega the frequency of the fastest motion, that of the dashpot when it is faster than the spring
-    Source   stability function of `make_dop853`
-    Checked  tests/tethered_deorbit/test_turning.py
-    """
-    r = record[0]
-    damping = r.state_damping / (2.0 * r.state_reduced_mass * r.state_frequency)
-    allowed = TAUT_STEP * math.sqrt(math.sqrt(math.sqrt(min(1.0, damping / FULL_STEP_DAMPING))))
-    return float(max(UNDAMPED_TAUT_STEP, allowed) / r.state_frequency)
+        Valid    omega the frequency of the fastest motion, that of the dashpot when it is faster than the spring
+        Source   `AdaptiveScheme.reach`, which for a scheme that damps what is stiff has no end
+        Checked  tests/tethered_deorbit/test_turning.py
+        """
+        r = record[0]
+        damping = r.state_damping / (2.0 * r.state_reduced_mass * r.state_frequency)
+        longest: float = reach(damping) / r.state_frequency
+        return longest
+
+    return longest_taut_step
 
 
 class Trajectory(NamedTuple):
@@ -121,8 +121,9 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
     Valid    tolerances that rounding can meet
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
-    last = layout.STAGES + DOP853_STAGES * layout.SIZE
-    """Place of the derivative at the end of the step."""
+    last, dense_begin, work_end = layout.places_of(scheme)
+
+    longest_taut_step = make_longest_taut_step(scheme.reach)
 
     @kernel
     def restart(record: Any, work: Array, time: float) -> None:
@@ -143,7 +144,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         r.state_fresh = 1
         r.state_dense_ready = 0
         r.state_error = 1.0e-4
-        free = FIRST_FREE_STEP / r.state_mean_motion
+        free = FIRST_FREE_STEP / r.state_pace
         r.state_next_step = min(free, FIRST_TAUT_STEP / r.state_frequency) if r.state_taut else free
 
     @kernel
@@ -156,7 +157,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
             record,
             work[layout.BEGIN : layout.END],
             step,
-            work[layout.STAGES : layout.DENSE],
+            work[layout.STAGES : dense_begin],
             work[layout.END : layout.HERE],
         )
         r = record[0]
@@ -254,6 +255,9 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         step = min(r.state_next_step, max(longest, SHORTEST * abs(r.state_begin)))
         if r.state_taut:
             step = min(step, longest_taut_step(record))
+            turn = norm(r.state_turning)
+            if turn > 0.0:
+                step = min(step, WIDEST_TURN / turn)
         while True:
             if not step > 0.5 * SHORTEST * abs(r.state_begin):
                 code = NOT_FINITE if not math.isfinite(r.state_error) else STEP_NOT_MET
@@ -263,7 +267,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
                 record,
                 work[layout.END : layout.HERE],
                 step,
-                work[layout.STAGES : layout.DENSE],
+                work[layout.STAGES : dense_begin],
                 work[layout.LOW : layout.HIGH],
                 work[layout.HIGH : layout.STAGES],
             )
@@ -300,7 +304,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
             fraction = max(0.0, (time - r.state_begin) / r.state_step)
             since = fraction * r.state_step
             scheme.dense_value(
-                work[layout.BEGIN : layout.END], work[layout.DENSE : layout.WORK], fraction, 0, layout.SIZE, out
+                work[layout.BEGIN : layout.END], work[dense_begin:work_end], fraction, 0, layout.SIZE, out
             )
         separation = norm(out[6:9])
         speed = length_rate(out[6:9], out[9:12], separation)

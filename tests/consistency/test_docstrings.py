@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("orbital", "fmu_src", "dcone_cosim")
 KERNELS = (
     "orbital",
-    "fmu_src/integrators.py",
+    "fmu_src/integrators",
     "fmu_src/net_capture",
     "fmu_src/tethered_deorbit",
     "fmu_src/reel_control",

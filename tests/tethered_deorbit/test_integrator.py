@@ -1,22 +1,30 @@
-"""The scheme itself, on a Kepler orbit and an oscillator: order, dense output, edges of stability, step control."""
+"""Every scheme by itself, on a Kepler orbit and an oscillator: order, dense output, stability, error, step control."""
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import DOP853
+from scipy.integrate import DOP853, Radau
+from scipy.linalg import expm
 
-from fmu_src import integrators
 from fmu_src.instance import Instance
-from fmu_src.integrators import DOP853_DENSE_ROWS, DOP853_ROWS, DOP853_STAGES, AdaptiveScheme, make_dop853
+from fmu_src.integrators import collocation, dop853, elimination, gauss, radau
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.interface import MODEL
 from orbital.kepler import propagate
 from orbital.kernel import kernel
 from orbital.twobody import two_body_acceleration
+from tests.plain import plain
 
+__all__ = ["plain"]
+
+uncompiled = pytest.mark.usefixtures("plain")
 SIZE = 6
+TIGHT = 1e10
+"""What errors are multiplied by where iterations are to end at rounding."""
 
 
 @kernel
@@ -34,6 +42,13 @@ def oscillator(context: Any, state: Any, rate: Any, elapsed: float) -> None:
 
 
 @kernel
+def drive(context: Any, state: Any, rate: Any, elapsed: float) -> None:
+    """x' = y, y' = cos t, the time of a step's begin in the context: the time of each stage counts."""
+    rate[0] = state[1]
+    rate[1] = math.cos(context[0] + context[1] * elapsed)
+
+
+@kernel
 def squared(context: Any, state: Any, error: Any) -> float:
     total = 0.0
     for i in range(len(error)):
@@ -41,14 +56,54 @@ def squared(context: Any, state: Any, error: Any) -> float:
     return total
 
 
-def fixed_steps(derivative: Callable[..., Any], scheme: AdaptiveScheme, start: Any, step: float, count: int) -> Any:
-    """State after `count` steps, and the memory of the last one."""
-    state, end = start.copy(), start.copy()
-    stages = np.zeros(DOP853_ROWS * len(start))
+@kernel
+def strict(context: Any, state: Any, error: Any) -> float:
+    """The same, of an error times TIGHT."""
+    return float(squared(context, state, error) * TIGHT * TIGHT)
+
+
+@dataclass(frozen=True)
+class Said:
+    """What a scheme says of itself, and steps at which its errors are far from rounding and already asymptotic.
+
+    order, dense   of the result, and of the dense output
+    estimate       power of the step with which the estimated error falls
+    counts         steps per revolution; near: of a single step
+    spoil          coefficients, one of which off by 1 % costs the order: of the result, and of the dense output alone
+    """
+
+    make: Callable[..., AdaptiveScheme]
+    module: Any
+    order: int
+    dense: int
+    estimate: int
+    counts: tuple[int, ...]
+    near: tuple[float, ...]
+    spoil: tuple[tuple[str, int], ...]
+    spoil_dense: tuple[tuple[str, int], ...]
+
+
+SCHEMES = {
+    "dop853": Said(dop853.make_dop853, dop853, 8, 7, 8, (32, 38, 46, 56), (0.5, 0.4, 0.32, 0.25),
+                   (("_A", 12 * 16 + 6), ("_A", 7 * 16 + 6)), (("_D", 6),)),
+    "gauss": Said(gauss.make_gauss, gauss, 8, 7, 8, (14, 17, 20, 25), (0.5, 0.4, 0.32, 0.25),
+                  (("_A", 6), ("_B", 1)), (("_REST", 5), ("_CUBIC", 4))),
+    "radau": Said(radau.make_radau, radau, 5, 3, 4, (50, 80, 120, 180), (0.12, 0.09, 0.06, 0.04),
+                  (("T", 1), ("T_INVERSE", 4)), (("_FIRST", -1),)),
+}  # fmt: skip
+each = pytest.mark.parametrize("name", SCHEMES)
+
+
+def steps_of(
+    derivative: Callable[..., Any], scheme: AdaptiveScheme, start: Any, step: float, count: int = 1, context: Any = None
+) -> Any:
+    """State before and after the last of so many steps, and the stage memory of that one."""
+    context = np.zeros(1) if context is None else context
+    state, end, stages = start.copy(), start.copy(), np.zeros(scheme.stages)
     for _ in range(count):
         state = end.copy()
-        derivative(np.zeros(1), state, stages[: len(start)], 0.0)
-        scheme.attempt(np.zeros(1), state, step, stages, end)
+        derivative(context, state, stages[: len(start)], 0.0)
+        scheme.attempt(context, state, step, stages, end)
     return state, end, stages
 
 
@@ -62,48 +117,25 @@ def exact(time: float) -> Any:
     return out
 
 
-@pytest.fixture(scope="module")
-def scheme() -> AdaptiveScheme:
-    return make_dop853(kepler, squared, SIZE)
-
-
-def slope(steps: list[float], errors: list[float]) -> float:
+def slope(steps: Any, errors: Any) -> float:
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 
-def test_order_eight(scheme: AdaptiveScheme) -> None:
-    counts = [32, 38, 46, 56]
-    ends = [fixed_steps(kepler, scheme, START, math.tau / n, n)[1] for n in counts]
-    errors = [float(np.linalg.norm(end - exact(math.tau))) for end in ends]
-    assert slope([math.tau / n for n in counts], errors) == pytest.approx(8.0, abs=0.1)
+def after_a_revolution(said: Said) -> float:
+    """Slope of the error after one revolution."""
+    scheme = said.make(kepler, strict, SIZE)
+    steps = [math.tau / n for n in said.counts]
+    ends = [steps_of(kepler, scheme, START, step, n)[1] for step, n in zip(steps, said.counts, strict=True)]
+    return slope(steps, [float(np.linalg.norm(end - exact(math.tau))) for end in ends])
 
 
-@pytest.mark.parametrize(("name", "row"), [("_A", 12), ("_A", 7), ("_D", 0)])
-def test_order_notices_one_wrong_coefficient(monkeypatch: pytest.MonkeyPatch, name: str, row: int) -> None:
-    """Twin of the two tests of order: a weight off by 1 % in the result, in a stage, in the dense output."""
-    wrong = getattr(integrators, name).copy()
-    wrong[row * DOP853_ROWS + 6] *= 1.01
-    monkeypatch.setattr(integrators, name, wrong)
-    spoilt = make_dop853(kepler, squared, SIZE)
-    steps = [0.5, 0.4, 0.32, 0.25]
-    whole, within = [], []
-    for step in steps:
-        state, end, stages = fixed_steps(kepler, spoilt, START, step, 1)
-        whole.append(float(np.linalg.norm(end - exact(step))))
-        dense, out = np.zeros(DOP853_DENSE_ROWS * SIZE), np.zeros(SIZE)
-        spoilt.prepare_dense(np.zeros(1), state, end, step, stages, dense, np.zeros(SIZE))
-        spoilt.dense_value(state, dense, 0.4, 0, SIZE, out)
-        within.append(float(np.linalg.norm(out - exact(0.4 * step))))
-    assert slope(steps, within) < 7.0
-    assert (slope(steps, whole) < 7.0) == (name == "_A")
-
-
-def test_dense_output_order(scheme: AdaptiveScheme) -> None:
-    """Order 7: the largest error within one step falls with its eighth power, that of the rate with the seventh."""
-    steps, errors, rates = [0.5, 0.4, 0.32, 0.25], [], []
-    for step in steps:
-        state, end, stages = fixed_steps(kepler, scheme, START, step, 1)
-        dense, out, rate = np.zeros(DOP853_DENSE_ROWS * SIZE), np.zeros(SIZE), np.zeros(SIZE)
+def within_a_step(said: Said) -> tuple[float, float, float]:
+    """Slopes of the largest error in one step, of that of the rate in it, and of the error at its end."""
+    scheme = said.make(kepler, strict, SIZE)
+    errors, rates, ends = [], [], []
+    for step in said.near:
+        state, end, stages = steps_of(kepler, scheme, START, step)
+        dense, out, rate = np.zeros(scheme.dense), np.zeros(SIZE), np.zeros(SIZE)
         scheme.prepare_dense(np.zeros(1), state, end, step, stages, dense, np.zeros(SIZE))
         worst, worst_rate = 0.0, 0.0
         for fraction in np.linspace(0.0, 1.0, 41):
@@ -114,85 +146,391 @@ def test_dense_output_order(scheme: AdaptiveScheme) -> None:
         assert out == pytest.approx(end, abs=1e-15)
         errors.append(worst)
         rates.append(worst_rate)
-    assert slope(steps, errors) == pytest.approx(8.0, abs=0.1)
-    assert slope(steps, rates) == pytest.approx(7.0, abs=0.1)
+        ends.append(float(np.linalg.norm(end - exact(step))))
+    return slope(said.near, errors), slope(said.near, rates), slope(said.near, ends)
 
 
-@kernel
-def drive(context: Any, state: Any, rate: Any, elapsed: float) -> None:
-    """x' = y, y' = cos t, the time of a step's begin in the context: the time of each stage counts."""
-    rate[0] = state[1]
-    rate[1] = math.cos(context[0] + context[1] * elapsed)
+@each
+@uncompiled
+def test_order(name: str) -> None:
+    said = SCHEMES[name]
+    assert after_a_revolution(said) == pytest.approx(said.order, abs=0.1)
 
 
-def test_order_with_time_in_the_equations() -> None:
-    """Result and dense output keep a high order, about 8; with stage times 1 % off it falls to 2."""
-    moving = make_dop853(drive, squared, 2)
+@each
+@uncompiled
+def test_dense_output_order(name: str) -> None:
+    """The largest error within one step falls with a power one above the order, that of the rate with the order."""
+    said = SCHEMES[name]
+    value, rate, _ = within_a_step(said)
+    # that of gauss is so good that the error of the step itself, one order higher, is the largest in it
+    assert value == pytest.approx(said.dense + (2 if name == "gauss" else 1), abs=0.1)
+    assert rate >= said.dense - 0.1
+
+
+def spoilt(monkeypatch: pytest.MonkeyPatch, said: Said, place: tuple[str, int]) -> None:
+    """One coefficient of a scheme off by 1 %."""
+    name, index = place
+    wrong = getattr(said.module, name)
+    if index < 0:
+        wrong *= 1.01
+    else:
+        wrong = wrong.copy()
+        wrong[index] *= 1.01
+    monkeypatch.setattr(said.module, name, wrong)
+
+
+@pytest.mark.parametrize(
+    ("name", "place"), [(name, place) for name, said in SCHEMES.items() for place in said.spoil], ids=str
+)
+@uncompiled
+def test_order_notices_one_wrong_coefficient(
+    monkeypatch: pytest.MonkeyPatch, name: str, place: tuple[str, int]
+) -> None:
+    """Twin of the two tests of order: a weight off by 1 % in the result, in a stage."""
+    said = SCHEMES[name]
+    spoilt(monkeypatch, said, place)
+    value, _, end = within_a_step(said)
+    assert end < said.order
+    assert value < said.dense
+
+
+@pytest.mark.parametrize(
+    ("name", "place"), [(name, place) for name, said in SCHEMES.items() for place in said.spoil_dense], ids=str
+)
+@uncompiled
+def test_dense_output_notices_one_wrong_coefficient(
+    monkeypatch: pytest.MonkeyPatch, name: str, place: tuple[str, int]
+) -> None:
+    """Twin: the dense output loses its order, and the result keeps its own."""
+    said = SCHEMES[name]
+    spoilt(monkeypatch, said, place)
+    value, _, end = within_a_step(said)
+    assert value < said.dense
+    assert end > said.order + 0.5
+
+
+@each
+@uncompiled
+def test_order_with_time_in_the_equations(name: str) -> None:
+    """Result and dense output keep their order; with stage times 1 % off it falls to 2."""
+    said = SCHEMES[name]
+    moving = said.make(drive, strict, 2)
+    steps = (2.0, 1.6, 1.3, 1.0) if said.order > 5 else (0.8, 0.6, 0.4, 0.3)
     for factor, order in ((1.0, True), (1.01, False)):
-        steps, errors, within = [2.0, 1.6, 1.3, 1.0], [], []
+        errors, within = [], []
         for step in steps:
-            context, start, end = np.array([0.3, factor]), np.array([-math.cos(0.3), math.sin(0.3)]), np.zeros(2)
-            stages, dense, out = np.zeros(DOP853_ROWS * 2), np.zeros(DOP853_DENSE_ROWS * 2), np.zeros(2)
-            drive(context, start, stages[:2], 0.0)
-            moving.attempt(context, start, step, stages, end)
+            context, start = np.array([0.3, factor]), np.array([-math.cos(0.3), math.sin(0.3)])
+            _, end, stages = steps_of(drive, moving, start, step, context=context)
+            dense, out = np.zeros(moving.dense), np.zeros(2)
             errors.append(abs(end[1] - math.sin(0.3 + step)))
             moving.prepare_dense(context, start, end, step, stages, dense, np.zeros(2))
             moving.dense_value(start, dense, 0.4, 0, 2, out)
             within.append(abs(out[1] - math.sin(0.3 + 0.4 * step)))
-        assert (slope(steps, errors) > 7.0) == order
-        assert (slope(steps, within) > 7.0) == order
+        assert (slope(steps, errors) > said.order - 1.0) == order
+        assert (slope(steps, within) > said.dense - 0.2) == order
 
 
+@each
+@uncompiled
+def test_counted_components_are_integrals(name: str) -> None:
+    """The equations do not depend on them; they come out as if they had been integrated with the others."""
+    said = SCHEMES[name]
+
+    @kernel
+    def with_area(context: Any, state: Any, rate: Any, elapsed: float) -> None:
+        """And the area swept out, dA/dt = (x y' - y x')/2."""
+        kepler(context, state, rate, elapsed)
+        rate[6] = 0.5 * (state[0] * state[4] - state[1] * state[3]) * context[0]
+
+    @kernel
+    def of_six(context: Any, state: Any, error: Any) -> float:
+        return float(strict(context, state, error[0:6]))
+
+    ends = []
+    for size, counted in ((6, 1), (7, 0)):
+        scheme = said.make(with_area, of_six, size, counted)
+        start, context = np.append(START, 0.3), np.ones(1)
+        state, end, stages = steps_of(with_area, scheme, start, 0.05, context=context)
+        dense, out = np.zeros(scheme.dense), np.zeros(7)
+        scheme.prepare_dense(context, state, end, 0.05, stages, dense, np.zeros(7))
+        scheme.dense_value(state, dense, 0.6, 0, 7, out)
+        ends.append(np.append(end, out))
+    # equal areas in equal times: A = h t/2
+    assert ends[0] == pytest.approx(ends[1], abs=1e-11)
+    assert ends[0][6] == pytest.approx(0.3 + 0.025 * math.sqrt(0.95 * 1.05), abs=1e-9)
+    assert ends[0][6] != pytest.approx(0.3 + 0.025 * math.sqrt(0.96 * 1.05), abs=1e-9)
+
+
+@uncompiled
+def test_what_radau_counts_is_counted_at_the_stages_it_found() -> None:
+    """Also where the iteration ended early: the derivatives of an iteration before would be those of other states."""
+
+    @kernel
+    def with_square(context: Any, state: Any, rate: Any, elapsed: float) -> None:
+        kepler(context, state, rate, elapsed)
+        rate[6] = state[0] * state[0]
+
+    @kernel
+    def loose(context: Any, state: Any, error: Any) -> float:
+        return 1e-4 * float(squared(context, state, error[0:6]))
+
+    start = np.append(START, 0.3)
+    _, end, stages = steps_of(with_square, SCHEMES["radau"].make(with_square, loose, 6, 1), start, 0.8)
+    places = 0.95 + stages[2 * 7 : 5 * 7].reshape(3, 7)[:, 0]
+    weights = np.array([(16 - math.sqrt(6)) / 36, (16 + math.sqrt(6)) / 36, 1 / 9])
+    assert end[6] == pytest.approx(0.3 + 0.8 * weights @ places**2, abs=1e-15)
+    tight = steps_of(with_square, SCHEMES["radau"].make(with_square, strict, 6, 1), start, 0.8)[1]
+    assert abs(end[6] - tight[6]) > 1e-9, "the iteration has ended early"
+
+
+def growth(name: str, step: float, zeta: float) -> float:
+    """Largest factor by which a step multiplies a state of the oscillator."""
+    small = SCHEMES[name].make(oscillator, strict, 2)
+    columns = [steps_of(oscillator, small, start, step, context=np.array([zeta]))[1] for start in np.eye(2)]
+    return float(abs(np.linalg.eigvals(np.array(columns).T)).max())
+
+
+@uncompiled
 def test_edges_of_stability() -> None:
     """h |lambda| = 5.97 on the imaginary axis, 6.4 on the real one; the decay below it is the one stated."""
-    small = make_dop853(oscillator, squared, 2)
-
-    def growth(step: float, zeta: float) -> float:
-        columns = []
-        for start in np.eye(2):
-            end, stages = np.zeros(2), np.zeros(DOP853_ROWS * 2)
-            oscillator(np.array([zeta]), start, stages[:2], 0.0)
-            small.attempt(np.array([zeta]), start, step, stages, end)
-            columns.append(end.copy())
-        return float(abs(np.linalg.eigvals(np.array(columns).T)).max())
-
-    assert growth(5.96, 0.0) < 1.0 < growth(5.98, 0.0)
-    assert 1.0 - growth(2.0, 0.0) == pytest.approx(2.7e-5, rel=0.02)
-    assert 1.0 - growth(2.02, 0.0) != pytest.approx(2.7e-5, rel=0.02)
-    assert 1.0 - growth(1.0, 0.0) == pytest.approx(2.4e-8, rel=0.02)
-    assert growth(6.38, 1.0) < 1.0 < growth(6.42, 1.0)
+    assert growth("dop853", 5.96, 0.0) < 1.0 < growth("dop853", 5.98, 0.0)
+    assert 1.0 - growth("dop853", 2.0, 0.0) == pytest.approx(2.7e-5, rel=0.02)
+    assert 1.0 - growth("dop853", 2.02, 0.0) != pytest.approx(2.7e-5, rel=0.02)
+    assert 1.0 - growth("dop853", 1.0, 0.0) == pytest.approx(2.4e-8, rel=0.02)
+    assert growth("dop853", 6.38, 1.0) < 1.0 < growth("dop853", 6.42, 1.0)
 
 
-def test_step_control(scheme: AdaptiveScheme) -> None:
-    assert scheme.next_step(1.0, 0.9**8, 0.9**8) == pytest.approx(0.9 * 0.9 ** (-0.5))
-    assert scheme.next_step(1.0, 0.0, 1.0) == 5.0
-    assert scheme.next_step(1.0, 0.9**8, 0.9**8) != pytest.approx(0.9 * 0.9 ** (-4 / 7))  # a scheme of order 7
-    assert scheme.shorter_step(1.0, 2.0**8) == pytest.approx(0.45)
-    assert scheme.shorter_step(1.0, 2.0**7) != pytest.approx(0.45)
-    assert scheme.shorter_step(1.0, math.nan) == 0.2
-    stages = np.zeros(DOP853_ROWS * SIZE)
-    kepler(np.zeros(1), START, stages[:SIZE], 0.0)
-    end, low, high = np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE)
-    steps, errors = [0.4, 0.3, 0.2], []
+@uncompiled
+def test_gauss_takes_nothing_off() -> None:
+    """|R| = 1 to rounding for any step, as far as the iteration goes: below h |lambda| = 6; a step back undoes it."""
+    for step in (0.1, 0.7, 1.5, 2.5):
+        assert growth("gauss", step, 0.0) == pytest.approx(1.0, abs=2e-15)
+    assert growth("gauss", 2.5, 1e-6) != pytest.approx(1.0, abs=2e-15)
+    scheme = SCHEMES["gauss"].make(kepler, strict, SIZE)
+    _, there, _ = steps_of(kepler, scheme, START, 0.5)
+    _, back, _ = steps_of(kepler, scheme, there, -0.5)
+    assert back == pytest.approx(START, abs=2e-15)
+    # an explicit scheme undoes its step to its error only
+    other = SCHEMES["dop853"].make(kepler, strict, SIZE)
+    _, there, _ = steps_of(kepler, other, START, 0.5)
+    assert steps_of(kepler, other, there, -0.5)[1] != pytest.approx(START, abs=1e-12)
+
+
+@uncompiled
+def test_gauss_iteration() -> None:
+    """It finds its stages below h |lambda| = 6, at a rate of 0.166 h |lambda| a sweep; otherwise it says so."""
+    matrix = gauss._A.reshape(4, 4)
+    rate = max(abs(np.linalg.eigvals(matrix)))
+    assert rate == pytest.approx(0.1654, abs=1e-4)
+    small = SCHEMES["gauss"].make(oscillator, squared, 2)
+    for step, found in ((1.5, True), (3.0, True), (6.3, False)):
+        _, end, stages = steps_of(oscillator, small, np.array([1.0, 0.0]), step)
+        error = small.error(np.zeros(1), end, step, stages, np.zeros(2), np.zeros(2))
+        assert math.isfinite(error) == found
+    assert small.shorter_step(1.0, error) == 0.2
+    assert small.reach(0.0) == small.reach(5.0) == 1.5  # a quarter is left by each sweep
+    assert rate * small.reach(0.0) < 0.25 < rate * 1.02 * small.reach(0.0)
+
+
+@uncompiled
+def test_radau_damps_what_is_stiff() -> None:
+    """R(-inf) = 0 and |R| <= 1 on the axes; near zero the damping of what nothing else damps is the one stated."""
+    for step in (0.3, 3.0, 30.0, 300.0):
+        assert growth("radau", step, 0.0) < 1.0
+    for step, off in ((0.5, 2.14e-6), (1.0, 1.307e-4)):
+        assert 1.0 - growth("radau", step, 0.0) == pytest.approx(off, rel=0.01)
+        assert 1.0 - growth("radau", 1.02 * step, 0.0) != pytest.approx(off, rel=0.01)
+    # of an overdamped swing the slow rate is followed; of the fast one 3/(h |lambda|) is left after one step
+    zeta, start = 1e4, np.array([0.0, 1.0])
+    small, context = SCHEMES["radau"].make(oscillator, strict, 2), np.array([zeta])
+    once = steps_of(oscillator, small, start, 1.0, 1, context)[1]
+    assert abs(once[1]) == pytest.approx(1.5 / zeta, rel=1e-2)
+    later = steps_of(oscillator, small, start, 1.0, 9, context)[1]
+    slow = expm(9.0 * np.array([[0.0, 1.0], [-1.0, -2.0 * zeta]])) @ start
+    assert later == pytest.approx(slow, rel=1e-6)
+    explicit = SCHEMES["dop853"].make(oscillator, strict, 2)
+    assert abs(steps_of(oscillator, explicit, start, 1.0, 1, context)[1][1]) > 1e10
+
+
+def test_coefficients_of_radau() -> None:
+    """T turns the inverse of a into the eigenvalues; a is that of the collocation at (4 -+ sqrt 6)/10 and 1."""
+    root = math.sqrt(6.0)
+    expected = [
+        [(88 - 7 * root) / 360, (296 - 169 * root) / 1800, (-2 + 3 * root) / 225],
+        [(296 + 169 * root) / 1800, (88 + 7 * root) / 360, (-2 - 3 * root) / 225],
+        [(16 - root) / 36, (16 + root) / 36, 1 / 9],
+    ]
+    assert pytest.approx(np.ravel(expected), abs=1e-16) == radau._A
+    turned = radau.T_INVERSE.reshape(3, 3) @ np.linalg.inv(expected) @ radau.T.reshape(3, 3)
+    pair = [[radau.REAL, 0, 0], [0, radau.PAIR, -radau.TURN], [0, radau.TURN, radau.PAIR]]
+    assert turned == pytest.approx(np.array(pair), abs=1e-13)
+
+
+def test_coefficients_of_gauss() -> None:
+    """Nodes and weights are numpy's, and a is symplectic: b_i a_ij + b_j a_ji = b_i b_j."""
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    assert pytest.approx(0.5 + 0.5 * nodes, abs=2e-16) == gauss._CF
+    assert pytest.approx(0.5 * weights, abs=3e-16) == gauss._B
+    crossed = gauss._B[:, None] * gauss._A.reshape(4, 4)
+    assert crossed + crossed.T == pytest.approx(np.outer(gauss._B, gauss._B), abs=1e-16)
+    assert collocation.difference([0, 1, 3]) == pytest.approx([1 / 3, -1 / 2, 1 / 6])
+
+
+@uncompiled
+def test_elimination() -> None:
+    """Against numpy, with pivots that have to change places."""
+    random = np.random.default_rng(3)
+    for size in (1, 2, 7):
+        real, imaginary = random.normal(size=(2, size, size))
+        real[0, 0] = imaginary[0, 0] = 0.0 if size > 1 else 1.0
+        right, beside = random.normal(size=(2, size))
+        factors, pivots, found = real.ravel().copy(), np.zeros(size), right.copy()
+        elimination.factor(factors, pivots, size)
+        elimination.solve(factors, pivots, size, found)
+        assert found == pytest.approx(np.linalg.solve(real, right), rel=1e-11)
+        parts = [real.ravel().copy(), imaginary.ravel().copy(), pivots]
+        found, other = right.copy(), beside.copy()
+        elimination.factor_complex(*parts, size)
+        elimination.solve_complex(*parts, size, found, other)
+        expected = np.linalg.solve(real + 1j * imaginary, right + 1j * beside)
+        assert found + 1j * other == pytest.approx(expected, rel=1e-11)
+        assert found + 1j * other != pytest.approx(np.linalg.solve(real - 1j * imaginary, right + 1j * beside))
+
+
+@uncompiled
+def test_step_control() -> None:
+    """Steps after a success and after a rejection, for estimates of eighth and of fourth order."""
+    eighth, fourth = SCHEMES["dop853"].make(kepler, squared, SIZE), SCHEMES["radau"].make(kepler, squared, SIZE)
+    for scheme, k in ((eighth, 8), (fourth, 4)):
+        assert scheme.next_step(1.0, 0.9**k, 0.9**k) == pytest.approx(0.9 * 0.9 ** (-0.5))
+        assert scheme.next_step(1.0, 0.0, 1.0) == 5.0
+        assert scheme.next_step(1.0, 0.9**k, 0.9**k) != pytest.approx(0.9 * 0.9 ** (-0.5 * k / (k - 1)))
+        assert scheme.shorter_step(1.0, 2.0**k) == pytest.approx(0.45)
+        assert scheme.shorter_step(1.0, 2.0 ** (k - 1)) != pytest.approx(0.45)
+        assert scheme.shorter_step(1.0, math.nan) == scheme.shorter_step(1.0, math.inf) == 0.2
+    steady = SCHEMES["gauss"].make(kepler, squared, SIZE)
+    assert steady.next_step(1.0, 0.9**8, 0.9**8) == steady.next_step(1.0, 1.0, 1.0) == 1.0
+    assert steady.next_step(1.0, 1e-4, 1e-4) == eighth.next_step(1.0, 1e-4, 1e-4) > 1.5
+
+
+@each
+@uncompiled
+def test_estimated_error(name: str) -> None:
+    """It falls with its power of the step, and covers the error on the orbit and the oscillator, within bounds."""
+    said = SCHEMES[name]
+    scheme = said.make(kepler, strict, SIZE)
+    steps, errors = (0.4, 0.3, 0.2), []
     for step in steps:
-        scheme.attempt(np.zeros(1), START, step, stages, end)
-        errors.append(scheme.error(np.zeros(1), end, step, stages, low, high))
-    assert slope(steps, errors) == pytest.approx(8.0, abs=0.3)
-    assert DOP853_STAGES == 12
+        _, end, stages = steps_of(kepler, scheme, START, step)
+        errors.append(scheme.error(np.zeros(1), end, step, stages, np.zeros(SIZE), np.zeros(SIZE)) / TIGHT)
+        assert np.linalg.norm(end - exact(step)) < errors[-1]
+    assert slope(steps, errors) == pytest.approx(said.estimate, abs=0.3)
+    small = said.make(oscillator, strict, 2)
+    for step in (0.3, 0.6, 1.0):
+        _, end, stages = steps_of(oscillator, small, np.array([0.0, 1.0]), step)
+        error = small.error(np.zeros(1), end, step, stages, np.zeros(2), np.zeros(2)) / TIGHT
+        assert math.dist(end, (math.sin(step), math.cos(step))) < error < step**said.estimate
 
 
-def test_size_of_the_estimated_error(scheme: AdaptiveScheme) -> None:
+@uncompiled
+def test_size_of_the_estimated_error() -> None:
     """That of another implementation of the scheme, which takes the mean over the components where `squared` sums."""
+    scheme, low, high = SCHEMES["dop853"].make(kepler, squared, SIZE), np.zeros(SIZE), np.zeros(SIZE)
     peer = DOP853(lambda _, state: state, 0.0, START, 1.0)
-    stages, end = np.zeros(DOP853_ROWS * SIZE), np.zeros(SIZE)
-    kepler(np.zeros(1), START, stages[:SIZE], 0.0)
     for step in (0.4, 0.2):
-        scheme.attempt(np.zeros(1), START, step, stages, end)
-        error = scheme.error(np.zeros(1), end, step, stages, np.zeros(SIZE), np.zeros(SIZE))
-        rows = stages[: (DOP853_STAGES + 1) * SIZE].reshape(-1, SIZE)
-        assert error == pytest.approx(
-            math.sqrt(SIZE) * peer._estimate_error_norm(rows, step, np.ones(SIZE)), rel=1e-9, abs=0.0
-        )
+        _, end, stages = steps_of(kepler, scheme, START, step)
+        error = scheme.error(np.zeros(1), end, step, stages, low, high)
+        rows = stages[: 13 * SIZE].reshape(-1, SIZE)
+        expected = math.sqrt(SIZE) * peer._estimate_error_norm(rows, step, np.ones(SIZE))
+        assert error == pytest.approx(expected, rel=1e-9, abs=0.0)
+
+
+def divided(nodes: Any, values: Any) -> Any:
+    """Divided difference over all nodes, by recursion."""
+    if len(nodes) == 1:
+        return values[0]
+    return (divided(nodes[1:], values[1:]) - divided(nodes[:-1], values[:-1])) / (nodes[-1] - nodes[0])
+
+
+@uncompiled
+def test_size_of_the_estimated_error_of_gauss() -> None:
+    """h |e5|^2/sqrt(|e5|^2 + 0.01 |e3|^2), the differences formed anew."""
+    scheme, step = SCHEMES["gauss"].make(kepler, squared, SIZE), 0.4
+    _, end, stages = steps_of(kepler, scheme, START, step)
+    rates, nodes = stages[: 10 * SIZE].reshape(-1, SIZE), 0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0]
+    fifth = np.linalg.norm(divided(np.linspace(0.0, 1.0, 6), rates[[0, 6, 7, 8, 9, 5]]) / 384.0)
+    third = np.linalg.norm(divided(nodes, rates[1:5]) / 32.0)
+    error = scheme.error(np.zeros(1), end, step, stages, np.zeros(SIZE), np.zeros(SIZE))
+    assert error == pytest.approx(step * fifth**2 / math.hypot(fifth, 0.1 * third), rel=1e-8)
+
+
+@uncompiled
+def test_radau_is_that_of_another_implementation() -> None:
+    """State after one step and its estimated error, of scipy's Radau with the same step, on the orbit."""
+
+    def rates(_: float, state: Any) -> Any:
+        return np.concatenate([state[3:], -state[:3] / np.linalg.norm(state[:3]) ** 3])
+
+    for step in (0.01, 0.05):
+        peer = Radau(rates, 0.0, START, 1.0, rtol=1e3, atol=1e3, first_step=step)
+        peer.newton_tol = 1e-16
+        peer.step()
+        scheme = SCHEMES["radau"].make(kepler, strict, SIZE)
+        _, end, stages = steps_of(kepler, scheme, START, peer.t)
+        assert peer.t == step
+        assert end == pytest.approx(peer.y, abs=1e-13)
+        stages[-1] = 0.0
+        squared_scheme = SCHEMES["radau"].make(kepler, squared, SIZE)
+        error = squared_scheme.error(np.zeros(1), end, step, stages, np.zeros(SIZE), np.zeros(SIZE))
+        z = stages[2 * SIZE : 5 * SIZE].reshape(3, SIZE)
+        jacobian = np.array([(rates(0.0, START + d) - rates(0.0, START - d)) / 2e-6 for d in 1e-6 * np.eye(6)]).T
+        right = rates(0.0, START) + radau._E @ z / step
+        expected = np.linalg.norm(np.linalg.solve(radau.REAL / step * np.eye(6) - jacobian, right))
+        assert error == pytest.approx(expected, rel=1e-3)
+
+
+@uncompiled
+def test_what_is_stiff_is_filtered_out_of_the_estimate() -> None:
+    """Above 1 the estimate is formed once more, with f where the first says that the state was to begin."""
+    zeta, step, start = 50.0, 0.5, np.array([0.0, 1.0])
+    system, unit = np.array([[0.0, 1.0], [-1.0, -2.0 * zeta]]), np.eye(2)
+
+    def estimate(factor: float) -> float:
+        @kernel
+        def scaled(context: Any, state: Any, error: Any) -> float:
+            return float(squared(context, state, error) * factor * factor)
+
+        scheme = SCHEMES["radau"].make(oscillator, scaled, 2)
+        _, end, stages = steps_of(oscillator, scheme, start, step, context=np.array([zeta]))
+        return float(scheme.error(np.array([zeta]), end, step, stages, np.zeros(2), np.zeros(2)) / factor)
+
+    found = np.linalg.solve(np.kron(np.eye(3), unit) - step * np.kron(radau._A.reshape(3, 3), system),
+                            step * np.kron(radau._CF, system @ start))  # fmt: skip
+    drawn = radau._E @ found.reshape(3, 2) / step
+    once = np.linalg.solve(radau.REAL / step * unit - system, system @ start + drawn)
+    twice = np.linalg.solve(radau.REAL / step * unit - system, system @ (start + once) + drawn)
+    assert np.linalg.norm(twice) < 0.3 * np.linalg.norm(once)
+    assert estimate(0.9 / np.linalg.norm(once)) == pytest.approx(np.linalg.norm(once), rel=1e-3)
+    assert estimate(1.1 / np.linalg.norm(once)) == pytest.approx(np.linalg.norm(twice), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["gauss", "radau"])
+def test_compiled_kernels_give_the_same(name: str, request: pytest.FixtureRequest) -> None:
+    """As plain Python does; that of dop853 is compiled with every removal."""
+
+    def once() -> Any:
+        scheme = SCHEMES[name].make(oscillator, squared, 2)
+        context, dense, out = np.array([0.3]), np.zeros(scheme.dense), np.zeros(2)
+        state, end, stages = steps_of(oscillator, scheme, np.array([0.1, 1.0]), 0.4, context=context)
+        error = scheme.error(context, end, 0.4, stages, np.zeros(2), np.zeros(2))
+        scheme.prepare_dense(context, state, end, 0.4, stages, dense, np.zeros(2))
+        scheme.dense_value(state, dense, 0.3, 0, 2, out)
+        return np.array([*end, *out, error, scheme.next_step(1.0, error, error)])
+
+    compiled = once()
+    request.getfixturevalue("plain")
+    assert compiled == pytest.approx(once(), rel=1e-14)
 
 
 def test_tolerances_rule_the_error() -> None:

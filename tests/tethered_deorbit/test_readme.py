@@ -25,7 +25,13 @@ def row(v: Variable, part: str) -> str:
 
 def variables() -> str:
     lines = ["| name | unit | causality | with | start | least | most | meaning |", "| --- " * 8 + "|"]
-    parts = [("", v) for v in MODEL.base]
+    lacked = {
+        row: f"{name} {', '.join(t for t, other in group.terms.items() if row not in other.lacks)}"
+        for name, group in MODEL.groups.items()
+        for term in group.terms.values()
+        for row in term.lacks
+    }
+    parts = [(lacked.get(v.name, ""), v) for v in MODEL.base]
     for name, group in MODEL.groups.items():
         seen: dict[Variable, list[str]] = {}
         for term, content in group.terms.items():

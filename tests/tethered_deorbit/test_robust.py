@@ -17,6 +17,7 @@ from fmu_src.tethered_deorbit.interface import (
     MODEL,
     NO_LENGTH,
     NO_LINE,
+    NO_ORBIT,
     NOT_FINITE,
     START_STRETCHED,
     STEP_NOT_MET,
@@ -104,7 +105,11 @@ REFUSED: list[tuple[int, dict[str, Any], float]] = [
 ]
 """Fault, what is set (a parameter or a field), and the macro step that meets it; 0 at the start."""
 
-ELSEWHERE = {TOO_MANY_EVENTS: "test_uncompiled.py", STEP_NOT_MET: "test_steps_too_short_for_the_time"}
+ELSEWHERE = {
+    TOO_MANY_EVENTS: "test_uncompiled.py",
+    STEP_NOT_MET: "test_steps_too_short_for_the_time",
+    NO_ORBIT: "test_field_free.py",
+}
 
 
 @pytest.mark.parametrize(("code", "parameters", "step"), REFUSED)

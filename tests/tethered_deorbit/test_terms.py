@@ -12,7 +12,7 @@ import pytest
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.packaging import compile
 from fmu_src.tethered_deorbit import tether
-from fmu_src.tethered_deorbit.environment import add_gravity
+from fmu_src.tethered_deorbit.environment.central import add_gravity, along_track
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.thrust import make_thrust
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
@@ -86,7 +86,7 @@ def test_thrust_directions(direction: str) -> None:
     way = {"along_track": np.cross(np.cross(r, v), r), "velocity": v, "tether": STATE[6:9]}[direction]
     force = -0.01 * way / np.linalg.norm(way)
     rate = np.zeros(12)
-    make_thrust(direction).add(masses(), STATE, rate, 0.0)
+    make_thrust(direction, along_track, MODEL.interface(TERMS)).add(masses(), STATE, rate, 0.0)
     assert rate[3:6] == pytest.approx(force / 3000.0, rel=1e-12)
     assert rate[9:] == pytest.approx(-force / 2000.0, rel=1e-12)
     assert not rate[:3].any()
@@ -111,8 +111,8 @@ def test_nothing_of_the_process_that_compiles_is_compiled_in(tmp_path: Path) -> 
     with_thrust = code(TERMS, tmp_path)
     assert "inttoptr" not in with_thrust
     assert "NRT_" not in re.sub(r"declare[^\n]*", "", with_thrust)
-    assert "_add_along_track" in with_thrust
-    assert "_add_along_track" not in code({"reel": "locked"}, tmp_path)
+    assert "_add_along" in with_thrust
+    assert "_add_along" not in code({"reel": "locked"}, tmp_path)
 
 
 def test_without_a_thruster() -> None:

@@ -9,12 +9,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from fmu_src.instance import Instance
-from fmu_src.integrators import DOP853_ROWS, make_dop853
+from fmu_src.integrators.dop853 import DAMPED_REACH, UNDAMPED_REACH, make_dop853
+from fmu_src.integrators.dop853 import reach as reach_of_dop853
 from fmu_src.tethered_deorbit import turning
-from fmu_src.tethered_deorbit.environment import add_gravity
+from fmu_src.tethered_deorbit.environment.central import add_gravity, along_track
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.thrust import make_thrust
-from fmu_src.tethered_deorbit.trajectory import TAUT_STEP, UNDAMPED_TAUT_STEP, longest_taut_step
+from fmu_src.tethered_deorbit.trajectory import make_longest_taut_step
 from orbital.kernel import kernel
 from orbital.oscillators import line_stiffness, natural_frequency, reduced_mass
 
@@ -98,7 +99,7 @@ def _uneven(record: Any, state: Any, rate: Any) -> None:
 def test_laws_look_the_same_from_any_axes(direction: str) -> None:
     """f(Q x) = Q f(x) for gravity and every thrust; a force fixed in space would not be so."""
     by, record = np.array([0.3, -1.0, 0.7]), taut_record()
-    push = make_thrust(direction).add
+    push = make_thrust(direction, along_track, MODEL.interface(TERMS)).add
 
     def add(record: Any, state: Any, rate: Any) -> None:
         push(record, state, rate, 0.0)
@@ -127,7 +128,7 @@ def test_a_line_at_rest_is_stepped_by_its_vibration_alone() -> None:
     i.step(300.0)
     before = i["solver.steps"]
     i.step(3600.0)
-    assert i["solver.steps"] - before <= 1.0 + 3600.0 * FREQUENCY / TAUT_STEP
+    assert i["solver.steps"] - before <= 1.0 + 3600.0 * FREQUENCY / DAMPED_REACH
     assert i.record["state_error"][0] < 0.05
     apart, parting = (i.array(f"target_{x}") - i.array(f"chaser_{x}") for x in ("position", "velocity"))
     assert i.array("state_turning") == pytest.approx(np.cross(apart, parting) / (apart @ apart), rel=1e-2)
@@ -135,7 +136,7 @@ def test_a_line_at_rest_is_stepped_by_its_vibration_alone() -> None:
     spinning.step(300.0)
     before = spinning["solver.steps"]
     spinning.step(3600.0)
-    assert spinning["solver.steps"] - before >= 3600.0 * FREQUENCY / UNDAMPED_TAUT_STEP - 1.0
+    assert spinning["solver.steps"] - before >= 3600.0 * FREQUENCY / UNDAMPED_REACH - 1.0
 
 
 @kernel
@@ -151,13 +152,13 @@ def _size(context: Any, state: Any, error: Any) -> float:
 
 def test_longest_step() -> None:
     """The scheme's own damping is at most a hundredth of the line's, at the longest step that each damping allows."""
-    scheme = make_dop853(_oscillator, _size, 2)
+    scheme, longest_taut_step = make_dop853(_oscillator, _size, 2), make_longest_taut_step(reach_of_dop853)
 
     def excess(zeta: float, reach: float) -> float:
         """Damping of the scheme beyond the line's, in units of the line's."""
         columns = []
         for start in np.eye(2):
-            end, stages = np.zeros(2), np.zeros(DOP853_ROWS * 2)
+            end, stages = np.zeros(2), np.zeros(scheme.stages)
             _oscillator(np.array([zeta]), start, stages[:2], 0.0)
             scheme.attempt(np.array([zeta]), start, reach, stages, end)
             columns.append(end.copy())
@@ -173,6 +174,6 @@ def test_longest_step() -> None:
         assert abs(excess(zeta, longest)) < 0.01
         assert abs(excess(zeta, 1.2 * longest)) > 0.01
     record["state_damping"] = 0.0
-    assert longest_taut_step(record) * FREQUENCY == pytest.approx(UNDAMPED_TAUT_STEP, rel=1e-15)
+    assert longest_taut_step(record) * FREQUENCY == pytest.approx(UNDAMPED_REACH, rel=1e-15)
     record["state_damping"] = 100.0
-    assert longest_taut_step(record) * FREQUENCY == TAUT_STEP
+    assert longest_taut_step(record) * FREQUENCY == DAMPED_REACH

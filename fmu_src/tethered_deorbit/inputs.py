@@ -1,0 +1,137 @@
+"""What the importer sets, put in force: the command of the line and the thrust, held or moving."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.extremes import Extremes
+from fmu_src.tethered_deorbit.faults import blame, fail
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
+from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.outputs import begin_tug
+from fmu_src.tethered_deorbit.tether import length_rate, line_length
+from fmu_src.tethered_deorbit.thrust import Thrust
+from fmu_src.tethered_deorbit.trajectory import ROUNDING, Trajectory
+from orbital.kernel import kernel
+from orbital.vectors import Array, norm
+
+
+class Inputs(NamedTuple):
+    """Kernels that take them.
+
+    judge_line(record, state) -> rate              decide afresh whether the line is taut
+    take(record, work, duration) -> fault          as a macro step begins [s]
+    leave(record, work, duration) -> fault         as one ends in which inputs have moved
+    """
+
+    judge_line: Callable[..., Any]
+    take: Callable[..., Any]
+    leave: Callable[..., Any]
+
+
+def make_inputs(reel: Reel, thrust: Thrust, trajectory: Trajectory, extremes: Extremes, command_slot: int) -> Inputs:
+    """The kernels for one law of the line and one thruster.
+
+    command_slot   value reference of the law's input, which is blamed when it is no number
+
+    Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py
+    """
+
+    @kernel
+    def judge_line(record: Any, state: Array) -> float:
+        """Decide afresh whether the line is taut, from the law alone; returns its rate of lengthening [m/s].
+
+        Checked  tests/tethered_deorbit/test_start.py, test_macro_step.py: a changed length
+        """
+        r = record[0]
+        separation = norm(state[6:9])
+        speed: float = length_rate(state[6:9], state[9:12], separation)
+        r.state_taut = 1 if reel.taut(record, line_length(record, separation), speed) else 0
+        return speed
+
+    @kernel
+    def begin_anew(record: Any, work: Array, duration: float) -> int:
+        """Put what the inputs say in force, and begin the trajectory anew, at the last communication point.
+
+        What was published stands; the rest of the step did not happen. Returns 0 or a fault.
+
+        duration      for which the inputs move                      [s]
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py: a ramp does not see what ran ahead
+        """
+        r = record[0]
+        here = work[layout.HERE : layout.SLOPE]
+        trajectory.state_at(record, work, r.state_published, here)
+        for i in range(layout.SIZE):
+            work[layout.END + i] = here[i]
+        extremes.begin_anew(record)
+        command, command_rate = reel.asked(record)
+        code = reel.prepare(record, command, command_rate, duration)
+        if code == 0:
+            code = thrust.check(record)
+        if code != 0:
+            return fail(record, code, r.state_published)
+        force, force_rate = thrust.asked(record)
+        thrust.account(record, r.state_published)
+        thrust.put(record, force, force_rate)
+        trajectory.restart(record, work, r.state_published)
+        r.state_since = 0.0
+        return 0
+
+    @kernel
+    def take(record: Any, work: Array, duration: float) -> int:
+        """Begin anew when an input has changed, or moves, or has moved; then decide afresh whether the line is taut.
+
+        duration      of the macro step                              [s]
+
+        Returns 0 or a fault.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py; test_commanded.py: a changed command is
+                 one tug
+        """
+        r = record[0]
+        command, command_rate = reel.asked(record)
+        force, force_rate = thrust.asked(record)
+        changed = not (command == r.state_command and force == r.state_thrust)
+        moving = not (command_rate == 0.0 and force_rate == 0.0)
+        moved = not (r.state_command_rate == 0.0 and r.state_thrust_rate == 0.0)
+        if not (changed or moving or moved):
+            return 0
+        if not math.isfinite(command + command_rate):
+            return fail(record, blame(record, BAD_PARAMETER, command_slot, command), r.state_published)
+        was_taut = r.state_taut
+        code = begin_anew(record, work, duration)
+        if code != 0:
+            return code
+        speed = judge_line(record, work[layout.END : layout.HERE])
+        # The first step after a change of the line is a short one.
+        trajectory.restart(record, work, r.state_published)
+        if r.state_taut and not was_taut:
+            begin_tug(record, r.state_published, speed)
+        return 0
+
+    @kernel
+    def leave(record: Any, work: Array, duration: float) -> int:
+        """After a step in which inputs moved: they stay where they have come to, as if they were to go on moving.
+
+        The line is judged only when it is known how the next step begins. Returns 0 or a fault.
+
+        duration      of the macro step                              [s]
+
+        Checked  tests/tethered_deorbit/test_ramps.py: two ramps make one; test_tugs.py: ramps that end at zero
+        """
+        r = record[0]
+        command, command_rate = reel.asked(record)
+        if command_rate != 0.0:
+            reached = command + command_rate * duration
+            # A ramp that ends at zero to rounding, of the times too, ends at zero: 1e-19 N would be a taut line.
+            times = abs(r.state_start) + r.state_published
+            exact = abs(reached) > ROUNDING * (abs(command) + abs(command_rate) * times)
+            reel.leave(record, reached if exact else 0.0)
+        thrust.leave(record, duration)
+        return int(begin_anew(record, work, 0.0))
+
+    return Inputs(judge_line, take, leave)
