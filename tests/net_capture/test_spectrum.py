@@ -78,6 +78,6 @@ def test_a_net_drawn_taut_comes_to_the_bound():
     values = {name: net[name] for name in net.interface.references if name.startswith(("net.", "bullets."))}
     threads = {name: term for name, term in CAPTURE.items() if name != "closing"}
     bound, _ = substeps(values, threads)
-    # the bound lets all four threads of a knot lie along one line; here two do, at the edge with three quarters of the mass
+    # the bound lets all threads of a knot lie along one line; here two of four do, at the edge with less mass
     assert explicit_step_limit(omega**2, 0.0) / bound == pytest.approx(np.sqrt(2.0 * 0.75), rel=0.01)
     assert net["solver.stability_bound"] <= bound  # the cord's is another matter: test_formulas.py
