@@ -165,6 +165,7 @@ def numbered(faults: Iterable[Fault]) -> tuple[Fault, ...]:
 class Term:
     """One physics term a scene may name: its variables, and a sentence on what it adds.
 
+    variables   its rows; one of a name that the model has already takes that row's place
     needs    groups without a term of which it has nothing to act on
     excludes groups with any term of which it cannot go together
     states   outputs that are states with it: they begin with what their inputs say, and follow them over a step only
@@ -290,7 +291,9 @@ class Model:
         ordered = {name: terms[name] for name in self.groups if name in terms}
         variables = list(HEAD + self.base)
         for name, term in ordered.items():
-            variables += [v for v in self.groups[name].terms[term].variables if v not in variables]
+            for v in self.groups[name].terms[term].variables:
+                place = next((i for i, there in enumerate(variables) if there.name == v.name), len(variables))
+                variables[place : place + 1] = [v]
         inputs = {v.name for v in variables if v.causality == "input"}
         states = {output for name, term in ordered.items() for output in self.groups[name].terms[term].states}
         return Interface(self, ordered, tuple(_reduced(v, inputs, v.name in states) for v in variables))
