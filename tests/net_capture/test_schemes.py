@@ -175,7 +175,11 @@ def test_rk4_is_stable_up_to_its_bound(zeta):
 def test_the_tether_pulls_net_and_chaser_alike(scheme):
     """A constant tension does T (s0 - s1), s the distance from vertex to chaser; whatever the scheme's stages, net and
     chaser take the same impulse."""
-    net = Instance(MODEL, FREE | {"solver": scheme, "tether": "slack"}, {"net.mesh": 2.0}).initialise()
+    values = {"net.mesh": 2.0}
+    if scheme in NEWER:
+        # at their default steps they take more than 5 mJ of the threads' swings by themselves
+        values["solver.step_ratio"] = {"ros2": 0.1, "xpbd": 0.02}[scheme]
+    net = Instance(MODEL, FREE | {"solver": scheme, "tether": "slack"}, values).initialise()
     net.step(9.0)
     before, left = net["tether.paid_out"], net["energy.remainder"]
     assert before > 1.0
