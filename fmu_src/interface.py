@@ -165,7 +165,6 @@ def numbered(faults: Iterable[Fault]) -> tuple[Fault, ...]:
 class Term:
     """One physics term a scene may name: its variables, and a sentence on what it adds.
 
-    A variable with the name of one that the model always has takes its place.
 
     needs    groups without a term of which it has nothing to act on
     excludes groups with any term of which it cannot go together

@@ -197,7 +197,7 @@ def _terms(component: ComponentScene) -> Iterator[tuple[str, str, str]]:
             yield "left out", "nodes", "position of every node"
 
 
-STEPS = {"solver.stability_bound": "longest step that is sure to be stable", "solver.substep": "substep"}
+STEPS = ("solver.stability_bound", "solver.substep")
 """Outputs of a model that tell how it will step."""
 
 
@@ -231,13 +231,13 @@ def _sizes(
     if size is not None:
         rows.append(("one instance", f"{size:,} bytes, its variables and states"))
     rows.append(("FMU", f"{archive.path.stat().st_size:,} bytes"))
-    return rows, list(_steps(told, phase.duration))
+    labels = {v.name: v.description for v in interface.variables}
+    return rows, list(_steps(told, labels, phase.duration))
 
 
-def _steps(told: Mapping[str, float], duration: float) -> Iterator[build.Implied]:
-    for name, label in STEPS.items():
-        if name in told:
-            yield build.Implied(name, label, told[name], "s")
+def _steps(told: Mapping[str, float], labels: Mapping[str, str], duration: float) -> Iterator[build.Implied]:
+    for name in told:
+        yield build.Implied(name, labels[name], told[name], "s")
     if "solver.substep" in told:
         count = duration / told["solver.substep"]
         yield build.Implied("solver.substeps", "substeps of the whole phase, at most", count, "1")

@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterator, Mapping
 
 from fmu_src.cautions import ARAMID, NYLON, Caution, Seen, fibre_of, heavily_damped, low, strained
 from fmu_src.net_capture.implied import open_loop, substeps, thread_section
-from fmu_src.net_capture.interface import TARGETS
+from fmu_src.net_capture.interface import GROUPS, TARGETS
+from fmu_src.net_capture.schemes import Needs
 
 Values = Mapping[str, float]
 
@@ -43,18 +44,20 @@ def _open_loops(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
 def _long_steps(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
     """A substep that the scene gives, longer than its damping allows."""
     bound, accurate = substeps(values, terms)
-    ratio, enough = values["solver.step_ratio"], accurate / bound
+    ratio, enough, needs = values["solver.step_ratio"], accurate / bound, _needs(terms)
     if ratio > enough * (1.0 + 1e-9):
         yield Caution(
             "solver.step_ratio",
-            f"{ratio:g} is more than this damping allows: the mouth area may be off by more than 0.3 % and the energy "
-            f"by more than 1 %; {math.floor(1e3 * enough) / 1e3:g} would hold them, and so does leaving it out",
+            f"{ratio:g} is more than this damping allows: the mouth area may be off by more than "
+            f"{100.0 * needs.keeps:g} %{' and the energy by more than 1 %' if needs.keeps_energy else ''}; "
+            f"{math.floor(1e3 * enough) / 1e3:g} would hold {'them' if needs.keeps_energy else 'it'}, and so does "
+            "leaving it out",
         )
 
 
 def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen: Seen) -> Iterator[Caution]:
     """From what came out."""
-    yield from _unbalanced(values, seen)
+    yield from _unbalanced(values, terms, seen)
     yield from _taken_back(seen)
     thread, cord = seen("thread.tension_max"), seen("cord.tension_max")
     if thread is not None and "net" in terms:
@@ -68,7 +71,13 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
         yield from strained("cord.tension_max", "the closing cord", cord.largest, stiffness, limit, fibre_name)
 
 
-def _unbalanced(values: Values, seen: Seen) -> Iterator[Caution]:
+def _needs(terms: Mapping[str, str]) -> Needs:
+    """What the scheme wants."""
+    found: Needs = GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks
+    return found
+
+
+def _unbalanced(values: Values, terms: Mapping[str, str], seen: Seen) -> Iterator[Caution]:
     """An energy book that leaves over more than a hundredth of what came in: the scheme's own error."""
     left, kinetic, work = seen("energy.remainder"), seen("energy.kinetic"), seen("closing.work")
     if left is None or kinetic is None:
@@ -79,7 +88,7 @@ def _unbalanced(values: Values, seen: Seen) -> Iterator[Caution]:
         yield Caution(
             "energy.remainder",
             f"the book leaves {size:.2g} J over of the {entered:.3g} J that came in, {100.0 * size / entered:.2g} %: "
-            "the scheme's own error, which falls with the square of solver.step_ratio",
+            f"the scheme's own error, which falls {_needs(terms).falls}",
         )
 
 

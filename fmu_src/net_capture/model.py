@@ -56,6 +56,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     judge = outcome.make_judge(parts, measures)
     not_finite, no_axis, too_many_nodes = (parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES))
     lag, frame_rate = scheme.lag, gravity.rate
+    can_stop, stopped_by = scheme.fault is not None, scheme.fault
 
     @kernel
     def check(p, work):
@@ -319,6 +320,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 p.cord_tension_peak = 0.0
         while p.grid < last:
             substep(p, work)
+            if can_stop:
+                fault = stopped_by(p)
+                if fault != 0:
+                    return fault
             if p.grid % p.measure_every == 0:
                 fault = look(p, work)
                 if fault != 0:

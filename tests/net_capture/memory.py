@@ -17,7 +17,6 @@ from fmu_src.net_capture.planes import (
     work_size,
 )
 from fmu_src.net_capture.schemes.asleep import ROW_WORDS
-from fmu_src.net_capture.schemes.rk4 import OWN_PLANES
 
 
 def planes(net):
@@ -28,7 +27,7 @@ def planes(net):
 def planes_of(p, work, terms):
     """The same of a record and its work memory."""
     slots = int(p["node_slots"])
-    count = NODE_PLANES + (OWN_PLANES if terms["solver"] == "rk4" else 0)
+    count = NODE_PLANES + MODEL.groups["solver"].terms[terms["solver"]].checks.planes
     reals = work.view(np.float32 if terms["precision"] == "single" else np.float64)
     return reals[: count * slots].reshape(count, slots)
 

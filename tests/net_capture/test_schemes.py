@@ -1,4 +1,4 @@
-"""Two schemes of one net: each has the order it declares, they agree on the opening, and the book of each closes."""
+"""The schemes of one net: each has the order it declares, they agree on the opening, and their books close."""
 
 import numpy as np
 import pytest
@@ -13,12 +13,16 @@ from tests.conftest import CAPTURE, FREE
 from tests.net_capture.memory import nodes, planes
 from tests.net_capture.taut_net import PARAMETERS, Reference
 
-RK4 = FREE | {"solver": "rk4"}
+RK4, ROS2, XPBD = (FREE | {"solver": name} for name in ("rk4", "ros2", "xpbd"))
 ORDERS = {
     "leapfrog": (FREE, 2.0, (40, 80, 160)),
     "rk4": (RK4, 4.0, (40, 80, 160)),
+    "ros2": (ROS2, 2.0, (40, 80, 160)),
+    "xpbd": (XPBD, 1.0, (80, 160, 320)),
 }
 """Terms, the order declared, and substeps in a hundredth of a second."""
+NEWER = ("ros2", "xpbd")
+"""Whose kernels with a tether a run of the tests does not have anyway."""
 TIME = 0.004
 """Seconds: the edges are pulled inward, and after a quarter of their swing threads would go slack."""
 
@@ -86,41 +90,53 @@ def test_a_dashpot_a_hundredth_off_would_be_seen():
 
 @pytest.fixture(scope="module")
 def opened():
-    """Table 1's net after 6 s by either scheme, at the default step."""
+    """Table 1's net after 6 s by every scheme, at its default step."""
     found = {}
-    for name, terms in (("leapfrog", FREE), ("rk4", RK4)):
+    for name, (terms, _, _) in ORDERS.items():
         found[name] = Instance(MODEL, terms).initialise()
         found[name].step(6.0)
     return found
 
 
-def test_both_open_the_net_alike(opened):
-    leapfrog, rk4 = opened["leapfrog"], opened["rk4"]
-    assert rk4["mouth.area"] == pytest.approx(leapfrog["mouth.area"], rel=1e-3)
-    assert rk4["mouth.area"] > 200.0
-    assert rk4["mouth.area"] != leapfrog["mouth.area"]
-    np.testing.assert_allclose(rk4.array("bullet_position"), leapfrog.array("bullet_position"), atol=0.01)
-    np.testing.assert_allclose(rk4.array("catch_position"), leapfrog.array("catch_position"), atol=1e-9)
-    # each within 1 % of the shot's energy of what the threads take
-    assert rk4["thread.dissipated"] == pytest.approx(leapfrog["thread.dissipated"], abs=0.01 * 9.0)
-    assert rk4["thread.dissipated"] > 1.0
+@pytest.mark.parametrize("scheme", ["rk4", "ros2", "xpbd"])
+def test_all_open_the_net_alike(opened, scheme):
+    leapfrog, other = opened["leapfrog"], opened[scheme]
+    assert other["mouth.area"] == pytest.approx(leapfrog["mouth.area"], rel=1e-3)
+    assert other["mouth.area"] > 200.0
+    assert other["mouth.area"] != leapfrog["mouth.area"]
+    np.testing.assert_allclose(other.array("bullet_position"), leapfrog.array("bullet_position"), atol=0.01)
+    np.testing.assert_allclose(other.array("catch_position"), leapfrog.array("catch_position"), atol=1e-9)
+    # within 1 % of the shot's energy, whoever took it
+    assert other["energy.total"] == pytest.approx(leapfrog["energy.total"], abs=0.01 * 9.0)
 
 
-@pytest.mark.parametrize(("scheme", "turning"), [("leapfrog", 1e-11), ("rk4", 1e-10)])
-def test_the_book_of_both_closes(opened, scheme, turning):
-    """Central forces keep the angular momentum: the leapfrog to rounding, a scheme of several stages to its order."""
+def test_the_dashpots_take_alike(opened):
+    """Of the schemes that follow the threads' swings, each within 1 % of the shot's energy."""
+    taken = opened["leapfrog"]["thread.dissipated"]
+    assert taken > 1.0
+    assert opened["rk4"]["thread.dissipated"] == pytest.approx(taken, abs=0.01 * 9.0)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "turning", "left"),
+    [("leapfrog", 1e-11, 0.01), ("rk4", 1e-10, 0.01), ("ros2", 1e-5, 0.15), ("xpbd", 1e-10, 0.15)],
+)
+def test_the_book_of_each_closes(opened, scheme, turning, left):
+    """Central forces keep the angular momentum: the leapfrog and XPBD to rounding, a scheme of several stages to its
+    order. The two that step over the threads' swings take from them what the book then leaves over."""
     net = opened[scheme]
-    assert abs(net["energy.remainder"]) < 0.01 * 9.0
+    assert abs(net["energy.remainder"]) < left * 9.0
     assert np.abs(net.array("momentum")).max() < 1e-11
     np.testing.assert_allclose(net.array("angular_momentum"), 0.0, atol=turning)
 
 
+@pytest.mark.parametrize("scheme", ["rk4", "ros2", "xpbd"])
 @pytest.mark.parametrize(("other", "terms"), [("contact", CAPTURE), ("closing", CAPTURE)])
-def test_rk4_goes_without_impulses(other, terms):
+def test_others_go_without_impulses(scheme, other, terms):
     """Contact and closing are each refused alone."""
     alone = {name: term for name, term in terms.items() if name not in {"contact", "closing", "settling"} - {other}}
-    with pytest.raises(ValueError, match=f"solver = 'rk4' cannot go together with {other}"):
-        MODEL.interface(alone | {"solver": "rk4"})
+    with pytest.raises(ValueError, match=f"solver = '{scheme}' cannot go together with {other}"):
+        MODEL.interface(alone | {"solver": scheme})
     assert MODEL.interface(alone).terms["solver"] == "leapfrog"
 
 
@@ -155,11 +171,15 @@ def test_rk4_is_stable_up_to_its_bound(zeta):
     assert rk4.accurate_step(0.5 * omega * omega, zeta * omega) < step
 
 
-@pytest.mark.parametrize("scheme", ["leapfrog", "rk4"])
+@pytest.mark.parametrize("scheme", ["leapfrog", "rk4", *(pytest.param(s, marks=pytest.mark.evidence) for s in NEWER)])
 def test_the_tether_pulls_net_and_chaser_alike(scheme):
     """A constant tension does T (s0 - s1), s the distance from vertex to chaser; whatever the scheme's stages, net and
     chaser take the same impulse."""
-    net = Instance(MODEL, FREE | {"solver": scheme, "tether": "slack"}, {"net.mesh": 2.0}).initialise()
+    values = {"net.mesh": 2.0}
+    if scheme in NEWER:
+        # at their default steps they take more than 5 mJ of the threads' swings by themselves
+        values["solver.step_ratio"] = {"ros2": 0.1, "xpbd": 0.02}[scheme]
+    net = Instance(MODEL, FREE | {"solver": scheme, "tether": "slack"}, values).initialise()
     net.step(9.0)
     before, left = net["tether.paid_out"], net["energy.remainder"]
     assert before > 1.0

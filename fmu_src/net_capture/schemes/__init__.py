@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from fmu_src.interface import Variable
 from fmu_src.net_capture.formulas import accurate_step, longest_step
+from fmu_src.rows import parameter, peak
 
 
 class Needs(NamedTuple):
@@ -15,10 +17,14 @@ class Needs(NamedTuple):
     planes                    node planes of its own, behind NODE_PLANES
     longest_step, accurate_step   kernels (stiffness_rate, damping_rate) -> the longest stable step at a node, and the
                               step that is accurate [s], see `formulas`; `solver.stability_bound`, the default substep
-                              and what `inspect` tells follow from them
+                              and what `inspect` tells follow from them. Of a scheme that has no bound the first is the
+                              leapfrog's, see `unbounded`
     factors                   substeps over the default one at which its error is measured against its cost, coarse to
                               fine; the last is for references
     steepest                  the largest share of the bound among them
+    keeps                     share of the mouth area within which the accurate step stays [1]
+    keeps_energy              whether it also stays within 1 % of the energy
+    falls                     how the remainder of the energy book falls with the step
     """
 
     make_rouse: Any
@@ -27,6 +33,9 @@ class Needs(NamedTuple):
     accurate_step: Any = accurate_step
     factors: tuple[float, ...] = (6.0, 4.0, 3.0, 2.0, 1.4, 1.0, 0.7, 0.5, 0.25)
     steepest: float = 0.95
+    keeps: float = 0.003
+    keeps_energy: bool = True
+    falls: str = "with the square of solver.step_ratio"
 
 
 class Scheme(NamedTuple):
@@ -41,6 +50,7 @@ class Scheme(NamedTuple):
     stored(p, work)          energy in the stretched threads as shown [J]
     show(p, work)            positions and velocities of now into SHOWN and SHOWN_RATE, and into SHOWN_BACK the
                              velocities with which the next substep begins; power of the dashpots now; the state stays
+    fault(p)                 code of what stopped the last substep, 0 for nothing; None: nothing ever does
     """
 
     lag: float
@@ -50,10 +60,40 @@ class Scheme(NamedTuple):
     place: Any
     stored: Any
     show: Any
+    fault: Any = None
+
+
+MOST_RATIO = 1e4
+"""Largest `solver.step_ratio` of a scheme without a bound."""
+
+
+def unbounded(keeps: float) -> tuple[Variable, ...]:
+    """Rows of a scheme that is stable at any step, in place of the model's own: its step is counted in the leapfrog's
+    bound on the same net, and may exceed it.
+
+    keeps    see `Needs`
+    """
+    return (
+        parameter(
+            "solver.step_ratio",
+            "1",
+            "substep over the stability bound that the leapfrog has on the same net, which this scheme may exceed; "
+            f"zero: as large as keeps the mouth area within {100.0 * keeps:g} % at damping ratios from 0.1 on",
+            0.0,
+            0.0,
+            MOST_RATIO,
+        ),
+        peak(
+            "solver.stability_bound",
+            "s",
+            "stability bound that the leapfrog has on the same net, in which solver.step_ratio counts; this scheme has "
+            "none",
+        ),
+    )
 
 
 def schemes() -> dict[str, Any]:
     """Every scheme's term, by name."""
-    from fmu_src.net_capture.schemes import leapfrog, rk4
+    from fmu_src.net_capture.schemes import leapfrog, rk4, ros2, xpbd
 
-    return {"leapfrog": leapfrog.PART, "rk4": rk4.PART}
+    return {"leapfrog": leapfrog.PART, "rk4": rk4.PART, "ros2": ros2.PART, "xpbd": xpbd.PART}
