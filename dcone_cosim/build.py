@@ -220,6 +220,11 @@ def rungs(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> 
     return TRADES[model].rungs(values, terms) if model in TRADES else []
 
 
+def whole(model: str, terms: Mapping[str, str]) -> bool:
+    """Whether everything that a model of ours shows with these terms is meant, energies too."""
+    return TRADES[model].whole(terms) if model in TRADES else True
+
+
 def refinements(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
     """Settings that refine a model of ours itself, by name."""
     return TRADES[model].refinements(values, terms) if model in TRADES else {}

@@ -98,6 +98,8 @@ def _able(model: str, terms: Mapping[str, str], values: Mapping[str, float], fix
         if any(terms.get(group) != term for group, term in wanted.items() if group in fixed):
             continue
         with_it = {**terms, **wanted}
+        if build.whole(model, terms) and not build.whole(model, with_it):
+            continue
         if list(catalogue.clashing(with_it)):
             continue
         full = {**build.defaults(catalogue.interface(with_it)), **values}

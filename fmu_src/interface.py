@@ -165,7 +165,7 @@ def numbered(faults: Iterable[Fault]) -> tuple[Fault, ...]:
 class Term:
     """One physics term a scene may name: its variables, and a sentence on what it adds.
 
-
+    variables   its rows; one of a name that the model has already takes that row's place
     needs    groups without a term of which it has nothing to act on
     excludes groups with any term of which it cannot go together
     lacks    variables that the model has otherwise, and that mean nothing with it

@@ -220,11 +220,17 @@ def _families(points: Sequence[Judged]) -> list[str]:
 
 
 def _second(able: Sequence[Sample], reference: Sample) -> Sample | None:
-    """The finest of another scheme if there is one, else the next finer one."""
+    """The finest of another scheme, that which agrees best if there are several; without one the next finer setting."""
     of = reference.setting
-    others = [s for s in able if s.setting.family != of.family and not (s.setting.peer or _coarse(s))]
+    others: dict[str, Sample] = {}
+    for sample in able:
+        own = sample.setting
+        if own.family == of.family or own.peer or _coarse(sample):
+            continue
+        if own.family not in others or own.size < others[own.family].setting.size:
+            others[own.family] = sample
     if of.axis == NUMERICS and others:
-        return min(others, key=lambda s: s.setting.size)
+        return min(others.values(), key=lambda s: _judge(s, reference, {}).worst)
     rest = [s for s in able if s.setting.family == of.family and s is not reference]
     return min(rest, key=lambda s: s.setting.size, default=None)
 
@@ -288,8 +294,8 @@ def _order(points: Sequence[Judged]) -> float:
 
 
 def own(points: Sequence[Judged]) -> list[Judged]:
-    """Those of our models."""
-    return [point for point in points if not point.setting.peer]
+    """Those of our models, of which everything is meant."""
+    return [point for point in points if not (point.setting.peer or point.setting.partial)]
 
 
 def better_peers(points: Sequence[Judged]) -> list[Judged]:

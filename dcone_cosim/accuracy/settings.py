@@ -29,6 +29,7 @@ class Setting:
     size       that number over its default, or over the scene's own: what the error falls with [1]
     changes    `KEY=VALUE`, as `--set` takes them; none for the scene as it is
     peer       it is another program's
+    partial    not everything that it shows is meant, as with a scheme for the net's shape alone: it is never advised
     """
 
     axis: str
@@ -36,6 +37,7 @@ class Setting:
     size: float
     changes: tuple[str, ...]
     peer: bool = False
+    partial: bool = False
 
     @property
     def label(self) -> str:
@@ -94,8 +96,10 @@ def _rungs(
 ) -> Iterator[Setting]:
     model = phase.main.model
     family = ", ".join(terms[name] for name in build.numerics(model) if name in terms) or "tolerances"
+    partial = not build.whole(model, terms)
     for rung in build.rungs(model, values, terms):
-        yield Setting(NUMERICS, family, rung.size, (*changes, *changes_of(phase, rung.values)))
+        made = (*changes, *changes_of(phase, rung.values))
+        yield Setting(NUMERICS, family, rung.size, made, partial=partial)
 
 
 def _macro_steps(phase: PhaseScene) -> Iterator[Setting]:

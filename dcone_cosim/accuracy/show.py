@@ -66,7 +66,7 @@ def sentences(report: Report) -> Iterator[str]:
 
 def _of_peers(axis: Axis) -> Iterator[str]:
     """How other programs stand, where some were tried."""
-    if len(own(axis.points)) == len(axis.points):
+    if not any(point.setting.peer for point in axis.points):
         return
     better = better_peers(axis.points)
     if not better:
@@ -132,7 +132,8 @@ def show(report: Report, console: Console) -> None:
         for point in axis.points:
             error = "failed" if point.sample.failed else told(point.worst, point.floor)
             row = (f"  {point.setting.label}", error, _worst_of(report, point), seconds(point.sample.cpu))
-            mark = "peer" if point.setting.peer else "best" if id(point) in best else ""
+            mark = "peer" if point.setting.peer else "shape alone" if point.setting.partial else ""
+            mark = "best" if id(point) in best else mark
             table.add_row(*map(Text, (*row, mark)))
     console.print(table)
     for sentence in sentences(report):

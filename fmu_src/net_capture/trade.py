@@ -21,6 +21,11 @@ def rungs(values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
     return [Rung(size, {"solver.step_ratio": size * enough / bound}) for size in sizes]
 
 
+def whole(terms: Mapping[str, str]) -> bool:
+    """Whether all that the scheme shows is meant, or the net's shape alone."""
+    return bool(GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks.whole)
+
+
 def refinements(values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
     """Threads cut into more pieces: the same net, nearer to a continuous one."""
     pieces = values["net.segments"]

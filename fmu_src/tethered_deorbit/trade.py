@@ -21,6 +21,11 @@ def rungs(values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
     return found
 
 
+def whole(terms: Mapping[str, str]) -> bool:
+    """All schemes show all."""
+    return True
+
+
 def refinements(values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
     """None: the line is one piece."""
     return {}

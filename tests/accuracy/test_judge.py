@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from dcone_cosim.accuracy.judge import Report, cheapest, front, judge
+from dcone_cosim.accuracy.judge import Report, cheapest, front, judge, own
 from dcone_cosim.accuracy.plan import PhasePlan, Planned
 from dcone_cosim.accuracy.settings import MACRO_STEP, NUMERICS, Setting
 from dcone_cosim.accuracy.show import sentences
@@ -144,7 +145,7 @@ def test_a_reference_that_nothing_confirms_confirms_nothing() -> None:
 def test_the_front_and_the_cheapest() -> None:
     made = Made()
     ladder(made, "plain", 2.0, 1e-3, 1.0)
-    ladder(made, "slow", 2.0, 1e-3, 3.0)  # as exact at three times the cost
+    ladder(made, "slow", 2.0, -1e-3, 3.0)  # as exact at three times the cost
     made.add("other", 0.05, [TRUE], 99.0)
     points = made.judged(made.settings[2]).numerics.points
     best = front(points)
@@ -187,3 +188,14 @@ def test_nothing_that_ran_is_told_as_such() -> None:
     report = made.judged(one)
     assert report.axes == []
     assert list(sentences(report)) == ["tow: no setting came to an end: it fell over"]
+
+
+def test_what_shows_the_shape_alone_is_never_advised() -> None:
+    made = Made()
+    ladder(made, "plain", 2.0, 1e-3, 1.0)
+    cheap = made.add("shape", 1.0, [TRUE], 0.001)
+    cheap.setting = replace(cheap.setting, partial=True)
+    made.add("other", 0.05, [TRUE], 99.0)
+    points = own(made.judged(made.settings[2]).numerics.points)
+    assert "shape" not in {p.setting.family for p in points}
+    assert cheapest(points, 0.005).setting.family == "plain"  # type: ignore[union-attr]

@@ -19,6 +19,7 @@ class Needs(NamedTuple):
                               step that is accurate [s], see `formulas`; `solver.stability_bound`, the default substep
                               and what `inspect` tells follow from them. Of a scheme that has no bound the first is the
                               leapfrog's, see `unbounded`
+    whole                     whether everything that is shown with it is meant, or the net's shape alone
     factors                   substeps over the default one at which its error is measured against its cost, coarse to
                               fine; the last is for references
     steepest                  the largest share of the bound among them
@@ -35,6 +36,7 @@ class Needs(NamedTuple):
     steepest: float = 0.95
     keeps: float = 0.003
     keeps_energy: bool = True
+    whole: bool = True
     falls: str = "with the square of solver.step_ratio"
 
 

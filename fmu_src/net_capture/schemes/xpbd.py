@@ -316,6 +316,7 @@ PART = Term(
         steepest=MOST_RATIO,
         keeps=KEEPS,
         keeps_energy=False,
+        whole=False,
         falls="with solver.step_ratio",
     ),
 )
