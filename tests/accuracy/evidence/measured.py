@@ -26,7 +26,7 @@ from dcone_cosim.measured import FILE
 from dcone_cosim.progress import Lines
 
 COMMAND = "python -m tests.accuracy.evidence.measured"
-COARSE = ("capture.net.mesh=1.5 m", "capture.macro_step=0.1 s")
+COARSE = ("capture.net.mesh=2 m", "capture.macro_step=0.1 s")
 SCENES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("deployment", COARSE),
     ("deployment", (*COARSE, "capture.net.damping_ratio=0", "capture.duration=7 s")),
@@ -42,7 +42,7 @@ SCENES: tuple[tuple[str, tuple[str, ...]], ...] = (
          "removal.tether.damping_ratio=0.1", "orbit.eccentricity=0.01"),
     ),
 )  # fmt: skip
-RUNS = 6
+RUNS = 4
 OPENING = ("mouth_area", "t80", "bullets")
 
 
