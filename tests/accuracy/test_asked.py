@@ -21,8 +21,10 @@ from dcone_cosim.commands import run_and_write
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
 from dcone_cosim.measured import Entry
+from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
+from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import Accuracy
 from dcone_cosim.scene.mistakes import SceneError
 from tests.consistency.test_table2 import REFERENCE
@@ -215,15 +217,8 @@ def test_a_tow_that_scatters_in_no_way_needs_one_run_of_each() -> None:
     assert found["removal"].scatter == 0.0
 
 
-def test_quantities_of_every_phase_are_those_that_can_be_asked_for() -> None:
+def test_quantities_of_every_phase_are_those_that_can_be_asked_for(mission: RunResult) -> None:
     """What a run is judged by has the names that a scene may ask for."""
-    from dcone_cosim.master import run_scene
-    from dcone_cosim.phases import kind_of
-    from dcone_cosim.scene_fmus import SceneFmus
-
-    scene = load("mission", ["removal.duration=20 min"])
-    with SceneFmus(scene, Progress()) as fmus:
-        run = run_scene(scene, fmus.instantiate, Progress())
-    for name, result in run.phases.items():
-        keys = {q.key for q in kind_of(name).quantities(run, result, (1.0, 2.0, 3.0))}
+    for name, result in mission.phases.items():
+        keys = {q.key for q in kind_of(name).quantities(mission, result, (1.0, 2.0, 3.0))}
         assert keys == set(kind_of(name).judged_by)

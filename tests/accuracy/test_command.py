@@ -10,28 +10,34 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from dcone_cosim import build
 from dcone_cosim.accuracy import commands
-from dcone_cosim.accuracy.plan import plan
-from dcone_cosim.accuracy.settings import COUPLING, MACRO_STEP, NUMERICS, settings_of
+from dcone_cosim.accuracy.plan import Planned, Planner
+from dcone_cosim.accuracy.settings import COUPLING, MACRO_STEP, NUMERICS, Setting, settings_of
 from dcone_cosim.accuracy.work import measure
+from dcone_cosim.cases import alone
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.errors import InputError
-from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
-from dcone_cosim.scene_fmus import SceneFmus
-from tests.cases.conftest import put_scene, template
+from dcone_cosim.results import RunResult
+from tests.accuracy.conftest import MISSION
+from tests.cases.conftest import put_scene
 from tests.consistency.test_table2 import REFERENCE
-
-__all__ = ["template"]
 
 SHORT = ("removal.duration=70 min", "removal.macro_step=2 min")
 """Long enough for five tugs."""
 
 
+def measured(folder: Path) -> commands.Done:
+    """With the scene's scheme alone: the others would be compiled for these tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(build, "numerics", lambda model: ())
+        return commands.accuracy("table2-deorbit", folder, Progress(), SHORT, runs=2)
+
+
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> commands.Done:
-    folder = tmp_path_factory.mktemp("accuracy") / "out"
-    return commands.accuracy("table2-deorbit", folder, Progress(), SHORT, runs=2)
+    return measured(tmp_path_factory.mktemp("accuracy") / "out")
 
 
 def test_what_it_leaves(done: commands.Done) -> None:
@@ -67,8 +73,7 @@ def test_errors_are_those_against_quadruple_precision(done: commands.Done) -> No
 
 def test_the_same_command_goes_on(done: commands.Done) -> None:
     before = (done.folder / "table.parquet").read_bytes()
-    again = commands.accuracy("table2-deorbit", done.folder, Progress(), SHORT, runs=2)
-    assert (again.folder / "table.parquet").read_bytes() == before
+    assert (measured(done.folder).folder / "table.parquet").read_bytes() == before
 
 
 def test_an_fmu_from_elsewhere_has_its_macro_step(tmp_path: Path, template: Path) -> None:
@@ -84,6 +89,7 @@ def test_a_coupled_phase_has_its_coupling_step() -> None:
     phase = Alone("reel-control", (), None).scene.phases[0]
     found = settings_of(phase, True, notes)
     assert {s.axis for s in found} == {NUMERICS, MACRO_STEP, COUPLING}
+    assert {s.family for s in found if s.axis == NUMERICS} == {"dop853", "gauss", "radau"}
     steps = {s.size: s.changes for s in found if s.axis == COUPLING}
     assert steps[0.5] == ("removal.coupling.step=1 s",)
     assert steps[1.0] == ()
@@ -104,14 +110,15 @@ def test_a_net_is_tried_in_what_goes_together() -> None:
     assert "capture.nodes.capacity=1825" in pieces.changes
 
 
-def test_a_handed_over_phase_begins_as_in_the_run() -> None:
+def test_a_handed_over_phase_begins_as_in_the_run(mission: RunResult, monkeypatch: pytest.MonkeyPatch) -> None:
     """The removal of `mission` by itself is the removal of the mission, to the last bit."""
-    alone = Alone("mission", ("removal.duration=10 min",), None)
-    alone.begin(Progress())
-    work = plan(alone, "removal", commands.QUICK, Progress())
-    row = measure(work.cases[0])
-    with SceneFmus(alone.scene, Progress()) as fmus:
-        tugs = run_scene(alone.scene, fmus.instantiate, Progress()).phases["removal"].tugs
+    single = Alone("mission", MISSION, None)
+    monkeypatch.setattr(alone, "run_scene", lambda *_: mission)
+    single.begin(Progress())
+    planned = Planned(Setting("", "as it is", 1.0, ()))
+    (case,) = Planner(single, "removal", Progress()).cases(planned, 1).values()
+    row = measure(case)
+    tugs = mission.phases["removal"].tugs
     assert tugs is not None
     times, peaks, _ = zip(*(tugs.rows[n] for n in sorted(tugs.rows)), strict=True)
     assert row.samples["tug_times"]["values"] == list(times[:5])

@@ -14,19 +14,16 @@ from dcone_cosim.accuracy.peers.peer import Peer
 from dcone_cosim.accuracy.plan import Planner
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.progress import Progress
+from fmu_src.instance import Instance
+from fmu_src.net_capture.interface import MODEL
+from tests.conftest import FREE
 from tests.consistency.test_table2 import REFERENCE
-
-SMALL = ["capture.net.side=4 m", "capture.net.mesh=1 m", "capture.duration=0.9 s", "capture.net.fold_side=0.5 m"]
-
-
-def begun(scene: str, settings: list[str], phase: str) -> tuple[Any, dict[str, float]]:
-    planner = Planner(Alone(scene, settings, None), phase, Progress())
-    return planner, planner._begun()
+from tests.net_capture.memory import shown
 
 
 @pytest.fixture(scope="module")
 def pair() -> dict[str, float]:
-    return begun("table2-deorbit", ["removal.duration=70 min"], "removal")[1]
+    return Planner(Alone("table2-deorbit", ["removal.duration=70 min"], None), "removal", Progress())._begun()
 
 
 def found(peer: Peer, values: dict[str, float], size: float, instants: Any) -> dict[str, Any]:
@@ -48,20 +45,17 @@ def test_a_tow_against_quadruple_precision(peer: Peer, pair: dict[str, float]) -
 
 @pytest.fixture(scope="module")
 def opening() -> tuple[dict[str, float], Any, Any]:
-    planner, values = begun("deployment", SMALL, "capture")
-    (case,) = planner.cases(peers_planned(), 1).values()
-    from dcone_cosim.accuracy.work import measure
-
-    instants = case.instants
-    row = measure(case)
-    return values, instants, np.array(row.samples["mouth_area"]["values"])
-
-
-def peers_planned() -> Any:
-    from dcone_cosim.accuracy.plan import Planned
-    from dcone_cosim.accuracy.settings import Setting
-
-    return Planned(Setting("", "", 1.0, ("capture.solver.step_ratio=0.05",)))
+    """A small net at the shot, instants, and the mouth that our model has then, with small steps."""
+    given = {"net.side": 4.0, "net.mesh": 1.0, "net.fold_side": 0.5, "net.damping_ratio": 0.05}
+    ours = Instance(MODEL, FREE, given | {"solver.step_ratio": 0.05}).initialise()
+    values = {name: float(ours[name]) for name in ours.interface.references}
+    for number, place in enumerate(shown(ours), start=1):
+        values |= {f"node[{number}].position[{i}]": float(x) for i, x in enumerate(place, start=1)}
+    areas, instants = [], np.arange(0.1, 0.91, 0.1)
+    for _ in instants:
+        ours.step(0.1)
+        areas.append(ours["mouth.area"])
+    return values, instants, np.array(areas)
 
 
 @pytest.mark.parametrize("peer", net.PEERS, ids=lambda peer: peer.name)
