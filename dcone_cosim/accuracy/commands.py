@@ -20,8 +20,9 @@ from typing import Any
 from dcone_cosim import interrupts
 from dcone_cosim.accuracy import page, plot, show
 from dcone_cosim.accuracy.judge import Report, judge
-from dcone_cosim.accuracy.plan import Alone, Effort, phases_of, plan
+from dcone_cosim.accuracy.plan import Effort, plan
 from dcone_cosim.accuracy.work import measure
+from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.case import code, content, digest
 from dcone_cosim.cases.commands import TOLD, publish, run_all
 from dcone_cosim.cases.store import Store
@@ -74,7 +75,7 @@ def accuracy(
     alone = Alone(name, settings, isolate)
     alone.begin(progress)
     progress.say("checking what there is to choose")
-    plans = [plan(alone, phase, effort, progress) for phase in phases_of(alone)]
+    plans = [plan(alone, phase, effort, progress) for phase in alone.phases]
     cases = [case for one in plans for case in one.cases]
     count = max(1, min(jobs or cores(), len(cases)))
     scene = alone.scene

@@ -1,27 +1,23 @@
-"""The phases of a scene each by itself, and the cases that measure them.
+"""The cases that measure a phase.
 
-A phase that another hands over to begins as it does in a run of the scene as it is. What is chaotic is run with several
-jittered starts, what is not several times, for its CPU time.
+What is chaotic is run with several jittered starts, what is not several times, for its CPU time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 from dcone_cosim.accuracy.settings import Setting, settings_of
 from dcone_cosim.accuracy.work import Measured
 from dcone_cosim.cases import ensemble
-from dcone_cosim.cases.case import digest, identities, key_of
+from dcone_cosim.cases.alone import Alone, Fmus
+from dcone_cosim.cases.case import digest, key_of
 from dcone_cosim.errors import InputError
-from dcone_cosim.loading import load
-from dcone_cosim.master import run_scene
 from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
 from dcone_cosim.quantities import spread_instants
-from dcone_cosim.results import RunResult
-from dcone_cosim.scene.data import PhaseScene, Scene
-from dcone_cosim.scene_fmus import SceneFmus, fmus_of
+from dcone_cosim.scene.data import PhaseScene
 
 INSTANTS = 120
 """At which curves are compared, at most."""
@@ -68,46 +64,6 @@ class PhasePlan:
     notes: list[str]
 
 
-class Alone:
-    """Makes scenes of one phase by itself, whatever is set.
-
-    name, settings    the scene, and `--set` settings of all of them
-    """
-
-    def __init__(self, name: str, settings: Sequence[str], isolate: bool | None) -> None:
-        self._name, self._settings, self._isolate = name, tuple(settings), isolate
-        self.scene = load(name, settings).isolating(isolate)
-        self._taken: dict[str, tuple[Mapping[str, float], float]] = {}
-
-    def begin(self, progress: Progress) -> None:
-        """Run the scene as it is, if a phase of it takes over from another, and keep what is handed over."""
-        if len(self.scene.phases) == 1:
-            return
-        with SceneFmus(self.scene, progress) as fmus:
-            result = run_scene(self.scene, fmus.instantiate, progress)
-        if result.exit_code:
-            raise InputError(f"{self.scene.source}: the scene itself does not come to its end: {result.message}")
-        for name in result.handovers:
-            self._keep(result, name)
-
-    def _keep(self, result: RunResult, phase: str) -> None:
-        own = next(p.main.parameters for p in self.scene.phases if p.name == phase)
-        given = {name: value for name, value in result.given[phase].items() if own.get(name) != value}
-        self._taken[phase] = (given, result.handovers[phase].start)
-
-    def scene_of(self, phase: str, changes: Sequence[str] = ()) -> Scene:
-        """The scene with that phase alone; `InputError` for changes that it cannot have."""
-        scene = load(self._name, [*self._settings, *changes]).isolating(self._isolate)
-        place = next(i for i, p in enumerate(scene.phases) if p.name == phase)
-        own = scene.phases[place]
-        if place + 1 < len(scene.phases):
-            own = kind_of(phase).by_itself(own)
-        if phase in self._taken:
-            given, start = self._taken[phase]
-            own = replace(own, main=replace(own.main, parameters={**own.main.parameters, **given}), start=start)
-        return replace(scene, phases=(own,))
-
-
 def plan(alone: Alone, phase: str, effort: Effort, progress: Progress) -> PhasePlan:
     """What is to be run of a phase."""
     base = alone.scene_of(phase)
@@ -116,7 +72,7 @@ def plan(alone: Alone, phase: str, effort: Effort, progress: Progress) -> PhaseP
     notes: list[str] = []
     settings = _thinned(settings_of(own, effort.refine, notes), effort.thin)
     instants = spread_instants(_first(own), own.duration, own.macro_step, INSTANTS)
-    fmus = _Fmus(progress)
+    fmus = Fmus(progress)
     cases: dict[str, Measured] = {}
     here = Planned(Setting("", "the scene as it is", 1.0, ()))
     planned = [here, *(Planned(setting) for setting in settings)]
@@ -150,22 +106,3 @@ def _thinned(settings: Sequence[Setting], thin: int) -> list[Setting]:
         of = [s for s in settings if (s.axis, s.family) == family]
         found += [s for i, s in enumerate(of) if (len(of) - 1 - i) % thin == 0 or s.size == 1.0]
     return found
-
-
-class _Fmus:
-    """The FMUs of every scene that comes, built once if they are not there, and what they are."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-        self._known: dict[object, Mapping[str, str]] = {}
-
-    def of(self, scene: Scene) -> Mapping[str, str]:
-        what = fmus_of(scene)
-        if what not in self._known:
-            with SceneFmus(scene, self._progress) as archives:
-                self._known[what] = identities(archives.facts())
-        return self._known[what]
-
-
-def phases_of(alone: Alone) -> Iterator[str]:
-    yield from (phase.name for phase in alone.scene.phases)

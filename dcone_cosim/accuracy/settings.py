@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from dcone_cosim import build
+from dcone_cosim.cases.changes import changes_of, following, in_words
 from dcone_cosim.scene.data import PhaseScene
 
 NUMERICS, MACRO_STEP, COUPLING = "scheme and step", "macro step", "coupling step"
@@ -80,16 +81,9 @@ def _refinements(phase: PhaseScene) -> Iterator[Setting]:
     main = phase.main
     own = {**main.defaults, **main.parameters}
     for name, rungs in build.refinements(main.model, own, main.terms).items():
-        yield from (Setting(name, name, r.size, (*_following(phase, r), *_changes(phase, r.values))) for r in rungs)
-
-
-def _following(phase: PhaseScene, rung: build.Rung) -> Iterator[str]:
-    """Terms that follow from values, such as for how many nodes there are outputs."""
-    main = phase.main
-    for name, group in build.CATALOGUE[main.model].groups.items():
-        if name in main.terms and group.follows is not None:
-            term = group.follows(main.terms, {**main.defaults, **main.parameters, **rung.values})
-            yield f"{phase.name}.{group.table or name}.{group.selector}={term}"
+        yield from (
+            Setting(name, name, r.size, (*following(phase, r.values), *changes_of(phase, r.values))) for r in rungs
+        )
 
 
 def _rungs(
@@ -98,17 +92,7 @@ def _rungs(
     model = phase.main.model
     family = ", ".join(terms[name] for name in build.numerics(model) if name in terms) or "tolerances"
     for rung in build.rungs(model, values, terms):
-        yield Setting(NUMERICS, family, rung.size, (*changes, *_changes(phase, rung.values)))
-
-
-def _changes(phase: PhaseScene, values: Mapping[str, float]) -> tuple[str, ...]:
-    known = build.known_variables(phase.main.model)
-    return tuple(f"{phase.name}.{name}={in_words(value, known[name][0].unit)}" for name, value in values.items())
-
-
-def in_words(value: float, unit: str) -> str:
-    """A value as a scene says it."""
-    return f"{value:.6g}" if unit == "1" else f"{value:.6g} {unit}"
+        yield Setting(NUMERICS, family, rung.size, (*changes, *changes_of(phase, rung.values)))
 
 
 def _macro_steps(phase: PhaseScene) -> Iterator[Setting]:

@@ -21,6 +21,7 @@ from typing import Any
 from dcone_cosim import interrupts, placed
 from dcone_cosim.cases import ensemble as ensembles
 from dcone_cosim.cases import show, vary
+from dcone_cosim.cases.alone import Fmus
 from dcone_cosim.cases.case import Case, Value, code, content, digest, identities, key_of
 from dcone_cosim.cases.pace import Pace
 from dcone_cosim.cases.plot import draw
@@ -38,7 +39,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.results import RunResult
 from dcone_cosim.run_folder import as_json, default_folder, provenance
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.scene_fmus import SceneFmus, fmus_of, remarks
+from dcone_cosim.scene_fmus import remarks
 from dcone_cosim.scenes.kept import keep
 from dcone_cosim.scratch import Scratch
 
@@ -103,21 +104,6 @@ class Plan:
         }
 
 
-class _Fmus:
-    """The FMUs of every scene that comes, built once if they are not there, and what they are."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-        self.facts: dict[Any, Mapping[str, Any]] = {}
-
-    def of(self, scene: Scene) -> dict[str, str]:
-        what = fmus_of(scene)
-        if what not in self.facts:
-            with SceneFmus(scene, self._progress) as archives:
-                self.facts[what] = archives.facts()
-        return identities(self.facts[what])
-
-
 def sweep(
     name: str,
     arguments: Sequence[str],
@@ -131,7 +117,7 @@ def sweep(
     """Run a grid of cases and write its folder. Bad input raises and leaves nothing."""
     keys = vary.read(arguments, settings)
     base = named(name, settings).isolating(isolate)
-    fmus = _Fmus(progress)
+    fmus = Fmus(progress)
     of_base = fmus.of(base)
     entries: list[tuple[Case | Row, Mapping[str, Value], int | None]] = []
     for combination in vary.grid(name, keys, settings, progress.say):
@@ -172,7 +158,7 @@ def ensemble(
     base = named(name, settings).isolating(isolate)
     seeds = range(seed, seed + count)
     members = ensembles.members(name, base, seeds, settings)
-    fmus = _Fmus(progress)
+    fmus = Fmus(progress)
     entries: list[tuple[Case | Row, Mapping[str, Value], int | None]] = []
     for number, member in members:
         scene = member.isolating(isolate)
