@@ -8,7 +8,7 @@ from dcone_cosim import build
 from dcone_cosim.scene.data import SHARED, PhaseScene
 
 
-def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]]) -> tuple[str, ...]:
+def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]], digits: int = 6) -> tuple[str, ...]:
     """Values as settings: SI, by FMI name, or of a whole vector by its name without indices."""
     known = build.known_variables(phase.main.model)
     found = []
@@ -16,12 +16,14 @@ def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]])
         key = name if name.startswith(f"{SHARED}.") else f"{phase.name}.{name}"
         if isinstance(value, Sequence):
             unit = known[f"{name}[1]"][0].unit
-            parts = (in_words(part, unit) if unit == "1" else f'"{in_words(part, unit)}"' for part in value)
+            parts = (
+                f'"{in_words(part, unit, digits)}"' if unit != "1" else in_words(part, unit, digits) for part in value
+            )
             found.append(f"{key}=[{', '.join(parts)}]")
         elif known[name][0].choices:
             found.append(f'{key}="{known[name][0].choices[int(value)]}"')
         else:
-            found.append(f"{key}={in_words(value, known[name][0].unit)}")
+            found.append(f"{key}={in_words(value, known[name][0].unit, digits)}")
     return tuple(found)
 
 
@@ -34,6 +36,6 @@ def following(phase: PhaseScene, values: Mapping[str, float]) -> Iterator[str]:
             yield f"{phase.name}.{group.table or name}.{group.selector}={term}"
 
 
-def in_words(value: float, unit: str) -> str:
+def in_words(value: float, unit: str, digits: int = 6) -> str:
     """A value as a scene says it."""
-    return f"{value:.6g}" if unit == "1" else f"{value:.6g} {unit}"
+    return f"{value:.{digits}g}" if unit == "1" else f"{value:.{digits}g} {unit}"

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from dcone_cosim.contract import NEVER, Need
+from dcone_cosim.criteria import Criterion, Evidence, finite
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.phases.stepping import PhaseLoop
@@ -114,6 +115,7 @@ class Phase:
     own_clock      its times count from its begin, whatever time its FMU is told
     tugs_file      name of the table of its tugs
     chaotic        its figures are samples: they part company however small a change is
+    to_its_end     settings of its table with which it goes on to its end, whatever comes of it
     """
 
     name = ""
@@ -132,6 +134,7 @@ class Phase:
     own_clock = False
     tugs_file = "tugs"
     chaotic = False
+    to_its_end: Sequence[str] = ()
 
     # the scene
 
@@ -233,6 +236,10 @@ class Phase:
                 if scale > 0.0:
                     curve = at(recorder, name, instants).tolist()
                     yield Quantity(name, name, curve, recorder.units[name], scale, "its range")
+
+    def criteria(self, evidence: Evidence) -> Iterator[Criterion]:
+        """What must hold of it however stiff or extreme it is."""
+        yield finite(evidence)
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         """Relative spread [1] of those of its figures that are one sample of many, by key."""

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from fmu_src.extremes import Extreme
 from fmu_src.implied import formula
 from fmu_src.interface import Term, fault
 from fmu_src.net_capture.contact import Contact
@@ -268,4 +269,14 @@ PART = Term(
     faults=(INSIDE_TARGET,),
     make=make,
     refuses=refuses,
+    extremes=tuple(
+        Extreme(
+            f"restitution {share:g}",
+            "impacts that take all of the normal speed, or none",
+            "energy_gained",
+            {"contact.restitution": share},
+            chief=share == 1.0,
+        )
+        for share in (0.0, 1.0)
+    ),
 )
