@@ -224,7 +224,7 @@ def stability(
     ] = 20.0,
     budget: Annotated[
         float | None,
-        typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 50."),
+        typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 40."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="The chief extremes alone, for a first look.")] = False,
     jobs: cli_cases.Jobs = None,

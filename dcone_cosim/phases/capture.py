@@ -138,6 +138,9 @@ class Capture(Phase):
     def criteria(self, evidence: Evidence) -> Iterator[Criterion]:
         return capture_criteria.criteria(evidence)
 
+    def rounding(self, phase: PhaseScene) -> float:
+        return capture_criteria.BOOKED[phase.main.terms.get("precision", "double")]
+
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         return chaos.CAPTURE
 

@@ -15,6 +15,10 @@ ACCURATE, STABLE = 0.01, 0.05
 """Shares of the energy that came in by which the book may be off."""
 ROUNDING = {"double": (1e-9, 1e-7), "single": (5e-4, 1e-2)}
 """Shares of momentum by which it may change, accurate and stable, by the bits of a number."""
+ON_GRID = 1.1e-3
+"""Share of a substep by which a communication point may miss the grid and still be taken for on it, and a little."""
+BOOKED = {"double": 2e-6, "single": 1e-2}
+"""Shares of the energy below which what the book leaves over may be rounding."""
 DEPTH, DEEPEST = 2e-3, 2e-2
 """How deep a node may lie below the target's surface [m]: that up to which it counts as on it, and ten times that."""
 CATCH, SHOT = "catch", "shot.momentum"
@@ -122,7 +126,13 @@ def _flight(evidence: Evidence) -> Iterator[Criterion]:
     way = np.linalg.norm(place - start - velocity * time[:, None] - (place[0] - start), axis=1)[free]
     flown = max(float(np.linalg.norm(velocity)) * float(time[free][-1]), 1e-9)
     accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
-    yield Criterion("flight", "way of the catch from a straight line", float(way.max()) / flown, "1", accurate, stable)
+    off = max(0.0, float(way.max()) - ON_GRID * _substep(evidence) * float(np.linalg.norm(velocity))) / flown
+    yield Criterion("flight", "way of the catch from a straight line", off, "1", accurate, stable)
+
+
+def _substep(evidence: Evidence) -> float:
+    """In use [s]; 0 where it is not told."""
+    return float(evidence.columns["solver.substep"][0]) if evidence.has("solver.substep") else 0.0
 
 
 def _depth(evidence: Evidence) -> Iterator[Criterion]:

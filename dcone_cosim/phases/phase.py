@@ -241,6 +241,10 @@ class Phase:
         """What must hold of it however stiff or extreme it is."""
         yield finite(evidence)
 
+    def rounding(self, phase: PhaseScene) -> float:
+        """Share of the energy below which an error of its book may be rounding [1]."""
+        return 2e-6
+
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         """Relative spread [1] of those of its figures that are one sample of many, by key."""
         return {}

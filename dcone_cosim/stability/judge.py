@@ -31,8 +31,6 @@ PARTED = 0.002
 BOOK = ("energy_gained", "energy_lost")
 SECOND_ORDER = 1.0 / 8.0
 """Share of an error that a four times finer step may leave: that of order 3/2."""
-LEAST = 2e-6
-"""Share of the energy below which an error may be rounding."""
 COVERED = 0.25
 """Share of a run's instants up to which, at least, it must stay with its twin to be compared at all."""
 BOUND = re.compile(r"\d|zero")
@@ -135,13 +133,16 @@ def agreement(
     return Criterion("agrees", f"difference from a finer run, in the {label}", worst, "1", AGREE, math.inf)
 
 
-def falls(here: Sequence[Criterion], finer: Sequence[Criterion]) -> Criterion:
+def falls(here: Sequence[Criterion], finer: Sequence[Criterion], rounding: float) -> Criterion:
     """What a four times finer step leaves of the error of the energy book [1]: a sixteenth at second order, a quarter
-    at first."""
+    at first.
+
+    rounding    share of the energy below which an error may be nothing else
+    """
     mine, other = (
         max((abs(one.value) for one in criteria if one.key in BOOK), default=math.nan) for criteria in (here, finer)
     )
-    left = 0.0 if other < LEAST else other / mine if mine > 0.0 else math.inf
+    left = 0.0 if other < rounding else other / mine if mine > 0.0 else math.inf
     label = "what a four times finer step leaves of the energy book's error"
     return Criterion("order", label, left, "1", SECOND_ORDER, SECOND_ORDER)
 

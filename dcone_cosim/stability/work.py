@@ -156,7 +156,9 @@ def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: floa
         jittered, more = _quantities(cell, twin), more + twin.phase.cpu
     if cell.asked == "order":
         assert other.result is not None
-        yield falls(criteria, [*kind_of(_name(cell)).criteria(evidence_of(other.result, cell.finer.phases[0]))]), 0.0
+        kind, phase = kind_of(_name(cell)), cell.finer.phases[0]
+        finer = list(kind.criteria(evidence_of(other.result, phase)))
+        yield falls(criteria, finer, kind.rounding(phase)), 0.0
     mine, others = _quantities(cell, here), _quantities(cell, other)
     if cell.same:
         yield sameness(mine, others), more

@@ -76,7 +76,7 @@ def test_other_macro_steps_give_the_same() -> None:
 
 
 def test_an_error_must_fall_with_more_than_the_first_power() -> None:
-    at = {order: falls([share(1e-3)], [share(1e-3 / 4.0**order)]) for order in (1, 2)}
+    at = {order: falls([share(1e-3)], [share(1e-3 / 4.0**order)], 2e-6) for order in (1, 2)}
     assert verdict([at[2]], "order").kind == ACCURATE
     assert verdict([at[1]], "order").kind == FAILED
 

@@ -96,7 +96,7 @@ def ringing(shoot: Any, share: float, flaw: Flaw) -> list[Criterion]:
 
 def test_a_dashpot_half_a_substep_late_is_red(shoot: Any) -> None:
     """Its scheme is of first order: a step four times finer leaves a quarter of the error or more, not a sixteenth."""
-    sound, faulty = (falls(ringing(shoot, 1.0, flaw), ringing(shoot, 0.25, flaw)) for flaw in (nothing, late))
+    sound, faulty = (falls(ringing(shoot, 1.0, flaw), ringing(shoot, 0.25, flaw), 2e-6) for flaw in (nothing, late))
     assert sound.value < 1.0 / 16.0
     assert faulty.value > 1.0 / 5.0
     assert verdict([sound], "order").kind == ACCURATE
