@@ -12,7 +12,6 @@ import pytest
 from dcone_cosim.stability.judge import ACCURATE, BOUND, EXCLUDED, FAILED, LEFT, REFUSED, STABLE
 from tests.stability.matrix import COMMAND, RESULT, main
 
-
 pytestmark = pytest.mark.evidence
 
 
