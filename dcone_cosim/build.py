@@ -19,9 +19,11 @@ from dcone_cosim.names import did_you_mean
 from dcone_cosim.scratch import Scratch, clear_left
 from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
+from fmu_src.extremes import Extreme
 from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Model, Term, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
+from fmu_src.net_capture import stress as net_capture_stress
 from fmu_src.net_capture import trade as net_capture_trade
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.net_capture.interface import NETS, TARGETS
@@ -30,6 +32,7 @@ from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.sources import SHIM
 from fmu_src.tables import Table
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
+from fmu_src.tethered_deorbit import stress as tethered_deorbit_stress
 from fmu_src.tethered_deorbit import trade as tethered_deorbit_trade
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
@@ -39,6 +42,7 @@ __all__ = [
     "CATALOGUE",
     "STATE_HEAD",
     "Experiment",
+    "Extreme",
     "Group",
     "Implied",
     "Interface",
@@ -54,6 +58,9 @@ CAUTIONS = {NET_CAPTURE.name: net_capture_cautions, TETHERED_DEORBIT.name: tethe
 
 TRADES = {NET_CAPTURE.name: net_capture_trade, TETHERED_DEORBIT.name: tethered_deorbit_trade}
 """How a model trades accuracy for time, by its name."""
+
+STRESSES = {NET_CAPTURE.name: net_capture_stress, TETHERED_DEORBIT.name: tethered_deorbit_stress}
+"""Ends of the range that belong to no part of a model, by its name."""
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
 
@@ -228,6 +235,24 @@ def whole(model: str, terms: Mapping[str, str]) -> bool:
 def refinements(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
     """Settings that refine a model of ours itself, by name."""
     return TRADES[model].refinements(values, terms) if model in TRADES else {}
+
+
+def extremes(model: str, terms: Mapping[str, str]) -> list[Extreme]:
+    """Cases at the ends of the range of a model of ours with these terms: of its parts, and those of no part."""
+    if model not in STRESSES:
+        return []
+    groups = CATALOGUE[model].groups
+    of_parts = [one for group, term in terms.items() for one in groups[group].terms[term].extremes]
+    return [*of_parts, *STRESSES[model].EXTREMES]
+
+
+def target_distance(
+    values: Mapping[str, float], terms: Mapping[str, str]
+) -> Callable[[Mapping[str, float], Sequence[float]], float] | None:
+    """Function of values and a point in body axes [m]: its distance from the target's surface, negative inside [m];
+    None for a target that is none of ours."""
+    part = _part(TARGETS, terms.get("target"), values)
+    return None if part is None else part.checks.distance
 
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:

@@ -209,6 +209,51 @@ def accuracy(
 
 
 @app.command()
+def stability(
+    scene: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[SCENE]",
+            help="A scene, as for dcone run; without one the shipped table1-capture (with a coarse net) and "
+            "table2-deorbit.",
+            autocompletion=scenes_like,
+        ),
+    ] = None,
+    out: cli_cases.Out = None,
+    settings: Settings = None,
+    limit: Annotated[
+        float,
+        typer.Option("--limit", help="CPU time [s] that a case may take, as it is reckoned; dearer ones are refused."),
+    ] = 20.0,
+    budget: Annotated[
+        float | None,
+        typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 40."),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="The chief extremes alone, for a first look.")] = False,
+    jobs: cli_cases.Jobs = None,
+    json: Json = False,
+    isolate: Annotated[
+        bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
+    ] = None,
+    offline: Offline = False,
+) -> None:
+    """Try every scheme at the ends of the range: what holds, what is refused and why.
+
+    Stiff and soft, light and heavy, fast and slow, macro steps from 1 us: each case is judged by conservation laws
+    and closed forms from both sides, and by a finer run. The cost of a case is reckoned before it begins. The folder
+    has report.html, a map for each phase, the table, and the rows themselves; the same command goes on with what is
+    missing.
+
+    Exit code: 0 no case failed, 2 bad input, 6 interrupted, and what is done is kept, 7 some cases failed.
+    """
+    _promise(offline)
+    code = cli_cases.stability(
+        scene, out, settings or [], limit, budget, quick, jobs, isolate, json, _progress(), _console()
+    )  # fmt: skip
+    raise typer.Exit(code)
+
+
+@app.command()
 def build(
     scene: SceneName,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the .fmu files.")],

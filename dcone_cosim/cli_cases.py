@@ -154,3 +154,38 @@ def physics(
             effects.show(found, console)
     for note in (note for one in found for note in one.notes):
         complain(f"note: {note}")
+
+
+def stability(
+    scene: str | None,
+    out: Path | None,
+    settings: list[str],
+    limit: float,
+    budget: float | None,
+    quick: bool,
+    jobs: int | None,
+    isolate: bool | None,
+    json: bool,
+    progress: Progress,
+    console: Console,
+) -> int:
+    """Try the extremes, and show what became of them and where it is; returns the exit code."""
+    from dcone_cosim.stability import commands, show
+
+    try:
+        with exits.noise_apart():
+            done = commands.stability(scene, out, progress, settings, limit, budget, quick, jobs, isolate)
+    finally:
+        progress.close()
+    with exits.reader_may_leave():
+        if json:
+            from dcone_cosim.run_folder import as_json
+
+            typer.echo(as_json({**done.content, "folder": str(done.folder), "notes": done.notes}))
+        else:
+            for one in done.matrices:
+                show.show(one, console)
+            typer.echo(f"results in {done.folder}")
+    for note in done.notes:
+        complain(f"note: {note}")
+    return done.exit_code

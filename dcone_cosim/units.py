@@ -266,6 +266,6 @@ def read_units(definitions: Iterable[Any], file: str) -> dict[str, Unit]:
     return units
 
 
-def written(value: float, unit: str) -> str:
-    """An SI value as a scene says it, with six digits."""
-    return f"{value:.6g}" if unit == "1" else f"{value:.6g} {spoken(unit)}"
+def written(value: float, unit: str, digits: int = 6) -> str:
+    """An SI value as a scene says it, with so many digits."""
+    return f"{value:.{digits}g}" if unit == "1" else f"{value:.{digits}g} {spoken(unit)}"

@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fmu_src import tables
+from fmu_src.extremes import Extreme
 from fmu_src.tables import Table
 
 Kind = Literal["Real", "Integer", "Boolean"]
@@ -175,6 +176,7 @@ class Term:
     make     `make(composition)`: its kernels, as the model it is a part of asks for them
     checks   what the model asks of it before any build or run
     refuses  `refuses(scene)`: why it can not work with a scene's values, as the model it is a part of asks for it
+    extremes cases at the ends of its range, on which schemes are tried
     """
 
     summary: str
@@ -188,6 +190,7 @@ class Term:
     make: Callable[[Any], Any] | None = None
     checks: Any = None
     refuses: Callable[[Any], Iterable[Any]] | None = None
+    extremes: tuple[Extreme, ...] = ()
 
 
 @dataclass(frozen=True)

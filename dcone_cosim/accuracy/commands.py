@@ -10,10 +10,10 @@ provenance.json scene.toml        what made it
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,17 +24,14 @@ from dcone_cosim.accuracy.plan import Effort, plan
 from dcone_cosim.accuracy.work import measure
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.case import code, content, digest
-from dcone_cosim.cases.commands import TOLD, publish, run_all
+from dcone_cosim.cases.commands import TOLD, run_all
+from dcone_cosim.cases.report import write_report
 from dcone_cosim.cases.store import Store
-from dcone_cosim.cases.table import Column, as_arrow
+from dcone_cosim.cases.table import Column
 from dcone_cosim.cases.workers import Workers, cores
-from dcone_cosim.drafts import PROVENANCE
 from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError
 from dcone_cosim.progress import Progress
-from dcone_cosim.results import RunResult
-from dcone_cosim.run_folder import as_json, csv_head, default_folder, provenance
-from dcone_cosim.scenes.kept import keep
-from dcone_cosim.scratch import Scratch
+from dcone_cosim.run_folder import default_folder
 
 QUICK = Effort(runs=2, repeats=1, thin=3, refine=False)
 KIND = "an accuracy report"
@@ -110,7 +107,16 @@ def accuracy(
         }
         notes = [*scene.notes, *dict.fromkeys(note for one in plans for note in one.notes)]
         done = Done(folder, reports, told, notes)
-        _write(done, alone, folder, started, _command(name, settings, runs, quick, peers))
+        write_report(
+            folder,
+            [scene],
+            _columns(reports),
+            told,
+            partial(_draw, done),
+            started,
+            done.exit_code,
+            _command(name, settings, runs, quick, peers),
+        )
     return done
 
 
@@ -121,32 +127,12 @@ def _command(name: str, settings: Sequence[str], runs: int | None, quick: bool, 
     return shlex.join([*parts, *(["--quick"] if quick else []), *(["--peers"] if peers else [])])
 
 
-def _write(done: Done, alone: Alone, folder: Path, started: datetime, command: str) -> None:
-    """Every file under another name first; the provenance, which says that all is there, last."""
-    import pyarrow.csv
-    import pyarrow.parquet
-
-    with ExitStack() as stack:
-        draft = stack.enter_context(Scratch(folder))
-        table = as_arrow(list(_columns(done.reports)))
-        pyarrow.parquet.write_table(table, draft / "table.parquet")
-        pyarrow.csv.write_csv(table.rename_columns([csv_head(f) for f in table.schema]), draft / "table.csv")
-        (draft / "summary.json").write_text(as_json(done.content) + "\n", encoding="utf-8")
-        keep(alone.scene, draft)
-        about = {
-            **provenance(RunResult(alone.scene), {}, started),
-            "exit_code": done.exit_code,
-            "code": code(),
-            "command": command,
-        }
-        for report in done.reports:
-            if report.axes:
-                plot.draw(report, draft / f"{report.plan.phase}_accuracy.png")
-        page.write(done.reports, done.notes, about, draft)
-        files = sorted(path.relative_to(draft) for path in draft.rglob("*") if path.is_file())
-        about["files"] = [str(path) for path in files]
-        (draft / PROVENANCE).write_text(as_json(about) + "\n", encoding="utf-8")
-        publish(draft, [*files, Path(PROVENANCE)], folder)
+def _draw(done: Done, draft: Path, about: Mapping[str, Any]) -> None:
+    """Pictures and page."""
+    for report in done.reports:
+        if report.axes:
+            plot.draw(report, draft / f"{report.plan.phase}_accuracy.png")
+    page.write(done.reports, done.notes, about, draft)
 
 
 def _columns(reports: Sequence[Report]) -> Iterator[Column]:

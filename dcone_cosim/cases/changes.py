@@ -9,7 +9,7 @@ from dcone_cosim.scene.data import SHARED, PhaseScene
 from dcone_cosim.units import written
 
 
-def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]]) -> tuple[str, ...]:
+def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]], digits: int = 6) -> tuple[str, ...]:
     """Values as settings: SI, by FMI name, or of a whole vector by its name without indices."""
     known = build.known_variables(phase.main.model)
     found = []
@@ -17,12 +17,14 @@ def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]])
         key = name if name.startswith(f"{SHARED}.") else f"{phase.name}.{name}"
         if isinstance(value, Sequence):
             unit = known[f"{name}[1]"][0].unit
-            parts = (written(part, unit) if unit == "1" else f'"{written(part, unit)}"' for part in value)
+            parts = (
+                f'"{written(part, unit, digits)}"' if unit != "1" else written(part, unit, digits) for part in value
+            )
             found.append(f"{key}=[{', '.join(parts)}]")
         elif known[name][0].choices:
             found.append(f'{key}="{known[name][0].choices[int(value)]}"')
         else:
-            found.append(f"{key}={written(value, known[name][0].unit)}")
+            found.append(f"{key}={written(value, known[name][0].unit, digits)}")
     return tuple(found)
 
 

@@ -195,8 +195,12 @@ def run_all(
     ahead: int,
     progress: Progress,
     work: Callable[[Case], Row] = run_case,
+    over: Callable[[], bool] = lambda: False,
 ) -> dict[str, Row]:
-    """Rows of all cases by key, with a word on how far it is; see `Runner` for the arguments."""
+    """Rows of all cases by key, with a word on how far it is; see `Runner` for the arguments.
+
+    over    says when no further case is to be begun
+    """
     pace = Pace(len(cases))
 
     def tell() -> None:
@@ -204,7 +208,7 @@ def run_all(
 
     found: dict[str, Row] = {}
     try:
-        for row, before in Runner(store, executor, ahead, work, tell).rows(cases):
+        for row, before in Runner(store, executor, ahead, work, tell).rows(case for case in cases if not over()):
             found[row.key] = row
             pace.count(row.succeeded, before)
             tell()

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HAND_OVER, NEVER, OUTCOMES
+from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import CAPTURE_FAILED
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS
-from dcone_cosim.phases import capture_quantities, capture_report, chaos
+from dcone_cosim.phases import capture_criteria, capture_quantities, capture_report, chaos
 from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage
 from dcone_cosim.quantities import Quantity
@@ -54,6 +55,7 @@ class Capture(Phase):
     chaotic = True
     judged_by = capture_quantities.NAMES
     own_clock = True
+    to_its_end = ("hand_over=none", "snapshots=[]")
     wanted = (
         ("captured", ("captured",)),
         ("settled", ("settled",)),
@@ -133,6 +135,12 @@ class Capture(Phase):
 
     def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
         return capture_quantities.quantities(result, run.parameters.get(self.name, {}), instants)
+
+    def criteria(self, evidence: Evidence) -> Iterator[Criterion]:
+        return capture_criteria.criteria(evidence)
+
+    def rounding(self, phase: PhaseScene) -> float:
+        return capture_criteria.BOOKED[phase.main.terms.get("precision", "double")]
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         return chaos.CAPTURE

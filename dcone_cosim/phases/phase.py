@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from dcone_cosim.contract import NEVER, Need
+from dcone_cosim.criteria import Criterion, Evidence, finite
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.phases.stepping import PhaseLoop
@@ -115,6 +116,7 @@ class Phase:
     tugs_file      name of the table of its tugs
     chaotic        its figures are samples: they part company however small a change is
     judged_by      names of its quantities; none: those of its outputs
+    to_its_end     settings of its table with which it goes on to its end, whatever comes of it
     """
 
     name = ""
@@ -134,6 +136,7 @@ class Phase:
     tugs_file = "tugs"
     chaotic = False
     judged_by: Sequence[str] = ()
+    to_its_end: Sequence[str] = ()
 
     # the scene
 
@@ -235,6 +238,14 @@ class Phase:
                 if scale > 0.0:
                     curve = at(recorder, name, instants).tolist()
                     yield Quantity(name, name, curve, recorder.units[name], scale, "its range")
+
+    def criteria(self, evidence: Evidence) -> Iterator[Criterion]:
+        """What must hold of it however stiff or extreme it is."""
+        yield finite(evidence)
+
+    def rounding(self, phase: PhaseScene) -> float:
+        """Share of the energy below which an error of its book may be rounding [1]."""
+        return 2e-6
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         """Relative spread [1] of those of its figures that are one sample of many, by key."""

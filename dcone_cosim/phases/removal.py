@@ -12,11 +12,12 @@ import numpy as np
 
 from dcone_cosim import build
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
+from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import DconeError, FmuError, Interrupted
 from dcone_cosim.findings import Finding
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
-from dcone_cosim.phases import chaos, removal_quantities, removal_report
+from dcone_cosim.phases import chaos, removal_criteria, removal_quantities, removal_report
 from dcone_cosim.phases.phase import Document, Figure, Phase, Stage
 from dcone_cosim.plots import tow
 from dcone_cosim.quantities import Quantity
@@ -83,6 +84,9 @@ class Tow(Phase):
 
     def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
         return removal_quantities.quantities(result, instants)
+
+    def criteria(self, evidence: Evidence) -> Iterator[Criterion]:
+        return removal_criteria.criteria(evidence)
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         return chaos.of_tow(result, isinstance(run.handovers.get(self.name), HandoffRecord))

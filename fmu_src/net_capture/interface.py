@@ -14,6 +14,7 @@ from fmu_src.net_capture.gravity import gravities
 from fmu_src.net_capture.nets import LARGEST_MESH, nets
 from fmu_src.net_capture.nets.grid import nodes_of
 from fmu_src.net_capture.outcome import OUTCOMES
+from fmu_src.net_capture.precision import PRECISION
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.schemes import schemes
 from fmu_src.net_capture.shapes import shapes
@@ -182,11 +183,6 @@ SETTLING = {
         ),
         make=lambda composition: None,
     )
-}
-
-PRECISION = {
-    "double": Term("of 53 bits, for positions and velocities of the nodes"),
-    "single": Term("of 24 bits, for positions and velocities of the nodes: faster, for campaigns"),
 }
 
 

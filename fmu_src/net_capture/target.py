@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.refusal import Refusal, Scene, text
 from fmu_src.rows import at_least_zero, moving, output, parameter, positive, state, vector
@@ -81,6 +82,28 @@ ROWS = (
 )
 
 
+EXTREMES = (
+    *(
+        Extreme(
+            f"target of {mass:g} kg",
+            "what it is hit by weighs more, or next to nothing",
+            "energy_gained",
+            {"target.mass": mass},
+            needs=("contact",),
+            chief=mass == 1.0,
+        )
+        for mass in (1.0, 1e5)
+    ),
+    Extreme(
+        "spin of 60 deg/s",
+        "corners of the target come at the net faster than the net flies",
+        "depth",
+        {"target.start_rate": (0.0, 0.0, math.radians(60.0))},
+        needs=("contact",),
+    ),
+)
+
+
 class Target(NamedTuple):
     """Kernels of a free target.
 
@@ -127,6 +150,7 @@ def free_body(name: str, shape: Term) -> Term:
         faults=(NO_QUATERNION, NO_INERTIA, *shape.faults),
         make=lambda composition: make_target(composition, shape),
         refuses=lambda scene: [*refuses(scene), *(shape.refuses(scene) if shape.refuses else ())],
+        extremes=(*shape.extremes, *EXTREMES),
     )
 
 

@@ -23,6 +23,7 @@ from fmu_src.rows import (
     state,
     vector,
 )
+from fmu_src.tethered_deorbit import stress
 
 CONDITIONS = ("same_orbit", "vbar", "equal_velocity", "handed_over")
 SAME_ORBIT, VBAR, EQUAL_VELOCITY, HANDED_OVER = range(4)
@@ -239,6 +240,7 @@ REELS = Group(
                           0.05, 0.0, 10.0),
                 *LENGTH_OFFSET,
             ),
+            extremes=stress.LOCKED,
         ),
         "linear": Term(
             "a reel that controls tension: T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt)",
@@ -266,9 +268,9 @@ THRUST = (
 
 THRUSTS = Group(
     {
-        "along_track": Term("thrust along the chaser's own along-track, h x r", THRUST),
-        "velocity": Term("thrust along the chaser's inertial velocity", THRUST),
-        "tether": Term("thrust along the line, positive towards the target", THRUST),
+        "along_track": Term("thrust along the chaser's own along-track, h x r", THRUST, extremes=stress.THRUST),
+        "velocity": Term("thrust along the chaser's inertial velocity", THRUST, extremes=stress.THRUST),
+        "tether": Term("thrust along the line, positive towards the target", THRUST, extremes=stress.THRUST),
     },
     selector="direction",
     optional=True,

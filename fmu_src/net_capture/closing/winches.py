@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from fmu_src.extremes import Extreme, times
 from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.closing import Closing
 from fmu_src.net_capture.closing.cord import make_cord
@@ -339,4 +340,22 @@ PART = Term(
     faults=(TOO_MANY_RINGS,),
     make=make,
     refuses=refuses,
+    extremes=(
+        *(
+            Extreme(
+                f"cord {factor:g} times as stiff",
+                "EA of the closing cord",
+                "energy_gained",
+                {"closing.axial_stiffness": times("closing.axial_stiffness", factor)},
+                chief=factor == 1e2,
+            )
+            for factor in (1e-3, 1e2, 1e4)
+        ),
+        Extreme(
+            "closing at the first instant",
+            "the winches draw on a net that is still folded",
+            "energy_gained",
+            {"closing.trigger": TRIGGER_TIME, "closing.time": 0.0},
+        ),
+    ),
 )

@@ -14,6 +14,7 @@ import math
 
 from fmu_src.implied import formula
 from fmu_src.interface import Term
+from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.grid import (
     FOLD_TOO_LARGE,
     THREAD,
@@ -91,6 +92,13 @@ def depth(p, i, j):
     return p.net_depth * (1.0 - max(abs(i - half), abs(j - half)) / half)
 
 
+CHECKS = Checks(
+    lambda values: {SIDE: values[SIDE]},
+    lambda values: formula(pyramid_length)(
+        values[SIDE], formula(slope)(values[SIDE], values["net.depth"]), values["net.mesh"]
+    ),
+)
+
 PART = Term(
     "pyramidal net: a square mouth, four walls of square meshes, the vertex at their top",
     (
@@ -100,11 +108,7 @@ PART = Term(
     ),
     faults=(whole_meshes(SIDE), TOO_FINE, FOLD_TOO_LARGE),
     make=lambda composition: make_grid(composition, Grid(sides, (SIDE, SIDE), total, length, depth)),
-    checks=Checks(
-        lambda values: {SIDE: values[SIDE]},
-        lambda values: formula(pyramid_length)(
-            values[SIDE], formula(slope)(values[SIDE], values["net.depth"]), values["net.mesh"]
-        ),
-    ),
+    checks=CHECKS,
     refuses=refuses,
+    extremes=extremes(*CHECKS),
 )

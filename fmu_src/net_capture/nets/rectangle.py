@@ -5,6 +5,7 @@ from __future__ import annotations
 from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture import formulas
+from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.grid import (
     FOLD_TOO_LARGE,
     THREAD,
@@ -41,6 +42,11 @@ def total(p):
     return formulas.grid_length(p.net_width, p.net_height, p.net_mesh)
 
 
+CHECKS = Checks(
+    lambda values: {WIDTH: values[WIDTH], HEIGHT: values[HEIGHT]},
+    lambda values: formula(formulas.grid_length)(values[WIDTH], values[HEIGHT], values["net.mesh"]),
+)
+
 PART = Term(
     "planar rectangular net of square meshes",
     (
@@ -50,9 +56,7 @@ PART = Term(
     ),
     faults=(whole_meshes(WIDTH), whole_meshes(HEIGHT), TOO_FINE, FOLD_TOO_LARGE),
     make=lambda composition: make_grid(composition, Grid(sides, (WIDTH, HEIGHT), total, flat_length, no_depth)),
-    checks=Checks(
-        lambda values: {WIDTH: values[WIDTH], HEIGHT: values[HEIGHT]},
-        lambda values: formula(formulas.grid_length)(values[WIDTH], values[HEIGHT], values["net.mesh"]),
-    ),
+    checks=CHECKS,
     refuses=refuses,
+    extremes=extremes(*CHECKS),
 )

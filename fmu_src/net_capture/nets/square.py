@@ -5,6 +5,7 @@ from __future__ import annotations
 from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture import formulas
+from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.grid import (
     FOLD_TOO_LARGE,
     THREAD,
@@ -41,14 +42,17 @@ def total(p):
     return formulas.grid_length(p.net_side, p.net_side, p.net_mesh)
 
 
+CHECKS = Checks(
+    lambda values: {SIDE: values[SIDE]},
+    lambda values: formula(formulas.grid_length)(values[SIDE], values[SIDE], values["net.mesh"]),
+)
+
 PART = Term(
     "planar square net of square meshes",
     (positive(SIDE, "m", "side of the mouth", 24.0), *THREAD),
     faults=(whole_meshes(SIDE), TOO_FINE, FOLD_TOO_LARGE),
     make=lambda composition: make_grid(composition, Grid(sides, (SIDE, SIDE), total, flat_length, no_depth)),
-    checks=Checks(
-        lambda values: {SIDE: values[SIDE]},
-        lambda values: formula(formulas.grid_length)(values[SIDE], values[SIDE], values["net.mesh"]),
-    ),
+    checks=CHECKS,
     refuses=refuses,
+    extremes=extremes(*CHECKS),
 )

@@ -1,0 +1,165 @@
+"""What must hold of a shot: its energy book from both sides, momentum, free flight, and nothing inside the target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from dcone_cosim import build
+from dcone_cosim.criteria import Criterion, Evidence, finite, rise
+from dcone_cosim.quantities import Array
+
+ACCURATE, STABLE = 0.01, 0.05
+"""Shares of the energy that came in by which the book may be off."""
+ROUNDING = {"double": (1e-9, 1e-7), "single": (5e-4, 1e-2)}
+"""Shares of momentum by which it may change, accurate and stable, by the bits of a number."""
+ON_GRID = 1.1e-3
+"""Share of a substep by which a communication point may miss the grid and still be taken for on it, and a little."""
+BOOKED = {"double": 2e-6, "single": 1e-2}
+"""Shares of the energy below which what the book leaves over may be rounding."""
+DEPTH, DEEPEST = 2e-3, 2e-2
+"""How deep a node may lie below the target's surface [m]: that up to which it counts as on it, and ten times that."""
+CATCH, SHOT = "catch", "shot.momentum"
+
+
+def criteria(evidence: Evidence) -> Iterator[Criterion]:
+    """All that can be asked of these outputs."""
+    yield finite(evidence)
+    if len(evidence.columns["time"]) < 2:
+        return
+    yield from _step(evidence)
+    yield from _book(evidence)
+    yield from _momentum(evidence)
+    yield from _flight(evidence)
+    yield from _depth(evidence)
+
+
+def _step(evidence: Evidence) -> Iterator[Criterion]:
+    """The substep within the bound of stability that the model tells."""
+    if evidence.has("solver.substep", "solver.stability_bound"):
+        ratio = float(np.max(evidence.columns["solver.substep"] / evidence.columns["solver.stability_bound"]))
+        yield Criterion("bound", "substep above the bound of stability", max(0.0, ratio - 1.0), "1", 1e-9, 1e-9)
+
+
+def entered(evidence: Evidence) -> Array:
+    """Energy [J] that the shot, the spin of the target, the winches and the reel have brought in by then."""
+    columns = evidence.columns
+    energy = np.full(len(columns["time"]), columns["energy.kinetic"][0])
+    for work in ("closing.work", "tether.work"):
+        if work in columns:
+            energy = energy + np.maximum.accumulate(np.maximum(columns[work], 0.0))
+    return energy
+
+
+def _book(evidence: Evidence) -> Iterator[Criterion]:
+    """The book of energy, and what is in it: nothing that takes energy gives any back."""
+    columns = evidence.columns
+    if not evidence.has("energy.kinetic"):
+        return
+    size = entered(evidence)
+    if not size[0] > 0.0:
+        return
+    if evidence.has("energy.remainder"):
+        left = columns["energy.remainder"] / size
+        gained, lost = float(np.max(-left)), float(np.max(left))
+        yield Criterion("energy_gained", "energy gained from nowhere", gained, "1", ACCURATE, STABLE)
+        yield Criterion("energy_lost", "energy lost to nothing", lost, "1", ACCURATE, STABLE)
+    for name, label in (
+        ("thread.dissipated", "threads' dashpots"),
+        ("cord.dissipated", "cord's dashpots"),
+        ("contact.loss", "contact"),
+    ):
+        if evidence.has(name):
+            back = rise(-columns[name]) / float(size[-1])
+            yield Criterion(
+                f"{name.partition('.')[0]}_takes", f"energy given by the {label}", back, "1", 1e-3, ACCURATE
+            )
+    if evidence.has("energy.total") and not {"closing", "contact", "tether"} & evidence.terms.keys():
+        # a net in free flight, whatever the book says
+        risen = rise(columns["energy.total"]) / size[0]
+        yield Criterion("energy_rises", "energy of the flying net above what it was", risen, "1", ACCURATE, STABLE)
+
+
+def _momentum(evidence: Evidence) -> Iterator[Criterion]:
+    """Of all bodies, in a frame that does not turn: as it was, whatever net, target, winches and reel do."""
+    if evidence.terms.get("gravity") != "none" or not evidence.has("momentum", "angular_momentum", CATCH + ".mass"):
+        return
+    accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
+    size = shot_momentum(evidence)
+    if not size > 0.0:
+        return
+    change = np.linalg.norm(evidence.vector("momentum") - evidence.vector("momentum")[0], axis=1).max()
+    yield Criterion("momentum", "momentum of all bodies", float(change) / size, "1", accurate, stable)
+    arm = max(np.linalg.norm(evidence.vector("catch.position"), axis=1).max(), 1.0)
+    turned = np.linalg.norm(evidence.vector("angular_momentum") - evidence.vector("angular_momentum")[0], axis=1).max()
+    label = "angular momentum of all bodies"
+    yield Criterion("angular_momentum", label, float(turned) / (size * float(arm)), "1", accurate, stable)
+
+
+def shot_momentum(evidence: Evidence) -> float:
+    """Of the bullets as they leave, in closed form [N s]."""
+    rows = build.implied("net_capture", evidence.values, evidence.terms)
+    return next((row.value for row in rows if row.key == SHOT), 0.0)
+
+
+def _flight(evidence: Evidence) -> Iterator[Criterion]:
+    """Until something touches the net its centre of mass flies straight on, at the speed that the bullets gave it.
+
+    r = r0 + (v0 + P/M a) t,   a the shot's axis, P the momentum of the bullets, M the mass of the catch
+    """
+    values, columns = evidence.values, evidence.columns
+    if evidence.terms.get("gravity") != "none" or not evidence.has("catch.position", "catch.mass"):
+        return
+    if values.get("tether.vertex_tension", 0.0) != 0.0:
+        return
+    start = np.array([values[f"chaser.start_position[{i}]"] for i in (1, 2, 3)])
+    drift = np.array([values[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
+    axis = np.array([values[f"shot.axis[{i}]"] for i in (1, 2, 3)])
+    axis = axis if axis.any() else -start
+    time, place = columns["time"], evidence.vector("catch.position")
+    touched = columns["contact.first_time"] if "contact.first_time" in columns else np.full(len(time), -1.0)
+    free = touched < 0.0
+    speed = shot_momentum(evidence) / columns["catch.mass"][0]
+    velocity = drift + speed * axis / np.linalg.norm(axis)
+    way = np.linalg.norm(place - start - velocity * time[:, None] - (place[0] - start), axis=1)[free]
+    flown = max(float(np.linalg.norm(velocity)) * float(time[free][-1]), 1e-9)
+    accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
+    off = max(0.0, float(way.max()) - ON_GRID * _substep(evidence) * float(np.linalg.norm(velocity))) / flown
+    yield Criterion("flight", "way of the catch from a straight line", off, "1", accurate, stable)
+
+
+def _substep(evidence: Evidence) -> float:
+    """In use [s]; 0 where it is not told."""
+    return float(evidence.columns["solver.substep"][0]) if evidence.has("solver.substep") else 0.0
+
+
+def _depth(evidence: Evidence) -> Iterator[Criterion]:
+    """The deepest that a node lay below the target's surface, by the shape as it is drawn."""
+    if "contact" not in evidence.terms or not evidence.nodes or not evidence.has("target.attitude", "target.position"):
+        return
+    distance = build.target_distance(evidence.values, evidence.terms)
+    if distance is None:
+        return
+    places, attitudes = evidence.vector("target.position"), evidence.vector("target.attitude", 4)
+    deepest = 0.0
+    for row, nodes in evidence.nodes.items():
+        body = (nodes - places[row]) @ matrix(attitudes[row])
+        reach = math.inf if not len(body) else float(np.abs(body).max())
+        near = body if reach < math.inf else body[:0]
+        for point in near:
+            deepest = min(deepest, distance(evidence.values, point.tolist()))
+    yield Criterion("depth", "deepest node below the target's surface", -deepest, "m", DEPTH, DEEPEST)
+
+
+def matrix(quaternion: Array) -> Array:
+    """Rotation from body to frame (3, 3) of a unit quaternion, scalar first."""
+    w, x, y, z = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )

@@ -1,0 +1,173 @@
+"""What must hold of a tow: a line that only pulls, snaps of their size, an orbit and an integral that are kept."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from dcone_cosim.criteria import Criterion, Evidence, finite, rise
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.oscillators import damped_snap_peak, line_stiffness, reduced_mass
+
+ACCURATE, STABLE = 0.01, 0.05
+SNAP, SNAP_STABLE = 0.005, 0.03
+"""Shares by which a snap may miss its closed form, beside what the forces that act meanwhile may add to it."""
+TUGS = 5
+"""Tugs from the first on that are compared."""
+FAST = 100.0
+"""Radians of a line's motion in a radian of the orbit from which on its snaps are quick enough for the closed form."""
+SLOW = 1e-3
+"""Thrust over weight up to which an orbit falls as a spiral does."""
+
+
+def criteria(evidence: Evidence) -> Iterator[Criterion]:
+    """All that can be asked of these outputs."""
+    yield finite(evidence)
+    if len(evidence.columns["time"]) < 2:
+        return
+    yield from _line(evidence)
+    yield from _orbit(evidence)
+    if evidence.terms.get("reel") == "locked":
+        yield from _longer(evidence)
+        yield from _snaps(evidence)
+        yield from _jacobi(evidence)
+
+
+def force(evidence: Evidence) -> float:
+    """Thrust [N] along its direction; 0 without a thruster."""
+    if "thrust" not in evidence.terms:
+        return 0.0
+    return evidence.values["thrust.level"] + evidence.values["thrust.offset"]
+
+
+def _masses(evidence: Evidence) -> tuple[float, float, float]:
+    """Of the pair: chaser, target, reduced [kg]."""
+    chaser, target = evidence.values["chaser.mass"], evidence.values["target.mass"]
+    return chaser, target, reduced_mass(chaser, target)
+
+
+def _stiffness(evidence: Evidence) -> float:
+    values = evidence.values
+    return line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], _rest(evidence))
+
+
+def _rest(evidence: Evidence) -> float:
+    return evidence.values["tether.rest_length"] + evidence.values["reel.length_offset"]
+
+
+def _line(evidence: Evidence) -> Iterator[Criterion]:
+    """A line never pushes, and its impulse only grows."""
+    columns = evidence.columns
+    if not evidence.has("tether.tension", "tether.tension_peak", "tether.tension_least", "tether.impulse"):
+        return
+    size = max(float(columns["tether.tension_peak"].max()), 1e-300)
+    pushed = max(0.0, -float(min(columns["tether.tension"].min(), columns["tether.tension_least"].min()))) / size
+    yield Criterion("pushes", "tension below zero", pushed, "1", 0.0, 0.0)
+    outside = np.maximum(columns["tether.tension"] - columns["tether.tension_peak"], 0.0).max() / size
+    yield Criterion("peaks", "tension above its own peak", float(outside), "1", 1e-9, 1e-6)
+    impulse = columns["tether.impulse"]
+    back = rise(-impulse) / max(float(impulse.max()), 1e-300)
+    yield Criterion("impulse", "impulse of the line given back", back, "1", 1e-9, 1e-6)
+
+
+def _longer(evidence: Evidence) -> Iterator[Criterion]:
+    """No longer than its largest tension stretches it, beside what rounding makes of a length."""
+    columns = evidence.columns
+    if not evidence.has("tether.length", "tether.tension_peak"):
+        return
+    rest, stiffness = _rest(evidence), _stiffness(evidence)
+    allowed = float(columns["tether.tension_peak"].max()) / stiffness
+    beyond = float(columns["tether.length"].max()) - rest - allowed
+    share = max(beyond, 0.0) / (allowed + 1e-12 * rest)
+    yield Criterion("longer", "stretch beyond peak tension over stiffness", share, "1", 1e-3, ACCURATE)
+
+
+def _snaps(evidence: Evidence) -> Iterator[Criterion]:
+    """The first tugs that are over, against the closed form of a snap, with what steady forces add at most.
+
+        |T - T_snap| <= 2 P,   P = 3 n^2 m_r l (1 + e)^3 + F m_t/M
+
+    Source   `orbital.oscillators.damped_snap_peak`; a preload adds at most 2 P (`snap_peak`)
+    """
+    values = evidence.values
+    chaser, target, reduced = _masses(evidence)
+    stiffness, zeta = _stiffness(evidence), values["tether.damping_ratio"]
+    axis, eccentricity = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], values["orbit.eccentricity"]
+    perigee = axis * (1.0 - eccentricity)
+    steady = 3.0 * EARTH_MU / perigee**3 * (1.0 + eccentricity) * reduced * _rest(evidence)
+    steady += abs(force(evidence)) * target / (chaser + target)
+    if math.sqrt(stiffness / reduced) < FAST * math.sqrt(EARTH_MU / perigee**3):
+        return  # so long a snap is part of the orbit's motion
+    begin = evidence.columns["time"][0]
+    # the newest may still grow, and one at the start has no speed of its own
+    worst, compared = 0.0, 0
+    for _, peak, speed in [tug for tug in evidence.tugs[:-1] if tug[0] > begin][:TUGS]:
+        if not speed > 0.0:
+            continue
+        expected = damped_snap_peak(speed, stiffness, reduced, zeta)
+        off = max(0.0, abs(peak - expected) - 2.0 * steady) / max(expected, 2.0 * steady)
+        worst, compared = max(worst, off), compared + 1
+    if compared:
+        yield Criterion("snap", "peaks of the first tugs from the closed form", worst, "1", SNAP, SNAP_STABLE)
+
+
+def _orbit(evidence: Evidence) -> Iterator[Criterion]:
+    """Without thrust the orbit keeps its energy; with one, it changes by its work, and falls as a spiral does.
+
+        a = (1/sqrt(a0) - F t/(sqrt(mu) M))^-2,   exactly as long as F a^2/(mu M) is small and the orbit circular
+        dE = F int V.u dt                         on any other, u along-track or along the velocity
+
+    Source   Gauss's equation for the semi-major axis, e = 0; work of a force
+    """
+    columns, values = evidence.columns, evidence.values
+    if not evidence.has("center.semi_major_axis", "separation", "center.position", "center.velocity"):
+        return
+    chaser, target, _ = _masses(evidence)
+    total, thrust = chaser + target, force(evidence)
+    axis, time = columns["center.semi_major_axis"], columns["time"] - columns["time"][0]
+    bend = 3.0 * (float(columns["separation"].max()) / float(axis.min())) ** 2
+    if thrust == 0.0:
+        change = float(np.abs(axis / axis[0] - 1.0).max())
+        yield Criterion("orbit", "semi-major axis, which nothing changes", change, "1", bend + 1e-9, 10.0 * bend + 1e-7)
+        return
+    if evidence.terms["thrust"] not in ("along_track", "velocity"):
+        return
+    small = abs(thrust) * float(axis.max()) ** 2 / (EARTH_MU * total)
+    # an osculating axis swings by 2 F a^2/(mu M) of itself beside falling, and by what the pair's own motion moves it
+    swing = (4.0 * small + bend + 1e-11) * axis[0]
+    if values["orbit.eccentricity"] == 0.0 and small < SLOW:
+        spiral = (1.0 / math.sqrt(axis[0]) - thrust * time / (math.sqrt(EARTH_MU) * total)) ** -2
+        fallen = max(abs(float(spiral[-1] - axis[0])), 1e-300)
+        off = max(0.0, float(np.abs(axis - spiral).max()) - swing) / fallen
+        yield Criterion("orbit", "fall of the orbit from that of a spiral", off, "1", ACCURATE, STABLE)
+        return
+    place, velocity = evidence.vector("center.position"), evidence.vector("center.velocity")
+    along = np.linalg.norm(velocity, axis=1)
+    if evidence.terms["thrust"] == "along_track":
+        along = np.linalg.norm(np.cross(place, velocity), axis=1) / np.linalg.norm(place, axis=1)
+    done = np.concatenate([[0.0], np.cumsum(0.5 * thrust * (along[1:] + along[:-1]) * np.diff(time))])
+    energy = -0.5 * EARTH_MU * total / axis
+    off = float(np.abs(energy - energy[0] - done).max()) - 0.5 * EARTH_MU * total * (bend + 1e-11) / float(axis.min())
+    share = max(0.0, off) / max(float(np.abs(done).max()), 1e-300)
+    yield Criterion("orbit", "energy of the orbit from the work of the thrust", share, "1", ACCURATE, STABLE)
+
+
+def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
+    """Without thrust, on a circle: the relative motion's integral never rises, and stays where nothing damps.
+
+    In units of the energy that the tide gives a line of that length, 3/2 n^2 m_r l^2.
+    """
+    columns, values = evidence.columns, evidence.values
+    if force(evidence) != 0.0 or values["orbit.eccentricity"] > 0.0 or not evidence.has("energy.relative"):
+        return
+    if float(columns["separation"].max()) > 1e-3 * EARTH_EQUATORIAL_RADIUS:
+        return  # the integral holds to first order in length over radius
+    _, _, reduced = _masses(evidence)
+    rate = EARTH_MU / (EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]) ** 3
+    size = 1.5 * rate * reduced * float(columns["separation"].max()) ** 2
+    energy = columns["energy.relative"] / size
+    yield Criterion("jacobi", "Jacobi integral above what it was", rise(energy), "1", ACCURATE, STABLE)
+    if values["tether.damping_ratio"] == 0.0:
+        yield Criterion("jacobi_falls", "Jacobi integral below what it was", rise(-energy), "1", ACCURATE, STABLE)

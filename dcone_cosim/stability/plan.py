@@ -1,0 +1,239 @@
+"""The cells of a phase: every scheme at every extreme, each as a case to be run, or with the reason why it is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+
+from dcone_cosim import build
+from dcone_cosim.cases import ensemble
+from dcone_cosim.cases.alone import Alone, Fmus
+from dcone_cosim.cases.case import digest, key_of
+from dcone_cosim.cases.changes import changes_of, following
+from dcone_cosim.errors import InputError
+from dcone_cosim.phases import kind_of
+from dcone_cosim.quantities import spread_instants
+from dcone_cosim.scene.data import PhaseScene, Scene
+from dcone_cosim.stability.judge import EXCLUDED, LEFT, Verdict, refusal
+from dcone_cosim.stability.work import Cell
+
+INSTANTS = 120
+"""At which curves are compared, at most."""
+AS_IT_IS = build.Extreme("as it is", "the scene itself", "finite", chief=True)
+STEPS = (100.0, 10.0, 0.1, 0.01)
+"""Macro and coupling steps over a scene's own, of an FMU from elsewhere."""
+from dcone_cosim.units import written
+
+DIGITS = 17
+"""Of a value: no bit of an edge may be lost."""
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """One way to compute a phase.
+
+    name       as it stands in the table
+    changes    settings that choose it
+    without    tables of the phase that it cannot go together with
+    lacks      extremes that there are not with it, by name, and why
+    """
+
+    name: str
+    changes: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
+    lacks: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A pair of extreme and scheme.
+
+    case       None where there is none, then `found` says why
+    changes    settings that make it
+    """
+
+    extreme: build.Extreme
+    scheme: Scheme
+    changes: tuple[str, ...]
+    case: Cell | None = None
+    found: Verdict | None = None
+
+
+@dataclass
+class PhasePlan:
+    """A phase and its cells, by extremes."""
+
+    scene: Scene
+    phase: str
+    schemes: list[Scheme]
+    extremes: list[build.Extreme]
+    cells: list[Planned]
+
+    @property
+    def cases(self) -> list[Cell]:
+        return [cell.case for cell in self.cells if cell.case is not None]
+
+
+def plan(alone: Alone, phase: str, fmus: Fmus, limit: float, quick: bool) -> PhasePlan:
+    """All cells of a phase, or the chief ones alone if there is little time.
+
+    limit    CPU time that a case may take [s]
+    """
+    settings = tuple(f"{phase}.{setting}" for setting in kind_of(phase).to_its_end)
+    base = alone.scene_of(phase, settings)
+    own = base.phases[0]
+    ours = own.main.fmu is None
+    schemes = list(_schemes(own)) if ours else [Scheme("its own")]
+    extremes = [AS_IT_IS, *(build.extremes(own.main.model, own.main.terms) if ours else ()), *_steps(own, ours)]
+    if quick:
+        extremes = [one for one in extremes if one.chief]
+    maker = _Maker(alone, phase, settings, fmus, limit)
+    cells = [
+        Planned(extreme, scheme, (), found=Verdict(LEFT, "not in a quick look"))
+        if quick and scheme is not schemes[0] and extreme is not AS_IT_IS
+        else maker.planned(extreme, scheme)
+        for extreme, scheme in product(extremes, schemes)
+    ]
+    return PhasePlan(base, phase, schemes, extremes, cells)
+
+
+def _schemes(phase: PhaseScene) -> Iterator[Scheme]:
+    """That of the scene first."""
+    model = build.CATALOGUE[phase.main.model]
+    groups = [name for name in build.numerics(model.name) if name in model.groups]
+    own = [phase.main.terms[name] for name in groups]
+    choices = sorted(product(*(model.groups[name].terms for name in groups)), key=lambda terms: list(terms) != own)
+    for chosen in choices:
+        terms = {**phase.main.terms, **dict(zip(groups, chosen, strict=True))}
+        without = _left_out(model, terms, groups)
+        changes = tuple(
+            f'{phase.name}.{model.groups[name].table or name}.{model.groups[name].selector}="{term}"'
+            for name, term in zip(groups, chosen, strict=True)
+            if term != phase.main.terms[name]
+        )
+        tables = tuple(model.groups[name].table or name for name in without)
+        left = {name: term for name, term in terms.items() if name not in without}
+        lacks = dict(_lacking(model.name, phase.main.terms, left))
+        yield Scheme(", ".join(chosen) or "its own", changes, tables, lacks)
+
+
+def _lacking(model: str, all_terms: Mapping[str, str], terms: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Extremes of the parts of a phase that are gone, or that have nothing to act on, and why."""
+    there = {one.name: one for one in build.extremes(model, terms)}
+    gone = " and ".join(name for name in all_terms if name not in terms)
+    for one in build.extremes(model, all_terms):
+        missing = [group for group in one.needs if group not in terms]
+        if one.name not in there or missing:
+            yield one.name, f"goes without {' and '.join(missing) or gone}"
+
+
+def _left_out(model: build.Model, terms: Mapping[str, str], numerics: Sequence[str]) -> list[str]:
+    """Groups that a choice of numerics cannot go together with, and those that have nothing to act on then."""
+    left = dict(terms)
+    found = [other for group, other in model.clashing(left) if group in numerics]
+    while found and any(name in left for name in found):
+        for name in found:
+            left.pop(name, None)
+        found += [group for group, needed in model.missing(left) if needed not in left]
+    return list(dict.fromkeys(found))
+
+
+def _steps(phase: PhaseScene, ours: bool) -> Iterator[build.Extreme]:
+    """Macro steps of an FMU from elsewhere; coupling steps are those of `_Maker`."""
+    if ours:
+        return
+    for factor in STEPS:
+        step = factor * phase.macro_step
+        if step <= phase.duration:
+            about = "what an FMU from elsewhere lets be chosen"
+            yield build.Extreme(f"macro step x {factor:g}", about, "finite", macro_step=step, chief=True)
+
+
+class _Maker:
+    """Makes cells of one phase."""
+
+    def __init__(self, alone: Alone, phase: str, settings: tuple[str, ...], fmus: Fmus, limit: float) -> None:
+        self._alone, self._phase, self._settings = alone, phase, settings
+        self._fmus, self._limit = fmus, limit
+        self._bases: dict[str, Scene] = {}
+
+    def planned(self, extreme: build.Extreme, scheme: Scheme) -> Planned:
+        if extreme.name in scheme.lacks:
+            return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, scheme.lacks[extreme.name]))
+        try:
+            made, changes, without = self._made(extreme, scheme)
+        except InputError as error:
+            return Planned(extreme, scheme, (), found=refusal(str(error).splitlines()[-1].strip()))
+        if made is None:
+            return Planned(extreme, scheme, changes, found=Verdict(EXCLUDED, "goes without what it is about"))
+        try:
+            case = self._cell(made, changes, without, extreme)
+        except InputError as error:
+            return Planned(extreme, scheme, changes, found=refusal(str(error).splitlines()[-1].strip()))
+        return Planned(extreme, scheme, changes, case)
+
+    def _base(self, scheme: Scheme) -> PhaseScene:
+        if scheme.name not in self._bases:
+            self._bases[scheme.name] = self._scene((*self._settings, *scheme.changes), scheme.without)
+        return self._bases[scheme.name].phases[0]
+
+    def _scene(self, changes: Sequence[str], without: Sequence[str]) -> Scene:
+        return self._alone.scene_of(self._phase, changes, without)
+
+    def _made(self, extreme: build.Extreme, scheme: Scheme) -> tuple[Scene | None, tuple[str, ...], tuple[str, ...]]:
+        """The scene of a cell, None where it has no such variable; its settings, and the tables it goes without."""
+        own = self._base(scheme)
+        changes, without = [*self._settings, *scheme.changes], list(scheme.without)
+        main = own.main
+        if main.fmu is None:
+            values = {**main.defaults, **main.parameters}
+            given = extreme.given(values)
+            if any(name not in values and f"{name}[1]" not in values for name in given):
+                return None, (), ()
+            groups = build.CATALOGUE[main.model].groups
+            for name, term in extreme.terms.items():
+                table = groups[name].table or name
+                if term is None:
+                    without.append(table)
+                else:
+                    changes.append(f'{self._phase}.{table}.{groups[name].selector}="{term}"')
+            changes += changes_of(own, given, DIGITS)
+            numbers = {name: value for name, value in given.items() if not isinstance(value, Sequence)}
+            followed = following(own, numbers)
+            changes += [one for one in followed if one.split(".")[1] not in without]
+        if extreme.duration:
+            changes.append(f"{self._phase}.duration={written(extreme.duration, 's', DIGITS)}")
+        if extreme.macro_step:
+            changes.append(f"{self._phase}.macro_step={written(extreme.macro_step, 's', DIGITS)}")
+        return self._scene(changes, without), tuple(changes), tuple(without)
+
+    def _cell(self, made: Scene, changes: tuple[str, ...], without: Sequence[str], extreme: build.Extreme) -> Cell:
+        own = made.phases[0]
+        main = own.main
+        kind = kind_of(self._phase)
+        first = 0.0 if kind.own_clock else own.start
+        same = extreme.criterion == "same"
+        finer: Scene | None = None
+        if same:
+            step = written(min(self._alone.scene_of(self._phase).phases[0].macro_step, own.duration), "s", DIGITS)
+            finer = self._scene((*changes, f"{self._phase}.macro_step={step}"), without)
+            instants: tuple[float, ...] = (first + own.duration,)
+        else:
+            instants = spread_instants(first, own.duration, own.macro_step, INSTANTS)
+            finest = self._finest(own)
+            finer = self._scene((*changes, *finest), without) if finest else None
+        jittered = None
+        if kind.chaotic and not same and main.fmu is None:
+            jittered = self._scene((*changes, *ensemble.jitter(made, 1)), without)
+        key = digest(key_of(made, self._fmus.of(made), 1), instants, self._limit, extreme.criterion, same)
+        return Cell(key, made, changes, {}, 1, extreme.criterion, self._limit, instants, finer, jittered, same)
+
+    def _finest(self, own: PhaseScene) -> tuple[str, ...]:
+        """Settings that compute it as finely as its model says is enough for a reference."""
+        main = own.main
+        if main.fmu is not None:
+            return (f"{self._phase}.macro_step={written(min(STEPS) * own.macro_step, 's', DIGITS)}",)
+        values = {**main.defaults, **main.parameters}
+        rungs = build.rungs(main.model, values, main.terms)
+        return changes_of(own, rungs[-1].values, DIGITS) if rungs else ()

@@ -1,0 +1,172 @@
+"""One case in a worker: what it would take, its run, and the runs that it is compared with."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from dcone_cosim.cases.case import Case
+from dcone_cosim.cases.pace import spoken
+from dcone_cosim.cases.rows import FAULT, REFUSED, Row
+from dcone_cosim.cases.work import run_case
+from dcone_cosim.criteria import Criterion, evidence_of
+from dcone_cosim.errors import CASES_FAILED, SUCCESS
+from dcone_cosim.phases import kind_of
+from dcone_cosim.quantities import Quantity
+from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.scene.data import Scene
+from dcone_cosim.stability.cost import Cost, estimate
+from dcone_cosim.stability.judge import FAILED, Verdict, agreement, falls, refusal, sameness, unlike, verdict
+
+PATIENCE = 12.0
+"""Limits after which a case that is still there counts as hanging: it was reckoned to take one, a finer run four."""
+FINER = 5.0
+"""What a finer run takes, over the run itself."""
+
+
+@dataclass(frozen=True)
+class Cell(Case):
+    """A scheme at an extreme.
+
+    asked      key of the criterion that it is about
+    limit      CPU time that it may take [s]
+    instants   at which curves are compared [s]
+    finer      the same with a finer step or tolerance; with other macro steps for `same`
+    jittered   its twin that begins a micrometre beside it
+    same       whether the other run must come to the same
+    """
+
+    asked: str = ""
+    limit: float = 60.0
+    instants: tuple[float, ...] = ()
+    finer: Scene | None = None
+    jittered: Scene | None = None
+    same: bool = False
+
+
+def measure(case: Case) -> Row:
+    """The row of a cell; a case that hangs takes its process with it, and that is told."""
+    assert isinstance(case, Cell)
+    with _patience(PATIENCE * case.limit + 60.0):
+        found, cost, spent = judge_cell(case)
+    samples = {**found.told(), "estimate": None if cost is None else {"cpu": cost.cpu, "steps": cost.steps}}
+    code = CASES_FAILED if found.red else SUCCESS
+    return Row(case.key, found.kind, code, found.text, timings={"cpu": spent}, samples=samples)
+
+
+@contextmanager
+def _patience(seconds: float) -> Iterator[None]:
+    """Ends the process after so long on the clock."""
+
+    def end() -> None:
+        sys.stderr.write(f"it had not ended after {spoken(seconds)}\n")
+        sys.stderr.flush()
+        os._exit(70)
+
+    timer = threading.Timer(seconds, end)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+@dataclass
+class _Ran:
+    """A run, or the row that says why there is none."""
+
+    result: RunResult | None
+    row: Row
+
+    @property
+    def phase(self) -> PhaseResult | None:
+        """The phase, if it began."""
+        return next(iter(self.result.phases.values()), None) if self.result is not None else None
+
+
+def _run(scene: Scene) -> _Ran:
+    kept: list[RunResult] = []
+
+    def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
+        kept.append(result)
+        return Row(case.key, result.status, result.exit_code, result.message)
+
+    row = run_case(Case("", scene), tell)
+    return _Ran(kept[-1] if kept else None, row)
+
+
+def judge_cell(cell: Cell) -> tuple[Verdict, Cost | None, float]:
+    """Verdict, estimate and CPU time spent [s] of a cell."""
+    cost = estimate(cell.scene, lambda scene: _run(scene).phase)
+    if cost is not None and cost.cpu > cell.limit:
+        return refusal(f"too long: {cost.told()}, and {spoken(cell.limit)} are allowed"), cost, 0.0
+    here = _run(cell.scene)
+    if here.phase is None:
+        return _without(here.row, cell), cost, 0.0
+    spent = here.phase.cpu
+    if here.phase.error is not None:
+        return Verdict(FAILED, f"stopped at {here.phase.end:.6g} s: {here.phase.error}"), cost, spent
+    criteria = list(kind_of(_name(cell)).criteria(evidence_of(here.result, cell.scene.phases[0])))  # type: ignore[arg-type]
+    for one, more in _compared(cell, here, criteria, spent):
+        criteria.append(one)
+        spent += more
+    return verdict(criteria, cell.asked), cost, spent
+
+
+def _name(cell: Cell) -> str:
+    return cell.scene.phases[0].name
+
+
+def _without(row: Row, cell: Cell) -> Verdict:
+    """Of a case that did not begin."""
+    lines = [line.strip() for line in row.message.splitlines() if line.strip()]
+    if row.status == REFUSED:
+        return refusal(_reason(lines), cell.asked)
+    return Verdict(FAILED, lines[-1] if row.status == FAULT and lines else " ".join(lines) or row.status)
+
+
+def _reason(lines: Sequence[str]) -> str:
+    """What an FMU said of the values it refuses: not who could not begin, nor by which call."""
+    told = [line for line in lines[1:] if not (line.startswith("(") and line.endswith(")"))]
+    return " ".join(told or lines)
+
+
+def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: float) -> Iterator[tuple[Criterion, float]]:
+    """The criteria that other runs are needed for, with the CPU time of these [s]."""
+    if cell.finer is None:
+        return
+    if not cell.same and FINER * spent > 4.0 * cell.limit:
+        yield unlike(f"it would take about {spoken(FINER * spent)}"), 0.0
+        return
+    other = _run(cell.finer)
+    if other.phase is None or other.phase.error is not None:
+        yield unlike(f"that stops: {other.row.message}"), 0.0
+        return
+    jittered, more = None, other.phase.cpu
+    if cell.jittered is not None:
+        twin = _run(cell.jittered)
+        if twin.phase is None or twin.phase.error is not None:
+            yield unlike(f"its twin stops: {twin.row.message}"), more
+            return
+        jittered, more = _quantities(cell, twin), more + twin.phase.cpu
+    if cell.asked == "order":
+        assert other.result is not None
+        kind, phase = kind_of(_name(cell)), cell.finer.phases[0]
+        finer = list(kind.criteria(evidence_of(other.result, phase)))
+        yield falls(criteria, finer, kind.rounding(phase)), 0.0
+    mine, others = _quantities(cell, here), _quantities(cell, other)
+    if cell.same:
+        yield sameness(mine, others), more
+    else:
+        yield agreement(mine, others, jittered, len(cell.instants)), more
+
+
+def _quantities(cell: Cell, ran: _Ran) -> list[Quantity]:
+    assert ran.result is not None
+    assert ran.phase is not None
+    return list(kind_of(_name(cell)).quantities(ran.result, ran.phase, cell.instants))

@@ -1,0 +1,94 @@
+"""The ends of a tow's range: lines, masses, thrusts, orbits, and starts on the edge between slack and taut."""
+
+from __future__ import annotations
+
+from fmu_src.extremes import Extreme, Values
+from orbital.constants import EARTH_EQUATORIAL_RADIUS
+
+HOUR, DAY, YEAR = 3600.0, 86400.0, 365.25 * 86400.0
+PERIGEE = 800e3
+"""Altitude of the perigee of eccentric orbits [m]."""
+GEOSTATIONARY = 35786e3
+HANDED_OVER = 3
+"""Number of the start that takes given states, see `interface.CONDITIONS`."""
+
+
+def _axis_less_radius(eccentricity: float) -> float:
+    return (EARTH_EQUATORIAL_RADIUS + PERIGEE) / (1.0 - eccentricity) - EARTH_EQUATORIAL_RADIUS
+
+
+def _length(values: Values) -> float:
+    return values["tether.rest_length"]
+
+
+LOCKED = (
+    *(
+        Extreme(
+            f"line of {length:g} m",
+            "from a leash to the longest tether flown",
+            "longer",
+            {"tether.rest_length": length, "start.separation": 5.0 / 6.0 * length},
+            chief=length == 20e3,
+        )
+        for length in (1.0, 100.0, 1e3, 20e3)
+    ),
+    *(
+        Extreme(f"line of {modulus:g} Pa", "from rubber to carbon nanotubes", "longer",
+                {"tether.youngs_modulus": modulus})
+        for modulus in (1e6, 1e9, 1e12)
+    ),
+    *(
+        Extreme(f"line's damping ratio {ratio:g}", "dashpots from none to ten times critical", "snap",
+                {"tether.damping_ratio": ratio}, chief=ratio in (0.0, 10.0))
+        for ratio in (0.0, 1e-3, 0.5, 1.0, 10.0)
+    ),
+    Extreme("undamped without thrust", "what the pair has it keeps: the Jacobi integral", "jacobi",
+            {"tether.damping_ratio": 0.0, "thrust.level": 0.0}, needs=("thrust",)),
+    Extreme("damped without thrust", "the Jacobi integral only falls", "jacobi",
+            {"thrust.level": 0.0}, needs=("thrust",)),
+    Extreme("separation as long as the line", "begins on the edge between slack and taut", "longer",
+            {"start.separation": _length}, chief=True),
+    Extreme("chatter: at rest on the edge, radial", "exactly as long as the line at no speed, the tide pulls", "longer",
+            {"start.condition": HANDED_OVER, "start.relative_position": (12.0, 0.0, 0.0), "tether.rest_length": 12.0,
+             "tether.damping_ratio": 0.0}),
+    Extreme("chatter: at rest on the edge, along-track", "the same where nothing pulls", "longer",
+            {"start.condition": HANDED_OVER, "start.relative_position": (0.0, 12.0, 0.0), "tether.rest_length": 12.0,
+             "tether.damping_ratio": 0.0}),
+    Extreme("bodies a nanometre apart", "the line has hardly a direction", "longer", {"start.separation": 1e-9}),
+    Extreme("coincident bodies", "the line has no direction: it is to be refused", "refused",
+            {"start.condition": HANDED_OVER, "start.relative_position": (0.0, 0.0, 0.0)}),
+    Extreme("ten years", "of a stiff line, in the orbit as it is", "longer", {"thrust.level": 0.0},
+            needs=("thrust",), duration=10.0 * YEAR, macro_step=DAY),
+    Extreme("ten years on a soft line", "of a line as soft as a reel keeps it", "longer",
+            {"thrust.level": 0.0, "tether.youngs_modulus": 6e4}, needs=("thrust",), duration=10.0 * YEAR,
+            macro_step=DAY),
+)  # fmt: skip
+"""Of the elastic line between fixed ends."""
+
+THRUST = tuple(
+    Extreme(f"thrust of {-level:g} N", "from a trickle of ions to a main engine", "orbit", {"thrust.level": level},
+            duration=duration, chief=level == -1e4)
+    for level, duration in ((-1e-6, 0.0), (-1.0, 0.0), (-1e2, 0.25 * DAY), (-1e4, 600.0))
+)  # fmt: skip
+
+EXTREMES = (
+    *(
+        Extreme(f"target {ratio:g} times the chaser's mass", "a reduced mass far from both", "longer",
+                {"chaser.mass": chaser, "target.mass": ratio * chaser}, duration=2.0 * HOUR)
+        for ratio, chaser in ((1e-6, 2000.0), (1e-3, 2000.0), (1e3, 100.0), (1e6, 1.0))
+    ),
+    *(
+        Extreme(f"eccentricity {eccentricity:g}", "perigee at 800 km", "orbit",
+                {"orbit.eccentricity": eccentricity, "orbit.altitude": _axis_less_radius(eccentricity)},
+                chief=eccentricity == 0.9)
+        for eccentricity in (0.1, 0.5, 0.9)
+    ),
+    Extreme("geostationary orbit", "the tide is two hundred times weaker than in low orbit", "orbit",
+            {"orbit.altitude": GEOSTATIONARY}, duration=10.0 * DAY),
+    *(
+        Extreme(f"macro steps of {step:g} s", "what comes out hangs on no step of the master", "same",
+                macro_step=step, duration=duration)
+        for step, duration in ((1e-6, 0.01), (1.0, 2.0 * HOUR), (100.0, 0.0), (1e4, 0.0))
+    ),
+)  # fmt: skip
+"""Of every pair."""

@@ -1,0 +1,1 @@
+"""Extremes, their criteria, and the command that tries them."""

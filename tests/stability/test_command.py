@@ -1,0 +1,113 @@
+"""`dcone stability` as a user runs it: what it leaves, what is refused, and that a fault turns it red."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from dcone_cosim import build
+from dcone_cosim.cases.alone import Alone, Fmus
+from dcone_cosim.errors import InputError
+from dcone_cosim.progress import Progress
+from dcone_cosim.stability import commands
+from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, REFUSED
+from dcone_cosim.stability.plan import plan
+from dcone_cosim.stability.work import judge_cell
+from tests.cases.conftest import put_scene, template
+
+__all__ = ["template"]
+
+SHORT = ("removal.duration=70 min",)
+"""Long enough for five tugs."""
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> commands.Done:
+    folder = tmp_path_factory.mktemp("stability") / "out"
+    return commands.stability("table2-deorbit", folder, Progress(), SHORT, quick=True)
+
+
+def test_what_it_leaves(done: commands.Done) -> None:
+    assert {p.name for p in done.folder.iterdir()} == {
+        *("provenance.json", "rows", "scene.toml", "study.json", "summary.json", "report.html"),
+        *("table.csv", "table.parquet", "table2-deorbit_removal_stability.png"),
+    }
+    assert done.exit_code == 0
+    table = pd.read_parquet(done.folder / "table.parquet")
+    assert {"as it is", "eccentricity 0.9", "line of 20000 m"} <= set(table.extreme)
+    assert {"finite", "snap", "orbit", "longer", "agrees"} <= set(table.criterion)
+    assert (table.value <= table.stable_up_to).all()
+    page = (done.folder / "report.html").read_text()
+    assert "dcone stability table2-deorbit --set" in page
+    assert "http" not in re.sub(r"base64,[^\"]*", "", page)
+    told = json.loads((done.folder / "summary.json").read_text())["phases"]["table2-deorbit.removal"]
+    assert told["counts"]["failed"] == 0
+    assert told["refused"]["its own"]["refused"] == 0
+
+
+def test_the_same_command_goes_on(done: commands.Done) -> None:
+    before = (done.folder / "table.csv").read_bytes()
+    commands.stability("table2-deorbit", done.folder, Progress(), SHORT, quick=True)
+    assert (done.folder / "table.csv").read_bytes() == before
+
+
+def test_what_cannot_be_is_refused_with_the_reason(tmp_path: Path) -> None:
+    """Before any step: by the cost, by the scene, and by the FMU itself."""
+    cells = _cells("table2-deorbit", (*SHORT, "removal.macro_step=10 min"), 1e-3)
+    dear, cost, _ = judge_cell(cells["ten years"])
+    assert dear.kind == REFUSED
+    assert cost is not None
+    assert cost.cpu > 1.0
+    assert re.match(r"too long: about .* \(.* steps of .* us\), and 0 s are allowed", dear.text)
+    none, _, _ = judge_cell(cells["coincident bodies"])
+    assert none.kind == REFUSED
+    assert "start.relative_position is zero" in none.text
+
+
+def _cells(name: str, settings: tuple[str, ...], limit: float) -> dict[str, object]:
+    alone = Alone(name, settings, None)
+    found = plan(alone, alone.phases[0], Fmus(Progress()), limit, False)
+    return {cell.extreme.name: cell.case for cell in found.cells}
+
+
+def test_every_scheme_of_a_net_meets_every_extreme_of_its_parts() -> None:
+    alone = Alone("table1-capture", (), None)
+    own = alone.scene.phases[0]
+    extremes = build.extremes(own.main.model, own.main.terms)
+    names = [one.name for one in extremes]
+    assert len(set(names)) == len(names)
+    assert {"restitution 1", "spin of 60 deg/s", "cord 10000 times as stiff", "net of 10 mg"} <= set(names)
+    assert {"macro steps of 1e-06 s", "macro steps of 100 s"} <= set(names)
+
+
+def test_a_part_that_is_left_out_takes_its_extremes_with_it() -> None:
+    from dcone_cosim.stability.plan import _schemes
+
+    schemes = {one.name: one for one in _schemes(Alone("table1-capture", (), None).scene.phases[0])}
+    assert next(iter(schemes)) == "leapfrog, double"
+    assert {"leapfrog, single", "rk4, double", "rk4, single"} <= set(schemes)
+    assert not schemes["leapfrog, double"].lacks
+    assert set(schemes["rk4, double"].without) == {"contact", "closing"}
+    assert {"restitution 1", "closing at the first instant", "net of 10 mg"} <= set(schemes["rk4, double"].lacks)
+    assert "all slack" not in schemes["rk4, double"].lacks
+    assert EXCLUDED == "excluded"
+
+
+def test_an_fmu_from_elsewhere_has_its_macro_steps(tmp_path: Path, template: Path) -> None:
+    scene = put_scene(tmp_path, template)
+    done = commands.stability(str(scene), tmp_path / "out", Progress())
+    (one,) = done.matrices
+    assert next(extreme.name for extreme in one.plan.extremes) == "as it is"
+    assert any(extreme.name.startswith("macro step x") for extreme in one.plan.extremes)
+    assert {cell.verdict.kind for cell in one.cells} <= {ACCURATE, "stable"}
+
+
+@pytest.mark.parametrize(("option", "value"), [("limit", 0.0), ("budget", -1.0), ("limit", float("nan"))])
+def test_times_out_of_bounds_are_refused(option: str, value: float, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=f"--{option}"):
+        commands.stability("table2-deorbit", tmp_path / "out", Progress(), **{option: value})  # type: ignore[arg-type]
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,128 @@
+"""What becomes of a case by what was measured of it, and what a tow is measured by."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from dcone_cosim.criteria import Criterion, Evidence
+from dcone_cosim.phases.removal_criteria import criteria as of_removal
+from dcone_cosim.quantities import Quantity
+from dcone_cosim.stability.cost import Cost
+from dcone_cosim.stability.judge import (
+    ACCURATE,
+    FAILED,
+    REFUSED,
+    STABLE,
+    agreement,
+    falls,
+    refusal,
+    sameness,
+    verdict,
+)
+from orbital.oscillators import damped_snap_peak, line_stiffness, reduced_mass
+
+
+def share(value: float, key: str = "energy_gained") -> Criterion:
+    return Criterion(key, "energy gained", value, "1", 0.01, 0.05)
+
+
+def test_a_verdict_follows_the_worst() -> None:
+    assert verdict([share(0.001)], "energy_gained").kind == ACCURATE
+    assert verdict([share(0.001), share(0.02)], "energy_gained").kind == STABLE
+    found = verdict([share(0.02), share(0.06, "depth"), share(0.07)], "energy_gained")
+    assert (found.kind, found.text) == (FAILED, "energy gained: 7 %, more than 5 %")
+    assert verdict([share(math.nan)], "energy_gained").kind == FAILED
+
+
+def test_a_case_whose_own_criterion_was_not_looked_at_is_red() -> None:
+    assert verdict([share(0.001)], "depth").kind == FAILED
+
+
+def test_a_refusal_counts_with_its_bound_alone() -> None:
+    assert refusal("must be at most 12 m").kind == REFUSED
+    assert refusal("start.relative_position is zero: the line has no direction").kind == REFUSED
+    assert refusal("cannot be done").kind == FAILED
+
+
+def test_a_cost_is_told_with_its_steps() -> None:
+    assert Cost(11550.0, 2.1e10).told() == "about 3.2 h (2.1e+10 steps of 0.55 us)"
+
+
+def curve(values: np.ndarray) -> list[Quantity]:
+    return [Quantity("mouth", "mouth area", values.tolist(), "m2", 100.0, "the flat net's area")]
+
+
+def test_a_chaotic_run_is_compared_while_its_twin_stays_with_it() -> None:
+    time = np.linspace(0.0, 10.0, 101)
+    here = 50.0 + time
+    twin = here + np.where(time > 5.0, 5.0, 0.0)
+    finer = here + np.where(time > 5.0, 30.0, 0.5)
+    found = agreement(curve(here), curve(finer), curve(twin), 101)
+    assert found.value == pytest.approx(0.005)
+    assert agreement(curve(here), curve(finer), curve(here), 101).value == pytest.approx(0.3)
+    early = here + np.where(time > 1.0, 5.0, 0.0)
+    assert math.isinf(agreement(curve(here), curve(finer), curve(early), 101).value)
+
+
+def test_other_macro_steps_give_the_same() -> None:
+    end = [Quantity("mouth", "mouth area", [5.0], "m2", 100.0, "the flat net's area")]
+    off = [Quantity("mouth", "mouth area", [5.001], "m2", 100.0, "the flat net's area")]
+    assert verdict([sameness(end, end)], "same").kind == ACCURATE
+    assert verdict([sameness(end, off)], "same").kind == FAILED
+    assert verdict([sameness(end, [])], "same").kind == FAILED
+
+
+def test_an_error_must_fall_with_more_than_the_first_power() -> None:
+    at = {order: falls([share(1e-3)], [share(1e-3 / 4.0**order)], 2e-6) for order in (1, 2)}
+    assert verdict([at[2]], "order").kind == ACCURATE
+    assert verdict([at[1]], "order").kind == FAILED
+
+
+MASSES = {"chaser.mass": 2000.0, "target.mass": 1000.0}
+LINE = {
+    "tether.rest_length": 12.0,
+    "reel.length_offset": 0.0,
+    "tether.youngs_modulus": 60e9,
+    "tether.diameter": 1e-3,
+    "tether.damping_ratio": 0.05,
+    "orbit.altitude": 800e3,
+    "orbit.eccentricity": 0.0,
+}
+
+
+def tow(peak: float, length: float = 12.0, tension: float = 0.0) -> Evidence:
+    """A locked line without thrust, whose first tug had this peak [N]."""
+    ones = np.ones(3)
+    columns = {
+        "time": np.array([0.0, 60.0, 120.0]),
+        "tether.tension": tension * ones,
+        "tether.tension_peak": peak * ones,
+        "tether.tension_least": 0.0 * ones,
+        "tether.impulse": np.array([0.0, 1.0, 2.0]),
+        "tether.length": length * ones,
+    }
+    return Evidence(columns, {**MASSES, **LINE}, {"reel": "locked"}, 120.0, [(30.0, peak, 0.01), (90.0, 1.0, 0.001)])
+
+
+def red(evidence: Evidence) -> set[str]:
+    return {one.key for one in of_removal(evidence) if not one.value <= one.stable}
+
+
+def test_a_snap_is_held_against_its_closed_form_from_both_sides() -> None:
+    stiffness = line_stiffness(60e9, 1e-3, 12.0)
+    peak = damped_snap_peak(0.01, stiffness, reduced_mass(2000.0, 1000.0), 0.05)
+    assert red(tow(peak)) == set()
+    assert red(tow(1.05 * peak)) == {"snap"}
+    assert red(tow(0.95 * peak)) == {"snap"}
+
+
+def test_a_line_neither_pushes_nor_is_longer_than_its_tension_makes_it() -> None:
+    stiffness = line_stiffness(60e9, 1e-3, 12.0)
+    peak = damped_snap_peak(0.01, stiffness, reduced_mass(2000.0, 1000.0), 0.05)
+    assert red(tow(peak, 12.0 + 0.99 * peak / stiffness)) == set()
+    assert red(tow(peak, 12.0 + 1.05 * peak / stiffness)) == {"longer"}
+    assert red(tow(peak, tension=-0.1)) == {"pushes"}
+    assert red(tow(math.nan)) >= {"finite"}
