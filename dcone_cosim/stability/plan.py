@@ -17,13 +17,13 @@ from dcone_cosim.quantities import spread_instants
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.stability.judge import EXCLUDED, LEFT, Verdict, refusal
 from dcone_cosim.stability.work import Cell
+from dcone_cosim.units import written
 
 INSTANTS = 120
 """At which curves are compared, at most."""
 AS_IT_IS = build.Extreme("as it is", "the scene itself", "finite", chief=True)
 STEPS = (100.0, 10.0, 0.1, 0.01)
 """Macro and coupling steps over a scene's own, of an FMU from elsewhere."""
-from dcone_cosim.units import written
 
 DIGITS = 17
 """Of a value: no bit of an edge may be lost."""
