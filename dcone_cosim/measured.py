@@ -20,6 +20,8 @@ from dcone_cosim import build
 FILE = Path(__file__).with_name("measured.json")
 SAME = 1e-9
 """Relative difference of two sizes that are one."""
+NEAR = 1.5
+"""Ratio of errors up to which settings count as one where none is exact enough."""
 ALIKE = 1.05
 """Ratio of costs up to which they count as one."""
 
@@ -79,8 +81,9 @@ def choose(
     if not able:
         return None
     good = [choice for choice in able if choice.entry.error(quantities) <= accuracy]
-    if not good:
-        return min(able, key=lambda choice: _or_infinite(choice.entry.error(quantities)))
+    if not good:  # the cheapest of those that are nearest: a run will tell, and refine it
+        nearest = min(_or_infinite(choice.entry.error(quantities)) for choice in able)
+        good = [choice for choice in able if _or_infinite(choice.entry.error(quantities)) <= NEAR * nearest]
     least = min(choice.entry.cost for choice in good)
     alike = [choice for choice in good if choice.entry.cost <= ALIKE * least]
     return min(alike, key=lambda choice: choice.entry.error(quantities))

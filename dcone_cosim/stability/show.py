@@ -21,7 +21,7 @@ MEANINGS = {
     REFUSED: "refused, with the bound or the cost",
     EXCLUDED: "no such case",
     FAILED: "failed",
-    LEFT: "left out: no time for it",
+    LEFT: "left out",
 }
 STYLES = {ACCURATE: "green", STABLE: "cyan", REFUSED: "yellow", EXCLUDED: "dim", FAILED: "bold red", LEFT: "dim"}
 
