@@ -1,6 +1,7 @@
 """Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import pytest
 
@@ -8,7 +9,7 @@ from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL as NET
 from fmu_src.packaging import compile
-from tests import kernels
+from tests import kernels, validation
 
 FREE = {"net": "square", "gravity": "none"}
 CAPTURE = {
@@ -45,7 +46,13 @@ DEAREST = (
 """Files that take longest, the longest first, so that no worker is left with one when the others are done."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    told = "run the tests that compare with independent sources alone, and write their rows here (see tests.validation)"
+    parser.addoption(validation.OPTION, metavar="FOLDER", type=Path, default=None, help=told)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    validation.keep_validating(config, items)
     place = {name: k for k, name in enumerate(DEAREST)}
     items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
 
@@ -54,6 +61,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def shared_kernels(tmp_path_factory: pytest.TempPathFactory) -> None:
     """One folder for all processes of a run, and for the runs of a single process."""
     kernels.share(tmp_path_factory.getbasetemp().parent / "kernels")
+
+
+@pytest.fixture
+def validated(request: pytest.FixtureRequest) -> validation.Validated:
+    """Compare a number with that of an independent source, as the validation page tells it: see `tests.validation`."""
+    return validation.Validated(
+        request.node.nodeid, validation.stored_rows(), request.config.getoption(validation.OPTION)
+    )
 
 
 @pytest.fixture

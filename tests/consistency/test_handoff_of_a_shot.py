@@ -14,9 +14,11 @@ from fmu_src.net_capture.planes import MASS
 from tests.conftest import CAPTURE_HILL
 from tests.cosim.raw_world import Points
 from tests.net_capture import memory
+from tests.validation import other_code
 
 pytestmark = pytest.mark.slow
 
+NODES = other_code("sums over the nodes of the net in inertial axes")
 RATE = mean_motion(800e3)
 TURNING = np.array([0.0, 0.0, RATE])
 SHOT = {
@@ -92,14 +94,15 @@ def test_the_catch_is_the_sum_of_its_nodes(shot):
     assert still.catch.spin != pytest.approx(net.spin(), abs=1e-3)
 
 
-def test_the_ledger_is_that_of_the_raw_states(shot):
+def test_the_ledger_is_that_of_the_raw_states(shot, validated):
     values, chaser, target, net = shot
     found = prepare(values, RATE)
     rows = {row.quantity: row for row in ledger(found, found.parameters)}
     everything = chaser + target + net
-    assert rows["mass, all"].before == pytest.approx(everything.mass.sum(), rel=1e-12)
+    mass = rows["mass, all"].before
+    validated(NODES, "shot of Table 1 at 8 s: mass of all", mass, everything.mass.sum(), "kg", rel=1e-12)
     energy = rows["kinetic energy"]
-    assert energy.before == pytest.approx(everything.energy(), rel=1e-4)
+    validated(NODES, "shot of Table 1 at 8 s: kinetic energy", energy.before, everything.energy(), "J", rel=1e-4)
     for axis, label in enumerate(("radial", "along-track", "cross-track")):
         orbital = rows[f"angular momentum, orbital part, {label}"]
         spin = rows[f"angular momentum, spin part, {label}"]
@@ -111,10 +114,11 @@ def test_the_ledger_is_that_of_the_raw_states(shot):
     assert all(row.closed for row in rows.values())
 
 
-def test_the_line_is_that_between_chaser_and_net(shot):
+def test_the_line_is_that_between_chaser_and_net(shot, validated):
     values, chaser, target, net = shot
     line = line_of(prepare(values, RATE), 100.0)
     knots = round(math.sqrt(len(net.mass)))
     vertex = net.position[(knots * knots) // 2]
-    assert line.reach == pytest.approx(math.dist(chaser.position[0], vertex), abs=1e-9)
-    assert line.attachment == pytest.approx(math.dist(vertex, (target + net).center()[0]), abs=1e-9)
+    reach, attachment = math.dist(chaser.position[0], vertex), math.dist(vertex, (target + net).center()[0])
+    validated(NODES, "shot of Table 1 at 8 s: chaser to the net's vertex", line.reach, reach, "m", abs=1e-9)
+    validated(NODES, "shot of Table 1 at 8 s: vertex to the joint centre", line.attachment, attachment, "m", abs=1e-9)

@@ -14,7 +14,9 @@ from scipy.optimize import brentq
 
 from orbital import frames, hill, kepler, oscillators, twobody
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from tests.validation import other_code
 
+TAYLOR = other_code("quadruple-precision Taylor integration, absolute coordinates")
 RADIUS = EARTH_EQUATORIAL_RADIUS + 800e3
 N = twobody.mean_motion(RADIUS, EARTH_MU)
 FIRST_TAUT, SPEED, PEAK = 1119.0083762732706, 1.969679879363641e-3, 3.1852257630377583
@@ -38,20 +40,21 @@ def first_taut(thrust):
     return time, position @ velocity / LENGTH
 
 
-def test_linear_solution_reaches_the_tether_when_the_reference_does():
+def test_linear_solution_reaches_the_tether_when_the_reference_does(validated):
     """To the 1e-6 that the linearisation leaves out, the ratio of 12 m to the radius; 1 % of thrust is 6 s."""
     time, speed = first_taut(-0.01)
-    assert time == pytest.approx(FIRST_TAUT, rel=1e-5)
-    assert speed == pytest.approx(SPEED, rel=1e-5)
+    validated(TAYLOR, "Table 2 by Clohessy and Wiltshire: first taut", time, FIRST_TAUT, "s", rel=1e-5)
+    validated(TAYLOR, "Table 2 by Clohessy and Wiltshire: speed then", speed, SPEED, "m/s", rel=1e-5)
     time, speed = first_taut(-0.0101)
     assert time != pytest.approx(FIRST_TAUT, rel=1e-3)
     assert speed != pytest.approx(SPEED, rel=1e-3)
 
 
-def test_first_peak_is_that_of_a_snap():
+def test_first_peak_is_that_of_a_snap(validated):
     stiffness = oscillators.line_stiffness(60e9, 1e-3, LENGTH)
     mass = oscillators.reduced_mass(CHASER, TARGET)
-    assert oscillators.snap_peak(SPEED, stiffness, mass) == pytest.approx(PEAK, rel=5e-3)
+    peak = oscillators.snap_peak(SPEED, stiffness, mass)
+    validated(TAYLOR, "v sqrt(k m_r): peak of Table 2's first tug", peak, PEAK, "N", rel=5e-3)
     assert oscillators.snap_peak(1.01 * SPEED, stiffness, mass) != pytest.approx(PEAK, rel=5e-3)
 
 
@@ -85,9 +88,9 @@ def integrated_first_taut(sign):
     return run.t[-1], run.y[:3, -1] @ run.y[3:, -1] / LENGTH
 
 
-def test_differential_gravity_and_frames_together_meet_the_reference():
+def test_differential_gravity_and_frames_together_meet_the_reference(validated):
     time, speed = integrated_first_taut(-1.0)
-    assert time == pytest.approx(FIRST_TAUT, abs=1e-4)
-    assert speed == pytest.approx(SPEED, rel=1e-6)
+    validated(TAYLOR, "Table 2 by differential gravity and scipy: first taut", time, FIRST_TAUT, "s", abs=1e-4)
+    validated(TAYLOR, "Table 2 by differential gravity and scipy: speed then", speed, SPEED, "m/s", rel=1e-6)
     time, _ = integrated_first_taut(+1.0)
     assert time != pytest.approx(FIRST_TAUT, abs=1e-4), "the twin: a flipped thrust"

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.cosim.linear_components import by_force, by_motion, coupled, error_at, run
+from tests.validation import Validated, closed_form
 
 END = 8.0
 STEPS = (0.05, 0.025, 0.0125, 0.00625)
@@ -28,9 +29,12 @@ def errors(make: Callable[..., Any], **coupling: Any) -> list[float]:
 @pytest.mark.parametrize("make", SPLITS)
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("extrapolation", ORDERS)
-def test_order_of_the_coupling_step(make: Callable[..., Any], method: str, extrapolation: str) -> None:
+def test_order_of_the_coupling_step(
+    validated: Validated, make: Callable[..., Any], method: str, extrapolation: str
+) -> None:
     found = slope(STEPS, errors(make, method=method, extrapolation=extrapolation))
-    assert found == pytest.approx(ORDERS[extrapolation], abs=0.1)
+    what = f"coupled oscillators, inputs {extrapolation}: order of the error"
+    validated(closed_form("exact solution by the matrix exponential"), what, found, ORDERS[extrapolation], abs=0.1)
 
 
 def test_declared_orders_are_not_interchangeable() -> None:

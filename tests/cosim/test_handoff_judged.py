@@ -28,6 +28,7 @@ from dcone_cosim.handoff import (
 )
 from dcone_cosim.ledger import LedgerRow, ledger
 from tests.cosim.raw_world import RATE, Array, Points, World, world
+from tests.validation import Validated, other_code
 
 SEEDS = range(6)
 AXES = ("radial", "along-track", "cross-track")
@@ -173,7 +174,7 @@ def expected_rows(made: World) -> dict[str, tuple[float, float, float, float]]:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_every_row_is_the_sum_over_the_points(seed: int) -> None:
+def test_every_row_is_the_sum_over_the_points(validated: Validated, seed: int) -> None:
     made, found = handed(seed)
     rows = {row.quantity: row for row in ledger(found, found.parameters)}
     wanted = expected_rows(made)
@@ -186,6 +187,12 @@ def test_every_row_is_the_sum_over_the_points(seed: int) -> None:
         assert row.magnitude == pytest.approx(size, rel=1e-9), quantity
         assert row.closed, quantity
         assert row.unit == UNITS[quantity.split(",")[0]]
+    sums = other_code("sums over raw mass points in inertial axes")
+    for kind, unit in UNITS.items():
+        of = [quantity for quantity in wanted if quantity.split(",")[0] == kind]
+        found_after, after = [rows[q].after for q in of], [wanted[q][1] for q in of]
+        allowed = np.array([CLOSE * wanted[q][3] for q in of])
+        validated(sums, f"{kind} handed over", found_after, after, unit, abs=allowed)
 
 
 def test_the_accounts_say_what_is_lost_and_what_is_dropped() -> None:

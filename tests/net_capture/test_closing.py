@@ -11,7 +11,9 @@ from fmu_src.net_capture import formulas
 from fmu_src.net_capture.closing.winches import cord_tension
 from fmu_src.net_capture.planes import MASS, U
 from tests.net_capture.memory import nodes, planes, shown
+from tests.validation import closed_form, other_code
 
+SCIPY = other_code("bullets and cord by scipy's RK45")
 SPEED, STALL, BULLET = 5.0, 10.0, 0.5
 TERMS = {"net": "square", "gravity": "none", "closing": "winches"}
 DRAWN = {
@@ -63,17 +65,17 @@ def square(stiffness, ratio, until):
 
 
 @pytest.mark.parametrize(("stiffness", "ratio"), [(903.0, 0.106), (903.0, 0.0), (90.0, 0.05)])
-def test_winches_draw_the_bullets_as_the_independent_integration_says(shoot, stiffness, ratio):
+def test_winches_draw_the_bullets_as_the_independent_integration_says(shoot, validated, stiffness, ratio):
     """0.7 s: the bullets have all but the speed of the winches. A soft cord stores much of their work."""
     own = {"closing.axial_stiffness": stiffness, "closing.damping_ratio": ratio}
     net = shoot(DRAWN | own, TERMS)
     net.step(0.7)
     s, rate, length, work, taken = square(stiffness, ratio, 0.7)
     a, b = net.array("bullet_position")[:2]
-    assert np.linalg.norm(b - a) == pytest.approx(s, rel=1e-4)
-    assert net["mouth.cord_length"] == pytest.approx(4.0 * length, rel=1e-4)
-    assert net["energy.kinetic"] == pytest.approx(BULLET * rate**2, rel=1e-3)
-    assert net["closing.work"] == pytest.approx(work, rel=1e-3)
+    validated(SCIPY, "winches: distance of two bullets", np.linalg.norm(b - a), s, "m", rel=1e-4)
+    validated(SCIPY, "winches: length of the cord", net["mouth.cord_length"], 4.0 * length, "m", rel=1e-4)
+    validated(SCIPY, "winches: energy of the bullets", net["energy.kinetic"], BULLET * rate**2, "J", rel=1e-3)
+    validated(SCIPY, "winches: their work", net["closing.work"], work, "J", rel=1e-3)
     assert net["cord.dissipated"] == pytest.approx(taken, rel=2e-2, abs=1e-9)
     assert abs(net["energy.remainder"]) < 2e-3 * work
 
@@ -100,13 +102,14 @@ def strain_alone():
     return solve_ivp(rates, (FIRST, 0.7), [9.9, 0.0, 9.9, 0.0], rtol=1e-9, atol=1e-12, max_step=1e-3).y[3, -1]
 
 
-def test_four_bullets_come_to_the_speed_of_the_winches(shoot):
+def test_four_bullets_come_to_the_speed_of_the_winches(shoot, validated):
     """Closed form for a cord that does not stretch: 4 * m/2 * (v0/sqrt(2))^2 = 12.5 J, (1 - exp(-2 T_stall t/(m v0)))^2
     of it after t."""
     net = shoot(DRAWN | {"closing.axial_stiffness": 1e5}, TERMS)
     net.step(1.0 + FIRST)
     grown = (1.0 - math.exp(-2.0 * STALL * 1.0 / (BULLET * SPEED))) ** 2
-    assert net["energy.kinetic"] == pytest.approx(12.5 * grown, rel=2e-3)
+    formula = closed_form("12.5 J (1 - exp(-2 T_stall t/(m v0)))^2")
+    validated(formula, "winches: energy of the bullets after 1 s", net["energy.kinetic"], 12.5 * grown, "J", rel=2e-3)
     assert net["closing.work"] - net["cord.dissipated"] == pytest.approx(12.5 * grown, rel=3e-3)
 
 
@@ -164,7 +167,7 @@ def ringed_square(stiffness, ratio, until):
 
 
 @pytest.mark.parametrize(("stiffness", "ratio"), [(903.0, 0.106), (903.0, 0.0), (90.0, 0.5)])
-def test_a_ring_is_drawn_after_the_bullets(shoot, stiffness, ratio):
+def test_a_ring_is_drawn_after_the_bullets(shoot, validated, stiffness, ratio):
     """A cord through one heavy ring on each side, against an integration of its own: threads stay slack."""
     own = {"net.mass": 12.0 * RING / 1.5, "closing.axial_stiffness": stiffness, "closing.damping_ratio": ratio}
     net = shoot(DRAWN | own | {"closing.rings": 1}, TERMS)
@@ -172,11 +175,12 @@ def test_a_ring_is_drawn_after_the_bullets(shoot, stiffness, ratio):
     assert net["thread.tension_max"] == 0.0
     a, _, b, _, length, work = ringed_square(stiffness, ratio, 0.6)
     first, second = net.array("bullet_position")[:2]
-    assert 0.5 * np.linalg.norm(second - first) == pytest.approx(a, rel=2e-4)
+    half = 0.5 * np.linalg.norm(second - first)
+    validated(SCIPY, "cord through rings: half the distance of bullets", half, a, "m", rel=2e-4)
     rings = shown(net)[[1, 7]]
-    assert 0.5 * math.dist(*rings) == pytest.approx(b, rel=2e-4)
-    assert net["mouth.cord_length"] == pytest.approx(4.0 * length, rel=2e-4)
-    assert net["closing.work"] == pytest.approx(work, rel=2e-3)
+    validated(SCIPY, "cord through rings: half the distance of rings", 0.5 * math.dist(*rings), b, "m", rel=2e-4)
+    validated(SCIPY, "cord through rings: its length", net["mouth.cord_length"], 4.0 * length, "m", rel=2e-4)
+    validated(SCIPY, "cord through rings: work of the winches", net["closing.work"], work, "J", rel=2e-3)
     assert abs(net["energy.remainder"]) < 2e-3 * work
 
 

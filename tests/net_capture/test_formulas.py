@@ -7,18 +7,22 @@ import numpy as np
 import pytest
 
 from fmu_src.net_capture import formulas
+from tests.validation import closed_form
 
 LIMITS = formulas.make_substep_limits(formulas.longest_step, formulas.accurate_step)
 
 
-def test_table_1_thread():
+def test_table_1_thread(validated):
     """0.33 kg of 1440 kg/m3 in 1200 m of thread, 70 GPa: 0.191 mm2, 0.493 mm, EA = 13.37 kN."""
     length = formulas.grid_length(24.0, 24.0, 1.0)
     area = formulas.thread_area(0.33, 1440.0, length)
     assert length == 1200.0
-    assert area == pytest.approx(0.191e-6, rel=1e-3)
-    assert formulas.round_diameter(area) == pytest.approx(0.493e-3, rel=1e-3)
-    assert formulas.axial_stiffness(70e9, area, 1.0) == pytest.approx(13368.0, rel=1e-4)
+    section = closed_form("m/(rho total length)")
+    validated(section, "Table 1's thread: area", area, 0.191e-6, "m2", rel=1e-3)
+    diameter = formulas.round_diameter(area)
+    validated(closed_form("sqrt(4 A/pi)"), "Table 1's thread: diameter", diameter, 0.493e-3, "m", rel=1e-3)
+    stiffness = formulas.axial_stiffness(70e9, area, 1.0)
+    validated(closed_form("E A"), "Table 1's thread: EA", stiffness, 13368.0, "N", rel=1e-4)
     # xi = 0.106, an inner knot of two threads of 0.275 g
     assert formulas.thread_dashpot(0.106, 13368.0, 5.5e-4) == pytest.approx(0.5748, rel=1e-3)
 

@@ -18,6 +18,7 @@ from fmu_src.net_capture.shot import make_shot
 from orbital.kernel import kernel
 from tests.conftest import FREE
 from tests.net_capture.memory import graph_of, planes_of
+from tests.validation import closed_form
 
 MESH = 2.0
 SLOPE = 0.7
@@ -172,13 +173,14 @@ def test_a_strip_has_each_end_in_one_row(pair):
     assert laid.graph.strips.max() > 1
 
 
-def test_total_length_is_the_closed_form(pair):
+def test_total_length_is_the_closed_form(pair, validated):
     (shape, columns, rows, _), drawn, laid = pair
     closed = formulas.grid_length(MESH * columns, MESH * rows, MESH)
     if shape == "pyramid":
         closed = pyramid_length(MESH * columns, math.sqrt(1.0 + SLOPE * SLOPE), MESH)
     assert drawn.lengths.sum() == pytest.approx(closed, rel=1e-12)
-    assert laid.graph.length.sum() == pytest.approx(closed, rel=1e-12)
+    formula = closed_form("a (b/l + 1) + b (a/l + 1), a pyramid's by its slope")
+    validated(formula, f"{shape}: total length of thread", laid.graph.length.sum(), closed, "m", rel=1e-12)
     values = parameters(*pair[0])
     told = MODEL.groups["net"].terms[shape].checks.total(values)
     assert told == pytest.approx(closed, rel=1e-14)

@@ -23,6 +23,7 @@ from fmu_src.net_capture.threads import make_threads, thread_tension
 from orbital.kernel import kernel
 from tests.conftest import FREE
 from tests.net_capture.memory import Bench, graph, nodes, planes
+from tests.validation import closed_form
 
 K, XI, L = 13740.0, 0.106, 1.0
 SLOTS = 8
@@ -100,7 +101,7 @@ def two_masses(bench, kernels, m, d, stretch_rate, h, steps):
     return np.array(lengths), np.array(tensions)
 
 
-def test_taut_frequency_is_that_of_the_reduced_mass(bench, kernels):
+def test_taut_frequency_is_that_of_the_reduced_mass(bench, kernels, validated):
     """A half swing lasts pi / omega with omega = sqrt(k / mu), mu = m / 2."""
     m = 5.5e-4
     omega = math.sqrt(K / (0.5 * m))
@@ -108,12 +109,13 @@ def test_taut_frequency_is_that_of_the_reduced_mass(bench, kernels):
     lengths, tensions = two_masses(bench, kernels, m, 0.0, 0.1, h, 400)
     taut = np.nonzero(lengths > L)[0]
     half_swing = (taut[-1] - taut[0] + 1) * h
-    assert half_swing == pytest.approx(math.pi / omega, rel=5e-3)
+    found, formula = 0.5 / half_swing, closed_form("sqrt(k/mu)/(2 pi)")
+    validated(formula, "one thread, two masses: taut frequency", found, omega / math.tau, "Hz", rel=5e-3)
     assert half_swing != pytest.approx(math.pi / math.sqrt(K / m), rel=5e-3)
     assert tensions[1:] == pytest.approx(K * np.maximum(lengths[:-1] - L, 0.0), rel=1e-6)
 
 
-def test_logarithmic_decrement_gives_the_dashpot():
+def test_logarithmic_decrement_gives_the_dashpot(validated):
     """Of a preloaded thread, which never goes slack: offset the rest length and let it ring."""
     m = 5.5e-4
     mu = 0.5 * m
@@ -133,11 +135,15 @@ def test_logarithmic_decrement_gives_the_dashpot():
         before, previous = previous, s
     decrement = np.mean(np.log(np.array(peaks[:-1]) / np.array(peaks[1:]))[:4])
     zeta = 0.05
-    assert decrement == pytest.approx(2.0 * math.pi * zeta / math.sqrt(1.0 - zeta * zeta), rel=5e-3)
+    expected = 2.0 * math.pi * zeta / math.sqrt(1.0 - zeta * zeta)
+    formula = closed_form("2 pi zeta/sqrt(1 - zeta^2)")
+    validated(formula, "one thread, two masses: logarithmic decrement", decrement, expected, rel=5e-3)
     assert decrement != pytest.approx(2.0 * math.pi * 0.051 / math.sqrt(1.0 - 0.051**2), rel=5e-3)
 
 
-def test_slack_thread_pulls_exactly_nothing():
+def test_slack_thread_pulls_exactly_nothing(validated):
+    slack = [thread_tension(length, 5.0, L, K, 1.0) for length in (0.5, 0.999, L)]
+    validated(closed_form("a rope never pushes"), "force of a slack thread", slack, 0.0, "N", abs=0.0)
     for function in (thread_tension, thread_tension.py_func):
         assert function(0.999, 5.0, L, K, 1.0) == 0.0
         assert function(L, 5.0, L, K, 1.0) == 0.0
@@ -231,7 +237,7 @@ def test_in_a_chain_every_knot_gets_both_its_threads(bench, kernels, taut):
 
 
 @pytest.mark.parametrize("segments", [1, 2, 5])
-def test_static_stretch_is_that_of_the_whole_thread(shoot, segments):
+def test_static_stretch_is_that_of_the_whole_thread(shoot, validated, segments):
     """A side of the net of one mesh pulled by F stretches by F L / EA, whatever the number of segments: in series."""
     net = shoot({"net.side": 2.0, "net.mesh": 1.0, "net.segments": segments, "net.fold_side": 0.1})
     threads = graph(net)
@@ -241,7 +247,9 @@ def test_static_stretch_is_that_of_the_whole_thread(shoot, segments):
     force = 1.0
     stretch = sum(force / stiffness for _ in range(segments))
     assert length * segments == pytest.approx(1.0, rel=1e-15)
-    assert stretch == pytest.approx(force * 1.0 / (70e9 * area), rel=1e-6)
+    expected = force * 1.0 / (70e9 * area)
+    formula = closed_form("F L/EA")
+    validated(formula, "thread cut into segments: static stretch", stretch, expected, "m", rel=1e-6)
     assert stretch != pytest.approx(force * 1.01 / (70e9 * area), rel=1e-6)
     assert thread_tension(length + force / stiffness, 0.0, length, stiffness, 0.0) == pytest.approx(force, rel=1e-6)
 

@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 
 from orbital import hill, twobody
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from tests.validation import other_code
 
 RADIUS = EARTH_EQUATORIAL_RADIUS + 800e3
 N = math.sqrt(EARTH_MU / RADIUS**3)
@@ -60,13 +61,15 @@ def test_acceleration_may_be_written_over_its_operand_and_keeps_nan_visible(run)
 
 @pytest.mark.parametrize("time", [-500.0, 1.0, 900.0, 12000.0])
 @pytest.mark.parametrize("thrust", [None, THRUST])
-def test_solution_against_integration(time, thrust):
+def test_solution_against_integration(validated, time, thrust):
     found = hill.clohessy_wiltshire(POSITION, VELOCITY, N, time, thrust)
     expected = integrated(N, time, np.zeros(3) if thrust is None else thrust)
     twin = hill.clohessy_wiltshire(POSITION, VELOCITY, 1.01 * N, time, thrust)
     for value, peer, wrong in zip(found, expected, twin, strict=True):
         scale = np.linalg.norm(peer)
-        assert np.linalg.norm(value - peer) < 1e-11 * scale
+        error = np.linalg.norm(value - peer) / scale
+        what = "Clohessy and Wiltshire's solution: place and velocity, error relative to their size"
+        validated(other_code("Hill's equations by scipy"), what, error, 0.0, abs=1e-11)
         assert np.linalg.norm(wrong - peer) > 1e-9 * scale
 
 

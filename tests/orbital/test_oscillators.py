@@ -5,7 +5,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from orbital import oscillators
+from tests.validation import closed_form, other_code
 
+SCIPY = other_code("mass and spring by scipy's DOP853")
 # The tether of Table 2, and 1 m threads of Table 1: aramid of 0.275 g/m, EA = 13.74 kN, two threads' mass to a node.
 STIFFNESS, MASS, SPEED = 3926.9908169872415, 2000.0 / 3.0, 1.969680e-3
 THREAD_STIFFNESS, NODE_MASS = 13740.0, 2 * 0.275e-3
@@ -36,30 +38,35 @@ def snap(zeta, preload=0.0):
     return max(tension(0, y) for y in run.y.T), run.t[-1], run.y[1, -1]
 
 
-def test_numbers_of_table_2():
-    assert oscillators.line_stiffness(60e9, 1e-3, 12.0) == pytest.approx(3926.99, rel=1e-6)
+def test_numbers_of_table_2(validated):
+    stiffness = oscillators.line_stiffness(60e9, 1e-3, 12.0)
+    validated(closed_form("E pi d^2/(4 l)"), "Table 2: stiffness of the line", stiffness, 3926.99, "N/m", rel=1e-6)
     assert oscillators.dashpot(0.05, 3926.99, 666.667) == pytest.approx(161.803, rel=1e-5)  # 0.1 sqrt(2,618,000)
-    assert oscillators.reduced_mass(2000.0, 1000.0) == pytest.approx(666.667, rel=1e-6)
+    reduced = oscillators.reduced_mass(2000.0, 1000.0)
+    validated(closed_form("m_c m_t/(m_c + m_t)"), "Table 2: reduced mass", reduced, 666.667, "kg", rel=1e-6)
     period = 2 * math.pi / oscillators.natural_frequency(STIFFNESS, MASS)
-    assert period == pytest.approx(2.589, abs=5e-4)
+    validated(closed_form("2 pi sqrt(m_r/k)"), "Table 2: period of the taut line", period, 2.589, "s", abs=5e-4)
     assert 2 * math.pi / oscillators.natural_frequency(1.01 * STIFFNESS, MASS) != pytest.approx(2.589, abs=5e-4)
 
 
 @pytest.mark.parametrize("preload", [0.0, 0.5, 20.0])
-def test_undamped_peak(preload):
+def test_undamped_peak(validated, preload):
     peak, _, _ = snap(0.0, preload)
-    assert oscillators.snap_peak(SPEED, STIFFNESS, MASS, preload) == pytest.approx(peak, rel=1e-5)
+    stated = oscillators.snap_peak(SPEED, STIFFNESS, MASS, preload)
+    validated(SCIPY, "P + sqrt(P^2 + k m_r v^2): peak of an undamped snap", stated, peak, "N", rel=1e-5)
     assert oscillators.snap_peak(1.01 * SPEED, STIFFNESS, MASS, 1.01 * preload) != pytest.approx(peak, rel=5e-3)
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.2, 0.49, 0.5, 0.8])
-def test_damped_snap(zeta):
+def test_damped_snap(validated, zeta):
     peak, duration, speed = snap(zeta)
     stated = oscillators.damped_snap_peak(SPEED, STIFFNESS, MASS, zeta)
-    assert stated == pytest.approx(peak, rel=1e-5)
+    validated(SCIPY, "formula of a damped snap: peak", stated, peak, "N", rel=1e-5)
     assert oscillators.damped_snap_peak(SPEED, STIFFNESS, 1.02 * MASS, zeta) != pytest.approx(peak, rel=5e-3)
-    assert oscillators.snap_duration(STIFFNESS, MASS, zeta) == pytest.approx(duration, rel=1e-8)
-    assert oscillators.snap_restitution(zeta) == pytest.approx(-speed / SPEED, rel=1e-7)
+    lasting = oscillators.snap_duration(STIFFNESS, MASS, zeta)
+    validated(SCIPY, "formula of a damped snap: duration", lasting, duration, "s", rel=1e-8)
+    restitution = oscillators.snap_restitution(zeta)
+    validated(SCIPY, "formula of a damped snap: restitution", restitution, -speed / SPEED, rel=1e-7)
     assert oscillators.snap_restitution(zeta + 0.01) != pytest.approx(-speed / SPEED, rel=5e-3)
 
 
@@ -72,17 +79,19 @@ def test_peak_joins_its_two_branches_and_the_undamped_one():
     )
 
 
-def test_frequency_and_decrement_of_a_damped_oscillation():
+def test_frequency_and_decrement_of_a_damped_oscillation(validated):
     damping = 0.2 * 2 * math.sqrt(STIFFNESS * MASS)
     zeta = oscillators.damping_ratio(damping, STIFFNESS, MASS)
     assert zeta == pytest.approx(0.2, rel=1e-15)
     # The eigenvalue of the oscillation holds both.
     value = np.linalg.eigvals([[0.0, 1.0], [-STIFFNESS / MASS, -damping / MASS]])[0]
     omega = oscillators.damped_frequency(STIFFNESS, MASS, damping)
-    assert omega == pytest.approx(abs(value.imag), rel=1e-14)
+    eigenvalue = other_code("eigenvalue of the oscillation's matrix by numpy")
+    validated(eigenvalue, "frequency of a damped oscillation", omega, abs(value.imag), "rad/s", rel=1e-14)
     assert omega != pytest.approx(oscillators.natural_frequency(STIFFNESS, MASS), rel=5e-3)
     decrement = -value.real * 2 * math.pi / abs(value.imag)
-    assert oscillators.logarithmic_decrement(zeta) == pytest.approx(decrement, rel=1e-14)
+    found = oscillators.logarithmic_decrement(zeta)
+    validated(eigenvalue, "logarithmic decrement of a damped oscillation", found, decrement, rel=1e-14)
     assert oscillators.logarithmic_decrement(1.01 * zeta) != pytest.approx(decrement, rel=5e-3)
 
 
@@ -134,12 +143,13 @@ def test_step_limit_of_table_1_is_the_edge_of_stability(ratio, limit):
     assert grown(1.01 * stated, damping)
 
 
-def test_step_limit_in_units_of_the_thread():
+def test_step_limit_in_units_of_the_thread(validated):
     unit = math.sqrt(NODE_MASS / THREAD_STIFFNESS)
     # h w (h w + 8 z) = 4 with w = sqrt(8), z = zeta sqrt(8)
     for zeta, limit in ((0.0, 0.7071), (0.05, 0.5345)):
         damping = 2 * zeta * math.sqrt(THREAD_STIFFNESS * NODE_MASS)
-        assert net_limit(damping) / unit == pytest.approx(limit, abs=5e-4)
+        what = f"longest stable substep of a net over sqrt(m/k), damping ratio {zeta:g}"
+        validated(closed_form("h w (h w + 8 z) = 4"), what, net_limit(damping) / unit, limit, abs=5e-4)
     # Heavy damping: the limit falls as 1/z, where sqrt(1 + z^2) - z would have lost every digit.
     heavy = 1e10 * math.sqrt(THREAD_STIFFNESS * NODE_MASS)
     assert net_limit(heavy) == pytest.approx(NODE_MASS / (8.0 * heavy), rel=1e-12, abs=0.0)

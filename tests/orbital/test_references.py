@@ -9,7 +9,9 @@ from scipy.integrate import solve_ivp
 from orbital import references
 from orbital.constants import DAY, EARTH_EQUATORIAL_RADIUS, EARTH_MU, JULIAN_YEAR
 from orbital.hill import hill_acceleration
+from tests.validation import closed_form, other_code
 
+RIGID = other_code("a rigid pair in Cartesian components by scipy's DOP853")
 # Table 2 of the D-CoNe paper.
 RADIUS = EARTH_EQUATORIAL_RADIUS + 800e3
 N = math.sqrt(EARTH_MU / RADIUS**3)
@@ -96,11 +98,13 @@ def test_propellant_spent_on_the_way_shortens_it():
 
 @pytest.mark.parametrize("above", [False, True])
 @pytest.mark.parametrize("thrust", [0.0, THRUST, 0.07])
-def test_equilibrium_stays_where_it_is_at_the_stated_tension(thrust, above):
+def test_equilibrium_stays_where_it_is_at_the_stated_tension(validated, thrust, above):
     phi = references.equilibrium_angle(thrust, *PAIR)
     _, angles, tensions = swing(phi, thrust, 3000.0, above)
     np.testing.assert_allclose(angles, phi, atol=1e-8)
-    np.testing.assert_allclose(tensions, references.equilibrium_tension(N, LENGTH, REDUCED), rtol=1e-8)
+    formula = references.equilibrium_tension(N, LENGTH, REDUCED)
+    validated(RIGID, "3 n^2 l m_r: tension at rest", formula, tensions, "N", rel=1e-8)
+    validated(RIGID, "F/(3 n^2 l m_c): sine of the angle at rest", math.sin(phi), np.sin(angles), abs=1e-8)
     _, angles, _ = swing(phi + 0.01, thrust, 3000.0, above)
     assert np.ptp(angles) > 5e-3, "the twin: next to it, it moves"
 
@@ -125,13 +129,15 @@ def test_towing_along_vbar_is_stable_above_the_critical_thrust_only():
     assert np.max(abs(angles - math.pi / 2)) > 0.05
 
 
-def test_growth_rate_on_vbar():
+def test_growth_rate_on_vbar(validated):
     growth = references.vbar_growth_rate(THRUST, *PAIR)
     assert growth == pytest.approx(1.678e-3, rel=2e-4)
     times, angles, _ = swing(math.pi / 2 - 1e-6, THRUST, 4000.0)
     departure = math.pi / 2 - angles
     # The frame's turning does not enter a rigid pair's angle, so from rest the departure is a pure cosh.
-    np.testing.assert_allclose(departure, 1e-6 * np.cosh(growth * times), rtol=1e-4)
+    grown = 1e-6 * np.cosh(growth * times)
+    what = "sqrt(3 n^2 - F/(m_c l)): departure from V-bar as cosh"
+    validated(RIGID, what, grown, departure, "rad", rel=1e-4)
     assert abs(departure[-1] / (1e-6 * np.cosh(1.01 * growth * times[-1])) - 1) > 0.05
     assert references.vbar_growth_rate(references.critical_thrust(*PAIR) * (1 - 1e-12), *PAIR) < 1e-8
     with pytest.raises(ValueError, match="stable"):
@@ -140,12 +146,13 @@ def test_growth_rate_on_vbar():
 
 @pytest.mark.parametrize("above", [False, True])
 @pytest.mark.parametrize(("thrust", "period"), [(THRUST, 3523.75), (0.0, 3494.36)])
-def test_small_libration_period(thrust, period, above):
+def test_small_libration_period(validated, thrust, period, above):
     stated = references.libration_period(thrust, *PAIR)
     assert stated == pytest.approx(period, rel=3e-6)
     phi = references.equilibrium_angle(thrust, *PAIR)
     times, angles, _ = swing(phi + 1e-4, thrust, period, above, dense=4000)
-    assert 4 * first_crossing(times, angles - phi) == pytest.approx(stated, rel=1e-4)
+    swung = 4 * float(first_crossing(times, angles - phi))
+    validated(RIGID, "2 pi/(sqrt(3) n cos phi): period of small librations", stated, swung, "s", rel=1e-4)
     assert references.libration_period(thrust, 1.01 * N, LENGTH, CHASER) != pytest.approx(stated, rel=1e-3)
 
 
@@ -169,18 +176,21 @@ def test_tension_of_the_module_docstring_along_a_large_swing():
             assert close == agrees
 
 
-def test_eclipse():
+def test_eclipse(validated):
     for beta in (0.0, 0.5, -0.9, 1.0):
         # The orbit counted point by point: in the shadow when behind the Earth and less than its radius off the axis.
         u = np.linspace(0.0, 2 * math.pi, 400001)[:-1]
         x, y, z = RADIUS * np.cos(u) * math.cos(beta), RADIUS * np.sin(u), RADIUS * np.cos(u) * math.sin(beta)
         counted = np.mean((x < 0) & (np.hypot(y, z) < EARTH_EQUATORIAL_RADIUS))
         stated = references.eclipse_fraction(RADIUS, beta, EARTH_EQUATORIAL_RADIUS)
-        assert stated == pytest.approx(counted, abs=1e-5)
+        what = f"part of an orbit at 800 km in shadow, Sun {beta:g} rad above its plane"
+        validated(other_code("the orbit counted point by point"), what, stated, counted, abs=1e-5)
         assert references.eclipse_fraction(RADIUS, beta + 0.05, EARTH_EQUATORIAL_RADIUS) != pytest.approx(
             counted, abs=1e-5
         )
-    assert references.eclipse_fraction(RADIUS, 0.0, EARTH_EQUATORIAL_RADIUS) == pytest.approx(0.348, rel=5e-3)
+    formula = closed_form("acos(sqrt(1 - (R/a)^2)/cos beta)/pi")
+    longest = references.eclipse_fraction(RADIUS, 0.0, EARTH_EQUATORIAL_RADIUS)
+    validated(formula, "longest part of an orbit at 800 km in shadow", longest, 0.348, rel=5e-3)
     assert references.eclipse_fraction(RADIUS, math.radians(62.70), EARTH_EQUATORIAL_RADIUS) == 0.0
     assert references.eclipse_fraction(RADIUS, math.radians(62.68), EARTH_EQUATORIAL_RADIUS) > 0.0
     assert references.eclipse_fraction(RADIUS, math.pi / 2, EARTH_EQUATORIAL_RADIUS) == 0.0

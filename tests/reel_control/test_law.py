@@ -19,6 +19,7 @@ from fmu_src.reel_control.interface import (
 from fmu_src.tethered_deorbit import interface as removal
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.references import equilibrium_tension
+from tests.validation import Validated, closed_form, other_code
 
 RATE = math.sqrt(EARTH_MU / (EARTH_EQUATORIAL_RADIUS + 800e3) ** 3)
 REDUCED = 2000.0 / 3.0
@@ -133,15 +134,15 @@ def regulator(thrust: float = -0.01) -> np.ndarray:
     return np.asarray(gains)[0]
 
 
-def test_default_gains_are_the_regulators() -> None:
+def test_default_gains_are_the_regulators(validated: Validated) -> None:
     """Those on length and rate; its other two gains a reel can not have. Without thrust the gains are others."""
     gains = regulator()
-    assert gains == pytest.approx(
-        [-5.78290, -3.41930, 2.93980, -0.21854], abs=1e-4
-    )  # see fmu_src/reel_control/README.md
+    riccati = other_code("linear-quadratic regulator by python-control")
+    # see fmu_src/reel_control/README.md
+    validated(riccati, "regulator of the reel: gains K", [-5.78290, -3.41930, 2.93980, -0.21854], gains, abs=1e-4)
     scale = REDUCED * RATE
-    assert pytest.approx(-gains[0] * scale * RATE, rel=2e-4) == STIFFNESS
-    assert pytest.approx(-gains[1] * scale, rel=2e-4) == DAMPING
+    validated(riccati, "reel: default gain on the length", STIFFNESS, -gains[0] * scale * RATE, "N/m", rel=2e-4)
+    validated(riccati, "reel: default gain on its rate", DAMPING, -gains[1] * scale, "N s/m", rel=2e-4)
     assert pytest.approx(-regulator(0.0)[0] * scale * RATE, rel=2e-4) != STIFFNESS
     assert (STIFFNESS, DAMPING) == (removal.REEL_STIFFNESS, removal.REEL_DAMPING)
     assert pytest.approx(equilibrium_tension(RATE, 12.0, REDUCED), rel=1e-12) == FEED_FORWARD
@@ -157,7 +158,7 @@ def asked(length: float, length_rate: float) -> float:
     return max(0.0, FEED_FORWARD + STIFFNESS * (length - 12.0) + DAMPING * length_rate)
 
 
-def test_a_motor_follows_held_inputs() -> None:
+def test_a_motor_follows_held_inputs(validated: Validated) -> None:
     """A step response: what is left of the jump decays as exp(-t / tau), whatever the steps."""
     i = lagging(12.0, 0.0, 5.0)
     assert i["tension"] == pytest.approx(asked(12.0, 0.0), rel=1e-14)
@@ -170,7 +171,8 @@ def test_a_motor_follows_held_inputs() -> None:
     for size in (1.0, 2.0, 4.0):
         i.step(size)
     expected = asked(12.0, 0.01) - DAMPING * 0.01 * math.exp(-7.0 / 5.0)
-    assert i["tension"] == pytest.approx(expected, rel=1e-13)
+    formula = closed_form("1 - exp(-t/tau)")
+    validated(formula, "motor of a reel: step response after 7 s", i["tension"], expected, "N", rel=1e-13)
     assert i["tension"] != pytest.approx(asked(12.0, 0.01) - DAMPING * 0.01 * math.exp(-7.0 / 5.05), rel=1e-4)
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, MODEL, START_STRETCHED
+from tests.validation import Validated, closed_form
 
 LOCKED, LINEAR, COMMANDED = ({"reel": reel, "thrust": "along_track"} for reel in ("locked", "linear", "commanded"))
 REST, ATTACHED = 12.0, 2.5
@@ -39,7 +40,7 @@ def thrown(**parameters: float) -> Instance:
     return i
 
 
-def test_the_first_tug_comes_when_the_attachments_are_a_rest_length_apart() -> None:
+def test_the_first_tug_comes_when_the_attachments_are_a_rest_length_apart(validated: Validated) -> None:
     """At the instant and speed of a longer line between the centres, for a slack line is not felt; its peak is that of
     the shorter line, T = sqrt(k m_r v^2) with k = EA/l0 and the tide's preload left out (0.5 %)."""
     short, long = (
@@ -50,7 +51,9 @@ def test_the_first_tug_comes_when_the_attachments_are_a_rest_length_apart() -> N
     assert short["tug[1].speed"] == pytest.approx(long["tug[1].speed"], rel=1e-9)
     speed = short["tug[1].speed"]
     for i, length in ((short, REST), (long, REST + ATTACHED)):
-        assert i["tug[1].peak"] == pytest.approx(speed * math.sqrt(60e9 * AREA / length * REDUCED), rel=5e-3)
+        formula, expected = closed_form("v sqrt(EA m_r/l0)"), speed * math.sqrt(60e9 * AREA / length * REDUCED)
+        what = f"first tug of a line of {length:g} m: peak"
+        validated(formula, what, i["tug[1].peak"], expected, "N", rel=5e-3)
     assert short["tug[1].peak"] > 1.05 * long["tug[1].peak"]
     near = thrown(tether__rest_length=REST)
     assert near["tug[1].time"] < 0.1 * short["tug[1].time"]
@@ -65,16 +68,19 @@ def test_length_is_between_the_attachments(terms: dict[str, str]) -> None:
         i.step(10.0)
 
 
-def test_at_rest_the_tide_pulls_by_the_distance_of_the_centres() -> None:
+def test_at_rest_the_tide_pulls_by_the_distance_of_the_centres(validated: Validated) -> None:
     """T = 3 n^2 m_r s, and the line is longer by T l0 / EA."""
     tide = 3.0 * MEAN_MOTION**2 * REDUCED
     stiffness = 60e9 * AREA / REST
     stretch = tide * (REST + ATTACHED) / (stiffness - tide)
     i = hanging(LOCKED, REST + ATTACHED + stretch, tether__damping_ratio=0.3)
     i.step(60.0)
-    assert i["tether.tension"] == pytest.approx(tide * (REST + ATTACHED + stretch), rel=1e-5)
+    expected = tide * (REST + ATTACHED + stretch)
+    formula = closed_form("3 n^2 m_r s")
+    validated(formula, "line made fast 2.5 m off: tension at rest", i["tether.tension"], expected, "N", rel=1e-5)
     assert i["tether.tension"] != pytest.approx(tide * REST, rel=1e-1)
-    assert i["tether.length"] - REST == pytest.approx(stretch, rel=1e-4)
+    formula, found = closed_form("T l0/EA"), i["tether.length"] - REST
+    validated(formula, "line made fast 2.5 m off: stretch at rest", found, stretch, "m", rel=1e-4)
 
 
 def test_a_working_reel_rests_at_its_commanded_length() -> None:

@@ -10,6 +10,7 @@ from fmu_src.instance import Instance, ModelFault
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL, NO_LENGTH, VBAR
 from orbital import oscillators
 from orbital.constants import STANDARD_GRAVITY
+from tests.validation import Validated, closed_form
 
 LOCKED = {"reel": "locked", "thrust": "along_track"}
 LINEAR = {"reel": "linear", "thrust": "along_track"}
@@ -54,13 +55,14 @@ def test_speed_gained_under_a_ramp() -> None:
 
 
 @pytest.mark.parametrize(("level", "impulse"), [(-1.0, (1.0 + 4.0) / 0.6), (1.0, 25.0), (-4.0, 25.0)])
-def test_propellant_of_a_ramp(level: float, impulse: float) -> None:
+def test_propellant_of_a_ramp(validated: Validated, level: float, impulse: float) -> None:
     """Integral of |F|, also where the force turns round on the way; then as ever."""
     i = free(level)
     i.set_rates({"thrust.offset": 0.3})
     i.step(10.0)
     exhaust = 3000.0 * STANDARD_GRAVITY
-    assert i["chaser.propellant"] == pytest.approx(impulse / exhaust, rel=1e-13)
+    formula = closed_form("integral of |F| over v_e")
+    validated(formula, "thrust on a ramp: propellant", i["chaser.propellant"], impulse / exhaust, "kg", rel=1e-13)
     assert i["chaser.propellant"] != pytest.approx(abs(level + 1.5) * 10.0 / exhaust * 1.01, rel=1e-3)
     i.step(7.0)
     assert i["chaser.propellant"] == pytest.approx((impulse + 7.0 * abs(level + 3.0)) / exhaust, rel=1e-13)
@@ -73,7 +75,7 @@ def settled() -> Instance:
     return i
 
 
-def test_hauling_in_a_locked_line() -> None:
+def test_hauling_in_a_locked_line(validated: Validated) -> None:
     """The stretch is a damped vibration that begins with the speed of the rest length.
 
     m_r s'' + c s' + k s = P,   s = l - l0(t),   s'(0) = -dl0/dt,   T = k s + c s'
@@ -94,7 +96,9 @@ def test_hauling_in_a_locked_line() -> None:
         rest = i["tether.tension"]
         i.set_rates({"reel.length_offset": -speed})
         i.step(t)
-        assert i["tether.tension"] == pytest.approx(expected(t), rel=1e-3)
+        formula = closed_form("damped vibration that begins with the speed of the rest length")
+        what = f"line that is hauled in: tension after {t:g} s"
+        validated(formula, what, i["tether.tension"], expected(t), "N", rel=1e-3)
         assert i["tether.tension"] != pytest.approx(expected(t, -1.0), rel=1e-2)
         assert i["reel.length_offset"] == pytest.approx(-speed * t, rel=1e-15)
         assert i["tether.tug_count"] == 1

@@ -9,6 +9,7 @@ from fmu_src.instance import Instance
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from orbital import oscillators, references
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from tests.validation import Validated, closed_form
 
 TERMS = {"reel": "locked", "thrust": "along_track"}
 RATE = math.sqrt(EARTH_MU / (EARTH_EQUATORIAL_RADIUS + 800e3) ** 3)
@@ -32,26 +33,31 @@ def snap(speed: float, zeta: float, angle: float = 0.5 * math.pi) -> Instance:
 
 
 @pytest.mark.parametrize("speed", [2e-3, 0.01, 0.1])
-def test_undamped(speed: float) -> None:
+def test_undamped(validated: Validated, speed: float) -> None:
     """T = P + sqrt(P^2 + k m_r v^2), P the pull of the gravity gradient; leaves at the speed it came with."""
     preload = references.equilibrium_tension(RATE, 12.0, REDUCED)
     i = snap(speed, 0.0, angle=0.0)
     expected = oscillators.snap_peak(i["tug[1].speed"], STIFFNESS, REDUCED, preload)
-    assert i["tug[1].peak"] == pytest.approx(expected, rel=5e-3)
+    formula = closed_form("P + sqrt(P^2 + k m_r v^2)")
+    validated(formula, "peak of an undamped snap", i["tug[1].peak"], expected, "N", rel=5e-3)
     assert i["tug[1].peak"] != pytest.approx(1.01 * expected, rel=5e-3)
-    assert -i["tether.length_rate"] == pytest.approx(i["tug[1].speed"], rel=1e-3)
+    left, came = -i["tether.length_rate"], i["tug[1].speed"]
+    validated(closed_form("the speed before"), "speed after an undamped snap", left, came, "m/s", rel=1e-3)
 
 
 @pytest.mark.parametrize("zeta", [0.05, 0.2, 0.45, 0.7, 0.9])
-def test_damped(zeta: float) -> None:
+def test_damped(validated: Validated, zeta: float) -> None:
     """Peak and restitution of a damped snap that never pushes; fast, so that gravity does not count."""
     i = snap(0.5, zeta)
     speed = i["tug[1].speed"]
-    assert i["tug[1].peak"] == pytest.approx(oscillators.damped_snap_peak(speed, STIFFNESS, REDUCED, zeta), rel=5e-3)
+    expected = oscillators.damped_snap_peak(speed, STIFFNESS, REDUCED, zeta)
+    formula = closed_form("v sqrt(k m_r) exp(-zeta (3 acos zeta - pi)/sqrt(1 - zeta^2)), zeta < 0.5; c v above")
+    validated(formula, "peak of a damped snap", i["tug[1].peak"], expected, "N", rel=5e-3)
     wrong = oscillators.damped_snap_peak(1.01 * speed, STIFFNESS, REDUCED, zeta)
     assert i["tug[1].peak"] != pytest.approx(wrong, rel=5e-3)
     back = -i["tether.length_rate"] / speed
-    assert back == pytest.approx(oscillators.snap_restitution(zeta), rel=5e-3)
+    formula = closed_form("exp(-2 zeta acos zeta/sqrt(1 - zeta^2))")
+    validated(formula, "restitution of a damped snap", back, oscillators.snap_restitution(zeta), rel=5e-3)
     assert back != pytest.approx(oscillators.snap_restitution(zeta + 0.01), rel=5e-3)
 
 

@@ -1,0 +1,231 @@
+"""Numbers of ours held against numbers of others: checked where they are computed, told on one page.
+
+    python -m tests.validation
+
+runs the tests that use the fixture `validated` and writes `.readme/validation.json` and, from it,
+`.readme/validation.md`. In any other run the fixture checks the same comparisons, and that the page tells of each as it
+is: so the page says nothing that no test checks, and a test that is changed without the page fails.
+
+Checked  tests/consistency/test_validation.py
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from datetime import date
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+ROOT = Path(__file__).parents[1]
+RESULT = ROOT / ".readme" / "validation.json"
+PAGE = RESULT.with_suffix(".md")
+COMMAND = "python -m tests.validation"
+OPTION = "--validation"
+CLOSED_FORM, OTHER_CODE, EXPERIMENT = LEVELS = ("closed form", "code against code", "experiment")
+
+Row = dict[str, Any]
+Numbers = float | Sequence[float] | npt.NDArray[np.float64]
+
+
+class Source(NamedTuple):
+    """Where a number comes from that is not ours: one of LEVELS, and the formula, program or publication."""
+
+    level: str
+    name: str
+
+
+def closed_form(formula: str) -> Source:
+    return Source(CLOSED_FORM, formula)
+
+
+def other_code(which: str) -> Source:
+    return Source(OTHER_CODE, which)
+
+
+def experiment(publication: str) -> Source:
+    return Source(EXPERIMENT, publication)
+
+
+class Validated:
+    """Comparisons of one test: `validated(closed_form("F L/EA"), "stretch", found, expected, "m", rel=1e-6)`.
+
+    Exactly one of the tolerances is given:
+
+    rel      largest difference, as a share of what is expected
+    abs      largest difference, in the unit; may be an array
+    within   lowest and highest value, None where there is no end; then nothing else is expected
+
+    Numbers may be arrays: each is checked, and the one nearest to its tolerance is told.
+    """
+
+    def __init__(self, test: str, stored: Mapping[tuple[str, str], Sequence[Row]], folder: Path | None = None) -> None:
+        self.test, self.stored, self.folder = test, stored, folder
+
+    def __call__(
+        self,
+        source: Source,
+        what: str,
+        found: Numbers,
+        expected: Numbers | None = None,
+        unit: str = "",
+        *,
+        rel: float | None = None,
+        abs: Numbers | None = None,
+        within: tuple[float | None, float | None] | None = None,
+    ) -> None:
+        if source.level not in LEVELS:
+            raise ValueError(f"{source.level}: a level is one of {', '.join(LEVELS)}")
+        if sum(kind is not None for kind in (rel, abs, within)) != 1 or (expected is None) != (within is not None):
+            raise ValueError("a comparison has what is expected and one of rel and abs, or within alone")
+        row: Row = {"level": source.level, "what": what, "source": source.name, "unit": unit, "test": self.test}
+        row |= _inside(found, within) if within is not None else _near(found, expected, rel, abs)
+        told = f"{what}: {row['found']!r} {unit}, expected {row['expected']!r}, tolerance {row['tolerance']!r}"
+        assert row["share"] <= 1.0, told
+        if self.folder is not None:
+            _append(self.folder, row)
+        else:
+            _told_as_it_is(row, self.stored.get((self.test, what)))
+
+
+def _near(found: Numbers, expected: Numbers | None, rel: float | None, abs: Numbers | None) -> Row:
+    ours, theirs = np.broadcast_arrays(np.asarray(found, float), np.asarray(expected, float))
+    allowed = np.broadcast_to(np.abs(theirs) * rel if rel is not None else np.asarray(abs, float), ours.shape)
+    assert ours.size, "nothing to compare"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(ours == theirs, 0.0, np.abs(ours - theirs) / allowed).ravel()
+    share[np.isnan(share)] = np.inf  # a number that is none agrees with nothing
+    worst = int(share.argmax())
+    tolerance = {"rel": rel} if rel is not None else {"abs": float(allowed.ravel()[worst])}
+    return {
+        "expected": float(theirs.ravel()[worst]),
+        "found": float(ours.ravel()[worst]),
+        "tolerance": tolerance,
+        "share": float(share[worst]),
+        "of": ours.size,
+    }
+
+
+def _inside(found: Numbers, within: tuple[float | None, float | None]) -> Row:
+    ours = np.asarray(found, float).ravel()
+    low, high = within
+    ends = [end for end in within if end is not None]
+    assert ours.size, "nothing to compare"
+    inside = (ours >= (-np.inf if low is None else low)) & (ours <= (np.inf if high is None else high))
+    nearest = np.min([np.abs(ours - end) for end in ends], axis=0)
+    half = 0.5 * (ends[1] - ends[0]) if len(ends) == 2 else np.abs(ends[0]) + nearest
+    share = np.where(inside, 1.0 - nearest / np.maximum(half, np.finfo(float).tiny), np.inf)
+    worst = int(share.argmax())
+    return {
+        "expected": None,
+        "found": float(ours[worst]),
+        "tolerance": {"within": [low, high]},
+        "share": max(0.0, float(share[worst])),
+        "of": ours.size,
+    }
+
+
+def _append(folder: Path, row: Row) -> None:
+    """One file for each process of a run: nobody writes into another's."""
+    with (folder / f"{os.environ.get('PYTEST_XDIST_WORKER', 'main')}.jsonl").open("a", encoding="utf-8") as file:
+        file.write(json.dumps(row) + "\n")
+
+
+def _told_as_it_is(row: Row, stored: Sequence[Row] | None) -> None:
+    """That the stored result holds this comparison: same source, unit and tolerance, and the same number expected."""
+    told = [one for one in stored or () if all(one[key] == row[key] for key in ("level", "source", "unit"))]
+    assert any(_same(row, one) for one in told), (
+        f"{row['test']}: the validation page does not tell '{row['what']}' as it is here; `{COMMAND}` writes it anew"
+    )
+
+
+def _same(row: Row, stored: Row) -> bool:
+    """Tolerances to rounding, numbers to half a tolerance each: what is expected may have been computed too."""
+    if row["tolerance"].keys() != stored["tolerance"].keys():
+        return False
+    if "within" in row["tolerance"]:
+        return bool(row["tolerance"] == stored["tolerance"])
+    if "rel" in row["tolerance"] and row["tolerance"] != stored["tolerance"]:
+        return False
+    if row["of"] > 1:
+        return bool(row["of"] == stored["of"])  # the worst of many may be another one
+    return abs(row["expected"] - stored["expected"]) <= max(allowed(row), allowed(stored))
+
+
+def allowed(row: Row) -> float:
+    tolerance = row["tolerance"]
+    return float(tolerance["abs"] if "abs" in tolerance else tolerance["rel"] * abs(row["expected"]))
+
+
+@cache
+def stored_rows() -> Mapping[tuple[str, str], Sequence[Row]]:
+    """Rows of the stored result by test and what is compared; empty before there is one."""
+    rows: dict[tuple[str, str], list[Row]] = {}
+    for row in json.loads(RESULT.read_text(encoding="utf-8"))["rows"] if RESULT.is_file() else ():
+        rows.setdefault((row["test"], row["what"]), []).append(row)
+    return rows
+
+
+def keep_validating(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """With the option, of all tests those that compare."""
+    if config.getoption(OPTION) is None:
+        return
+    kept = [item for item in items if "validated" in getattr(item, "fixturenames", ())]
+    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+    items[:] = kept
+
+
+def gathered(folder: Path) -> list[Row]:
+    """Rows of all processes: by file, and within it as the tests run, which one process does."""
+    lines = [line for file in sorted(folder.glob("*.jsonl")) for line in file.read_text(encoding="utf-8").splitlines()]
+    return sorted(map(json.loads, lines), key=lambda row: str(row["test"]).partition("::")[0])
+
+
+def result(rows: Sequence[Row]) -> dict[str, Any]:
+    """What is stored: rows of a run, and what made them."""
+    return {
+        "command": COMMAND,
+        "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")},
+        "date": date.today().isoformat(),
+        "rows": list(rows),
+    }
+
+
+def write(stored: Mapping[str, Any]) -> None:
+    """The result, a row a line, and its page."""
+    from tests.validation_page import render
+
+    rows = ",\n".join(json.dumps(row) for row in stored["rows"])
+    head = json.dumps({key: value for key, value in stored.items() if key != "rows"}, indent=1)
+    RESULT.write_text(head.removesuffix("\n}") + ',\n "rows": [\n' + rows + "\n]}\n", encoding="utf-8")
+    PAGE.write_text(render(stored), encoding="utf-8")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog=COMMAND, description="Run the comparisons and write the validation page.")
+    parser.add_argument("-n", default="auto", metavar="PROCESSES", help="as pytest's (default: one for each core)")
+    processes = parser.parse_args(arguments).n
+    with TemporaryDirectory() as folder:
+        markers = "not bench and not release"
+        command = [sys.executable, "-m", "pytest", "-q", "-n", processes, "-m", markers, OPTION, folder]
+        done = subprocess.run(command, cwd=ROOT, check=False).returncode
+        if done == 0:
+            write(result(gathered(Path(folder))))
+        else:
+            print("Not every comparison holds: the page stays as it was.", file=sys.stderr)
+    return done
+
+
+if __name__ == "__main__":
+    sys.exit(main())
