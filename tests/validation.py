@@ -218,12 +218,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     processes = parser.parse_args(arguments).n
     with TemporaryDirectory() as folder:
         markers = "not bench and not release"
-        command = [sys.executable, "-m", "pytest", "-q", "-n", processes, "-m", markers, OPTION, folder]
+        command = [sys.executable, "-m", "pytest", "-q", "-n", processes, "-m", markers, f"{OPTION}={folder}", "tests"]
         done = subprocess.run(command, cwd=ROOT, check=False).returncode
         if done == 0:
             write(result(gathered(Path(folder))))
         else:
-            print("Not every comparison holds: the page stays as it was.", file=sys.stderr)
+            print("The run has failed: the page stays as it was.", file=sys.stderr)
     return done
 
 

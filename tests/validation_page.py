@@ -166,10 +166,11 @@ def cells(row: Row) -> list[str]:
     difference = abs(found - expected)
     if "abs" in tolerance:
         step = tolerance["abs"]
-        return [number(expected, step), number(found, step), small(difference), small(step)]
+        told = number(found, step) if expected else small(found)
+        return [number(expected, step), told, small(difference), small(step)]
     step, share = tolerance["rel"] * abs(expected), difference / abs(expected) if difference else 0.0
-    told = (100.0, " %") if tolerance["rel"] >= 1e-4 else (1.0, " relative")
-    both = [small(told[0] * part, told[1]) for part in (share, tolerance["rel"])]
+    scale = (100.0, " %") if tolerance["rel"] >= 1e-4 else (1.0, " relative")
+    both = [small(scale[0] * part, scale[1]) for part in (share, tolerance["rel"])]
     return [number(expected, step), number(found, step), *both]
 
 
