@@ -3,8 +3,9 @@
     python -m tests.validation
 
 runs the tests that use the fixture `validated` and writes `.readme/validation.json` and, from it,
-`.readme/validation.md`. In any other run the fixture checks the same comparisons, and that the page tells of each as it
-is: so the page says nothing that no test checks, and a test that is changed without the page fails.
+`.readme/validation.md`; the extra `peers` has to be installed. In any other run the fixture checks the same comparisons,
+and that the page tells of each as it is: so the page says nothing that no test checks, and a test that is changed
+without the page fails.
 
 Checked  tests/consistency/test_validation.py
 """
@@ -20,6 +21,7 @@ from collections.abc import Mapping, Sequence
 from datetime import date
 from functools import cache
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -213,9 +215,15 @@ def write(stored: Mapping[str, Any]) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
+    from dcone_cosim.accuracy.peers import PEERS
+
     parser = argparse.ArgumentParser(prog=COMMAND, description="Run the comparisons and write the validation page.")
     parser.add_argument("-n", default="auto", metavar="PROCESSES", help="as pytest's (default: one for each core)")
     processes = parser.parse_args(arguments).n
+    missing = {peer.package for kind in PEERS.values() for peer in kind if find_spec(peer.package) is None}
+    if missing:
+        told = "their rows would be lost; pip install -e '.[test,peers]' brings them"
+        parser.error(f"not installed: {', '.join(sorted(missing))}: {told}")
     with TemporaryDirectory() as folder:
         markers = "not bench and not release"
         command = [sys.executable, "-m", "pytest", "-q", "-n", processes, "-m", markers, f"{OPTION}={folder}", "tests"]

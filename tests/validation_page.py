@@ -32,7 +32,7 @@ NO_EXPERIMENT = """No measured number is compared yet. None of the experiments b
 read, with enough of its set-up to be computed without guessing."""
 
 SUBJECTS = {
-    "Net and capture": ("tests/net_capture/", "tests/benchmarks/"),
+    "Net and capture": ("tests/net_capture/", "tests/benchmarks/", "tests/accuracy/test_peers"),
     "Tow and reel": (
         "tests/tethered_deorbit/",
         "tests/reel_control/",
