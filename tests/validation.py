@@ -3,9 +3,9 @@
     python -m tests.validation
 
 runs the tests that use the fixture `validated` and writes `.readme/validation.json` and, from it,
-`.readme/validation.md`; the extra `peers` has to be installed. In any other run the fixture checks the same comparisons,
-and that the page tells of each as it is: so the page says nothing that no test checks, and a test that is changed
-without the page fails.
+`.readme/validation.md`; the extra `peers` has to be installed. In any other run the fixture checks the same
+comparisons, and that the page tells of each as it is: so the page says nothing that no test checks, and a test that is
+changed without the page fails.
 
 Checked  tests/consistency/test_validation.py
 """

@@ -133,9 +133,9 @@ def function(test: str) -> str:
 
 def merged(rows: Iterable[Row]) -> list[Row]:
     """One row for all cases of a test that compare the same: the one nearest to its tolerance, and of how many."""
-    found: dict[tuple[str, str], Row] = {}
+    found: dict[tuple[str, str, str], Row] = {}
     for row in rows:
-        key = (function(row["test"]), row["what"])
+        key = (function(row["test"]), row["what"], row["source"])
         before = found.get(key)
         worst = row if before is None or row["share"] >= before["share"] else before
         found[key] = worst | {"of": row["of"] + (before["of"] if before else 0)}
