@@ -18,6 +18,7 @@ from orbital.kepler import propagate
 from orbital.kernel import kernel
 from orbital.twobody import two_body_acceleration
 from tests.plain import plain
+from tests.validation import Validated, closed_form, other_code
 
 __all__ = ["plain"]
 
@@ -152,9 +153,9 @@ def within_a_step(said: Said) -> tuple[float, float, float]:
 
 @each
 @uncompiled
-def test_order(name: str) -> None:
-    said = SCHEMES[name]
-    assert after_a_revolution(said) == pytest.approx(said.order, abs=0.1)
+def test_order(validated: Validated, name: str) -> None:
+    said, orbit = SCHEMES[name], closed_form("Kepler's ellipse after a revolution")
+    validated(orbit, f"{name}: order of the error", after_a_revolution(said), said.order, abs=0.1)
 
 
 @each
@@ -434,7 +435,7 @@ def test_estimated_error(name: str) -> None:
 
 
 @uncompiled
-def test_size_of_the_estimated_error() -> None:
+def test_size_of_the_estimated_error(validated: Validated) -> None:
     """That of another implementation of the scheme, which takes the mean over the components where `squared` sums."""
     scheme, low, high = SCHEMES["dop853"].make(kepler, squared, SIZE), np.zeros(SIZE), np.zeros(SIZE)
     peer = DOP853(lambda _, state: state, 0.0, START, 1.0)
@@ -443,7 +444,7 @@ def test_size_of_the_estimated_error() -> None:
         error = scheme.error(np.zeros(1), end, step, stages, low, high)
         rows = stages[: 13 * SIZE].reshape(-1, SIZE)
         expected = math.sqrt(SIZE) * peer._estimate_error_norm(rows, step, np.ones(SIZE))
-        assert error == pytest.approx(expected, rel=1e-9, abs=0.0)
+        validated(other_code("scipy's DOP853"), "dop853: estimated error of one step", error, expected, rel=1e-9)
 
 
 def divided(nodes: Any, values: Any) -> Any:
@@ -466,7 +467,7 @@ def test_size_of_the_estimated_error_of_gauss() -> None:
 
 
 @uncompiled
-def test_radau_is_that_of_another_implementation() -> None:
+def test_radau_is_that_of_another_implementation(validated: Validated) -> None:
     """State after one step and its estimated error, of scipy's Radau with the same step, on the orbit."""
 
     def rates(_: float, state: Any) -> Any:
@@ -479,7 +480,7 @@ def test_radau_is_that_of_another_implementation() -> None:
         scheme = SCHEMES["radau"].make(kepler, strict, SIZE)
         _, end, stages = steps_of(kepler, scheme, START, peer.t)
         assert peer.t == step
-        assert end == pytest.approx(peer.y, abs=1e-13)
+        validated(other_code("scipy's Radau"), "radau: state after one step on an orbit", end, peer.y, abs=1e-13)
         stages[-1] = 0.0
         squared_scheme = SCHEMES["radau"].make(kepler, squared, SIZE)
         error = squared_scheme.error(np.zeros(1), end, step, stages, np.zeros(SIZE), np.zeros(SIZE))
