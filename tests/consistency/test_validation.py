@@ -5,6 +5,7 @@ import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -136,6 +137,71 @@ def test_the_page_must_tell_of_it_as_it_is(tmp_path: Path) -> None:
             Validated(TEST, kept)(source, what, expected, expected, unit, **tolerance)
     with pytest.raises(AssertionError, match="does not tell"):
         Validated(TEST + "_other", kept)(HALF, "half", 0.5, 0.5, "m", rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("expected", "tolerance", "changed", "told"),
+    [
+        (0.5, {"abs": 1e-3}, (0.5, {"abs": 1.0005e-3}), True),  # computed, elsewhere
+        (0.5, {"abs": 1e-3}, (0.5, {"abs": 2e-3}), False),
+        (0.5, {"abs": 1e-3}, (0.5015, {"abs": 1e-3}), False),
+        (None, {"within": (0.4, 0.6)}, (None, {"within": (0.4, 0.7)}), False),
+        (None, {"within": (0.4, None)}, (None, {"within": (0.4, None)}), True),
+        ([0.5, 0.5], {"rel": 1e-3}, ([0.5, 0.5, 0.5], {"rel": 1e-3}), False),
+        ([0.5, 0.7], {"rel": 1e-3}, ([0.5, 0.8], {"rel": 1e-3}), True),  # a course may end elsewhere
+        ([0.5, 0.7], {"rel": 1e-3}, ([0.5, 0.7], {"rel": 1e-2}), False),
+        ([0.5, 0.7], {"abs": 1e-3}, ([0.5, 0.7], {"abs": 1e-2}), False),
+        ([0.5, 0.7], {"abs": [1e-3, 1e-3]}, ([0.5, 0.7], {"abs": [1e-3, 1e-2]}), True),
+    ],
+)
+def test_what_of_a_comparison_is_told(
+    tmp_path: Path, expected: Any, tolerance: dict[str, Any], changed: tuple[Any, dict[str, Any]], told: bool
+) -> None:
+    recording(tmp_path)(HALF, "half", 0.5 if expected is None else expected, expected, **tolerance)
+    kept = {(TEST, "half"): validation.gathered(tmp_path)}
+    other, its = changed
+    if told:
+        Validated(TEST, kept)(HALF, "half", 0.5 if other is None else other, other, **its)
+    else:
+        with pytest.raises(AssertionError, match="does not tell"):
+            Validated(TEST, kept)(HALF, "half", 0.5 if other is None else other, other, **its)
+
+
+def test_with_the_option_only_comparing_tests_are_run() -> None:
+    items: list[Any] = [SimpleNamespace(fixturenames=names) for names in (["validated"], ["shoot"], [])]
+    items.append(SimpleNamespace())  # not every item is a function
+    dropped: list[Any] = []
+    hook = SimpleNamespace(pytest_deselected=lambda items: dropped.extend(items))
+    for folder, kept in ((None, 4), (Path("x"), 1)):
+        config: Any = SimpleNamespace(getoption={validation.OPTION: folder}.__getitem__, hook=hook)
+        validation.keep_validating(config, items)
+        assert (len(items), len(dropped)) == (kept, 4 - kept)
+    assert items[0].fixturenames == ["validated"]
+
+
+@pytest.mark.parametrize("outcome", [0, 1])
+def test_the_page_is_written_after_a_run_that_holds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], outcome: int
+) -> None:
+    def run(command: list[str], **_: Any) -> Any:
+        (folder,) = (each.partition("=")[2] for each in command if each.startswith(validation.OPTION))
+        recording(Path(folder), "tests/orbital/test_half.py::test_half")(HALF, "half", 0.5, 0.5, rel=1e-3)
+        return SimpleNamespace(returncode=outcome)
+
+    monkeypatch.setattr("tests.validation.subprocess.run", run)
+    monkeypatch.setattr(validation, "find_spec", lambda name: object())
+    monkeypatch.setattr(validation, "RESULT", tmp_path / "validation.json")
+    monkeypatch.setattr(validation, "PAGE", tmp_path / "validation.md")
+    assert validation.main([]) == outcome
+    assert {path.name for path in tmp_path.iterdir()} == (set() if outcome else {"validation.json", "validation.md"})
+    assert ("stays as it was" in capsys.readouterr().err) == bool(outcome)
+    if outcome == 0:
+        assert validation.PAGE.read_text(encoding="utf-8") == validation_page.render(stored())
+        assert [row["what"] for row in stored()["rows"]] == ["half"]
+    monkeypatch.setattr(validation, "find_spec", lambda name: None)
+    with pytest.raises(SystemExit):
+        validation.main([])
+    assert "pip install -e '.[test,peers]'" in capsys.readouterr().err
 
 
 def test_rows_of_several_processes_and_cases_become_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
