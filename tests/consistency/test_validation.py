@@ -147,6 +147,8 @@ def test_the_page_must_tell_of_it_as_it_is(tmp_path: Path) -> None:
         (0.5, {"abs": 1e-3}, (0.5015, {"abs": 1e-3}), False),
         (None, {"within": (0.4, 0.6)}, (None, {"within": (0.4, 0.7)}), False),
         (None, {"within": (0.4, None)}, (None, {"within": (0.4, None)}), True),
+        (None, {"within": (0.4, None)}, (None, {"within": (0.3999, None)}), False),
+        (None, {"within": (0.4, None)}, (None, {"within": (0.4, 0.6)}), False),
         ([0.5, 0.5], {"rel": 1e-3}, ([0.5, 0.5, 0.5], {"rel": 1e-3}), False),
         ([0.5, 0.7], {"rel": 1e-3}, ([0.5, 0.8], {"rel": 1e-3}), True),  # a course may end elsewhere
         ([0.5, 0.7], {"rel": 1e-3}, ([0.5, 0.7], {"rel": 1e-2}), False),

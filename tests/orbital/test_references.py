@@ -194,3 +194,10 @@ def test_eclipse(validated):
     assert references.eclipse_fraction(RADIUS, math.radians(62.70), EARTH_EQUATORIAL_RADIUS) == 0.0
     assert references.eclipse_fraction(RADIUS, math.radians(62.68), EARTH_EQUATORIAL_RADIUS) > 0.0
     assert references.eclipse_fraction(RADIUS, math.pi / 2, EARTH_EQUATORIAL_RADIUS) == 0.0
+    low, high = 0.0, math.pi / 2
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        dark = references.eclipse_fraction(RADIUS, middle, EARTH_EQUATORIAL_RADIUS) > 0.0
+        low, high = (middle, high) if dark else (low, middle)
+    what = "height of the Sun from which no orbit at 800 km is in shadow"
+    validated(closed_form("cos beta = sqrt(1 - (R/a)^2)"), what, math.degrees(low), 62.69, "deg", abs=0.01)
