@@ -81,14 +81,14 @@ def open_experiments() -> tuple[Open, ...]:
             "is a video, but no tracks taken from it that could be read",
         ),
         Open(
-            "PATENDER, parabolic flights (2015)",
-            "knots of nets tracked in three dimensions by fast cameras, made to judge a simulator",
-            "the tracks, and with them the initial state of each shot",
+            "PATENDER, parabolic flights",
+            "a simulator of nets was judged by them (Cercos, Stefanescu, Medina and others)",
+            "the tables could not be read: net, initial state of each shot, tracks",
         ),
         Open(
-            "ADRiNET, tracks of knots",
-            "nets shot and filmed, with their knots reconstructed",
-            "the tracks and the table of net and shot",
+            "ADRiNET, tracks",
+            "tracks of a net that was shot were taken",
+            "the tables could not be read: net, shot, tracks",
         ),
         Open(
             "Si et al. (2021), one edge closed by a thread through rings",

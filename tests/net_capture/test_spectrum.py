@@ -16,6 +16,7 @@ from fmu_src.net_capture.planes import MASS, SHOWN
 from orbital.oscillators import explicit_step_limit
 from tests.conftest import CAPTURE
 from tests.net_capture.memory import graph, planes, shown
+from tests.validation import closed_form
 
 INSTANTS = (3.0, 6.0, 9.0, 11.0, 12.5, 13.5, 14.5, 15.3)
 
@@ -66,7 +67,7 @@ def test_no_instant_of_a_capture_is_faster_than_the_bound_allows(seen):
     assert min(limits) < 2.6 * bound
 
 
-def test_a_net_drawn_taut_comes_to_the_bound():
+def test_a_net_drawn_taut_comes_to_the_bound(validated):
     """All threads of a knot taut, as the bound has it: the spectrum of the same net, stretched by a thousandth."""
     net = Instance(MODEL, CAPTURE, {"net.damping_ratio": 0.0}).initialise()
     grid = np.arange(25.0)
@@ -79,5 +80,7 @@ def test_a_net_drawn_taut_comes_to_the_bound():
     threads = {name: term for name, term in CAPTURE.items() if name != "closing"}
     bound, _ = substeps(values, threads)
     # the bound lets all threads of a knot lie along one line; here two of four do, at the edge with less mass
-    assert explicit_step_limit(omega**2, 0.0) / bound == pytest.approx(np.sqrt(2.0 * 0.75), rel=0.01)
+    found, expected = explicit_step_limit(omega**2, 0.0) / bound, float(np.sqrt(2.0 * 0.75))
+    edge = closed_form("sqrt(2 x 3/4): half the threads along a line, three quarters of the mass")
+    validated(edge, "net drawn taut: limit of its spectrum over the bound of the step", found, expected, rel=0.01)
     assert net["solver.stability_bound"] <= bound  # the cord's is another matter: test_formulas.py

@@ -18,6 +18,7 @@ from tests.net_capture.evidence import schemes as evidence
 from tests.net_capture.taut_net import Reference
 from tests.net_capture.taut_pair import PER_MASS, matrix_of, pair, state
 from tests.net_capture.test_schemes import begin, with_substeps
+from tests.validation import closed_form
 
 ROS2, XPBD = FREE | {"solver": "ros2"}, FREE | {"solver": "xpbd"}
 SCENE = """
@@ -48,26 +49,30 @@ def euler_factor(z):
     return np.linalg.inv(np.eye(2) - z)
 
 
+TOLD = {"ros2": "(1 + (1 - 2 gamma) z)/(1 - gamma z)^2", "xpbd": "1/(1 - z)"}
 FACTORS = {"ros2": ros2_factor, "xpbd": euler_factor}
 
 
 @pytest.mark.parametrize("scheme", FACTORS)
 @pytest.mark.parametrize("ratio", [0.0, 0.5, 10.0, 1000.0])
 @pytest.mark.parametrize("times", [0.3, 30.0])
-def test_a_taut_thread_follows_the_schemes_own_factor(scheme, ratio, times):
+def test_a_taut_thread_follows_the_schemes_own_factor(validated, scheme, ratio, times):
     """One substep of two masses is R(h A), h 0.3 and 30 times the leapfrog's bound."""
     start = np.array([1e-3, 0.05])
     net = pair(scheme, *start, {"net.damping_ratio": ratio, "solver.step_ratio": times})
     h = net["solver.substep"]
     net.step(h)
-    np.testing.assert_allclose(state(net), FACTORS[scheme](h * matrix_of(ratio)) @ start, rtol=1e-6, atol=1e-12)
+    expected = FACTORS[scheme](h * matrix_of(ratio)) @ start
+    for name, unit, found, exact in zip(("stretch", "its rate"), ("m", "m/s"), state(net), expected, strict=True):
+        what = f"{scheme}: a taut thread after a substep of 0.3 and 30 times the leapfrog's bound, {name}"
+        validated(closed_form(TOLD[scheme]), what, float(found), float(exact), unit, abs=1e-12 + 1e-6 * abs(exact))
     # the twin: a spring and a dashpot that are off by a thousandth
     off = FACTORS[scheme](1.001 * h * matrix_of(ratio)) @ start
     assert not np.allclose(state(net), off, rtol=1e-6, atol=1e-12)
 
 
 @pytest.mark.parametrize(("scheme", "error"), [("ros2", 2e-3), ("xpbd", 0.15)])
-def test_an_overdamped_thread_stops_its_ends(scheme, error):
+def test_an_overdamped_thread_stops_its_ends(validated, scheme, error):
     """s = w (exp(-p t) - exp(-q t)) / (q - p) while its tension is positive, p and q 500 times apart: at half as much
     again as the leapfrog's bound, where a quarter of the rate goes in a substep, the largest stretch is followed, as
     far as the order goes."""
@@ -81,7 +86,9 @@ def test_an_overdamped_thread_stops_its_ends(scheme, error):
     assert steps < 30
     net.step(steps * h)
     expected = rate * (math.exp(-slow * steps * h) - math.exp(-fast * steps * h)) / (fast - slow)
-    assert state(net)[0] == pytest.approx(expected, rel=error)
+    formula = closed_form("w (exp(-p t) - exp(-q t))/(q - p)")
+    what = f"{scheme}: stretch of an overdamped thread at 1.5 times the leapfrog's bound"
+    validated(formula, what, float(state(net)[0]), expected, "m", rel=error)
     # all of the energy of the two masses is the dashpot's
     assert net["thread.dissipated"] == pytest.approx(0.5 * rate**2 / PER_MASS, rel=0.05)
 
