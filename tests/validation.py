@@ -141,6 +141,7 @@ def _inside(found: Numbers, within: tuple[float | None, float | None]) -> Row:
 
 def _append(folder: Path, row: Row) -> None:
     """One file for each process of a run: nobody writes into another's."""
+    folder.mkdir(parents=True, exist_ok=True)
     with (folder / f"{os.environ.get('PYTEST_XDIST_WORKER', 'main')}.jsonl").open("a", encoding="utf-8") as file:
         file.write(json.dumps(row) + "\n")
 
