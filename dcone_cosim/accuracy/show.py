@@ -103,7 +103,7 @@ def _reference(axis: Axis, chaotic: bool) -> str:
     if chaotic:
         text += " (means over the runs, scatter included)"
     orders = ", ".join(f"{family} {order:.2f}" for family, order in axis.orders.items())
-    return text + (f"; observed order: {orders}" if orders else "")
+    return text + (f"; errors go with the power of the size: {orders}" if orders else "")
 
 
 def _worst_of(report: Report, point: Judged) -> str:

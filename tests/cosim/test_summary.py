@@ -337,5 +337,5 @@ def test_what_a_person_reads_is_the_si_value_in_another_unit(
 def test_every_unit_that_a_person_reads_is_as_large_as_astropy_has_it() -> None:
     import astropy.units as u
 
-    si = {"mm/s": u.m / u.s, "km": u.m, "m/day": u.m / u.s}
+    si = {"%": u.one, "mm/s": u.m / u.s, "km": u.m, "m/day": u.m / u.s}
     assert {name: u.Unit(name).to(si[name]) for name in SHOWN_IN} == pytest.approx(SHOWN_IN, rel=1e-14)

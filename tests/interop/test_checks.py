@@ -18,6 +18,7 @@ from tests.interop.measure import TOOLS
 
 pytestmark = [pytest.mark.interop, pytest.mark.slow]
 
+MOST = "625"
 SPOILT = {
     "two variables of one name": (rb'name="solver\.steps"', b'name="solver.rejected"'),
     "a start value for an output": (rb'(<ScalarVariable [^>]*name="solver\.steps"[^>]*>\s*<Integer)', rb'\1 start="0"'),
@@ -51,13 +52,17 @@ def spoil(how: str, folder: Path) -> Path:
 
 
 def every_fmu() -> dict[str, tuple[str, dict[str, str]]]:
-    """Model and terms of every FMU of every shipped scene, each once, and of a reel control without a motor."""
+    """Model and terms of every FMU of every shipped scene, each once, and of a reel control without a motor; with
+    outputs for 625 nodes at most, since a check reads every variable."""
     found: dict[str, tuple[str, dict[str, str]]] = {}
     for name in shipped():
         for phase in load(name).phases:
             for c in phase.components:
-                if (c.model, c.terms) not in found.values():
-                    found[f"{name} {c.name}"] = (c.model, dict(c.terms))
+                terms = {
+                    group: min(term, MOST, key=len) if group == "nodes" else term for group, term in c.terms.items()
+                }
+                if (c.model, terms) not in found.values():
+                    found[f"{name} {c.name}"] = (c.model, terms)
     return found | {"reel control without motor": ("reel_control", {})}
 
 

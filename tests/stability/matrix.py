@@ -1,8 +1,8 @@
-"""The whole matrix of the shipped scenes: every scheme at every extreme.
+"""The whole matrix of a scene: every scheme at every extreme.
 
-    python -m tests.stability.matrix [FILE]
+    python -m tests.stability.matrix table2-deorbit
 
-makes `matrix.json` again (or FILE), half an hour on two cores. It is `dcone stability` with time enough for all cases.
+makes `table2-deorbit.json` again, some minutes on two cores. It is `dcone stability` with time enough for all cases.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dcone_cosim.progress import Lines
 from dcone_cosim.stability import commands, show
 from dcone_cosim.stability.show import Matrix
 
-RESULT = Path(__file__).with_name("matrix.json")
+RESULTS = Path(__file__).with_name("results")
 COMMAND = "python -m tests.stability.matrix"
 TIME = 3.0 * 3600.0
 
@@ -38,17 +38,19 @@ def told(one: Matrix) -> dict[str, Any]:
     return {"cells": cells, "refused": shares, "sentences": list(show.sentences(one))}
 
 
-def main(path: Path = RESULT, folder: Path | None = None) -> None:
+def main(scene: str, folder: str = "") -> None:
     with tempfile.TemporaryDirectory() as made:
-        done = commands.stability(None, folder or Path(made) / "matrix", Lines(), budget=TIME)
+        out = Path(folder) if folder else Path(made) / "matrix"
+        done = commands.stability(scene, out, Lines(), commands.SHIPPED[scene], budget=TIME)
     result = {
-        "command": COMMAND,
+        "command": f"{COMMAND} {scene}",
         "dcone-cosim": version("dcone-cosim"),
         "limit": {"value": commands.LIMIT, "unit": "s"},
         "phases": {f"{one.plan.scene.name}.{one.plan.phase}": told(one) for one in done.matrices},
     }
-    path.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    RESULTS.mkdir(exist_ok=True)
+    (RESULTS / f"{scene}.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    main(*sys.argv[1:])

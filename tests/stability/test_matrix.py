@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from dcone_cosim.stability.judge import ACCURATE, BOUND, EXCLUDED, FAILED, LEFT, REFUSED, STABLE
-from tests.stability.matrix import COMMAND, RESULT, main
-
-pytestmark = pytest.mark.evidence
+from tests.stability.matrix import COMMAND, RESULTS
 
 
 def cells(result: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
@@ -39,40 +36,22 @@ def unexplained(result: dict[str, Any]) -> list[str]:
     return found
 
 
-@pytest.fixture(scope="module")
-def stored() -> dict[str, Any]:
-    result: dict[str, Any] = json.loads(RESULT.read_text(encoding="utf-8"))
-    assert result["command"] == COMMAND
+@pytest.fixture(params=["table2-deorbit"])
+def stored(request: pytest.FixtureRequest) -> dict[str, Any]:
+    result: dict[str, Any] = json.loads((RESULTS / f"{request.param}.json").read_text(encoding="utf-8"))
+    assert result["command"] == f"{COMMAND} {request.param}"
     return result
 
 
 def test_no_cell_is_red_or_unexplained(stored: dict[str, Any]) -> None:
     assert unexplained(stored) == []
-    assert sum(1 for _ in cells(stored)) > 150
+    assert sum(1 for _ in cells(stored)) > 100
 
 
 def test_a_red_cell_is_noticed(stored: dict[str, Any]) -> None:
     """The twin."""
     extreme, scheme, cell = next(cells(stored))
-    cell = dict(cell)
     phase = next(iter(stored["phases"].values()))
-    kept = phase["cells"][extreme][scheme]
-    try:
-        for change in ({"kind": FAILED}, {"kind": REFUSED, "why": "no"}, {"kind": STABLE, "why": ""}, {"kind": LEFT}):
-            phase["cells"][extreme][scheme] = {**cell, **change}
-            assert len(unexplained(stored)) == 1, change
-    finally:
-        phase["cells"][extreme][scheme] = kept
-
-
-def test_what_is_refused_is_told_per_scheme(stored: dict[str, Any]) -> None:
-    for phase in stored["phases"].values():
-        for scheme, share in phase["refused"].items():
-            own = [by[scheme]["kind"] for by in phase["cells"].values()]
-            assert share == {"refused": own.count(REFUSED), "of": len(own) - own.count(EXCLUDED)}
-
-
-def test_the_matrix_comes_out_so_again(stored: dict[str, Any], tmp_path: Path) -> None:
-    main(tmp_path / "again.json")
-    again = json.loads((tmp_path / "again.json").read_text(encoding="utf-8"))
-    assert unexplained(again) == []
+    for change in ({"kind": FAILED}, {"kind": REFUSED, "why": "no"}, {"kind": STABLE, "why": ""}, {"kind": LEFT}):
+        phase["cells"][extreme][scheme] = {**cell, **change}
+        assert len(unexplained(stored)) == 1, change
