@@ -299,8 +299,8 @@ def own(points: Sequence[Judged]) -> list[Judged]:
 
 
 def better_peers(points: Sequence[Judged]) -> list[Judged]:
-    """Settings of other programs that no setting of ours is as cheap and as exact as."""
-    peers = [p for p in points if p.setting.peer and math.isfinite(p.bound)]
+    """Settings of other programs that no setting of ours is as cheap and as exact as; what is far off is no answer."""
+    peers = [p for p in points if p.setting.peer and p.bound < SMALL]
     ours = own(points)
     return [p for p in peers if not any(q.bound <= p.bound and q.sample.cpu <= p.sample.cpu for q in ours)]
 
