@@ -11,8 +11,11 @@ from dcone_cosim.plots import style
 
 WIDTH = 2
 """Panels side by side."""
-COLOURS = ("#1f4e79", "#c0392b", "#2e8b57", "#b8860b", "#7d3c98", "#4a6fa5", "#8a6d3b")
-MARKS = "osD^vP*"
+COLOURS = (
+    *("#1f4e79", "#c0392b", "#2e8b57", "#b8860b", "#7d3c98", "#4a9fc5", "#8a6d3b"),
+    *("#e07b39", "#c06c9b", "#333333", "#6b8e23", "#20808d"),
+)
+MARKS = "osD^vP*Xhd<>"
 LEAST = 1e-12
 """Errors below are drawn there."""
 

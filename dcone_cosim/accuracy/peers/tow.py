@@ -309,7 +309,7 @@ def by_heyoka(values: Mapping[str, float], size: float, instants: Sequence[float
     tugs: list[Tug] = []
 
     def taut(ta: Any, _: int) -> bool:
-        if ta.pars[0] == 0.0 and line(given.numbers, ta.state)[1] > -1e-12:
+        if ta.pars[0] == 0.0:
             ta.pars[0] = 1.0
             tugs.append(Tug(float(ta.time), max(line(given.numbers, ta.state)[1], 0.0)))
         return True
