@@ -34,6 +34,11 @@ SECOND_ORDER = 1.0 / 8.0
 COVERED = 0.25
 """Share of a run's instants up to which, at least, it must stay with its twin to be compared at all."""
 BOUND = re.compile(r"\d|zero")
+_PLACE = re.compile(
+    r"^(?:line \d+: )?(?:--set \S+?=(?:\[[^]]*\]|\"[^\"]*\"|[^:]*): )?(?:[\w.\[\]]+ = (?:\[[^]]*\]|\"[^\"]*\"|\S+): )?"
+)
+_VALUE = re.compile(r"\([^()]*, value [^()]*\)\s*$")
+"""What a message says of where it is and what was given: the numbers in these are no bound."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +85,14 @@ def verdict(criteria: Sequence[Criterion], asked: str) -> Verdict:
 def refusal(message: str, asked: str = "") -> Verdict:
     """Of a case that was refused: the reason counts only with a bound in it."""
     text = message.strip()
-    if not BOUND.search(text):
+    if not names_bound(text):
         return Verdict(FAILED, f"refused without a bound: {text}")
     return Verdict(REFUSED, text)
+
+
+def names_bound(message: str) -> bool:
+    """Whether a refusal has a number that is neither where it stands nor what was given, or says what is zero."""
+    return BOUND.search(_VALUE.sub("", _PLACE.sub("", message))) is not None
 
 
 def _over(value: float, limit: float) -> float:

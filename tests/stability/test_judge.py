@@ -126,3 +126,20 @@ def test_a_line_neither_pushes_nor_is_longer_than_its_tension_makes_it() -> None
     assert red(tow(peak, 12.0 + 1.05 * peak / stiffness)) == {"longer"}
     assert red(tow(peak, tension=-0.1)) == {"pushes"}
     assert red(tow(math.nan)) >= {"finite"}
+
+
+@pytest.mark.parametrize(
+    ("message", "kind"),
+    [
+        ('line 12: capture.net.mesh = "0.1 m": must be at least 0.2 m', REFUSED),
+        ('line 12: capture.net.mesh = "0.1 m": is not possible', FAILED),
+        ("--set removal.tether.rest_length=12 m: removal.tether.rest_length = 12: cannot be", FAILED),
+        ("--set removal.tether.rest_length=12 m: removal.tether.rest_length = 12: must exceed 20 m", REFUSED),
+        ("the net is bad (net.mesh, value 0.1, at 0 s)", FAILED),
+        ('--set removal.start.relative_position=["0 m", "0 m", "0 m"]: start.relative_position is zero: no direction '
+         "(start.relative_position[1], value 0, at 0 s)", REFUSED),
+        ("too long: about 31 s (6.6e+06 steps of 4.7 us), and 20 s are allowed", REFUSED),
+    ],
+)  # fmt: skip
+def test_a_line_number_or_the_value_given_is_no_bound(message: str, kind: str) -> None:
+    assert refusal(message).kind == kind

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from dcone_cosim.stability.judge import ACCURATE, BOUND, EXCLUDED, FAILED, LEFT, REFUSED, STABLE
+from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, FAILED, LEFT, REFUSED, STABLE, names_bound
 from tests.stability.matrix import COMMAND, RESULTS
 
 
@@ -26,7 +26,7 @@ def unexplained(result: dict[str, Any]) -> list[str]:
         right = {
             ACCURATE: cell["why"] == "" and cell["asked"] in cell["measured"],
             STABLE: cell["why"] != "" and cell["asked"] in cell["measured"],
-            REFUSED: BOUND.search(cell["why"]) is not None,
+            REFUSED: names_bound(cell["why"]),
             EXCLUDED: cell["why"].startswith("goes without"),
             FAILED: False,
             LEFT: False,
