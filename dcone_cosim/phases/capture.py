@@ -139,8 +139,8 @@ class Capture(Phase):
     def criteria(self, evidence: Evidence) -> Iterator[Criterion]:
         return capture_criteria.criteria(evidence)
 
-    def rounding(self, phase: PhaseScene) -> float:
-        return capture_criteria.BOOKED[phase.main.terms.get("precision", "double")]
+    def rounding(self, phase: PhaseScene) -> float | None:
+        return capture_criteria.BOOKED.get(phase.main.terms.get("precision", "double"))
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:
         return chaos.CAPTURE

@@ -13,12 +13,13 @@ from dcone_cosim.quantities import Array
 
 ACCURATE, STABLE = 0.01, 0.05
 """Shares of the energy that came in by which the book may be off."""
-ROUNDING = {"double": (1e-9, 1e-7), "single": (5e-4, 1e-2)}
+ROUNDING = {"double": (1e-9, 1e-7), "single": (1e-4, 1e-2)}
 """Shares of momentum by which it may change, accurate and stable, by the bits of a number."""
 ON_GRID = 1.1e-3
 """Share of a substep by which a communication point may miss the grid and still be taken for on it, and a little."""
-BOOKED = {"double": 2e-6, "single": 1e-2}
-"""Shares of the energy below which what the book leaves over may be rounding."""
+BOOKED = {"double": 2e-6}
+"""Shares of the energy below which what the book leaves over may be rounding, by the bits of a number; with those that
+are not here rounding is as large as a scheme's own error, and its order cannot be seen."""
 DEPTH, DEEPEST = 2e-3, 2e-2
 """How deep a node may lie below the target's surface [m]: that up to which it counts as on it, and ten times that."""
 CATCH, SHOT = "catch", "shot.momentum"

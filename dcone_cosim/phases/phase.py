@@ -243,8 +243,8 @@ class Phase:
         """What must hold of it however stiff or extreme it is."""
         yield finite(evidence)
 
-    def rounding(self, phase: PhaseScene) -> float:
-        """Share of the energy below which an error of its book may be rounding [1]."""
+    def rounding(self, phase: PhaseScene) -> float | None:
+        """Share of the energy below which an error of its book may be rounding [1]; None where all of it may be."""
         return 2e-6
 
     def spreads(self, run: RunResult, result: PhaseResult) -> Mapping[str, float]:

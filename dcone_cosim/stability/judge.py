@@ -28,6 +28,8 @@ SAME, SAME_STABLE = 1e-9, 1e-6
 """The same of a run with other macro steps."""
 PARTED = 0.002
 """Share from which on a jittered twin of a chaotic run counts as having parted from it."""
+ORDER = "order"
+"""Criterion that compares the energy books of two steps."""
 BOOK = ("energy_gained", "energy_lost")
 SECOND_ORDER = 1.0 / 8.0
 """Share of an error that a four times finer step may leave: that of order 3/2."""
@@ -154,7 +156,7 @@ def falls(here: Sequence[Criterion], finer: Sequence[Criterion], rounding: float
     )
     left = 0.0 if other < rounding else other / mine if mine > 0.0 else math.inf
     label = "what a four times finer step leaves of the energy book's error"
-    return Criterion("order", label, left, "1", SECOND_ORDER, SECOND_ORDER)
+    return Criterion(ORDER, label, left, "1", SECOND_ORDER, SECOND_ORDER)
 
 
 def unlike(why: str) -> Criterion:

@@ -15,7 +15,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.phases import kind_of
 from dcone_cosim.quantities import spread_instants
 from dcone_cosim.scene.data import PhaseScene, Scene
-from dcone_cosim.stability.judge import EXCLUDED, LEFT, Verdict, refusal
+from dcone_cosim.stability.judge import EXCLUDED, LEFT, ORDER, Verdict, refusal
 from dcone_cosim.stability.work import Cell
 from dcone_cosim.units import written
 
@@ -167,6 +167,9 @@ class _Maker:
             return Planned(extreme, scheme, (), found=refusal(str(error).splitlines()[-1].strip()))
         if made is None:
             return Planned(extreme, scheme, changes, found=Verdict(EXCLUDED, "goes without what it is about"))
+        if extreme.criterion == ORDER and kind_of(self._phase).rounding(made.phases[0]) is None:
+            why = "goes without an order that could be seen: rounding is as large as its error"
+            return Planned(extreme, scheme, changes, found=Verdict(EXCLUDED, why))
         try:
             case = self._cell(made, changes, without, extreme)
         except InputError as error:

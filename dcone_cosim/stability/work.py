@@ -20,7 +20,7 @@ from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.stability.cost import Cost, estimate
-from dcone_cosim.stability.judge import FAILED, Verdict, agreement, falls, refusal, sameness, unlike, verdict
+from dcone_cosim.stability.judge import FAILED, ORDER, Verdict, agreement, falls, refusal, sameness, unlike, verdict
 
 PATIENCE = 12.0
 """Limits after which a case that is still there counts as hanging: it was reckoned to take one, a finer run four."""
@@ -154,11 +154,12 @@ def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: floa
             yield unlike(f"its twin stops: {twin.row.message}"), more
             return
         jittered, more = _quantities(cell, twin), more + twin.phase.cpu
-    if cell.asked == "order":
+    if cell.asked == ORDER:
         assert other.result is not None
         kind, phase = kind_of(_name(cell)), cell.finer.phases[0]
-        finer = list(kind.criteria(evidence_of(other.result, phase)))
-        yield falls(criteria, finer, kind.rounding(phase)), 0.0
+        rounding = kind.rounding(phase)
+        assert rounding is not None, "no such cell is planned"
+        yield falls(criteria, list(kind.criteria(evidence_of(other.result, phase))), rounding), 0.0
     mine, others = _quantities(cell, here), _quantities(cell, other)
     if cell.same:
         yield sameness(mine, others), more
