@@ -14,8 +14,9 @@ from dcone_cosim import measured
 from dcone_cosim.accuracy import attain as attaining
 from dcone_cosim.accuracy.attain import APART, Ladder, _Attempt
 from dcone_cosim.accuracy.judge import Sample
-from dcone_cosim.accuracy.plan import Planned
-from dcone_cosim.accuracy.settings import NUMERICS, Setting
+from dcone_cosim.accuracy.plan import Planned, Planner
+from dcone_cosim.accuracy.settings import NUMERICS, Setting, settings_of
+from dcone_cosim.accuracy.work import measure
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.commands import run_and_write
 from dcone_cosim.errors import InputError
@@ -27,6 +28,7 @@ from dcone_cosim.reports import summary
 from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import Accuracy
 from dcone_cosim.scene.mistakes import SceneError
+from fmu_src.tethered_deorbit.trade import FACTORS
 from tests.consistency.test_table2 import REFERENCE
 
 LEAPFROG = {"solver": "leapfrog", "precision": "double"}
@@ -222,3 +224,39 @@ def test_quantities_of_every_phase_are_those_that_can_be_asked_for(mission: RunR
     for name, result in mission.phases.items():
         keys = {q.key for q in kind_of(name).quantities(mission, result, (1.0, 2.0, 3.0))}
         assert keys == set(kind_of(name).judged_by)
+
+
+def test_a_capture_is_judged_by_what_its_columns_say(mission: RunResult) -> None:
+    """Each from its definition: area of a 12 m net, momentum that the target got, energy of the shot in closed form."""
+    result = mission.phases["capture"]
+    recorder, last = result.recorder, result.recorder.last()
+    instants = recorder["time"][[50, 100, 200, 400]].tolist()
+    found = {q.key: q for q in kind_of("capture").quantities(mission, result, instants)}
+    assert found["mouth_area"].scale == pytest.approx(12.0**2)
+    assert found["mouth_area"].values == recorder["mouth.area"][[50, 100, 200, 400]].tolist()
+    assert found["bullets"].scale == pytest.approx(12.0)
+    bullets = np.array(found["bullets"].values).reshape(4, 3, 4)
+    assert bullets[1, 2].tolist() == recorder["bullet[2].position[3]"][[50, 100, 200, 400]].tolist()
+    change = recorder.vector("target.velocity")[-1] - recorder.vector("target.velocity")[0]
+    assert found["impulse"].values == [pytest.approx(1000.0 * np.sqrt((change**2).sum()))]
+    assert found["t_capture"].values == [last["t_capture"]]
+    assert found["energy_book"].scale == pytest.approx(4 * 0.5 * 1.27 * 3.0**2, rel=1e-2)
+
+
+def test_the_table_of_settings_is_as_far_off_as_it_says() -> None:
+    """Its errors of a tow's tugs, at two tolerances, against the quadruple-precision ones of one of its scenes."""
+    entries = {entry.size: entry for entry in measured.table("tethered_deorbit") if entry.terms == {"solver": "dop853"}}
+    assert [size for size in sorted(entries, reverse=True)] == list(FACTORS)
+    exact = np.array(REFERENCE["B"][1])
+    planner = Planner(Alone("table2-deorbit", ["removal.duration=70 min"], None), "removal", Progress())
+    for size in (1e6, 1e4):
+        changes = next(s.changes for s in settings_of(planner.own, False, []) if (s.family, s.size) == ("dop853", size))
+        (case,) = planner.cases(Planned(Setting("", "", 1.0, changes)), 1).values()
+        samples = measure(case).samples
+        off = np.abs(np.array(samples["tug_peaks"]["values"]) / exact[:, 2] - 1.0).max()
+        told = entries[size].errors["tug_peaks"]
+        assert off <= told * 1.05
+        assert off > 1e-3 * told
+    costs = [entry.cost for entry in measured.table("net_capture") if entry.terms == LEAPFROG and entry.size <= 1.0]
+    assert costs == sorted(costs)
+    assert entries[1.0].cost == 1.0

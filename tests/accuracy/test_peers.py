@@ -11,7 +11,9 @@ import pytest
 from dcone_cosim.accuracy import peers
 from dcone_cosim.accuracy.peers import net, tow
 from dcone_cosim.accuracy.peers.peer import Peer
-from dcone_cosim.accuracy.plan import Planner
+from dcone_cosim.accuracy.plan import Planned, Planner
+from dcone_cosim.accuracy.settings import Setting
+from dcone_cosim.accuracy.work import measure
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.progress import Progress
 from fmu_src.instance import Instance
@@ -42,6 +44,22 @@ def test_a_tow_against_quadruple_precision(peer: Peer, pair: dict[str, float]) -
     np.testing.assert_allclose(mine["tug_peaks"], exact[:, 2], rtol=2e-6)
     heavier = found(peer, pair | {"target.mass": 1.01 * pair["target.mass"]}, peer.sizes[-1], instants)
     assert np.abs(heavier["tug_peaks"] / exact[:, 2] - 1.0).max() > 1e-4
+
+
+def test_what_a_tow_is_judged_by_is_what_scipy_finds() -> None:
+    """Mean tension, orbit, radius and separation of our run, each against the same from scipy's states."""
+    planner = Planner(Alone("table2-deorbit", ["removal.duration=70 min", "removal.macro_step=2 min"], None), "removal",
+                      Progress())  # fmt: skip
+    (case,) = planner.cases(Planned(Setting("", "", 1.0, ())), 1).values()
+    mine = measure(case).samples
+    theirs = {q.key: np.array(q.values) for q in tow.by_scipy(planner._begun(), 1e-13, case.instants).quantities}
+    for key in ("mean_tension", "largest_tug", "separation", "radius", "semi_major_axis"):
+        np.testing.assert_allclose(mine[key]["values"], theirs[key], rtol=1e-7, err_msg=key)
+    # an error is relative to how far the orbit falls, and to how far a radius swings
+    axis, radius = theirs["semi_major_axis"], theirs["radius"]
+    assert mine["semi_major_axis"]["scale"] == pytest.approx(abs(axis[-1] - axis[0]), rel=0.1)
+    assert mine["radius"]["scale"] == pytest.approx(np.ptp(radius), rel=0.1)
+    assert mine["separation"]["scale"] == pytest.approx(theirs["separation"].max(), rel=1e-3)
 
 
 @pytest.fixture(scope="module")
