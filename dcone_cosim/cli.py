@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import gc
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
 from dcone_cosim import cli_cases, exits
 from dcone_cosim.cli_cache import cache_app
+from dcone_cosim.cli_cases import cases_app
+from dcone_cosim.cli_options import (
+    SCENE_HELP,
+    FromRun,
+    Jobs,
+    Json,
+    Offline,
+    SceneName,
+    Settings,
+    make_progress,
+    promise,
+    results,
+)
 from dcone_cosim.completion import phases_like, scenes_like
 from dcone_cosim.errors import BAD_INPUT, DconeError, InputError
 from dcone_cosim.exits import complain as _complain
 from dcone_cosim.exits import reader_may_leave as _reader_may_leave
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from dcone_cosim.progress import Progress
 
 app = typer.Typer(
     help="Net capture and tethered removal of space debris, as a co-simulation of FMI 2.0 units.",
@@ -28,27 +35,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help takes half the time: rich would load its Markdown reader for it
 )
 app.add_typer(cache_app, name="cache")
-
-SCENE_HELP = "Name of a scene (see `dcone list`), or a .toml file."
-SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=SCENE_HELP, autocompletion=scenes_like)]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="KEY=VALUE",
-        help='Change a key of the scene, such as capture.bullets.speed="4 m/s"; may be given several times.',
-    ),
-]
-FromRun = Annotated[
-    Path | None, typer.Option("--from-run", help="Results of this scene: what takes over begins as it did there.")
-]
-Json = Annotated[bool, typer.Option("--json", help="Answer as JSON.")]
-Offline = Annotated[
-    bool,
-    typer.Option(
-        "--offline", help="Promise that nothing is fetched: every connection is refused. Building needs none."
-    ),
-]
+app.add_typer(cases_app)
 
 
 def _version(asked: bool) -> None:
@@ -94,7 +81,7 @@ def run(
         ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Of an ensemble's first run; the others count on.")] = 0,
-    jobs: cli_cases.Jobs = None,
+    jobs: Jobs = None,
     offline: Offline = False,
 ) -> None:
     """Run a scene and write its results.
@@ -106,16 +93,15 @@ def run(
     4 the hand-off was refused or violated, 5 an FMU failed, 6 interrupted, and what was reached is kept,
     7 some runs of an ensemble failed; 130 or 143 interrupted, and there was nothing to keep.
     """
-    _promise(offline)
+    promise(offline)
     if ensemble is not None:
         if force:
             raise InputError("--force: an ensemble goes on with what is in its folder; choose another with -o")
-        done = cli_cases.ensemble(scene, ensemble, seed, out, settings or [], jobs, isolate, _progress())
-        raise typer.Exit(cli_cases.tell(done, json, _console(), ensemble=True))
+        raise typer.Exit(cli_cases.ensemble(scene, ensemble, seed, out, settings or [], jobs, isolate, json))
     gc.disable()  # while modules are imported nothing is garbage; `run_and_write` enables it again
     from dcone_cosim.commands import run_and_write
 
-    progress = _progress()
+    progress = make_progress()
     try:
         with exits.noise_apart():
             written = run_and_write(scene, out, progress, csv, figures, force, settings or (), isolate)
@@ -132,7 +118,7 @@ def run(
             more = {"folder": str(written.folder), "notes": written.notes}
             typer.echo(as_json(summary.as_dict(result) | more))
         else:
-            summary.show(result, _console())
+            summary.show(result, results())
             typer.echo(f"results in {written.folder}")
     for note in written.notes:
         _complain(f"note: {note}")
@@ -141,116 +127,6 @@ def run(
     if result.message:
         _complain(result.message)
     raise typer.Exit(result.exit_code)
-
-
-@app.command()
-def sweep(
-    scene: SceneName,
-    vary: cli_cases.Vary = None,
-    out: cli_cases.Out = None,
-    settings: Settings = None,
-    jobs: cli_cases.Jobs = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
-    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the chief figures.")] = True,
-    isolate: Annotated[
-        bool | None,
-        typer.Option(
-            "--isolate/--no-isolate", help="As for dcone run; a crash loses one case in any way.", show_default=False
-        ),
-    ] = None,
-    offline: Offline = False,
-) -> None:
-    """Run a scene with every combination of some values, on all cores, and write one table.
-
-    The folder has table.parquet and table.csv, one row per case with its values, status and figures; timings.parquet;
-    summary.json; sweep.png for one or two keys; and the rows themselves. Stop it whenever you like: the same command
-    goes on with the cases that are missing. A key that changes nothing is an error.
-
-    Exit code: 0 every case succeeded, 2 bad input, 6 interrupted, and the cases that are done are kept,
-    7 some cases failed, and the table has the reason of each.
-    """
-    _promise(offline)
-    done = cli_cases.sweep(scene, vary or [], out, settings or [], jobs, figures, isolate, _progress())
-    raise typer.Exit(cli_cases.tell(done, json, _console(), ensemble=False))
-
-
-@app.command()
-def accuracy(
-    scene: SceneName,
-    out: cli_cases.Out = None,
-    settings: Settings = None,
-    runs: Annotated[
-        int | None, typer.Option("--runs", help="Runs of each setting; a chaotic phase takes 6, any other 3.")
-    ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Fewer settings and runs, for a first look.")] = False,
-    peers: Annotated[
-        bool, typer.Option("--peers", help="Try other programs too, as far as they are installed and can do it.")
-    ] = False,
-    jobs: cli_cases.Jobs = None,
-    json: Json = False,
-    isolate: Annotated[
-        bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
-    ] = None,
-    offline: Offline = False,
-) -> None:
-    """Measure what each choice of how to compute a scene costs, and how far off it is.
-
-    Schemes, steps or tolerances, precision, macro steps, coupling steps, pieces of thread: each against a reference
-    that a second one judges, with its CPU time. The folder has report.html, a picture for each phase, the table, and
-    the rows themselves; the same command goes on with what is missing.
-
-    Exit code: 0 done, 2 bad input, 6 interrupted, and what is done is kept, 7 some settings failed.
-    """
-    _promise(offline)
-    code = cli_cases.accuracy(
-        scene, out, settings or [], runs, quick, peers, jobs, isolate, json, _progress(), _console()
-    )  # fmt: skip
-    raise typer.Exit(code)
-
-
-@app.command()
-def stability(
-    scene: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="[SCENE]",
-            help="A scene, as for dcone run; without one the shipped table1-capture (with a coarse net) and "
-            "table2-deorbit.",
-            autocompletion=scenes_like,
-        ),
-    ] = None,
-    out: cli_cases.Out = None,
-    settings: Settings = None,
-    limit: Annotated[
-        float,
-        typer.Option("--limit", help="CPU time [s] that a case may take, as it is reckoned; dearer ones are refused."),
-    ] = 20.0,
-    budget: Annotated[
-        float | None,
-        typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 40."),
-    ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="The chief extremes alone, for a first look.")] = False,
-    jobs: cli_cases.Jobs = None,
-    json: Json = False,
-    isolate: Annotated[
-        bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
-    ] = None,
-    offline: Offline = False,
-) -> None:
-    """Try every scheme at the ends of the range: what holds, what is refused and why.
-
-    Stiff and soft, light and heavy, fast and slow, macro steps from 1 us: each case is judged by conservation laws
-    and closed forms from both sides, and by a finer run. The cost of a case is reckoned before it begins. The folder
-    has report.html, a map for each phase, the table, and the rows themselves; the same command goes on with what is
-    missing.
-
-    Exit code: 0 no case failed, 2 bad input, 6 interrupted, and what is done is kept, 7 some cases failed.
-    """
-    _promise(offline)
-    code = cli_cases.stability(
-        scene, out, settings or [], limit, budget, quick, jobs, isolate, json, _progress(), _console()
-    )  # fmt: skip
-    raise typer.Exit(code)
 
 
 @app.command()
@@ -273,10 +149,10 @@ def build(
 
     Each starts with the scene's values, and its default experiment is the phase. Values cost no build.
     """
-    _promise(offline)
+    promise(offline)
     from dcone_cosim.commands import write_fmus
 
-    progress = _progress()
+    progress = make_progress()
     try:
         paths, notes = write_fmus(scene, out, progress, platforms, settings or (), from_run)
     finally:
@@ -305,7 +181,7 @@ def export_ssp(
     from dcone_cosim.loading import named
     from dcone_cosim.ssp.export import export_scene
 
-    progress = _progress()
+    progress = make_progress()
     try:
         done = export_scene(named(scene, settings or ()), out, progress, from_run, parameters, open_inputs)
     finally:
@@ -337,7 +213,7 @@ def inspect(
     measure: Annotated[
         bool, typer.Option("--measure", help="Run with and without each piece of physics: what it changes and costs.")
     ] = False,
-    jobs: cli_cases.Jobs = None,
+    jobs: Jobs = None,
     offline: Offline = False,
 ) -> None:
     """Show what is in the FMUs of a scene, what is left out, and what its values come to.
@@ -346,14 +222,14 @@ def inspect(
     substeps; of an FMU from elsewhere what it tells of itself. With --measure instead what each term changes in the
     results, and what it costs in time, bytes, variables and memory.
     """
-    _promise(offline)
+    promise(offline)
     from dcone_cosim.loading import named
     from dcone_cosim.reports import inspection
 
     if measure:
-        cli_cases.physics(scene, settings or [], jobs, json, _progress(), _console())
+        cli_cases.physics(scene, settings or [], jobs, json)
         return
-    progress = _progress()
+    progress = make_progress()
     try:
         with _reader_may_leave():
             chosen = named(scene, settings or ())
@@ -362,7 +238,7 @@ def inspect(
 
                 typer.echo(as_json(inspection.as_dict(chosen, progress)))
             else:
-                inspection.show(chosen, _console(), progress)
+                inspection.show(chosen, results(), progress)
     finally:
         progress.close()
 
@@ -466,39 +342,10 @@ def interface(
 
     with _reader_may_leave():
         if template is None:
-            show(phase, _console())
+            show(phase, results())
             return
         for path in write_template(phase, template, out if out is not None else Path(f"my_{phase}")):
             typer.echo(path)
-
-
-def _promise(offline: bool) -> None:
-    if offline:
-        from dcone_cosim.offline import go_offline
-
-        go_offline()
-
-
-def _console() -> Console:
-    """Where results go: stdout, for whoever reads it."""
-    from rich.console import Console
-
-    class Output(Console):
-        def on_broken_pipe(self) -> None:
-            raise BrokenPipeError
-
-    return Output(soft_wrap=not sys.stdout.isatty())
-
-
-def _progress() -> Progress:
-    """What is going on goes to stderr."""
-    from dcone_cosim.progress import Bar, Lines
-
-    if not sys.stderr.isatty():
-        return Lines()
-    from rich.console import Console
-
-    return Bar(Console(stderr=True))
 
 
 def main() -> NoReturn:

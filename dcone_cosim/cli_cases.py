@@ -1,4 +1,4 @@
-"""`dcone sweep`, and what `dcone run --ensemble` tells: many runs of a scene."""
+"""The commands that run a scene many times: sweeps, ensembles, accuracy, stability, effects of each piece of physics."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dcone_cosim import exits
+from dcone_cosim.cli_options import Jobs, Json, Offline, SceneName, Settings, answer, at_work, promise
+from dcone_cosim.completion import scenes_like
 from dcone_cosim.exits import complain
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from dcone_cosim.cases.commands import Done
-    from dcone_cosim.progress import Progress
 
+cases_app = typer.Typer(rich_markup_mode=None)
 Vary = Annotated[
     list[str] | None,
     typer.Option(
@@ -29,34 +30,135 @@ Out = Annotated[
     Path | None,
     typer.Option("-o", "--out", help="Folder for the results; the same command goes on there with what is missing."),
 ]
-Jobs = Annotated[
-    int | None, typer.Option("-j", "--jobs", help="How many cases at a time; one per core if not given.", min=1)
-]
 
 
-def tell(done: Done, json: bool, console: Console, ensemble: bool) -> int:
-    """Show what came out and where it is; returns the exit code."""
-    from dcone_cosim.cases import show
+@cases_app.command()
+def sweep(
+    scene: SceneName,
+    vary: Vary = None,
+    out: Out = None,
+    settings: Settings = None,
+    jobs: Jobs = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the chief figures.")] = True,
+    isolate: Annotated[
+        bool | None,
+        typer.Option(
+            "--isolate/--no-isolate", help="As for dcone run; a crash loses one case in any way.", show_default=False
+        ),
+    ] = None,
+    offline: Offline = False,
+) -> None:
+    """Run a scene with every combination of some values, on all cores, and write one table.
 
-    with exits.reader_may_leave():
-        if json:
-            from dcone_cosim.run_folder import as_json
+    The folder has table.parquet and table.csv, one row per case with its values, status and figures; timings.parquet;
+    summary.json; sweep.png for one or two keys; and the rows themselves. Stop it whenever you like: the same command
+    goes on with the cases that are missing. A key that changes nothing is an error.
 
-            typer.echo(as_json({**done.content, "folder": str(done.folder), "notes": done.notes}))
-        else:
-            if ensemble:
-                show.show_ensemble(done.summary, done.title, console)
-            else:
-                show.show_sweep(done.entries, done.columns, done.title, console)
-            typer.echo(f"results in {done.folder}")
-    for note in done.notes:
-        complain(f"note: {note}")
-    for failure in show.failures(done.entries):
-        complain(failure)
-    if done.exit_code:
-        share = done.summary.succeeded
-        complain(f"{share.of - share.count} of {share.of} cases failed")
-    return done.exit_code
+    Exit code: 0 every case succeeded, 2 bad input, 6 interrupted, and the cases that are done are kept,
+    7 some cases failed, and the table has the reason of each.
+    """
+    promise(offline)
+    from dcone_cosim.cases import commands
+
+    with at_work() as progress:
+        done = commands.sweep(scene, vary or [], out, progress, settings or [], jobs, figures, isolate)
+    raise typer.Exit(tell(done, json, ensemble=False))
+
+
+@cases_app.command()
+def accuracy(
+    scene: SceneName,
+    out: Out = None,
+    settings: Settings = None,
+    runs: Annotated[
+        int | None, typer.Option("--runs", help="Runs of each setting; a chaotic phase takes 6, any other 3.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer settings and runs, for a first look.")] = False,
+    peers: Annotated[
+        bool, typer.Option("--peers", help="Try other programs too, as far as they are installed and can do it.")
+    ] = False,
+    jobs: Jobs = None,
+    json: Json = False,
+    isolate: Annotated[
+        bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
+    ] = None,
+    offline: Offline = False,
+) -> None:
+    """Measure what each choice of how to compute a scene costs, and how far off it is.
+
+    Schemes, steps or tolerances, precision, macro steps, coupling steps, pieces of thread: each against a reference
+    that a second one judges, with its CPU time. The folder has report.html, a picture for each phase, the table, and
+    the rows themselves; the same command goes on with what is missing.
+
+    Exit code: 0 done, 2 bad input, 6 interrupted, and what is done is kept, 7 some settings failed.
+    """
+    promise(offline)
+    from dcone_cosim.accuracy import commands, show
+
+    with at_work() as progress:
+        done = commands.accuracy(
+            scene, out, progress, settings or [], runs, quick, jobs, isolate, peers=peers
+        )  # fmt: skip
+
+    def shown(console: Console) -> None:
+        for report in done.reports:
+            show.show(report, console)
+
+    answer(json, done.content, shown, done.notes, done.folder)
+    raise typer.Exit(done.exit_code)
+
+
+@cases_app.command()
+def stability(
+    scene: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[SCENE]",
+            help="A scene, as for dcone run; without one the shipped table1-capture (with a coarse net) and "
+            "table2-deorbit.",
+            autocompletion=scenes_like,
+        ),
+    ] = None,
+    out: Out = None,
+    settings: Settings = None,
+    limit: Annotated[
+        float,
+        typer.Option("--limit", help="CPU time [s] that a case may take, as it is reckoned; dearer ones are refused."),
+    ] = 20.0,
+    budget: Annotated[
+        float | None,
+        typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 40."),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="The chief extremes alone, for a first look.")] = False,
+    jobs: Jobs = None,
+    json: Json = False,
+    isolate: Annotated[
+        bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
+    ] = None,
+    offline: Offline = False,
+) -> None:
+    """Try every scheme at the ends of the range: what holds, what is refused and why.
+
+    Stiff and soft, light and heavy, fast and slow, macro steps from 1 us: each case is judged by conservation laws
+    and closed forms from both sides, and by a finer run. The cost of a case is reckoned before it begins. The folder
+    has report.html, a map for each phase, the table, and the rows themselves; the same command goes on with what is
+    missing.
+
+    Exit code: 0 no case failed, 2 bad input, 6 interrupted, and what is done is kept, 7 some cases failed.
+    """
+    promise(offline)
+    from dcone_cosim.stability import commands, show
+
+    with at_work() as progress:
+        done = commands.stability(scene, out, progress, settings or [], limit, budget, quick, jobs, isolate)
+
+    def shown(console: Console) -> None:
+        for matrix in done.matrices:
+            show.show(matrix, console)
+
+    answer(json, done.content, shown, done.notes, done.folder)
+    raise typer.Exit(done.exit_code)
 
 
 def ensemble(
@@ -67,125 +169,40 @@ def ensemble(
     settings: list[str],
     jobs: int | None,
     isolate: bool | None,
-    progress: Progress,
-) -> Done:
-    """Run the ensemble, with its progress."""
-    from dcone_cosim.cases import commands
-
-    try:
-        with exits.noise_apart():
-            return commands.ensemble(scene, count, seed, out, progress, settings, jobs, isolate)
-    finally:
-        progress.close()
-
-
-def sweep(
-    scene: str,
-    vary: list[str],
-    out: Path | None,
-    settings: list[str],
-    jobs: int | None,
-    figures: bool,
-    isolate: bool | None,
-    progress: Progress,
-) -> Done:
-    """Run the sweep, with its progress."""
-    from dcone_cosim.cases import commands
-
-    try:
-        with exits.noise_apart():
-            return commands.sweep(scene, vary, out, progress, settings, jobs, figures, isolate)
-    finally:
-        progress.close()
-
-
-def accuracy(
-    scene: str,
-    out: Path | None,
-    settings: list[str],
-    runs: int | None,
-    quick: bool,
-    peers: bool,
-    jobs: int | None,
-    isolate: bool | None,
     json: bool,
-    progress: Progress,
-    console: Console,
 ) -> int:
-    """Measure, and show what came out and where it is; returns the exit code."""
-    from dcone_cosim.accuracy import commands, show
+    """`dcone run --ensemble`; returns the exit code."""
+    from dcone_cosim.cases import commands
 
-    try:
-        with exits.noise_apart():
-            done = commands.accuracy(scene, out, progress, settings, runs, quick, jobs, isolate, peers=peers)
-    finally:
-        progress.close()
-    with exits.reader_may_leave():
-        if json:
-            from dcone_cosim.run_folder import as_json
+    with at_work() as progress:
+        done = commands.ensemble(scene, count, seed, out, progress, settings, jobs, isolate)
+    return tell(done, json, ensemble=True)
 
-            typer.echo(as_json({**done.content, "folder": str(done.folder), "notes": done.notes}))
+
+def tell(done: Done, json: bool, ensemble: bool) -> int:
+    """What came of a sweep or an ensemble, and which cases failed; returns the exit code."""
+    from dcone_cosim.cases import show
+
+    def shown(console: Console) -> None:
+        if ensemble:
+            show.show_ensemble(done.summary, done.title, console)
         else:
-            for report in done.reports:
-                show.show(report, console)
-            typer.echo(f"results in {done.folder}")
-    for note in done.notes:
-        complain(f"note: {note}")
+            show.show_sweep(done.entries, done.columns, done.title, console)
+
+    answer(json, done.content, shown, done.notes, done.folder)
+    for failure in show.failures(done.entries):
+        complain(failure)
+    if done.exit_code:
+        share = done.summary.succeeded
+        complain(f"{share.of - share.count} of {share.of} cases failed")
     return done.exit_code
 
 
-def physics(
-    scene: str, settings: list[str], jobs: int | None, json: bool, progress: Progress, console: Console
-) -> None:
-    """Measure what each piece of physics changes and costs, and show it."""
+def physics(scene: str, settings: list[str], jobs: int | None, json: bool) -> None:
+    """`dcone inspect --measure`."""
     from dcone_cosim.accuracy import physics as effects
 
-    try:
-        with exits.noise_apart():
-            found = effects.measured(scene, settings, progress, jobs)
-    finally:
-        progress.close()
-    with exits.reader_may_leave():
-        if json:
-            from dcone_cosim.run_folder import as_json
-
-            typer.echo(as_json(effects.as_dict(found)))
-        else:
-            effects.show(found, console)
-    for note in (note for one in found for note in one.notes):
-        complain(f"note: {note}")
-
-
-def stability(
-    scene: str | None,
-    out: Path | None,
-    settings: list[str],
-    limit: float,
-    budget: float | None,
-    quick: bool,
-    jobs: int | None,
-    isolate: bool | None,
-    json: bool,
-    progress: Progress,
-    console: Console,
-) -> int:
-    """Try the extremes, and show what became of them and where it is; returns the exit code."""
-    from dcone_cosim.stability import commands, show
-
-    try:
-        with exits.noise_apart():
-            done = commands.stability(scene, out, progress, settings, limit, budget, quick, jobs, isolate)
-    finally:
-        progress.close()
-    with exits.reader_may_leave():
-        if json:
-            from dcone_cosim.run_folder import as_json
-
-            typer.echo(as_json({**done.content, "folder": str(done.folder), "notes": done.notes}))
-        else:
-            for one in done.matrices:
-                show.show(one, console)
-            typer.echo(f"results in {done.folder}")
-    for note in done.notes:
-        complain(f"note: {note}")
-    return done.exit_code
+    with at_work() as progress:
+        found = effects.measured(scene, settings, progress, jobs)
+    notes = [note for one in found for note in one.notes]
+    answer(json, effects.as_dict(found), lambda console: effects.show(found, console), notes, None)

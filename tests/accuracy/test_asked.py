@@ -206,6 +206,8 @@ def test_a_tow_is_as_exact_as_asked(tmp_path: Path) -> None:
     assert np.abs(tugs[:, 1] / exact[:, 2] - 1.0).max() <= max(attained.error, 1e-8)
     told = summary.as_dict(written.result)["removal"]
     assert told["accuracy.asked"]["value"] == 0.001
+    assert told["accuracy.error"]["value"] == pytest.approx(attained.error, rel=0.05)
+    assert told["accuracy.made"]["value"] == 2
     assert told["accuracy.setting"]["value"].startswith("dop853 x ")
     # the folder runs again to the same
     again = run_and_write(str(tmp_path / "out"), tmp_path / "again", Progress(), False, False)

@@ -199,3 +199,28 @@ def test_what_shows_the_shape_alone_is_never_advised() -> None:
     points = own(made.judged(made.settings[2]).numerics.points)
     assert "shape" not in {p.setting.family for p in points}
     assert cheapest(points, 0.005).setting.family == "plain"  # type: ignore[union-attr]
+
+
+def test_a_setting_is_as_exact_as_its_own_scatter_lets_be_told() -> None:
+    """One that scatters more than the others is not chosen for an accuracy that only they are known to have."""
+    made = Made(chaotic=True)
+    made.add("plain", 1.0, [[100.0], [104.0]], 1.0)
+    for size in (0.5, 0.25, 0.125):
+        made.add("plain", size, [[102.0], [102.001]], 1.0 / size)
+    points = made.judged(made.settings[1]).numerics.points
+    assert points[0].worst < 1e-4  # its mean happens to be right
+    assert points[0].bound > 0.01
+    assert cheapest(points, 0.01).setting.size == 0.5  # type: ignore[union-attr]
+
+
+def test_a_curve_is_compared_where_there_are_rows_and_nowhere_else() -> None:
+    from dcone_cosim.fmu.component import VariableInfo
+    from dcone_cosim.quantities import at, spread_instants
+    from dcone_cosim.recorder import Recorder
+
+    recorder = Recorder(["x"], {"x": VariableInfo("x", 0, "Real", "m", "output", "")})
+    for i in range(6):
+        recorder.add(2.0 * i, np.array([float(i)]))
+    found = at(recorder, "x", (2.0, 3.0, 4.0 + 1e-9, 10.0, 12.0))
+    np.testing.assert_array_equal(found, [1.0, np.nan, 2.0, 5.0, np.nan])
+    assert spread_instants(1.0, 10.0, 1.0, 5) == (3.0, 5.0, 7.0, 9.0, 11.0)

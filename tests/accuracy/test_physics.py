@@ -8,7 +8,9 @@ from dcone_cosim.accuracy import physics
 from dcone_cosim.accuracy.physics import Found, Variant, variants_of
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.loading import load
+from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
+from dcone_cosim.scene_fmus import SceneFmus
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +34,12 @@ def test_what_is_left_out_is_not_there(tow: Found) -> None:
     # its two parameters, the input and its output of propellant
     assert here.variables - without.variables == 4
     assert without.memory < here.memory
+    # what a substep takes, by the steps that the solver counts itself
+    for effect, settings in ((here, ()), (without, ("thrust",))):
+        scene = Alone("table2-deorbit", ["removal.duration=3 h"], None).scene_of("removal", (), settings)
+        with SceneFmus(scene, Progress()) as fmus:
+            last = run_scene(scene, fmus.instantiate, Progress()).phases["removal"].recorder.last()
+        assert effect.per_step * last["solver.steps"] == pytest.approx(effect.cpu, rel=1e-3)
     assert without.cpu < 1.1 * here.cpu
 
 
