@@ -1,4 +1,4 @@
-"""The commands that run a scene many times: sweeps, ensembles, accuracy, stability, effects of each piece of physics."""
+"""The commands that run a scene many times: sweeps, ensembles, accuracy, stability, the effects of its physics."""
 
 from __future__ import annotations
 

@@ -21,14 +21,12 @@ from fmu_src.net_capture.planes import (
     FX,
     INVERSE_MASS,
     NODE_PLANES,
-    SHOWN,
-    SHOWN_BACK,
-    SHOWN_RATE,
     P,
     U,
     X,
 )
 from fmu_src.net_capture.schemes import Needs, Scheme
+from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
 
@@ -71,31 +69,12 @@ def make(composition: Any) -> Scheme:
     pull_now, pull_shown = threads.pull_now, threads.pull_shown
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
     accelerate = gravity.accelerate
+    copy, clear, begin, place = make_in_step(composition)
 
     @kernel
     def own_words(p):
         """It wants none [1]."""
         return 0
-
-    @kernel
-    def begin(p, work):
-        """Positions and velocities belong to the same instant already.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        copy(p, work, U, P)
-
-    @kernel
-    def copy(p, work, source, target):
-        """Three planes into three others.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        for axis in range(3):
-            here = node_plane(p, work, source + axis)
-            there = node_plane(p, work, target + axis)
-            for i in range(p.node_slots):
-                there[i] = here[i]
 
     @kernel
     def add_stage(p, work, weight, onward):
@@ -153,16 +132,6 @@ def make(composition: Any) -> Scheme:
                 node_plane(p, work, P + axis)[i] = speed
 
     @kernel
-    def place(p, work):
-        """Positions and velocities as they are.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        copy(p, work, X, SHOWN)
-        copy(p, work, P, SHOWN_RATE)
-        copy(p, work, U, SHOWN_BACK)
-
-    @kernel
     def show(p, work):
         """The same, and the power of the dashpots [W].
 
@@ -171,21 +140,9 @@ def make(composition: Any) -> Scheme:
         place(p, work)
         pull_shown(p, work)
         pull_nodes_shown(p, work)
-        for axis in range(3):
-            for i in range(p.node_slots):
-                node_plane(p, work, FX + axis)[i] = 0.0
+        clear(p, work)
 
     return Scheme(0.0, own_words, begin, step, place, threads.stored, show)
-
-
-def make_rouse(composition: Any) -> Any:
-    """Kernel `rouse(p, work, node)`: every node is where it is now."""
-
-    @kernel
-    def rouse(p, work, node):
-        """Every node is where it is now."""
-
-    return rouse
 
 
 PART = Term(

@@ -35,10 +35,11 @@ from typing import Any
 
 from fmu_src.interface import Term, fault
 from fmu_src.net_capture.formulas import longest_step
-from fmu_src.net_capture.planes import FX, INVERSE_MASS, NODE_PLANES, SHOWN, SHOWN_BACK, SHOWN_RATE, P, U, X
+from fmu_src.net_capture.planes import FX, INVERSE_MASS, NODE_PLANES, P, U, X
 from fmu_src.net_capture.schemes import MOST_RATIO, Needs, Scheme, unbounded
 from fmu_src.net_capture.schemes.conjugate import make_solver
 from fmu_src.net_capture.schemes.held import RESIDUAL, SOLUTION, make_held
+from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
 from fmu_src.net_capture.threads import make_threads
 from fmu_src.rows import count
 from orbital.kernel import kernel
@@ -90,6 +91,7 @@ def make(composition: Any) -> Scheme:
     pull_now, pull_shown = threads.pull_now, threads.pull_shown
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
     bends, accelerate = gravity.bends, gravity.accelerate
+    copy, no_force, take_over, place = make_in_step(composition)
     held = make_held(composition, threads.taut)
     nodes, vector, clear, gather = held.nodes, held.vector, held.clear, held.gather
     hold, dissipate = held.hold, held.dissipate
@@ -109,22 +111,12 @@ def make(composition: Any) -> Scheme:
             store(reals, i + target * slots, summed + z * load(reals, i + third * slots))
 
     @kernel
-    def copy(p, work, source, target):
-        """Three planes into three others.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        reals, slots = reals_of(work), p.node_slots
-        for i in range(0, 3 * slots, width):
-            store(reals, i + target * slots, load(reals, i + source * slots))
-
-    @kernel
     def begin(p, work):
         """Positions and velocities belong to the same instant already.
 
         Checked  tests/net_capture/test_schemes.py
         """
-        copy(p, work, U, P)
+        take_over(p, work)
         p.solver_iterations = 0
         p.solver_tries = 0
         p.solver_unsolved = 0
@@ -258,16 +250,6 @@ def make(composition: Any) -> Scheme:
         return not_solved
 
     @kernel
-    def place(p, work):
-        """Positions and velocities as they are.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        copy(p, work, X, SHOWN)
-        copy(p, work, U, SHOWN_RATE)
-        copy(p, work, U, SHOWN_BACK)
-
-    @kernel
     def show(p, work):
         """The same, and the power of the dashpots [W].
 
@@ -276,21 +258,9 @@ def make(composition: Any) -> Scheme:
         place(p, work)
         pull_shown(p, work)
         pull_nodes_shown(p, work)
-        for axis in range(3):
-            for i in range(p.node_slots):
-                node_plane(p, work, FX + axis)[i] = 0.0
+        no_force(p, work)
 
     return Scheme(0.0, held.words, begin, step, place, threads.stored, show, stopped)
-
-
-def make_rouse(composition: Any) -> Any:
-    """Kernel `rouse(p, work, node)`: every node is where it is now."""
-
-    @kernel
-    def rouse(p, work, node):
-        """Every node is where it is now."""
-
-    return rouse
 
 
 PART = Term(

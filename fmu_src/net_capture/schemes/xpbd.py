@@ -41,8 +41,6 @@ from fmu_src.net_capture.planes import (
     LANES,
     LENGTH,
     SHOWN,
-    SHOWN_BACK,
-    SHOWN_RATE,
     SQUARED,
     STIFFNESS,
     STRIP_NUMBERS,
@@ -54,6 +52,7 @@ from fmu_src.net_capture.planes import (
     X,
 )
 from fmu_src.net_capture.schemes import MOST_RATIO, Needs, Scheme, unbounded
+from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
 
@@ -90,6 +89,7 @@ def make(composition: Any) -> Scheme:
     taut_lanes = threads.taut
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
     accelerate = gravity.accelerate
+    _, clear, begin, place = make_in_step(composition)
     is_pushed = gravity.bends or "tether" in composition.terms
     from fmu_src.lanes import highest, lowest, peek, population
 
@@ -100,26 +100,6 @@ def make(composition: Any) -> Scheme:
         Checked  tests/net_capture/test_schemes.py
         """
         return 0
-
-    @kernel
-    def copy(p, work, source, target):
-        """Three planes into three others.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        for axis in range(3):
-            here = node_plane(p, work, source + axis)
-            there = node_plane(p, work, target + axis)
-            for i in range(p.node_slots):
-                there[i] = here[i]
-
-    @kernel
-    def begin(p, work):
-        """Positions and velocities belong to the same instant already.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        copy(p, work, U, P)
 
     @kernel
     def push(p, work):
@@ -256,16 +236,6 @@ def make(composition: Any) -> Scheme:
                 x[i] += h * u[i]
 
     @kernel
-    def place(p, work):
-        """Positions and velocities as they are.
-
-        Checked  tests/net_capture/test_schemes.py
-        """
-        copy(p, work, X, SHOWN)
-        copy(p, work, U, SHOWN_RATE)
-        copy(p, work, U, SHOWN_BACK)
-
-    @kernel
     def show(p, work):
         """The same, and how many threads are taut; tensions and power are those of the sweeps alone.
 
@@ -285,21 +255,9 @@ def make(composition: Any) -> Scheme:
         p.thread_taut = count
         p.thread_power = 0.0
         pull_nodes_shown(p, work)
-        for axis in range(3):
-            for i in range(p.node_slots):
-                node_plane(p, work, FX + axis)[i] = 0.0
+        clear(p, work)
 
     return Scheme(0.0, own_words, begin, step, place, threads.stored, show)
-
-
-def make_rouse(composition: Any) -> Any:
-    """Kernel `rouse(p, work, node)`: every node is where it is now."""
-
-    @kernel
-    def rouse(p, work, node):
-        """Every node is where it is now."""
-
-    return rouse
 
 
 PART = Term(
