@@ -53,7 +53,7 @@ class TestNew:
                     **before.main.defaults,
                     **before.main.parameters,
                 }
-        assert tried > 2
+        assert tried > (2 if origin == "deployment" else 5)  # it says nearly all that it has
 
     def test_a_marked_table_can_be_brought_in(self) -> None:
         text = begun("mission")
