@@ -222,6 +222,11 @@ def numerics(model: str) -> Sequence[str]:
     return TRADES[model].NUMERICS if model in TRADES else ()
 
 
+def beside(model: str) -> Sequence[str]:
+    """Groups of that kind which are tried and told only where they are not the default."""
+    return TRADES[model].BESIDE if model in TRADES else ()
+
+
 def rungs(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
     """Settings of the scheme that the terms name, coarse to fine; see `fmu_src.trade`."""
     return TRADES[model].rungs(values, terms) if model in TRADES else []

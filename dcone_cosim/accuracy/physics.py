@@ -158,7 +158,7 @@ class _Phase:
 def variants_of(phase: PhaseScene) -> Iterator[Variant]:
     """All that can be left out, switched off or added."""
     main, model = phase.main, build.CATALOGUE[phase.main.model]
-    numerics = build.numerics(main.model)
+    numerics = (*build.numerics(main.model), *build.beside(main.model))
     for name, group in model.groups.items():
         if name in numerics:
             continue

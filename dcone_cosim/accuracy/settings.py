@@ -63,7 +63,7 @@ def _of_model(phase: PhaseScene, notes: list[str]) -> Iterator[Setting]:
     own = {**main.defaults, **main.parameters}
     yield from _rungs(phase, main.terms, own, ())
     groups = build.CATALOGUE[main.model].groups
-    for name in build.numerics(main.model):
+    for name in (*build.numerics(main.model), *build.beside(main.model)):
         if name not in groups:
             continue
         group = groups[name]
@@ -95,7 +95,10 @@ def _rungs(
     phase: PhaseScene, terms: Mapping[str, str], values: Mapping[str, float], changes: tuple[str, ...]
 ) -> Iterator[Setting]:
     model = phase.main.model
-    family = ", ".join(terms[name] for name in build.numerics(model) if name in terms) or "tolerances"
+    groups = build.CATALOGUE[model].groups
+    named = [terms[name] for name in build.numerics(model) if name in terms]
+    named += [terms[name] for name in build.beside(model) if terms[name] != groups[name].default]
+    family = ", ".join(named) or "tolerances"
     partial = not build.whole(model, terms)
     for rung in build.rungs(model, values, terms):
         made = (*changes, *changes_of(phase, rung.values))

@@ -38,8 +38,12 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def _step(evidence: Evidence) -> Iterator[Criterion]:
-    """The substep within the bound of stability that the model tells."""
-    if evidence.has("solver.substep", "solver.stability_bound"):
+    """The substep within the bound of stability that the model tells; of one that follows the net, the model's own
+    account of what was taut."""
+    if evidence.has("solver.margin_least"):
+        over = max(0.0, 1.0 / float(np.min(evidence.columns["solver.margin_least"])) - 1.0)
+        yield Criterion("bound", "substep above the bound of what was taut", over, "1", 1e-9, 1e-9)
+    elif evidence.has("solver.substep", "solver.stability_bound"):
         ratio = float(np.max(evidence.columns["solver.substep"] / evidence.columns["solver.stability_bound"]))
         yield Criterion("bound", "substep above the bound of stability", max(0.0, ratio - 1.0), "1", 1e-9, 1e-9)
 

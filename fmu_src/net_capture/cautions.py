@@ -59,6 +59,7 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     """From what came out."""
     yield from _unbalanced(values, terms, seen)
     yield from _taken_back(seen)
+    yield from _unforeseen(seen)
     thread, cord = seen("thread.tension_max"), seen("cord.tension_max")
     if thread is not None and "net" in terms:
         modulus = values["net.youngs_modulus"]
@@ -89,6 +90,17 @@ def _unbalanced(values: Values, terms: Mapping[str, str], seen: Seen) -> Iterato
             "energy.remainder",
             f"the book leaves {size:.2g} J over of the {entered:.3g} J that came in, {100.0 * size / entered:.2g} %: "
             f"the scheme's own error, which falls {_needs(terms).falls}",
+        )
+
+
+def _unforeseen(seen: Seen) -> Iterator[Caution]:
+    """A substep that followed the net, and was longer than what was taut then allows."""
+    margin = seen("solver.margin_least")
+    if margin is not None and margin.least < 1.0:
+        yield Caution(
+            "solver.margin_least",
+            f"a substep was {1.0 / margin.least:.3g} times the bound of the threads that were taut in truth: choose a "
+            "smaller solver.step_ratio, or leave it out",
         )
 
 

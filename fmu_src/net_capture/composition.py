@@ -33,7 +33,8 @@ class Composition:
     lanes        vectors of its precision (`fmu_src.lanes`)
     memory       kernels that find what lies in the work memory
     rouse        of the scheme, see `schemes.Needs`
-    gravity, net, folding, target, contact, closing, tether, pulls, scheme
+    traits, clock, meeting   of the pace, see `pace.Traits`
+    gravity, net, folding, target, contact, closing, tether, pulls, pace, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -44,17 +45,20 @@ class Composition:
         self._tables = model.interface(terms).tables
         self._codes = {fault.name: fault.code for fault in model.faults}
         self.needs = needs = self._term("solver").checks
-        self.planes = NODE_PLANES + needs.planes
+        self.traits = traits = self._term("substeps").checks
+        self.clock = traits.clock
+        self.planes = NODE_PLANES + needs.planes + traits.planes
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
         self.memory = make_memory(terms["precision"], self.planes)
         self.gravity = self._make("gravity")
-        self.rouse = needs.make_rouse(self)
+        self.rouse, self.meeting = needs.make_rouse(self), traits.make_meeting(self)
         self.net, self.folding = self._make("net"), self._make("folding")
         self.target = self._make("target")
         self.contact = self._make("contact")
         self.closing, self.tether = self._make("closing"), self._make("tether")
         self.pulls = _make_pulls(self.closing, self.tether)
+        self.pace = self._make("substeps")
         self.scheme = self._make("solver")
 
     def _term(self, group: str) -> Term:

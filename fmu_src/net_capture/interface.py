@@ -14,6 +14,7 @@ from fmu_src.net_capture.gravity import gravities
 from fmu_src.net_capture.nets import LARGEST_MESH, nets
 from fmu_src.net_capture.nets.grid import nodes_of
 from fmu_src.net_capture.outcome import OUTCOMES
+from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.precision import PRECISION
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.schemes import schemes
@@ -231,6 +232,7 @@ GROUPS = {
     "gravity": Group(gravities()),
     "solver": Group(schemes(), selector="scheme", default="leapfrog"),
     "precision": Group(PRECISION, selector="precision", default="double", table="solver"),
+    "substeps": Group(paces(), selector="substeps", default="fixed", table="solver"),
     "target": Group(TARGETS, selector="shape", optional=True),
     "contact": Group(CONTACTS, optional=True),
     "closing": Group(CLOSINGS, selector="drive", optional=True),

@@ -26,7 +26,7 @@ from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES
 from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
-from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep
+from fmu_src.net_capture.stepping import MEASURE_INTERVAL, limit_way, make_choose_substep
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import entry, kernel
 from orbital.twobody import mean_motion
@@ -56,6 +56,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     judge = outcome.make_judge(parts, measures)
     not_finite, no_axis, too_many_nodes = (parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES))
     lag, frame_rate = scheme.lag, gravity.rate
+    clock, pace = parts.clock, parts.pace
+    now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
     can_stop, stopped_by = scheme.fault is not None, scheme.fault
 
     @kernel
@@ -71,7 +73,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if p.net_nodes > capacity:
                 p.fault_value = p.net_nodes
                 return too_many_nodes
-        p.work_size = work_size(p, planes, per_double, scheme.own_words(p))
+        p.work_size = work_size(p, planes, per_double, scheme.own_words(p) + masks * p.strips)
         return 0
 
     @kernel
@@ -101,14 +103,6 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             closing.wind(p, work)
         if has_tether:
             tether.reel_in(p, work)
-
-    @kernel
-    def now(p):
-        """Grid time since the shot [s].
-
-        Checked  tests/net_capture/test_free_flight.py
-        """
-        return p.grid * p.solver_substep
 
     @kernel
     def look(p, work):
@@ -173,6 +167,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if p.cord_tension_peak > p.cord_tension_max:
                 p.cord_tension_max = p.cord_tension_peak
         p.solver_steps = p.grid
+        if follows:
+            p.solver_substep_mean = now(p) / p.grid if p.grid > 0 else p.solver_substep
         finite = math.isfinite(balance) and math.isfinite(p.momentum[0] + p.momentum[1] + p.momentum[2])
         return 0 if finite else not_finite
 
@@ -254,6 +250,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             fault = target.place(p)
             if fault != 0:
                 return fault
+        if has_contact:
+            limit_way(p)
         net.lay_out(p, work)
         complete_strips(p, properties(p, work))
         shot.load(p, work)
@@ -282,6 +280,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             fault = contact.start(p, work)
             if fault != 0:
                 return fault
+        if follows:
+            scheme.place(p, work)
+            pace.start(p, work)
+            set_pace(p, work, pace.look(p, work))
         p.energy_start = 0.0
         fault = measure(p, work, 0.0)
         p.energy_start = -p.energy_remainder
@@ -307,13 +309,36 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             gravity.kick_body(p, p.target_place, p.target_drift, p.rest, -late)
 
     @kernel
+    def set_pace(p, work, step):
+        """Go on in substeps no longer than this [s]: velocities and losses that lie back by the scheme's `lag` lie back
+        by that of the new substep.
+
+        Checked  tests/net_capture/test_following.py
+        """
+        substep = pace.settle(p, step)
+        if substep != p.solver_substep:
+            scheme.change(p, work, substep)
+            later = lag * (p.solver_substep - substep)
+            p.thread_loss += later * p.thread_power
+            if has_closing:
+                p.cord_loss += later * p.cord_power
+            if has_tether:
+                tether.pull_chaser(p)
+            gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, later)
+            if has_target:
+                gravity.kick_body(p, p.target_place, p.target_drift, p.rest, later)
+            p.solver_substep = substep
+        p.solver_substep_least = min(p.solver_substep_least, substep)
+        p.solver_substep_most = max(p.solver_substep_most, substep)
+        p.solver_margin_least = min(p.solver_margin_least, p.pace_seen / substep)
+
+    @kernel
     def advance(p, work, end, anew):
         """Substeps up to the last grid point not after `end`, then the outputs at `end`; left after each look.
 
         Checked  tests/net_capture/test_free_flight.py
         """
-        q = (end - p.start_time) / p.solver_substep
-        last = math.floor(q + ON_GRID)
+        last = math.floor(reach(p, end) + ON_GRID)
         if anew and p.grid < last:
             p.thread_tension_peak = 0.0
             if has_closing:
@@ -324,14 +349,20 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 fault = stopped_by(p)
                 if fault != 0:
                     return fault
-            if p.grid % p.measure_every == 0:
+            if due(p):
                 fault = look(p, work)
                 if fault != 0:
                     return fault
+                if follows:
+                    set_pace(p, work, pace.look(p, work))
+                    last = math.floor(reach(p, end) + ON_GRID)
                 if p.grid < last:
                     p.fault_time = p.start_time + now(p)
                     return UNDER_WAY
-        ahead = (q - p.grid) * p.solver_substep
+            elif follows and p.pace_late != 0:
+                set_pace(p, work, pace.wanted(p))
+                last = math.floor(reach(p, end) + ON_GRID)
+        ahead = (reach(p, end) - p.grid) * p.solver_substep
         if ahead < ON_GRID * p.solver_substep:
             ahead = 0.0
         return measure(p, work, ahead)

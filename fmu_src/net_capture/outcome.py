@@ -51,7 +51,7 @@ def make_judge(composition: Any, quality: Any) -> Any:
     has_settling = "settling" in composition.terms
     share_inside = make_share(composition) if has_target and has_closing else None
     towards_chaser = composition.tether.reach if has_tether else None
-    beyond, measure_net = quality.beyond, quality.measure_net
+    beyond, measure_net, looks = quality.beyond, quality.measure_net, composition.clock.looks
 
     @kernel
     def judge_flight(p, work, time):
@@ -130,7 +130,7 @@ def make_judge(composition: Any, quality: Any) -> Any:
         Checked  tests/net_capture/test_outcome.py
         """
         if has_target and has_closing:
-            if p.grid % (10 * p.measure_every) == 0:
+            if looks(p) % 10 == 0:
                 look_inside(p, work, time, OUT)
                 if p.enclosure_share < p.enclosure_least:
                     p.enclosure_least = p.enclosure_share

@@ -8,11 +8,14 @@ from typing import Any
 from fmu_src.interface import fault
 from fmu_src.net_capture import formulas
 from orbital.kernel import kernel
+from orbital.vectors import dot
 
 MEASURE_INTERVAL = 0.01
 """Seconds between two looks at mouth and capture: a whole number of substeps fits."""
 LONGEST_SLEEP = 2000
 """Substeps for which a row of nodes may be left alone."""
+WAY_SHARE = 0.1
+"""Of the target's least dimension, by which a node may move relative to its surface in a substep."""
 SMALLEST_SUBSTEP = 1e-9
 """Seconds: below, no run would end."""
 
@@ -60,3 +63,27 @@ def make_choose_substep(composition: Any) -> Any:
         return 0
 
     return choose_substep
+
+
+@kernel
+def limit_way(p):
+    """Shorten the substep [s] where bullets would move further in it than WAY_SHARE of the target's least dimension,
+    relative to its surface.
+
+        h (v + |v_c| + |w| R) <= 0.1 d
+
+    v, v_c   of the bullets from the muzzle, of the muzzle                   [m/s]
+    w, R     rate of the target, radius of its envelope                      [rad/s], [m]
+    d        least edge of the box that holds it                             [m]
+
+    A node that passes an edge at a distance below half its way is taken for one that meets it: so far the target is
+    too large.
+
+    Checked  tests/net_capture/test_following.py
+    """
+    speed = p.bullets_speed + math.sqrt(dot(p.chaser_start_velocity, p.chaser_start_velocity))
+    speed += math.sqrt(dot(p.target_start_rate, p.target_start_rate)) * p.envelope_radius
+    way = WAY_SHARE * 2.0 * min(p.half_size[0], p.half_size[1], p.half_size[2])
+    if speed * p.solver_substep > way:
+        p.measure_every = math.ceil(MEASURE_INTERVAL * speed / way - 1e-9)
+        p.solver_substep = MEASURE_INTERVAL / p.measure_every

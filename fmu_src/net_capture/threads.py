@@ -266,6 +266,8 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
 
     lane = lanes.lane
     pull = make_pull(composition, X, rate, before)
+    own, follows = memory.own, composition.pace is not None
+    note = composition.pace.note if follows else None
 
     @kernel
     def total(x):
@@ -302,6 +304,7 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
     def make_pull_all(place: int, rate: int) -> Any:
         """Kernel that adds the forces of all threads at the positions and velocities in these planes."""
         pull_there = make_pull(composition, place, rate, -1)
+        notes = follows and place == X
 
         @kernel
         def pull_all(p, work):
@@ -322,6 +325,8 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
                 found = taut_lanes(reals, slots, place, table[s + A], table[s + B], table[s + LANES], squared)
                 if found != np.uint64(0):
                     count += population(found)
+                    if notes:
+                        note(p, reals, table, numbers, own(p, work), strip, found)
                     power = power + pull_there(
                         p, reals, slots, numbers, q, table[s + A], table[s + B], table[s + FIRST], found, found
                     )

@@ -9,6 +9,7 @@ from fmu_src.net_capture.interface import GROUPS
 from fmu_src.trade import Rung
 
 NUMERICS = ("solver", "precision")
+BESIDE = ("substeps",)
 PIECES = (2,)
 """Into how many times more pieces threads are cut."""
 
@@ -16,6 +17,8 @@ PIECES = (2,)
 def rungs(values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
     """Substeps by the scheme's own factors of its default one, as far as they are stable."""
     needs = GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks
+    if terms.get("substeps") == "following" and not needs.follows:
+        return []
     bound, enough = substeps(values, terms)
     sizes = [size for size in needs.factors if size * enough <= needs.steepest * bound]
     return [Rung(size, {"solver.step_ratio": size * enough / bound}) for size in sizes]

@@ -8,6 +8,7 @@ from fmu_src.tethered_deorbit.interface import SOLVER
 from fmu_src.trade import Rung
 
 NUMERICS = ("solver",)
+BESIDE: tuple[str, ...] = ()
 FACTORS = (1e6, 1e5, 1e4, 1e3, 1e2, 10.0, 1.0, 0.1, 0.01)
 """Of the tolerances over their defaults. The finest is for references: below it rounding is all that changes."""
 

@@ -15,6 +15,8 @@ class Closing(NamedTuple):
     trigger(p, work, now, touched, beyond)  start when the trigger has fallen: time [s], instant of the first touch [s]
                                             or -1, distance of the bullets beyond the target [m]
     stored(p, work)                         elastic energy as shown [J]
+    stiffen(p, work, span)                  give the pace what may meet at each node within a time [s]; the nodes as
+                                            shown; None where the pace asks for nothing
     """
 
     start: Any
@@ -23,6 +25,7 @@ class Closing(NamedTuple):
     wind: Any
     trigger: Any
     stored: Any
+    stiffen: Any
 
 
 def closings() -> dict[str, Any]:

@@ -20,6 +20,7 @@ class Cord(NamedTuple):
     rouse(p, work)                   all nodes that it draws stand where they are now, and are kicked in this substep
     along, along_shown (p, work, i)  its way [m] and the rate of that [m/s], now and of what is shown
     draw, draw_shown (p, work, i, tension)   the same tension in every stretch: rings have no friction
+    burden(p, work, i, stiffness, dashpot, tension, span)   what it brings to its knots; None where no pace asks
     """
 
     pieces: Any
@@ -28,6 +29,7 @@ class Cord(NamedTuple):
     along_shown: Any
     draw: Any
     draw_shown: Any
+    burden: Any
 
 
 @kernel
@@ -43,6 +45,8 @@ def make_cord(composition: Any) -> Cord:
     """Kernels of the cord along the rim of the composition's net."""
     memory, rouse_node = composition.memory, composition.rouse
     node_plane, rim, corners = memory.node_plane, memory.rim, memory.corners
+    meets = composition.meeting is not None
+    meet = composition.meeting.meet_both if meets else None
 
     @kernel
     def pieces(p, work, i):
@@ -137,6 +141,36 @@ def make_cord(composition: Any) -> Cord:
 
         return draw_cord
 
+    @kernel
+    def burden(p, work, i, stiffness, dashpot, tension, span):
+        """What a cord brings to its knots: through n rings (n + 1) k at a bullet and twice that at a ring, and at
+        both ends of each stretch of length d its turning, T / sqrt(d^2 + b^2), as in `formulas.substep_limits`.
+
+        stiffness, dashpot   of the cord                             [N/m], [N s/m]
+        tension              T, the largest it can have              [N]
+        span                 in which stretches grow shorter         [s]
+
+        Checked  tests/net_capture/test_following.py
+        """
+        radius = ring_radius(p.closing_lock_length, p.closing_rings)
+        last = p.closing_rings
+        b = cord_stop(p, work, i, 0)
+        for stop in range(last + 1):
+            a = b
+            b = cord_stop(p, work, i, stop + 1)
+            squared = 0.0
+            closing = 0.0
+            for axis in range(3):
+                at = node_plane(p, work, SHOWN + axis)
+                rate = node_plane(p, work, SHOWN_RATE + axis)
+                squared += (at[b] - at[a]) * (at[b] - at[a])
+                closing += (rate[b] - rate[a]) * (rate[b] - rate[a])
+            shorter = max(math.sqrt(squared) - span * math.sqrt(closing), 0.0)
+            turning = tension / math.sqrt(shorter * shorter + radius * radius) if last > 0 else 0.0
+            # a ring has a share of both its stretches
+            meet(p, work, a, (last + 1) * stiffness + turning, (last + 1) * dashpot)
+            meet(p, work, b, (last + 1) * stiffness + turning, (last + 1) * dashpot)
+
     return Cord(
         pieces,
         rouse,
@@ -144,4 +178,5 @@ def make_cord(composition: Any) -> Cord:
         make_way(SHOWN, SHOWN_RATE),
         make_draw(X),
         make_draw(SHOWN),
+        burden if meets else None,
     )

@@ -23,7 +23,7 @@ from fmu_src.extremes import Extreme, times
 from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.closing import Closing
 from fmu_src.net_capture.closing.cord import make_cord
-from fmu_src.net_capture.formulas import cord_damping, cord_stiffness
+from fmu_src.net_capture.formulas import BREAKING_STRAIN, cord_damping, cord_stiffness
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import at_least_zero, choice, count, output, parameter, peak, positive, state
 from orbital.kernel import kernel
@@ -138,7 +138,7 @@ def make(composition: Any) -> Closing:
     """Kernels of the winches on the cord along the rim of the composition's net."""
     cord = make_cord(composition)
     pieces, rouse, along_now, along_shown = cord.pieces, cord.rouse, cord.along, cord.along_shown
-    too_many_rings = composition.code(TOO_MANY_RINGS.name)
+    too_many_rings, burden = composition.code(TOO_MANY_RINGS.name), cord.burden
 
     @kernel
     def start(p, work):
@@ -253,8 +253,22 @@ def make(composition: Any) -> Closing:
             energy += cord_energy(p, distance, p.cord_length[i])
         return energy
 
+    @kernel
+    def stiffen(p, work, span):
+        """Nothing before the winches run; then every pair's cord, as short as it may be wound, taut or not.
+
+        Checked  tests/net_capture/test_following.py
+        """
+        if p.closing_t_start < 0.0:
+            return
+        for i in range(4):
+            length = max(p.cord_length[i] - span * p.closing_speed, p.closing_lock_length)
+            stiffness = cord_stiffness(p.closing_axial_stiffness, length)
+            dashpot = cord_damping(p.closing_damping_ratio, stiffness, p.cord_mass)
+            burden(p, work, i, stiffness, dashpot, BREAKING_STRAIN * p.closing_axial_stiffness, span)
+
     pull, pull_shown = make_pull(along_now, cord.draw, True), make_pull(along_shown, cord.draw_shown, False)
-    return Closing(start, pull, pull_shown, wind, trigger, stored)
+    return Closing(start, pull, pull_shown, wind, trigger, stored, stiffen if burden is not None else None)
 
 
 def refuses(scene: Scene) -> Iterator[Refusal]:

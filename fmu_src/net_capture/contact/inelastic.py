@@ -62,7 +62,7 @@ def make(composition: Any) -> Contact:
     node_plane, reals_of = memory.node_plane, memory.reals
     search = make_search(composition, LONGEST_SLEEP)
     near, close, largest_pull = search.near, search.close, search.largest_pull
-    inside_target = composition.code(INSIDE_TARGET.name)
+    inside_target, now = composition.code(INSIDE_TARGET.name), composition.clock.now
     from fmu_src.lanes import lowest
 
     @kernel
@@ -181,7 +181,7 @@ def make(composition: Any) -> Contact:
             gain = turn[axis, 0] * turned[0] + turn[axis, 1] * turned[1] + turn[axis, 2] * turned[2]
             p.target_omega[axis] -= impulse * gain
         if p.contact_first_time < 0.0:
-            p.contact_first_time = p.grid * p.solver_substep
+            p.contact_first_time = now(p)
         return 1
 
     @kernel

@@ -25,6 +25,7 @@ class Needs(NamedTuple):
     steepest                  the largest share of the bound among them
     keeps                     share of the mouth area within which the accurate step stays [1]
     keeps_energy              whether it also stays within 1 % of the energy
+    follows              whether its substep may change on the way: it has a bound, and `Scheme.change`
     falls                     how the remainder of the energy book falls with the step
     """
 
@@ -37,6 +38,7 @@ class Needs(NamedTuple):
     keeps: float = 0.003
     keeps_energy: bool = True
     whole: bool = True
+    follows: bool = True
     falls: str = "with the square of solver.step_ratio"
 
 
@@ -52,6 +54,8 @@ class Scheme(NamedTuple):
     stored(p, work)          energy in the stretched threads as shown [J]
     show(p, work)            positions and velocities of now into SHOWN and SHOWN_RATE, and into SHOWN_BACK the
                              velocities with which the next substep begins; power of the dashpots now; the state stays
+    change(p, work, substep) make ready for substeps of another length [s] than `solver_substep`, which still has the
+                             present one; power of the dashpots now. None: it goes at one length only
     fault(p)                 code of what stopped the last substep, 0 for nothing; None: nothing ever does
     """
 
@@ -62,6 +66,7 @@ class Scheme(NamedTuple):
     place: Any
     stored: Any
     show: Any
+    change: Any = None
     fault: Any = None
 
 

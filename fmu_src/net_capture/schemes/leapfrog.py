@@ -91,6 +91,8 @@ def make(composition: Any) -> Scheme:
         (contact.begin_step, contact.touch_row, contact.clear_steps, contact.hurries) if has_contact else [None] * 4
     )
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
+    follows = composition.pace is not None
+    note = composition.pace.note if follows else None
 
     @kernel
     def begin(p, work):
@@ -154,6 +156,8 @@ def make(composition: Any) -> Scheme:
         poke(words, z + WAKE, p.grid + 1)
         poke(words, z + TAUT, np.int64(taut))
         if taut != np.uint64(0):
+            if follows:
+                note(p, reals, table, numbers, words, strip, taut)
             poke(words, z + QUIET, 0)
             mark(p, words, in_a, a, taut)
             mark(p, words, in_b, b, taut)
@@ -318,7 +322,32 @@ def make(composition: Any) -> Scheme:
                 node_plane(p, work, SHOWN_BACK + axis)[i] = now + change
                 node_plane(p, work, FX + axis)[i] = 0.0
 
-    return Scheme(LAG, asleep.own_words, begin, step, place, threads.stored, show)
+    @kernel
+    def change(p, work, substep):
+        """Velocities half of another substep back, as the forces of now have it; all rows awake.
+
+            v(t - h'/2) = v(t) - h'/2 a(t)
+
+        Checked  tests/net_capture/test_following.py
+        """
+        reals = reals_of(work)
+        words = own(p, work)
+        rows = p.node_slots // p.row_pitch
+        for row in range(rows):
+            bring(p, reals, words, row)
+            words[ROW_WORDS * row + NEXT] = 0
+            words[ROW_WORDS * row + CLEAR] = 0
+        for strip in range(p.strips):
+            words[ROW_WORDS * rows + SLEEP_WORDS * strip + WAKE] = 0
+        show(p, work)
+        share = substep / p.solver_substep
+        for axis in range(3):
+            back = node_plane(p, work, U + axis)
+            for i in range(p.node_slots):
+                now = node_plane(p, work, SHOWN_RATE + axis)[i]
+                back[i] = now - share * (node_plane(p, work, SHOWN_BACK + axis)[i] - now)
+
+    return Scheme(LAG, asleep.own_words, begin, step, place, threads.stored, show, change)
 
 
 PART = Term(

@@ -142,7 +142,11 @@ def make(composition: Any) -> Scheme:
         pull_nodes_shown(p, work)
         clear(p, work)
 
-    return Scheme(0.0, own_words, begin, step, place, threads.stored, show)
+    @kernel
+    def change(p, work, substep):
+        """A substep knows nothing of the one before."""
+
+    return Scheme(0.0, own_words, begin, step, place, threads.stored, show, change)
 
 
 PART = Term(

@@ -260,7 +260,7 @@ def make(composition: Any) -> Scheme:
         pull_nodes_shown(p, work)
         no_force(p, work)
 
-    return Scheme(0.0, held.words, begin, step, place, threads.stored, show, stopped)
+    return Scheme(0.0, held.words, begin, step, place, threads.stored, show, fault=stopped)
 
 
 PART = Term(
@@ -285,5 +285,6 @@ PART = Term(
         steepest=MOST_RATIO,
         keeps=KEEPS,
         keeps_energy=False,
+        follows=False,
     ),
 )

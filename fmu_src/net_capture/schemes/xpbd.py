@@ -274,6 +274,7 @@ PART = Term(
         steepest=MOST_RATIO,
         keeps=KEEPS,
         keeps_energy=False,
+        follows=False,
         whole=False,
         falls="with solver.step_ratio",
     ),
