@@ -27,7 +27,8 @@ def planes(net):
 def planes_of(p, work, terms):
     """The same of a record and its work memory."""
     slots = int(p["node_slots"])
-    count = NODE_PLANES + MODEL.groups["solver"].terms[terms["solver"]].checks.planes
+    needed = (MODEL.groups[group].terms[terms[group]].checks for group in ("solver", "substeps"))
+    count = NODE_PLANES + sum(part.planes for part in needed)
     reals = work.view(np.float32 if terms["precision"] == "single" else np.float64)
     return reals[: count * slots].reshape(count, slots)
 
@@ -51,7 +52,7 @@ class Bench:
         self.record = interface.make_record().view(np.recarray)
         self.p = self.record[0]
         assert self.parts.net.count(self.p, np.zeros(0)) == 0
-        own = self.parts.scheme.own_words(self.p)
+        own = self.parts.scheme.own_words(self.p) + self.parts.traits.masks * self.p.strips
         self.work = np.zeros(work_size(self.p, self.parts.planes, self.parts.per_double, own))
         self.p.work_size = self.work.size
         self.parts.net.lay_out(self.p, self.work)

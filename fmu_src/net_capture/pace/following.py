@@ -1,7 +1,7 @@
 """Substeps that follow the net as it is: which threads are taut, or may be before the next look.
 
 At every look at the mouth, `MEASURE_INTERVAL` apart, the threads are counted that are taut, or would be at the end of
-the interval if their ends flew straight on, less an `ALLOWANCE`. What meets at a node of these, and of the cord once
+the interval if their ends flew straight on, with an `ALLOWANCE`. What meets at a node of these, and of the cord once
 the winches run, bounds the spectrum as it does in `formulas.longest_step`, where all threads count:
 
     omega^2 <= 2 max over the nodes of (sum k) / m
@@ -22,12 +22,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from fmu_src.interface import Term
 from fmu_src.net_capture.pace import Clock, Pace, Traits
+from fmu_src.net_capture.pace.meeting import EXPECTED, SEEN, SETS, make_meeting
 from fmu_src.net_capture.planes import (
     DAMPING,
     INVERSE_MASS,
@@ -49,14 +50,11 @@ from fmu_src.rows import count, output, peak, state
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
-ALLOWANCE = 0.002
-"""Share of its length by which a thread may fall short of being taut and is still expected to be: a matter of time
-spent, for one that was not expected is seen."""
+ALLOWANCE = 1.0
+"""Of the bullets' speed: by so much the ends of a thread are expected to come apart faster than they do now, for a snap
+may throw a light node. One that was not expected is seen, so it is a matter of how often that is."""
 KEEP = 0.9
 """Share of the present number of substeps above which a smaller one is not worth the change."""
-EXPECTED, SEEN, SETS = range(3)
-"""The two sets of threads that are kept, each with a mask for every strip and two node planes, the stiffness [N/m] and
-the dashpots [N s/m] that meet at a node."""
 
 
 @kernel
@@ -127,83 +125,6 @@ def settle(p, step):
     return left / number
 
 
-class Meeting(NamedTuple):
-    """Kernels that keep what meets at the nodes.
-
-    allow(p, stiffness_rate, damping_rate) -> step       that is wanted where this meets [s], see `formulas.longest_step`
-    meet(p, reals, node, chosen, stiffness, dashpot)     more that meets at a node, for one of the sets
-    meet_strip(p, reals, table, numbers, strip, chosen, these)   threads of a strip, a bit each
-    meet_both(p, work, node, stiffness, dashpot)         what counts as taut: in both sets
-    """
-
-    allow: Any
-    meet: Any
-    meet_strip: Any
-    meet_both: Any
-
-
-def make_meeting(composition: Any) -> Meeting:
-    """Kernels for the composition's memory and the bound of its scheme."""
-    needs, reals_of = composition.needs, composition.memory.reals
-    longest_step, accurate_step = needs.longest_step, needs.accurate_step
-    first_plane = NODE_PLANES + needs.planes
-    from fmu_src.lanes import lowest, peek, poke
-
-    @kernel
-    def allow(p, stiffness_rate, damping_rate):
-        """Step that is wanted where this meets at a node [s], see `formulas.longest_step`.
-
-        Checked  tests/net_capture/test_following.py
-        """
-        if p.solver_step_ratio > 0.0:
-            return p.solver_step_ratio * longest_step(stiffness_rate, damping_rate)
-        return accurate_step(stiffness_rate, damping_rate)
-
-    @kernel
-    def meet(p, reals, node, chosen, stiffness, damping):
-        """Stiffness [N/m] and dashpot [N s/m] that meet at a node, for one of the sets; lowers its bound.
-
-        Checked  tests/net_capture/test_following.py
-        """
-        at = node + (first_plane + 2 * chosen) * p.node_slots
-        stiffness += peek(reals, at)
-        damping += peek(reals, at + p.node_slots)
-        poke(reals, at, stiffness)
-        poke(reals, at + p.node_slots, damping)
-        light = np.float64(peek(reals, node + INVERSE_MASS * p.node_slots))
-        bound = longest_step(stiffness * light, damping * light)
-        if chosen == EXPECTED:
-            p.solver_bound_now = min(p.solver_bound_now, bound)
-            p.pace_wanted = min(p.pace_wanted, allow(p, stiffness * light, damping * light))
-        else:
-            p.pace_seen = min(p.pace_seen, bound)
-
-    @kernel
-    def meet_strip(p, reals, table, numbers, strip, chosen, these):
-        """These lanes of a strip, a bit each, are in one of the sets now.
-
-        Checked  tests/net_capture/test_following.py
-        """
-        s = STRIP_WORDS * strip
-        q = STRIP_NUMBERS * strip
-        while these != np.uint64(0):
-            i = np.int64(lowest(these))
-            these &= these - np.uint64(1)
-            meet(p, reals, peek(table, s + A) + i, chosen, peek(numbers, q + STIFFNESS), peek(numbers, q + DAMPING))
-            meet(p, reals, peek(table, s + B) + i, chosen, peek(numbers, q + STIFFNESS), peek(numbers, q + DAMPING))
-
-    @kernel
-    def meet_both(p, work, node, stiffness, damping):
-        """The same, of a cord, which counts as taut while its winches run: in both sets.
-
-        Checked  tests/net_capture/test_following.py
-        """
-        for chosen in range(SETS):
-            meet(p, reals_of(work), node, chosen, stiffness, damping)
-
-    return Meeting(allow, meet, meet_strip, meet_both)
-
-
 def refuses(scene: Scene) -> Iterator[Refusal]:
     """A scheme without a bound, which leaves nothing to follow."""
     if not scene.parts["solver"].checks.follows:
@@ -263,7 +184,8 @@ def make(composition: Any) -> Pace:
         Checked  tests/net_capture/test_following.py
         """
         slots = p.node_slots
-        limit = splat(length * length * (1.0 - ALLOWANCE) * (1.0 - ALLOWANCE))
+        short = max(length - ALLOWANCE * p.bullets_speed * MEASURE_INTERVAL, 0.0)
+        limit = splat(short * short)
         span = splat(MEASURE_INTERVAL)
         found = np.uint64(0)
         for j in range(0, np.int64(highest(np.uint64(lanes))) + 1, width):
