@@ -238,6 +238,6 @@ def _sizes(
 def _steps(told: Mapping[str, float], labels: Mapping[str, str], duration: float) -> Iterator[build.Implied]:
     for name in told:
         yield build.Implied(name, labels[name], told[name], "s")
-    if "solver.substep" in told:
+    if "solver.substep" in told and "solver.substep_mean" not in labels:  # else it changes on the way
         count = duration / told["solver.substep"]
         yield build.Implied("solver.substeps", "substeps of the whole phase, at most", count, "1")

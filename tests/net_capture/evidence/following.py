@@ -122,7 +122,7 @@ def table(rows: list[dict[str, Any]]) -> str:
         fixed, following = row["fixed"], row["following"]
         lines.append(
             f"| {row['scene']} | {margin} | {fixed['energy_percent']:.2g} % | {following['energy_percent']:.2g} % "
-            f"| {following['margin_least']:.3g} | / {row['steps_ratio']:.2f} | / {row['cpu_ratio']:.2f} |"
+            f"| {following['margin_least']:.3g} | {row['steps_ratio']:.2f} | {row['cpu_ratio']:.2f} |"
         )
     return "\n".join(lines)
 
