@@ -9,6 +9,8 @@ from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.interface import GROUPS, NETS
 from fmu_src.net_capture.shot import opening_distance
+from fmu_src.net_capture.substeps import COUNT
+from fmu_src.net_capture.substeps import substeps as of_parts
 from orbital import oscillators
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.plain import mean_motion
@@ -55,29 +57,8 @@ def catch_mass(values: Values) -> float:
 
 def substeps(values: Values, terms: Mapping[str, str]) -> tuple[float, float]:
     """Stability bound, and the largest substep that keeps the mouth area within 0.3 % and the energy within 1 % [s]."""
-    pieces = values["net.segments"]
-    stiffness = formula(formulas.axial_stiffness)(
-        values["net.youngs_modulus"], thread_section(values, terms), values["net.mesh"]
-    )
-    knot = 2.0 * thread_mass(values, terms)
-    dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, knot)
-    cord = cord_dashpot = 0.0
-    rings = 0
-    if "closing" in terms:
-        rings = int(values["closing.rings"])
-        cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
-        cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, cord_mass(values, terms))
-    needs = GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks
-    limits = formulas.make_substep_limits(formula(needs.longest_step), formula(needs.accurate_step))
-    return formula(limits)(
-        pieces * stiffness,
-        pieces * dashpot,
-        knot / pieces,
-        cord,
-        cord_dashpot,
-        values["bullets.mass"],
-        rings,
-    )
+    chosen = {"solver": "leapfrog", **terms}
+    return of_parts(values, {name: GROUPS[name].terms[chosen[name]] for name in COUNT if name in chosen})
 
 
 def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:

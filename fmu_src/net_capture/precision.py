@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from fmu_src.implied import formula
 from fmu_src.interface import Term
-from fmu_src.net_capture import formulas
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.substeps import substeps
 
 SINGLE_BITS = 24
 STEPS_BETWEEN = 16.0
@@ -25,27 +24,11 @@ def spacing(size: float) -> float:
     return math.ldexp(1.0, math.frexp(size)[1] - SINGLE_BITS)
 
 
-def _substeps(scene: Scene) -> tuple[float, float]:
-    """Stability bound and default substep [s] of the threads; a cord may make them shorter still."""
-    values, needs = scene.values, scene.parts["solver"].checks
-    total = scene.parts["net"].checks.total(values)
-    section = formula(formulas.thread_area)(values["net.mass"], values["net.density"], total)
-    stiffness = formula(formulas.axial_stiffness)(values["net.youngs_modulus"], section, values["net.mesh"])
-    knot = 2.0 * values["net.density"] * section * values["net.mesh"]
-    dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, knot)
-    pieces = values["net.segments"]
-    limits = formulas.make_substep_limits(formula(needs.longest_step), formula(needs.accurate_step))
-    found: tuple[float, float] = formula(limits)(
-        pieces * stiffness, pieces * dashpot, knot / pieces, 0.0, 0.0, values["bullets.mass"], 0
-    )
-    return found
-
-
 def refuses(scene: Scene) -> Iterator[Refusal]:
     """Substeps in which a bullet hardly moves to the next number: what it loses there by rounding the velocities do not
     know of, and dashpots and threads turn it into energy (at a damping ratio of 10, five times that of the shot)."""
     values = scene.values
-    bound, usual = _substeps(scene)
+    bound, usual = substeps(values, scene.parts)
     ratio = values["solver.step_ratio"]
     step = ratio * bound if ratio > 0.0 else usual
     apart = spacing(max(math.hypot(*scene.vector("chaser.start_position")), 1e-3))
