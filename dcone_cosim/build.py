@@ -237,6 +237,16 @@ def whole(model: str, terms: Mapping[str, str]) -> bool:
     return TRADES[model].whole(terms) if model in TRADES else True
 
 
+def instead(model: str, terms: Mapping[str, str]) -> Mapping[str, str]:
+    """Criteria that mean nothing of a model of ours with these terms, each with the one that is asked in its place."""
+    return TRADES[model].instead(terms) if model in TRADES else {}
+
+
+def within(model: str, terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
+    """Criteria that hold less closely with these terms of a model of ours: what counts as accurate and as stable."""
+    return TRADES[model].within(terms) if model in TRADES else {}
+
+
 def refinements(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
     """Settings that refine a model of ours itself, by name."""
     return TRADES[model].refinements(values, terms) if model in TRADES else {}
@@ -258,6 +268,12 @@ def target_distance(
     None for a target that is none of ours."""
     part = _part(TARGETS, terms.get("target"), values)
     return None if part is None else part.checks.distance
+
+
+def mouth_sides(values: Mapping[str, float], terms: Mapping[str, str]) -> list[float]:
+    """Sides of the mouth as meant, each from a bullet to the next [m]; none for a net that is none of ours."""
+    part = _part(NETS, terms.get("net"), values) if "net.mesh" in values else None
+    return [] if part is None else (list(part.checks.sides(values).values()) * 4)[:4]
 
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:

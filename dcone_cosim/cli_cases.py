@@ -123,9 +123,13 @@ def stability(
     out: Out = None,
     settings: Settings = None,
     limit: Annotated[
-        float,
-        typer.Option("--limit", help="CPU time [s] that a case may take, as it is reckoned; dearer ones are refused."),
-    ] = 20.0,
+        float | None,
+        typer.Option(
+            "--limit",
+            help="CPU time [s] that a case may take, as it is reckoned: 20, dearer ones are refused; with --quick 1, "
+            "dearer ones are left out.",
+        ),
+    ] = None,
     budget: Annotated[
         float | None,
         typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 40."),

@@ -26,6 +26,7 @@ class Extreme:
     needs        groups without which it says nothing
     duration     of the phase; 0: as it is [s]
     macro_step   of the phase; 0: as it is [s]
+    scatters     why a finer run cannot be asked to come to the same; "" where it can
     chief        among the few that are tried when there is little time
     """
 
@@ -37,6 +38,7 @@ class Extreme:
     needs: tuple[str, ...] = ()
     duration: float = 0.0
     macro_step: float = 0.0
+    scatters: str = ""
     chief: bool = False
 
     def given(self, values: Values) -> dict[str, float | Sequence[float]]:

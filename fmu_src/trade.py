@@ -7,6 +7,10 @@ A model that has such settings has a module `trade` with
     rungs(values, terms)         settings of the scheme that the terms name, coarse to fine; the last is for references
     refinements(values, terms)   by name, other settings that refine the model itself, each coarse to fine
     whole(terms)                 whether everything that is shown with these terms is meant, energies too
+    instead(terms)               criteria of a phase that mean nothing with these terms, each with the one that is asked
+                                 in its place, "" for none
+    within(terms)                criteria that hold less closely with these terms than with others: shares up to which a
+                                 run counts as accurate and as stable
 
 values are all parameters and inputs by FMI name, SI.
 """

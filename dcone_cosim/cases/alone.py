@@ -6,13 +6,14 @@ A phase that another hands over to begins as it does in a run of the scene as it
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import tomlkit
 
+from dcone_cosim import build
 from dcone_cosim.cases.case import identities
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
@@ -105,6 +106,12 @@ class Fmus:
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
         self.facts: dict[Any, Mapping[str, Any]] = {}
+
+    def make_ready(self, scenes: Iterable[Scene]) -> None:
+        """Build those of all these scenes that are not there side by side, so that none is waited for by itself."""
+        parts = [c for scene in scenes for phase in scene.phases for c in phase.components if c.fmu is None]
+        with self._progress.working("building"):
+            build.ensure([(part.model, part.terms) for part in parts], self._progress.say)
 
     def of(self, scene: Scene) -> dict[str, str]:
         """What identifies each FMU of a scene."""

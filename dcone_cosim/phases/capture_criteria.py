@@ -22,7 +22,9 @@ BOOKED = {"double": 2e-6}
 are not here rounding is as large as a scheme's own error, and its order cannot be seen."""
 DEPTH, DEEPEST = 2e-3, 2e-2
 """How deep a node may lie below the target's surface [m]: that up to which it counts as on it, and ten times that."""
-CATCH, SHOT = "catch", "shot.momentum"
+CATCH, SHOT, STRENGTH = "catch", "shot.momentum", "thread.axial_stiffness"
+BULLETS = (1, 2, 3, 4)
+"""In their order round the mouth."""
 
 
 def criteria(evidence: Evidence) -> Iterator[Criterion]:
@@ -34,6 +36,7 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
     yield from _book(evidence)
     yield from _momentum(evidence)
     yield from _flight(evidence)
+    yield from _stretch(evidence)
     yield from _depth(evidence)
 
 
@@ -133,6 +136,30 @@ def _flight(evidence: Evidence) -> Iterator[Criterion]:
     accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
     off = max(0.0, float(way.max()) - ON_GRID * _substep(evidence) * float(np.linalg.norm(velocity))) / flown
     yield Criterion("flight", "way of the catch from a straight line", off, "1", accurate, stable)
+
+
+def _stretch(evidence: Evidence) -> Iterator[Criterion]:
+    """The rim is no longer than all energy that came in can stretch it, whatever a scheme books.
+
+        sum EA/(2 a) max(0, s - a)^2 <= E,   s between two bullets, a of the net's side between them, E what came in
+
+    A side of many threads holds at least as much as one thread of its length that reaches from bullet to bullet.
+    """
+    names = [f"bullet[{bullet}].position" for bullet in BULLETS]
+    sides = build.mouth_sides(evidence.values, evidence.terms)
+    if not sides or not evidence.has("energy.kinetic", *names):
+        return
+    rows = build.implied("net_capture", evidence.values, evidence.terms)
+    strength = next(row.value for row in rows if row.key == STRENGTH)
+    corners = [evidence.vector(name) for name in names]
+    held = np.zeros(len(evidence.columns["time"]))
+    for number, side in enumerate(sides):
+        apart = np.linalg.norm(corners[(number + 1) % len(corners)] - corners[number], axis=1)
+        held += 0.5 * strength / side * np.maximum(apart - side, 0.0) ** 2
+    came = entered(evidence)
+    beyond = float(np.max(np.maximum(held - came, 0.0) / np.maximum(came, 1e-300)))
+    label = "energy that the rim's stretch alone holds, above what came in"
+    yield Criterion("stretch", label, beyond, "1", ACCURATE, STABLE)
 
 
 def _substep(evidence: Evidence) -> float:

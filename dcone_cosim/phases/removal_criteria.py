@@ -19,7 +19,8 @@ TUGS = 5
 FAST = 100.0
 """Radians of a line's motion in a radian of the orbit from which on its snaps are quick enough for the closed form."""
 SLOW = 1e-3
-"""Thrust over weight up to which an orbit falls as a spiral does."""
+"""Thrust over weight up to which an orbit falls as a spiral does, and share by which the axis may change while the
+orbit counts as one circle."""
 
 
 def criteria(evidence: Evidence) -> Iterator[Criterion]:
@@ -155,19 +156,30 @@ def _orbit(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
-    """Without thrust, on a circle: the relative motion's integral never rises, and stays where nothing damps.
+    """On a circle the relative motion's integral never rises, and stays where nothing damps.
 
-    In units of the energy that the tide gives a line of that length, 3/2 n^2 m_r l^2.
+        J = E + m_r F/m_c s,   E the Jacobi integral, F the thrust, s from chaser to target along-track, or along the
+                               line where the thrust is
+
+    In units of the energy that the tide gives a line of that length, 3/2 n^2 m_r l^2; while thrust changes n little.
+    Source   work of F on the relative motion, whose acceleration by it is -F/m_c
     """
     columns, values = evidence.columns, evidence.values
-    if force(evidence) != 0.0 or values["orbit.eccentricity"] > 0.0 or not evidence.has("energy.relative"):
+    if values["orbit.eccentricity"] > 0.0 or not evidence.has(
+        "energy.relative", "relative.position", "separation", "center.semi_major_axis"
+    ):
+        return
+    axis = columns["center.semi_major_axis"]
+    if float(np.abs(axis / axis[0] - 1.0).max()) > SLOW:
         return
     if float(columns["separation"].max()) > 1e-3 * EARTH_EQUATORIAL_RADIUS:
         return  # the integral holds to first order in length over radius
-    _, _, reduced = _masses(evidence)
+    chaser, _, reduced = _masses(evidence)
     rate = EARTH_MU / (EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]) ** 3
     size = 1.5 * rate * reduced * float(columns["separation"].max()) ** 2
-    energy = columns["energy.relative"] / size
-    yield Criterion("jacobi", "Jacobi integral above what it was", rise(energy), "1", ACCURATE, STABLE)
+    along = columns["separation"] if evidence.terms.get("thrust") == "tether" else columns["relative.position[2]"]
+    energy = (columns["energy.relative"] + reduced / chaser * force(evidence) * along) / size
+    yield Criterion("jacobi", "integral of the relative motion above what it was", rise(energy), "1", ACCURATE, STABLE)
     if values["tether.damping_ratio"] == 0.0:
-        yield Criterion("jacobi_falls", "Jacobi integral below what it was", rise(-energy), "1", ACCURATE, STABLE)
+        label = "integral of the relative motion below what it was"
+        yield Criterion("jacobi_falls", label, rise(-energy), "1", ACCURATE, STABLE)

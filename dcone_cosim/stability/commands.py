@@ -31,7 +31,6 @@ from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.run_folder import default_folder
 from dcone_cosim.stability import page, plot, show
-from dcone_cosim.stability.judge import LEFT
 from dcone_cosim.stability.plan import PhasePlan, plan
 from dcone_cosim.stability.work import measure
 
@@ -42,8 +41,10 @@ SHIPPED: Mapping[str, tuple[str, ...]] = {
 }
 """Scenes that are tried where none is named, and what is set in them: a coarse net does as well, for a tenth of the
 time."""
-LIMIT, BUDGET, QUICK_BUDGET = 20.0, 1200.0, 40.0
+LIMIT, BUDGET = 20.0, 1200.0
 """CPU time of a case, and time for all cases on the clock [s]."""
+QUICK_LIMIT, QUICK_BUDGET = 1.0, 40.0
+"""The same of a quick look."""
 
 
 @dataclass
@@ -66,7 +67,7 @@ def stability(
     out: Path | None,
     progress: Progress,
     settings: Sequence[str] = (),
-    limit: float = LIMIT,
+    limit: float | None = None,
     budget: float | None = None,
     quick: bool = False,
     jobs: int | None = None,
@@ -74,14 +75,18 @@ def stability(
 ) -> Done:
     """Try every phase of a scene, or of the shipped ones, and write the folder. Bad input raises and leaves nothing.
 
-    limit     CPU time that a case may be reckoned to take [s]
-    budget    time on the clock after which no further case is begun [s]
+    limit     CPU time that a case may be reckoned to take [s]; None: LIMIT, or QUICK_LIMIT
+    budget    time on the clock after which no further case is begun [s]; None: BUDGET, or QUICK_BUDGET
     """
     started = datetime.now(UTC)
-    for option, value in (("--limit", limit), ("--budget", budget if budget is not None else BUDGET)):
+    command = _command(name, settings, limit, budget, quick)
+    if limit is None:
+        limit = QUICK_LIMIT if quick else LIMIT
+    if budget is None:
+        budget = QUICK_BUDGET if quick else BUDGET
+    for option, value in (("--limit", limit), ("--budget", budget)):
         if not 0.0 < value < 1e9:
             raise InputError(f"{option} {value:g}: expected a time greater than 0 s, and less than 1e9 s")
-    time = budget if budget is not None else QUICK_BUDGET if quick else BUDGET
     if name is None and settings:
         raise InputError("--set needs a SCENE: without one the shipped scenes are tried as they are")
     chosen = {name: tuple(settings)} if name is not None else SHIPPED
@@ -115,32 +120,30 @@ def stability(
         interrupts.arm()
         with Workers(count) as workers:
             rows = run_all(
-                cases, store, workers, count + 1, progress, measure, lambda: clock.perf_counter() - began > time
+                cases, store, workers, count + 1, progress, measure, lambda: clock.perf_counter() - began > budget
             )
         store.gather_if_many()
         matrices = [show.matrix(one, rows) for one in plans]
         notes = list(dict.fromkeys(note for scene in scenes for note in scene.notes))
-        left = sum(cell.planned.case is not None for one in matrices for cell in one.of(LEFT))
+        left = sum(case.key not in rows for case in cases)
         if left:
-            notes.append(f"{left} cases were left out after {spoken(time)}; the same command goes on with them")
+            notes.append(f"{left} cases were left out after {spoken(budget)}; the same command goes on with them")
         told = {
             "scenes": [scene.name for scene in scenes],
             "limit": {"value": limit, "unit": "s"},
             "phases": {f"{one.plan.scene.name}.{one.plan.phase}": show.as_dict(one) for one in matrices},
         }
         done = Done(folder, matrices, told, notes)
-        command = _command(name, settings, limit, budget, quick)
-        write_report(
-            folder, scenes, _columns(matrices), told, partial(_draw, done), started, done.exit_code, command
-        )  # fmt: skip
+        draw = partial(_draw, done)
+        write_report(folder, scenes, _columns(matrices), told, draw, started, done.exit_code, command)
     return done
 
 
-def _command(name: str | None, settings: Sequence[str], limit: float, budget: float | None, quick: bool) -> str:
+def _command(name: str | None, settings: Sequence[str], limit: float | None, budget: float | None, quick: bool) -> str:
     """What makes the report again."""
     parts = ["dcone", "stability", *([name] if name else [])]
     parts += [part for setting in settings for part in ("--set", setting)]
-    parts += [] if limit == LIMIT else ["--limit", f"{limit:g}"]
+    parts += [] if limit is None else ["--limit", f"{limit:g}"]
     parts += [] if budget is None else ["--budget", f"{budget:g}"]
     return shlex.join([*parts, *(["--quick"] if quick else [])])
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -22,8 +22,8 @@ from dcone_cosim.criteria import Criterion
 from dcone_cosim.quantities import Quantity
 
 ACCURATE, STABLE, REFUSED, EXCLUDED, FAILED, LEFT = "accurate", "stable", "refused", "excluded", "failed", "left out"
-AGREE = 0.01
-"""Share by which a finer run may differ from an accurate one."""
+AGREE, AGREE_STABLE = 0.01, 0.05
+"""Shares by which a finer run may differ from an accurate one, and from one that is stable."""
 SAME, SAME_STABLE = 1e-9, 1e-6
 """The same of a run with other macro steps."""
 PARTED = 0.002
@@ -84,6 +84,22 @@ def verdict(criteria: Sequence[Criterion], asked: str) -> Verdict:
     return Verdict(ACCURATE, "", criteria)
 
 
+def suited(
+    criteria: Iterable[Criterion], instead: Mapping[str, str], within: Mapping[str, tuple[float, float]]
+) -> list[Criterion]:
+    """Those that mean something with a scheme, with its own limits where they are wider.
+
+    instead    criteria that mean nothing with it, and those in their place
+    within     criteria that hold less closely with it: what counts as accurate and as stable
+    """
+    found = []
+    for one in criteria:
+        accurate, stable = within.get(one.key, (one.accurate, one.stable))
+        if one.key not in instead:
+            found.append(one._replace(accurate=max(accurate, one.accurate), stable=max(stable, one.stable)))
+    return found
+
+
 def refusal(message: str, asked: str = "") -> Verdict:
     """Of a case that was refused: the reason counts only with a bound in it."""
     text = message.strip()
@@ -142,7 +158,7 @@ def agreement(
                 worst, label = off, one.label
     if not compared:
         return unlike("chaos parts even its twin from it too early" if twins is not None else "nothing to compare")
-    return Criterion("agrees", f"difference from a finer run, in the {label}", worst, "1", AGREE, math.inf)
+    return Criterion("agrees", f"difference from a finer run, in the {label}", worst, "1", AGREE, AGREE_STABLE)
 
 
 def falls(here: Sequence[Criterion], finer: Sequence[Criterion], rounding: float) -> Criterion:
@@ -160,7 +176,7 @@ def falls(here: Sequence[Criterion], finer: Sequence[Criterion], rounding: float
 
 
 def unlike(why: str) -> Criterion:
-    """The agreement of a run that is not compared."""
+    """The agreement of a run that is not compared: it does not count as accurate, whatever the other criteria say."""
     return Criterion("agrees", f"not compared with a finer run: {why}", math.inf, "1", AGREE, math.inf)
 
 

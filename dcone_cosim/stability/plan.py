@@ -25,6 +25,8 @@ AS_IT_IS = build.Extreme("as it is", "the scene itself", "finite", chief=True)
 STEPS = (100.0, 10.0, 0.1, 0.01)
 """Macro and coupling steps over a scene's own, of an FMU from elsewhere."""
 
+FINER_STEP = 0.25
+"""Of a run that is compared, over a step that an extreme sets."""
 DIGITS = 17
 """Of a value: no bit of an edge may be lost."""
 
@@ -59,6 +61,11 @@ class Planned:
     case: Cell | None = None
     found: Verdict | None = None
 
+    @property
+    def asked(self) -> str:
+        """Key of the criterion that it is about."""
+        return self.extreme.criterion if self.case is None else self.case.asked
+
 
 @dataclass
 class PhasePlan:
@@ -88,13 +95,15 @@ def plan(alone: Alone, phase: str, fmus: Fmus, limit: float, quick: bool) -> Pha
     extremes = [AS_IT_IS, *(build.extremes(own.main.model, own.main.terms) if ours else ()), *_steps(own, ours)]
     if quick:
         extremes = [one for one in extremes if one.chief]
-    maker = _Maker(alone, phase, settings, fmus, limit)
-    cells = [
+    maker = _Maker(alone, phase, settings, fmus, limit, quick)
+    drafts = [
         Planned(extreme, scheme, (), found=Verdict(LEFT, "not in a quick look"))
         if quick and scheme is not schemes[0] and extreme is not AS_IT_IS
-        else maker.planned(extreme, scheme)
+        else maker.draft(extreme, scheme)
         for extreme, scheme in product(extremes, schemes)
     ]
+    fmus.make_ready(draft.made for draft in drafts if isinstance(draft, _Draft))
+    cells = [maker.planned(draft) if isinstance(draft, _Draft) else draft for draft in drafts]
     return PhasePlan(base, phase, schemes, extremes, cells)
 
 
@@ -150,15 +159,35 @@ def _steps(phase: PhaseScene, ours: bool) -> Iterator[build.Extreme]:
             yield build.Extreme(f"macro step x {factor:g}", about, "finite", macro_step=step, chief=True)
 
 
-class _Maker:
-    """Makes cells of one phase."""
+@dataclass(frozen=True)
+class _Draft:
+    """A pair that can be run, before its FMU is there.
 
-    def __init__(self, alone: Alone, phase: str, settings: tuple[str, ...], fmus: Fmus, limit: float) -> None:
+    made       its scene
+    changes    settings that make it
+    without    tables of the phase that it goes without
+    asked      key of the criterion that it is about
+    """
+
+    extreme: build.Extreme
+    scheme: Scheme
+    made: Scene
+    changes: tuple[str, ...]
+    without: tuple[str, ...]
+    asked: str
+
+
+class _Maker:
+    """Makes cells of one phase: drafts first, then, of those that can be run, the cases."""
+
+    def __init__(
+        self, alone: Alone, phase: str, settings: tuple[str, ...], fmus: Fmus, limit: float, quick: bool
+    ) -> None:
         self._alone, self._phase, self._settings = alone, phase, settings
-        self._fmus, self._limit = fmus, limit
+        self._fmus, self._limit, self._quick = fmus, limit, quick
         self._bases: dict[str, Scene] = {}
 
-    def planned(self, extreme: build.Extreme, scheme: Scheme) -> Planned:
+    def draft(self, extreme: build.Extreme, scheme: Scheme) -> _Draft | Planned:
         if extreme.name in scheme.lacks:
             return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, scheme.lacks[extreme.name]))
         try:
@@ -167,14 +196,23 @@ class _Maker:
             return Planned(extreme, scheme, (), found=refusal(str(error).splitlines()[-1].strip()))
         if made is None:
             return Planned(extreme, scheme, changes, found=Verdict(EXCLUDED, "goes without what it is about"))
-        if extreme.criterion == ORDER and kind_of(self._phase).rounding(made.phases[0]) is None:
+        main = made.phases[0].main
+        asked = build.instead(main.model, main.terms).get(extreme.criterion, extreme.criterion)
+        if not asked:
+            why = f"goes without {extreme.criterion}, which means nothing with it"
+            return Planned(extreme, scheme, changes, found=Verdict(EXCLUDED, why))
+        if asked == ORDER and kind_of(self._phase).rounding(made.phases[0]) is None:
             why = "goes without an order that could be seen: rounding is as large as its error"
             return Planned(extreme, scheme, changes, found=Verdict(EXCLUDED, why))
+        return _Draft(extreme, scheme, made, changes, without, asked)
+
+    def planned(self, draft: _Draft) -> Planned:
         try:
-            case = self._cell(made, changes, without, extreme)
+            case = self._cell(draft)
         except InputError as error:
-            return Planned(extreme, scheme, changes, found=refusal(str(error).splitlines()[-1].strip()))
-        return Planned(extreme, scheme, changes, case)
+            found = refusal(str(error).splitlines()[-1].strip())
+            return Planned(draft.extreme, draft.scheme, draft.changes, found=found)
+        return Planned(draft.extreme, draft.scheme, draft.changes, case)
 
     def _base(self, scheme: Scheme) -> PhaseScene:
         if scheme.name not in self._bases:
@@ -211,12 +249,13 @@ class _Maker:
             changes.append(f"{self._phase}.macro_step={written(extreme.macro_step, 's', DIGITS)}")
         return self._scene(changes, without), tuple(changes), tuple(without)
 
-    def _cell(self, made: Scene, changes: tuple[str, ...], without: Sequence[str], extreme: build.Extreme) -> Cell:
+    def _cell(self, draft: _Draft) -> Cell:
+        made, changes, without = draft.made, draft.changes, draft.without
         own = made.phases[0]
         main = own.main
         kind = kind_of(self._phase)
         first = 0.0 if kind.own_clock else own.start
-        same = extreme.criterion == "same"
+        same = draft.asked == "same"
         finer: Scene | None = None
         if same:
             step = written(min(self._alone.scene_of(self._phase).phases[0].macro_step, own.duration), "s", DIGITS)
@@ -224,19 +263,24 @@ class _Maker:
             instants: tuple[float, ...] = (first + own.duration,)
         else:
             instants = spread_instants(first, own.duration, own.macro_step, INSTANTS)
-            finest = self._finest(own)
+            finest = self._finest(own, draft.extreme)
             finer = self._scene((*changes, *finest), without) if finest else None
         jittered = None
         if kind.chaotic and not same and main.fmu is None:
             jittered = self._scene((*changes, *ensemble.jitter(made, 1)), without)
-        key = digest(key_of(made, self._fmus.of(made), 1), instants, self._limit, extreme.criterion, same)
-        return Cell(key, made, changes, {}, 1, extreme.criterion, self._limit, instants, finer, jittered, same)
+        scatters = draft.extreme.scatters
+        how = (draft.asked, self._limit, instants)
+        key = digest(key_of(made, self._fmus.of(made), 1), *how, same, scatters, self._quick)
+        return Cell(key, made, changes, {}, 1, *how, finer, jittered, same, scatters, self._quick)
 
-    def _finest(self, own: PhaseScene) -> tuple[str, ...]:
-        """Settings that compute it as finely as its model says is enough for a reference."""
+    def _finest(self, own: PhaseScene, extreme: build.Extreme) -> tuple[str, ...]:
+        """Settings that compute it as finely as its model says is enough for a reference, or in a quarter of the step
+        where the extreme sets one."""
         main = own.main
         if main.fmu is not None:
             return (f"{self._phase}.macro_step={written(min(STEPS) * own.macro_step, 's', DIGITS)}",)
         values = {**main.defaults, **main.parameters}
         rungs = build.rungs(main.model, values, main.terms)
-        return changes_of(own, rungs[-1].values, DIGITS) if rungs else ()
+        finest = rungs[-1].values if rungs else {}
+        quartered = {name: FINER_STEP * values[name] for name in finest if name in extreme.values}
+        return changes_of(own, {**finest, **quartered}, DIGITS)

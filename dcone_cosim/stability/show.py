@@ -132,7 +132,7 @@ def as_dict(one: Matrix) -> dict[str, Any]:
             {
                 "extreme": cell.planned.extreme.name,
                 "scheme": cell.planned.scheme.name,
-                "asked": cell.planned.extreme.criterion,
+                "asked": cell.planned.asked,
                 **cell.verdict.told(),
             }
             for cell in one.cells

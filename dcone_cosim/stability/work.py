@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from dcone_cosim import build
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.pace import spoken
 from dcone_cosim.cases.rows import FAULT, REFUSED, Row
@@ -20,7 +21,19 @@ from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.stability.cost import Cost, estimate
-from dcone_cosim.stability.judge import FAILED, ORDER, Verdict, agreement, falls, refusal, sameness, unlike, verdict
+from dcone_cosim.stability.judge import (
+    FAILED,
+    LEFT,
+    ORDER,
+    Verdict,
+    agreement,
+    falls,
+    refusal,
+    sameness,
+    suited,
+    unlike,
+    verdict,
+)
 
 PATIENCE = 12.0
 """Limits after which a case that is still there counts as hanging: it was reckoned to take one, a finer run four."""
@@ -38,6 +51,8 @@ class Cell(Case):
     finer      the same with a finer step or tolerance; with other macro steps for `same`
     jittered   its twin that begins a micrometre beside it
     same       whether the other run must come to the same
+    scatters   why a finer run cannot be asked to agree; "" where it can
+    quick      whether it is left out, and not refused, if it would take longer
     """
 
     asked: str = ""
@@ -46,6 +61,8 @@ class Cell(Case):
     finer: Scene | None = None
     jittered: Scene | None = None
     same: bool = False
+    scatters: str = ""
+    quick: bool = False
 
 
 def measure(case: Case) -> Row:
@@ -104,6 +121,8 @@ def judge_cell(cell: Cell) -> tuple[Verdict, Cost | None, float]:
     """Verdict, estimate and CPU time spent [s] of a cell."""
     cost = estimate(cell.scene, lambda scene: _run(scene).phase)
     if cost is not None and cost.cpu > cell.limit:
+        if cell.quick:
+            return Verdict(LEFT, f"not in a quick look: it would take {cost.told()}"), cost, 0.0
         return refusal(f"too long: {cost.told()}, and {spoken(cell.limit)} are allowed"), cost, 0.0
     here = _run(cell.scene)
     if here.phase is None:
@@ -115,6 +134,8 @@ def judge_cell(cell: Cell) -> tuple[Verdict, Cost | None, float]:
     for one, more in _compared(cell, here, criteria, spent):
         criteria.append(one)
         spent += more
+    main = cell.scene.phases[0].main
+    criteria = suited(criteria, build.instead(main.model, main.terms), build.within(main.model, main.terms))
     return verdict(criteria, cell.asked), cost, spent
 
 
@@ -139,6 +160,9 @@ def _reason(lines: Sequence[str]) -> str:
 def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: float) -> Iterator[tuple[Criterion, float]]:
     """The criteria that other runs are needed for, with the CPU time of these [s]."""
     if cell.finer is None:
+        return
+    if cell.scatters:
+        yield unlike(cell.scatters), 0.0
         return
     if not cell.same and FINER * spent > 4.0 * cell.limit:
         yield unlike(f"it would take about {spoken(FINER * spent)}"), 0.0

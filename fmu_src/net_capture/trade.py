@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from fmu_src.net_capture.implied import substeps
 from fmu_src.net_capture.interface import GROUPS
@@ -16,7 +17,7 @@ PIECES = (2,)
 
 def rungs(values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
     """Substeps by the scheme's own factors of its default one, as far as they are stable."""
-    needs = GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks
+    needs = _needs(terms)
     if terms.get("substeps") == "following" and not needs.follows:
         return []
     bound, enough = substeps(values, terms)
@@ -26,10 +27,27 @@ def rungs(values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
 
 def whole(terms: Mapping[str, str]) -> bool:
     """Whether all that the scheme shows is meant, or the net's shape alone."""
-    return bool(GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks.whole)
+    return bool(_needs(terms).whole)
+
+
+def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
+    """Criteria that mean nothing with the scheme, and those that are asked in their place, see `schemes.Needs`."""
+    found: Mapping[str, str] = _needs(terms).instead
+    return found
+
+
+def within(terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
+    """Criteria that hold less closely with the scheme, see `schemes.Needs`."""
+    found: Mapping[str, tuple[float, float]] = _needs(terms).within
+    return found
 
 
 def refinements(values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
     """Threads cut into more pieces: the same net, nearer to a continuous one."""
     pieces = values["net.segments"]
     return {"pieces of a thread": [Rung(1.0 / n, {"net.segments": n * pieces}) for n in (1, *PIECES)]}
+
+
+def _needs(terms: Mapping[str, str]) -> Any:
+    """What the scheme says of itself."""
+    return GROUPS["solver"].terms[terms.get("solver", "leapfrog")].checks

@@ -13,6 +13,9 @@ HANDED_OVER = 3
 """Number of the start that takes given states, see `interface.CONDITIONS`."""
 
 
+GRAZES = "its tension comes back to zero at no speed, and which of these touches are tugs hangs on the last digit"
+
+
 def _axis_less_radius(eccentricity: float) -> float:
     return (EARTH_EQUATORIAL_RADIUS + PERIGEE) / (1.0 - eccentricity) - EARTH_EQUATORIAL_RADIUS
 
@@ -51,9 +54,9 @@ LOCKED = (
     Extreme("chatter: at rest on the edge, radial", "exactly as long as the line at no speed, the tide pulls", "longer",
             {"start.condition": HANDED_OVER, "start.relative_position": (12.0, 0.0, 0.0), "tether.rest_length": 12.0,
              "tether.damping_ratio": 0.0}),
-    Extreme("chatter: at rest on the edge, along-track", "the same where nothing pulls", "longer",
+    Extreme("chatter: at rest on the edge, along-track", "the same where no tide pulls, only the thrust", "longer",
             {"start.condition": HANDED_OVER, "start.relative_position": (0.0, 12.0, 0.0), "tether.rest_length": 12.0,
-             "tether.damping_ratio": 0.0}),
+             "tether.damping_ratio": 0.0}, scatters=GRAZES),
     Extreme("bodies a nanometre apart", "the line has hardly a direction", "longer", {"start.separation": 1e-9}),
     Extreme("coincident bodies", "the line has no direction: it is to be refused", "refused",
             {"start.condition": HANDED_OVER, "start.relative_position": (0.0, 0.0, 0.0)}),

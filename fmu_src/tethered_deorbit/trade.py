@@ -27,6 +27,16 @@ def whole(terms: Mapping[str, str]) -> bool:
     return True
 
 
+def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
+    """All criteria mean something with all schemes."""
+    return {}
+
+
+def within(terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
+    """All criteria hold alike with all schemes."""
+    return {}
+
+
 def refinements(values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
     """None: the line is one piece."""
     return {}

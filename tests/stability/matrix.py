@@ -31,7 +31,7 @@ def told(one: Matrix) -> dict[str, Any]:
         cells.setdefault(cell.planned.extreme.name, {})[cell.planned.scheme.name] = {
             "kind": found.kind,
             "why": found.text,
-            "asked": cell.planned.extreme.criterion,
+            "asked": cell.planned.asked,
             "measured": {c.key: float(f"{c.value:.3g}") for c in found.criteria if c.value < 1e300},
         }
     shares = {name: {"refused": refused, "of": tried} for name, refused, tried in one.shares()}

@@ -45,7 +45,7 @@ def test_what_it_leaves(done: commands.Done) -> None:
     assert done.exit_code == 0
     table = pd.read_parquet(done.folder / "table.parquet")
     assert {"as it is", "eccentricity 0.9", "line of 20000 m"} <= set(table.extreme)
-    assert {"finite", "snap", "orbit", "longer", "agrees"} <= set(table.criterion)
+    assert {"finite", "snap", "orbit", "longer", "agrees", "jacobi", "jacobi_falls"} <= set(table.criterion)
     assert (table.value <= table.stable_up_to).all()
     page = (done.folder / "report.html").read_text()
     assert "dcone stability table2-deorbit --set" in page

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.phases.removal_criteria import criteria as of_removal
@@ -20,8 +21,10 @@ from dcone_cosim.stability.judge import (
     falls,
     refusal,
     sameness,
+    unlike,
     verdict,
 )
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.oscillators import damped_snap_peak, line_stiffness, reduced_mass
 
 
@@ -65,6 +68,13 @@ def test_a_chaotic_run_is_compared_while_its_twin_stays_with_it() -> None:
     assert agreement(curve(here), curve(finer), curve(here), 101).value == pytest.approx(0.3)
     early = here + np.where(time > 1.0, 5.0, 0.0)
     assert math.isinf(agreement(curve(here), curve(finer), curve(early), 101).value)
+
+
+def test_a_finer_run_that_differs_much_is_red() -> None:
+    here = 50.0 + np.linspace(0.0, 10.0, 101)
+    for off, kind in ((0.5, ACCURATE), (3.0, STABLE), (6.0, FAILED)):
+        assert verdict([agreement(curve(here), curve(here + off), None, 101)], "agrees").kind == kind
+    assert verdict([unlike("it grazes")], "agrees").kind == STABLE
 
 
 def test_other_macro_steps_give_the_same() -> None:
@@ -126,6 +136,41 @@ def test_a_line_neither_pushes_nor_is_longer_than_its_tension_makes_it() -> None
     assert red(tow(peak, 12.0 + 1.05 * peak / stiffness)) == {"longer"}
     assert red(tow(peak, tension=-0.1)) == {"pushes"}
     assert red(tow(math.nan)) >= {"finite"}
+
+
+def adrift(thrust: float, told: float) -> Evidence:
+    """Two bodies and a slack line for ten minutes, by Hill's equations; and the thrust that the scene tells.
+
+    x'' = 3 n2 x + 2 n y',   y'' = -2 n x' - F/m_c
+    """
+    rate = math.sqrt(EARTH_MU / (EARTH_EQUATORIAL_RADIUS + LINE["orbit.altitude"]) ** 3)
+    mass, chaser = reduced_mass(2000.0, 1000.0), MASSES["chaser.mass"]
+
+    def change(_: float, state: np.ndarray) -> list[float]:
+        x, _, u, v = state
+        return [u, v, 3.0 * rate**2 * x + 2.0 * rate * v, -2.0 * rate * u - thrust / chaser]
+
+    time = np.linspace(0.0, 600.0, 200)
+    found = solve_ivp(change, (0.0, time[-1]), [1.0, 10.0, 0.0, 0.0], t_eval=time, rtol=1e-10, atol=1e-12).y
+    x, y, u, v = found
+    columns = {
+        "time": time,
+        "relative.position[1]": x,
+        "relative.position[2]": y,
+        "separation": np.hypot(x, y),
+        "energy.relative": mass * (0.5 * (u**2 + v**2) - 1.5 * rate**2 * x**2),
+        "center.semi_major_axis": np.full(len(time), EARTH_EQUATORIAL_RADIUS + LINE["orbit.altitude"]),
+    }
+    values = {**MASSES, **LINE, "tether.damping_ratio": 0.0, "thrust.level": told, "thrust.offset": 0.0}
+    return Evidence(columns, values, {"reel": "locked", "thrust": "along_track"}, float(time[-1]))
+
+
+def test_under_thrust_the_integral_of_the_relative_motion_is_kept() -> None:
+    assert "jacobi" in {one.key for one in of_removal(adrift(-0.02, -0.02))}
+    assert red(adrift(-0.02, -0.02)) == set()
+    assert red(adrift(0.0, 0.0)) == set()
+    for told in (0.02, 0.0):
+        assert red(adrift(-0.02, told)) & {"jacobi", "jacobi_falls"}
 
 
 @pytest.mark.parametrize(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import pytest
 
+from dcone_cosim import build
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.phases.capture_criteria import criteria
-from dcone_cosim.stability.judge import ACCURATE, FAILED, falls, verdict
+from dcone_cosim.stability.judge import ACCURATE, FAILED, falls, suited, verdict
 from fmu_src.instance import Instance
 from fmu_src.net_capture.planes import P, U
 from tests.conftest import FREE
@@ -101,3 +103,42 @@ def test_a_dashpot_half_a_substep_late_is_red(shoot: Any) -> None:
     assert faulty.value > 1.0 / 5.0
     assert verdict([sound], "order").kind == ACCURATE
     assert verdict([faulty], "order").kind == FAILED
+
+
+def held_apart(share: float, scheme: str = "leapfrog") -> set[str]:
+    """Criteria that a flat net breaks whose rim alone holds that share of the shot's 9 J, and that books nothing."""
+    side, strength = 24.0, 70e9 * 0.33 / (1440.0 * 2.0 * 9.0 * 24.0)  # EA of 9 threads each way
+    apart = side + math.sqrt(share * 9.0 * 2.0 * side / (4.0 * strength))
+    corners = ((0.0, 0.0), (apart, 0.0), (apart, apart), (0.0, apart))
+    columns = {f"bullet[{b}].position[{i}]": np.zeros(2) for b in range(1, 5) for i in (1, 2, 3)}
+    for bullet, corner in enumerate(corners, 1):
+        for axis, place in enumerate(corner, 1):
+            columns[f"bullet[{bullet}].position[{axis}]"][1] = place
+    columns |= {"time": np.array([0.0, 1.0]), "energy.kinetic": np.array([9.0, 0.0])}
+    columns |= {"energy.remainder": np.array([0.0, 9.0])}
+    values = {
+        "net.side": side,
+        "net.mesh": 3.0,
+        "net.mass": 0.33,
+        "net.density": 1440.0,
+        "net.youngs_modulus": 70e9,
+        "net.damping_ratio": 0.106,
+        "net.segments": 1,
+        "net.fold_side": 0.5,
+        "chaser.mass": 2000.0,
+        "bullets.mass": 0.5,
+        "bullets.speed": 3.0,
+        "bullets.angle": 0.7,
+        "vertex.mass": 0.15,
+    }
+    terms = {**FREE, "solver": scheme}
+    found = suited(criteria(Evidence(columns, values, terms, 1.0)), build.instead("net_capture", terms), {})
+    return {one.key for one in found if not one.value <= one.stable}
+
+
+def test_a_rim_stretched_by_more_than_the_shot_had_is_red() -> None:
+    """Whatever a scheme books: one whose energies mean nothing is asked for it in their place."""
+    assert held_apart(0.99) == {"energy_lost"}
+    assert held_apart(1.1) == {"energy_lost", "stretch"}
+    assert held_apart(0.99, "xpbd") == set()
+    assert held_apart(1.1, "xpbd") == {"stretch"}

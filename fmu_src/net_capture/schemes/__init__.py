@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Variable
@@ -25,8 +27,12 @@ class Needs(NamedTuple):
     steepest                  the largest share of the bound among them
     keeps                     share of the mouth area within which the accurate step stays [1]
     keeps_energy              whether it also stays within 1 % of the energy
-    follows              whether its substep may change on the way: it has a bound, and `Scheme.change`
+    follows                   whether its substep may change on the way: it has a bound, and `Scheme.change`
     falls                     how the remainder of the energy book falls with the step
+    instead                   criteria of a capture that mean nothing with it, each with the one by which a case that is
+                              about it is judged first in its place; "" for none: there is no such case
+    within                    criteria that hold less closely with it than with others: shares up to which a run counts
+                              as accurate and as stable
     """
 
     make_rouse: Any
@@ -40,6 +46,12 @@ class Needs(NamedTuple):
     whole: bool = True
     follows: bool = True
     falls: str = "with the square of solver.step_ratio"
+    instead: Mapping[str, str] = MappingProxyType({})
+    within: Mapping[str, tuple[float, float]] = MappingProxyType({})
+
+
+UNBOUNDED: Mapping[str, str] = MappingProxyType({"bound": ""})
+"""Of a scheme that is stable at any step: the bound told with it is the leapfrog's, see `unbounded`."""
 
 
 class Scheme(NamedTuple):

@@ -36,7 +36,7 @@ from typing import Any
 from fmu_src.interface import Term, fault
 from fmu_src.net_capture.formulas import longest_step
 from fmu_src.net_capture.planes import FX, INVERSE_MASS, NODE_PLANES, P, U, X
-from fmu_src.net_capture.schemes import MOST_RATIO, Needs, Scheme, unbounded
+from fmu_src.net_capture.schemes import MOST_RATIO, UNBOUNDED, Needs, Scheme, unbounded
 from fmu_src.net_capture.schemes.conjugate import make_solver
 from fmu_src.net_capture.schemes.held import RESIDUAL, SOLUTION, make_held
 from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
@@ -53,6 +53,11 @@ LONGEST = 2.5
 """Default substep times omega, at most."""
 KEEPS = 0.01
 """Of the mouth area."""
+TAKES_OF_ITSELF = {**UNBOUNDED, "energy_lost": "agrees"}
+"""What it takes of swings that it does not follow is booked to nothing; whether that matters a finer run tells."""
+TURNS = {"angular_momentum": (1e-6, 1e-4)}
+"""Angular momentum is kept to the scheme's order, not to rounding: the pulls of the second stage are solved for with
+the directions of the first."""
 MOST_TRIES = 100
 """Of one substep: each lists threads that the last one has left out."""
 
@@ -286,5 +291,7 @@ PART = Term(
         keeps=KEEPS,
         keeps_energy=False,
         follows=False,
+        instead=TAKES_OF_ITSELF,
+        within=TURNS,
     ),
 )

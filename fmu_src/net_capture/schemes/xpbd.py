@@ -27,6 +27,7 @@ Checked  tests/net_capture/test_schemes.py, tests/net_capture/test_stiff.py
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -51,7 +52,8 @@ from fmu_src.net_capture.planes import (
     U,
     X,
 )
-from fmu_src.net_capture.schemes import MOST_RATIO, Needs, Scheme, unbounded
+from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.schemes import MOST_RATIO, UNBOUNDED, Needs, Scheme, unbounded
 from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
@@ -60,6 +62,20 @@ LONGEST = 3.0
 """Default substep times omega, at most."""
 KEEPS = 0.01
 """Of the mouth area."""
+GEOMETRY_ALONE = {
+    **UNBOUNDED,
+    "energy_gained": "stretch",
+    "energy_lost": "stretch",
+    "energy_rises": "stretch",
+    "thread_takes": "stretch",
+    "order": "",
+}
+"""Its energies are no measure of a real thread; how far the net is stretched is."""
+FIRST_ORDER = {"agrees": (0.01, math.sqrt(0.05))}
+"""Errors are of first order: at steps at which a scheme of second order errs by 5 %, about the root of that."""
+LEAST_DAMPING = 0.05
+"""Damping ratio below which its default step is none: the mouth's curve comes out wrong by 13 % at 0.01, by 25 % at 0
+(`python -m tests.stability.matrix table1-capture`); at 0.05 it is within 0.2 %."""
 
 
 @kernel
@@ -78,6 +94,17 @@ def accurate_step(stiffness_rate, damping_rate):
     """
     omega = math.sqrt(2.0 * stiffness_rate)
     return min(0.3 + 10.0 * damping_rate / omega, LONGEST) / omega
+
+
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """Hardly any dashpots at the default step: the scheme damps of itself, and they would not be told from many."""
+    ratio = scene.values["net.damping_ratio"]
+    if scene.values["solver.step_ratio"] == 0.0 and ratio < LEAST_DAMPING:
+        expected = (
+            f"must be at least {LEAST_DAMPING:g} with xpbd's default step, which damps of itself: without dashpots the "
+            "mouth would come out wrong by 25 %; give a small solver.step_ratio, or take another scheme"
+        )
+        yield Refusal("net.damping_ratio", f"{ratio:g}", expected)
 
 
 def make(composition: Any) -> Scheme:
@@ -277,5 +304,8 @@ PART = Term(
         follows=False,
         whole=False,
         falls="with solver.step_ratio",
+        instead=GEOMETRY_ALONE,
+        within=FIRST_ORDER,
     ),
+    refuses=refuses,
 )
