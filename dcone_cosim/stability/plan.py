@@ -177,6 +177,11 @@ class _Draft:
     asked: str
 
 
+def _told(error: InputError) -> str:
+    """What a scene's check said, without the file that it is about."""
+    return str(error).splitlines()[-1].strip()
+
+
 class _Maker:
     """Makes cells of one phase: drafts first, then, of those that can be run, the cases."""
 
@@ -193,7 +198,7 @@ class _Maker:
         try:
             made, changes, without = self._made(extreme, scheme)
         except InputError as error:
-            return Planned(extreme, scheme, (), found=refusal(str(error).splitlines()[-1].strip()))
+            return Planned(extreme, scheme, (), found=refusal(_told(error)))
         if made is None:
             return Planned(extreme, scheme, changes, found=Verdict(EXCLUDED, "goes without what it is about"))
         main = made.phases[0].main
@@ -210,7 +215,7 @@ class _Maker:
         try:
             case = self._cell(draft)
         except InputError as error:
-            found = refusal(str(error).splitlines()[-1].strip())
+            found = refusal(_told(error))
             return Planned(draft.extreme, draft.scheme, draft.changes, found=found)
         return Planned(draft.extreme, draft.scheme, draft.changes, case)
 
@@ -256,7 +261,7 @@ class _Maker:
         kind = kind_of(self._phase)
         first = 0.0 if kind.own_clock else own.start
         same = draft.asked == "same"
-        finer: Scene | None = None
+        finer, scatters = None, draft.extreme.scatters
         if same:
             step = written(min(self._alone.scene_of(self._phase).phases[0].macro_step, own.duration), "s", DIGITS)
             finer = self._scene((*changes, f"{self._phase}.macro_step={step}"), without)
@@ -264,11 +269,13 @@ class _Maker:
         else:
             instants = spread_instants(first, own.duration, own.macro_step, INSTANTS)
             finest = self._finest(own, draft.extreme)
-            finer = self._scene((*changes, *finest), without) if finest else None
+            try:
+                finer = self._scene((*changes, *finest), without) if finest else None
+            except InputError as error:
+                scatters = f"that is refused: {_told(error)}"
         jittered = None
         if kind.chaotic and not same and main.fmu is None:
             jittered = self._scene((*changes, *ensemble.jitter(made, 1)), without)
-        scatters = draft.extreme.scatters
         how = (draft.asked, self._limit, instants)
         key = digest(key_of(made, self._fmus.of(made), 1), *how, same, scatters, self._quick)
         return Cell(key, made, changes, {}, 1, *how, finer, jittered, same, scatters, self._quick)

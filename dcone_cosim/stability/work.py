@@ -159,10 +159,10 @@ def _reason(lines: Sequence[str]) -> str:
 
 def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: float) -> Iterator[tuple[Criterion, float]]:
     """The criteria that other runs are needed for, with the CPU time of these [s]."""
-    if cell.finer is None:
-        return
     if cell.scatters:
         yield unlike(cell.scatters), 0.0
+        return
+    if cell.finer is None:
         return
     if not cell.same and FINER * spent > 4.0 * cell.limit:
         yield unlike(f"it would take about {spoken(FINER * spent)}"), 0.0

@@ -53,7 +53,7 @@ LOCKED = (
             {"start.separation": _length}, chief=True),
     Extreme("chatter: at rest on the edge, radial", "exactly as long as the line at no speed, the tide pulls", "longer",
             {"start.condition": HANDED_OVER, "start.relative_position": (12.0, 0.0, 0.0), "tether.rest_length": 12.0,
-             "tether.damping_ratio": 0.0}),
+             "tether.damping_ratio": 0.0}, scatters=GRAZES),
     Extreme("chatter: at rest on the edge, along-track", "the same where no tide pulls, only the thrust", "longer",
             {"start.condition": HANDED_OVER, "start.relative_position": (0.0, 12.0, 0.0), "tether.rest_length": 12.0,
              "tether.damping_ratio": 0.0}, scatters=GRAZES),

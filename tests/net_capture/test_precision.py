@@ -91,3 +91,20 @@ def test_a_scene_chooses_it():
     with pytest.raises(SceneError, match=r"capture\.solver\.precision") as caught:
         load("table1-capture", ['capture.solver.precision="half"'])
     assert "double, single" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        'capture.net.youngs_modulus="700 TPa"',
+        'capture.net.mass="0.01 g"',  # rings that the cord moves faster than any thread does
+        'capture.closing.axial_stiffness="100 MN"',
+    ],
+)
+def test_substeps_in_which_bullets_hardly_move_are_refused(setting):
+    """Whatever makes them short: with 24 bits the target would be 3 to 7 cm deep in the net, or energy come in."""
+    coarse = ['capture.net.mesh="4 m"', setting]
+    load("table1-capture", coarse)
+    with pytest.raises(SceneError, match="at least 16 of that"):
+        load("table1-capture", [*coarse, 'capture.solver.precision="single"'])
+    load("table1-capture", ['capture.net.mesh="4 m"', 'capture.solver.precision="single"'])

@@ -169,6 +169,15 @@ def test_a_scene_may_say_so(tmp_path):
         load(str(scene), ['capture.solver.scheme="leapfrog"'])
 
 
+def test_xpbd_is_refused_where_dashpots_are_weaker_than_its_own_damping(tmp_path):
+    scene = tmp_path / "weak.toml"
+    scene.write_text(SCENE.replace('scheme = "ros2"\nstep_ratio = 50', 'scheme = "xpbd"'))
+    load(str(scene), ["capture.net.damping_ratio=0.05"])
+    with pytest.raises(SceneError, match=r"net\.damping_ratio.*at least 0\.05"):
+        load(str(scene), ["capture.net.damping_ratio=0.04"])
+    load(str(scene), ["capture.net.damping_ratio=0.04", "capture.solver.step_ratio=0.1"])
+
+
 def test_what_long_steps_cost_is_said_of_each_scheme():
     def said(scheme, ratio):
         net = Instance(MODEL, FREE | {"solver": scheme}, {"solver.step_ratio": ratio})

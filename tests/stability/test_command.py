@@ -14,7 +14,7 @@ from dcone_cosim.cases.alone import Alone, Fmus
 from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.stability import commands
-from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, REFUSED
+from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, LEFT, REFUSED
 from dcone_cosim.stability.plan import plan
 from dcone_cosim.stability.work import judge_cell
 from tests.cases.conftest import put_scene, template
@@ -72,6 +72,17 @@ def test_what_cannot_be_is_refused_with_the_reason(tmp_path: Path) -> None:
     none, _, _ = judge_cell(cells["coincident bodies"])
     assert none.kind == REFUSED
     assert "start.relative_position is zero" in none.text
+
+
+def test_what_would_take_long_is_left_out_of_a_quick_look() -> None:
+    alone = Alone("table2-deorbit", (*SHORT, "removal.macro_step=10 min"), None)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(build, "numerics", lambda model: ())
+        found = plan(alone, "removal", Fmus(Progress()), 1e-6, True)
+    case = next(cell.case for cell in found.cells if cell.case is not None)
+    dear, _, spent = judge_cell(case)
+    assert (dear.kind, dear.red, spent) == (LEFT, False, 0.0)
+    assert dear.text.startswith("not in a quick look: it would take about")
 
 
 def _cells(name: str, settings: tuple[str, ...], limit: float) -> dict[str, object]:

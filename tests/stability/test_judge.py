@@ -21,6 +21,7 @@ from dcone_cosim.stability.judge import (
     falls,
     refusal,
     sameness,
+    suited,
     unlike,
     verdict,
 )
@@ -75,6 +76,14 @@ def test_a_finer_run_that_differs_much_is_red() -> None:
     for off, kind in ((0.5, ACCURATE), (3.0, STABLE), (6.0, FAILED)):
         assert verdict([agreement(curve(here), curve(here + off), None, 101)], "agrees").kind == kind
     assert verdict([unlike("it grazes")], "agrees").kind == STABLE
+
+
+def test_a_scheme_leaves_out_what_means_nothing_with_it_and_has_limits_of_its_own() -> None:
+    found = suited([share(0.06), share(0.06, "bound"), share(0.06, "agrees")], {"bound": ""}, {"agrees": (0.02, 0.1)})
+    assert [(one.key, one.accurate, one.stable) for one in found] == [
+        ("energy_gained", 0.01, 0.05),
+        ("agrees", 0.02, 0.1),
+    ]
 
 
 def test_other_macro_steps_give_the_same() -> None:
