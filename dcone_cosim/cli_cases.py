@@ -126,13 +126,13 @@ def stability(
         float | None,
         typer.Option(
             "--limit",
-            help="CPU time [s] that a case may take, as it is reckoned: 20, dearer ones are refused; with --quick 1, "
+            help="CPU time [s] that a case may take, as it is reckoned: 20, dearer ones are refused; with --quick 2, "
             "dearer ones are left out.",
         ),
     ] = None,
     budget: Annotated[
         float | None,
-        typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 40."),
+        typer.Option("--budget", help="Time [s] after which no further case is begun: 1200; with --quick 30."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="The chief extremes alone, for a first look.")] = False,
     jobs: Jobs = None,

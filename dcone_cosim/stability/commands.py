@@ -43,7 +43,7 @@ SHIPPED: Mapping[str, tuple[str, ...]] = {
 time."""
 LIMIT, BUDGET = 20.0, 1200.0
 """CPU time of a case, and time for all cases on the clock [s]."""
-QUICK_LIMIT, QUICK_BUDGET = 1.0, 40.0
+QUICK_LIMIT, QUICK_BUDGET = 2.0, 30.0
 """The same of a quick look."""
 
 
