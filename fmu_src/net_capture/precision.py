@@ -10,8 +10,10 @@ from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.substeps import substeps
 
 SINGLE_BITS = 24
-STEPS_BETWEEN = 16.0
-"""Neighbouring numbers that a bullet has to pass in a substep: half of one is lost at most, so 3 % of its way."""
+STEPS_BETWEEN = 24.0
+"""Neighbouring numbers that a bullet has to pass in a substep: half of one is lost at most, so 2 % of its way. With 37
+the energy book stays within 4 % at a hundred times the stiffness; with 19 and a damping ratio of 10 more is gained than
+the shot had."""
 
 
 def spacing(size: float) -> float:

@@ -105,6 +105,6 @@ def test_substeps_in_which_bullets_hardly_move_are_refused(setting):
     """Whatever makes them short: with 24 bits the target would be 3 to 7 cm deep in the net, or energy come in."""
     coarse = ['capture.net.mesh="4 m"', setting]
     load("table1-capture", coarse)
-    with pytest.raises(SceneError, match="at least 16 of that"):
+    with pytest.raises(SceneError, match="at least 24 of that"):
         load("table1-capture", [*coarse, 'capture.solver.precision="single"'])
     load("table1-capture", ['capture.net.mesh="4 m"', 'capture.solver.precision="single"'])
