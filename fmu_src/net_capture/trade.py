@@ -37,9 +37,9 @@ def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
 
 
 def within(terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
-    """Criteria that hold less closely with the scheme, see `schemes.Needs`."""
-    found: Mapping[str, tuple[float, float]] = _needs(terms).within
-    return found
+    """Criteria that hold less closely with the scheme, see `schemes.Needs`, or in so few bits."""
+    kept = GROUPS["precision"].terms[terms.get("precision", "double")].checks
+    return {**kept.within, **_needs(terms).within}
 
 
 def refinements(values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:
