@@ -61,12 +61,15 @@ class Alone:
         given = {name: value for name, value in result.given[phase].items() if own.get(name) != value}
         self._taken[phase] = (given, result.handovers[phase].start)
 
-    def scene_of(self, phase: str, changes: Sequence[str] = (), without: Collection[str] = ()) -> Scene:
+    def scene_of(
+        self, phase: str, changes: Sequence[str] = (), without: Collection[str] = (), to_its_end: bool = False
+    ) -> Scene:
         """The scene with that phase alone; `InputError` for changes that it cannot have.
 
-        without    tables of the phase that are left out first
+        without       tables of the phase that are left out first
+        to_its_end    whether the phases after it are left out before it is changed: it need not come to a hand-over
         """
-        if without:
+        if without or to_its_end:
             scene = self._without(phase, changes, without)
         else:
             scene = load(self._name, [*self._settings, *changes], choose=False)

@@ -88,7 +88,7 @@ def plan(alone: Alone, phase: str, fmus: Fmus, limit: float, quick: bool) -> Pha
     limit    CPU time that a case may take [s]
     """
     settings = tuple(f"{phase}.{setting}" for setting in kind_of(phase).to_its_end)
-    base = alone.scene_of(phase, settings)
+    base = alone.scene_of(phase, settings, to_its_end=True)
     own = base.phases[0]
     ours = own.main.fmu is None
     schemes = list(_schemes(own)) if ours else [Scheme("its own")]
@@ -225,7 +225,7 @@ class _Maker:
         return self._bases[scheme.name].phases[0]
 
     def _scene(self, changes: Sequence[str], without: Sequence[str]) -> Scene:
-        return self._alone.scene_of(self._phase, changes, without)
+        return self._alone.scene_of(self._phase, changes, without, to_its_end=True)
 
     def _made(self, extreme: build.Extreme, scheme: Scheme) -> tuple[Scene | None, tuple[str, ...], tuple[str, ...]]:
         """The scene of a cell, None where it has no such variable; its settings, and the tables it goes without."""

@@ -114,6 +114,19 @@ def test_a_part_that_is_left_out_takes_its_extremes_with_it() -> None:
     assert EXCLUDED == "excluded"
 
 
+def test_a_phase_that_hands_over_is_flown_to_its_end() -> None:
+    """Without the phase after it, which would ask for a hand-over."""
+    from dcone_cosim.phases import kind_of
+
+    settings = tuple(f"capture.{one}" for one in kind_of("capture").to_its_end)
+    alone = Alone("mission", (), None)
+    (own,) = alone.scene_of("capture", settings, to_its_end=True).phases
+    assert own.options.hand_over == "none"
+    whole = alone.scene_of("capture").phases[0]
+    assert own.main.parameters == whole.main.parameters
+    assert own.main.terms == whole.main.terms
+
+
 def test_an_fmu_from_elsewhere_has_its_macro_steps(tmp_path: Path, template: Path) -> None:
     scene = put_scene(tmp_path, template)
     done = commands.stability(str(scene), tmp_path / "out", Progress())
