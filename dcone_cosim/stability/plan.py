@@ -195,6 +195,11 @@ class _Maker:
     def draft(self, extreme: build.Extreme, scheme: Scheme) -> _Draft | Planned:
         if extreme.name in scheme.lacks:
             return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, scheme.lacks[extreme.name]))
+        follows = self._phase != self._alone.phases[0]
+        handed = [name for name in extreme.values if follows and kind_of(self._phase).takes_over(name)]
+        if handed:
+            why = f"goes without a {handed[0]} of its own: the phase before hands it over"
+            return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, why))
         try:
             made, changes, without = self._made(extreme, scheme)
         except InputError as error:

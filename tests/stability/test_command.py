@@ -127,6 +127,16 @@ def test_a_phase_that_hands_over_is_flown_to_its_end() -> None:
     assert own.main.terms == whole.main.terms
 
 
+def test_what_a_phase_takes_over_is_no_extreme_of_it() -> None:
+    from dcone_cosim.stability.plan import Scheme, _Maker
+
+    extreme = next(one for one in build.extremes("tethered_deorbit", {"reel": "locked"}) if one.name == "line of 100 m")
+    found = _Maker(Alone("mission", (), None), "removal", (), Fmus(Progress()), 1.0, False).draft(extreme, Scheme("x"))
+    assert found.found is not None  # type: ignore[union-attr]
+    assert found.found.kind == EXCLUDED  # type: ignore[union-attr]
+    assert "start.separation" in found.found.text  # type: ignore[union-attr]
+
+
 def test_an_fmu_from_elsewhere_has_its_macro_steps(tmp_path: Path, template: Path) -> None:
     scene = put_scene(tmp_path, template)
     done = commands.stability(str(scene), tmp_path / "out", Progress())
