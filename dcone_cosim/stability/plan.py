@@ -109,22 +109,27 @@ def plan(alone: Alone, phase: str, fmus: Fmus, limit: float, quick: bool) -> Pha
 
 def _schemes(phase: PhaseScene) -> Iterator[Scheme]:
     """That of the scene first."""
-    model = build.CATALOGUE[phase.main.model]
+    main = phase.main
+    model = build.CATALOGUE[main.model]
     groups = [name for name in build.numerics(model.name) if name in model.groups]
-    own = [phase.main.terms[name] for name in groups]
+    own = [main.terms[name] for name in groups]
     choices = sorted(product(*(model.groups[name].terms for name in groups)), key=lambda terms: list(terms) != own)
     for chosen in choices:
-        terms = {**phase.main.terms, **dict(zip(groups, chosen, strict=True))}
+        terms = {**main.terms, **dict(zip(groups, chosen, strict=True))}
+        beside = {name: model.groups[name].default for name in build.beside(model.name)}
+        if not build.rungs(model.name, {**main.defaults, **main.parameters}, terms):
+            terms |= beside
+        named = [*chosen, *(terms[name] for name, usual in beside.items() if terms[name] != usual)]
         without = _left_out(model, terms, groups)
         changes = tuple(
-            f'{phase.name}.{model.groups[name].table or name}.{model.groups[name].selector}="{term}"'
-            for name, term in zip(groups, chosen, strict=True)
-            if term != phase.main.terms[name]
+            f'{phase.name}.{model.groups[name].table or name}.{model.groups[name].selector}="{terms[name]}"'
+            for name in (*groups, *beside)
+            if terms[name] != main.terms[name]
         )
         tables = tuple(model.groups[name].table or name for name in without)
         left = {name: term for name, term in terms.items() if name not in without}
-        lacks = dict(_lacking(model.name, phase.main.terms, left))
-        yield Scheme(", ".join(chosen) or "its own", changes, tables, lacks)
+        lacks = dict(_lacking(model.name, main.terms, left))
+        yield Scheme(", ".join(named) or "its own", changes, tables, lacks)
 
 
 def _lacking(model: str, all_terms: Mapping[str, str], terms: Mapping[str, str]) -> Iterator[tuple[str, str]]:

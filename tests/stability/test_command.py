@@ -114,6 +114,21 @@ def test_a_part_that_is_left_out_takes_its_extremes_with_it() -> None:
     assert EXCLUDED == "excluded"
 
 
+def test_a_scheme_that_cannot_follow_the_net_is_tried_at_substeps_of_one_length() -> None:
+    """A scene of following substeps is one of every scheme: none is refused for the pace of another."""
+    from dcone_cosim.stability.plan import _schemes
+
+    alone = Alone("deployment", ('capture.solver.substeps="following"',), None)
+    schemes = {one.name: one for one in _schemes(alone.scene.phases[0])}
+    assert next(iter(schemes)) == "leapfrog, double, following"
+    assert {"rk4, single, following", "ros2, double", "xpbd, double"} <= set(schemes)
+    for name, scheme in schemes.items():
+        made = alone.scene_of("capture", scheme.changes, scheme.without).phases[0].main.terms
+        assert made["substeps"] == ("following" if name.endswith("following") else "fixed"), name
+    usual = {one.name for one in _schemes(Alone("deployment", (), None).scene.phases[0])}
+    assert {"leapfrog, double", "ros2, double"} <= usual
+
+
 def test_a_phase_that_hands_over_is_flown_to_its_end() -> None:
     """Without the phase after it, which would ask for a hand-over."""
     from dcone_cosim.phases import kind_of
