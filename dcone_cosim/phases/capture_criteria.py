@@ -163,8 +163,8 @@ def _stretch(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def _substep(evidence: Evidence) -> float:
-    """In use [s]; 0 where it is not told."""
-    return float(evidence.columns["solver.substep"][0]) if evidence.has("solver.substep") else 0.0
+    """The longest in use [s]; 0 where it is not told."""
+    return float(np.max(evidence.columns["solver.substep"])) if evidence.has("solver.substep") else 0.0
 
 
 def _depth(evidence: Evidence) -> Iterator[Criterion]:
