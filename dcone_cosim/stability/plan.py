@@ -260,8 +260,9 @@ class _Maker:
             changes += [one for one in followed if one.split(".")[1] not in without]
         if extreme.duration:
             changes.append(f"{self._phase}.duration={written(extreme.duration, 's', DIGITS)}")
-        if extreme.macro_step:
-            changes.append(f"{self._phase}.macro_step={written(extreme.macro_step, 's', DIGITS)}")
+        step = extreme.macro_step or min(own.macro_step, extreme.duration or own.macro_step)
+        if step != own.macro_step:
+            changes.append(f"{self._phase}.macro_step={written(step, 's', DIGITS)}")
         return self._scene(changes, without), tuple(changes), tuple(without)
 
     def _cell(self, draft: _Draft) -> Cell:

@@ -129,6 +129,20 @@ def test_a_scheme_that_cannot_follow_the_net_is_tried_at_substeps_of_one_length(
     assert {"leapfrog, double", "ros2, double"} <= usual
 
 
+def test_a_case_shorter_than_a_macro_step_takes_a_shorter_one() -> None:
+    """It is no refusal of a scheme that the scene looks at its net less often."""
+    from dcone_cosim.stability.plan import Scheme, _Maker
+
+    settings = ("capture.macro_step=0.05 s",)
+    maker = _Maker(Alone("deployment", settings, None), "capture", settings, Fmus(Progress()), 1.0, False)
+    extremes = {one.name: one for one in build.extremes("net_capture", {"net": "square"})}
+    draft = maker.draft(extremes["taut from the start, damping ratio 0.5"], Scheme("x"))
+    (own,) = draft.made.phases  # type: ignore[union-attr]
+    assert (own.macro_step, own.duration) == (0.02, 0.02)
+    (longer,) = maker.draft(extremes["threads 1e+06 times as stiff"], Scheme("x")).made.phases  # type: ignore[union-attr]
+    assert (longer.macro_step, longer.duration) == (0.05, 1.0)
+
+
 def test_a_phase_that_hands_over_is_flown_to_its_end() -> None:
     """Without the phase after it, which would ask for a hand-over."""
     from dcone_cosim.phases import kind_of
