@@ -297,9 +297,8 @@ class Model:
         chosen = [self.groups[name].terms[term] for name, term in ordered.items()]
         lacking = {name for part in chosen for name in part.lacks}
         own = {v.name: v for part in chosen for v in part.variables}
-        variables = [own.get(v.name, v) for v in HEAD + self.base if v.name not in lacking]
-        for part in chosen:
-            variables += [v for v in part.variables if v not in variables]
+        rows = {v.name: v for v in HEAD + self.base if v.name not in lacking}
+        variables = list((rows | own).values())
         inputs = {v.name for v in variables if v.causality == "input"}
         states = {output for name, term in ordered.items() for output in self.groups[name].terms[term].states}
         return Interface(self, ordered, tuple(_reduced(v, inputs, v.name in states) for v in variables))

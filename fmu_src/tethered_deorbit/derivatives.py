@@ -5,29 +5,32 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.law import Reel
-from fmu_src.tethered_deorbit.tether import length_acceleration, line_length
 from orbital.kernel import kernel
 from orbital.vectors import Array, matrix_vector
 
 
-def make_differentiate(inertial: Callable[..., Any], reel: Reel, environment: Environment) -> Callable[..., Any]:
+def make_differentiate(
+    inertial: Callable[..., Any], reel: Reel, environment: Environment, bodies: Bodies
+) -> Callable[..., Any]:
     """The kernel that fills the rates and partial derivatives of the outputs.
 
     inertial      kernel (record, state, rate, since): rate of the state along inertial axes
     """
 
     @kernel
-    def differentiate(record: Any, state: Array, rate: Array, separation: float, speed: float) -> None:
+    def differentiate(record: Any, state: Array, rate: Array, separation: float, length: float, speed: float) -> None:
         """Rates at one instant, at which the inputs in force begin to move.
 
-        state         R, V, rho, rho'  of `layout`, inertial     (13,)
-        rate          room for its rate                          (13,)
+        state         of `layout`, inertial
+        rate          room for its rate
         separation    s      of the centres of mass              [m]
-        speed         s'     its rate, which is the line's       [m/s]
+        length, speed        of the line, and its rate           [m], [m/s]
 
-            (energy.relative)' = m_r (q.q' - 3 n^2 x x' + n^2 z z' + n n' (z^2 - 3 x^2)) + that of the line
+            (energy.relative)' = m_r (q.q' - 3 n^2 x x' + n^2 z z' + n n' (z^2 - 3 x^2)) + that of the line and of the
+                                 bodies' turning
 
         What an orbit alone has is the environment's.
 
@@ -35,9 +38,10 @@ def make_differentiate(inertial: Callable[..., Any], reel: Reel, environment: En
         """
         r = record[0]
         inertial(record, state, rate, 0.0)
-        acceleration = length_acceleration(state[6:9], state[9:12], rate[9:12], separation, speed)
-        length = line_length(record, separation)
+        bodies.line(record, state)
+        acceleration, apart, _ = bodies.second(record, state, rate, separation, length, speed, 0.0)
         r.rate_length_rate = acceleration
+        r.rate_separation = apart
         r.rate_tension = 0.0
         r.partial_tension = 0.0
         r.partial_energy = 0.0
@@ -76,5 +80,6 @@ def make_differentiate(inertial: Callable[..., Any], reel: Reel, environment: En
         kinetic = u * rate[0] + v * rate[1] + w * rate[2]
         tidal = n * n * (z * rate[5] - 3.0 * x * rate[3]) + n * change * (z * z - 3.0 * x * x)
         r.rate_energy_relative = r.state_reduced_mass * (kinetic + tidal) + line
+        r.rate_energy_relative += bodies.differentiate(record, state, rate, n, change)
 
     return differentiate

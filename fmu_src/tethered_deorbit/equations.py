@@ -5,41 +5,42 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.law import Reel
-from fmu_src.tethered_deorbit.tether import add_tension, length_rate, line_length
+from fmu_src.tethered_deorbit.layout import StateLayout
 from fmu_src.tethered_deorbit.thrust import Thrust
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.kernel import kernel, view
-from orbital.vectors import Array, norm
+from orbital.vectors import Array
 
 
 def make_equations(
-    environment: Environment, reel: Reel, thrust: Thrust
+    environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, layout: StateLayout
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The kernels `inertial(record, state, rate, since)` and `derivative(record, state, rate, elapsed)`."""
+    impulse = layout.impulse
 
     # `derivative` is where the time goes: as a call of its own, which a second caller would make it, it costs 10 %.
     @view
     def inertial(record: Any, state: Array, rate: Array, since: float) -> None:
         """rate = rate of the state along inertial axes, or axes at rest in which it stands just now.
 
-        state, rate   R, V, rho, rho', J  of `layout`                (13,)
+        state, rate   of `layout`
         since         since the inputs in force began to move        [s]
 
-        Source   the environment's gravity, the thrust and `add_tension`; dJ/dt = T
+        Source   the environment's gravity, the thrust, the bodies' turning and the pull of the line; dJ/dt = T
         Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_extremes.py: J
         """
         environment.add_gravity(record, state, rate)
         thrust.add(record, state, rate, since)
-        rate[layout.IMPULSE] = 0.0
+        bodies.move(record, state, rate)
+        rate[impulse] = 0.0
         if record[0].state_taut:
-            separation = norm(state[6:9])
-            speed = length_rate(state[6:9], state[9:12], separation)
-            tension = reel.tension(record, line_length(record, separation), speed, since)
-            add_tension(record, state, rate, tension, separation)
-            rate[layout.IMPULSE] = tension
+            separation, length, speed = bodies.line(record, state)
+            tension = reel.tension(record, length, speed, since)
+            bodies.pull(record, state, rate, tension, separation)
+            rate[impulse] = tension
 
     @kernel
     def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:
@@ -53,5 +54,6 @@ def make_equations(
         inertial(record, state, rate, record[0].state_since + elapsed)
         if record[0].state_taut:
             add_turning(record, state, rate, -1.0)
+            bodies.add_turning(record, state, rate, -1.0)
 
     return inertial, derivative

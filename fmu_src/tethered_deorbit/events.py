@@ -12,12 +12,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.integrators.scheme import AdaptiveScheme
-from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
-from fmu_src.tethered_deorbit.tether import length_acceleration, length_rate, line_length
-from fmu_src.tethered_deorbit.turning import turning_share
+from fmu_src.tethered_deorbit.layout import Places
 from orbital.kernel import kernel
-from orbital.vectors import Array, norm
+from orbital.vectors import Array
 
 INTERVALS = 8
 ROOT_ITERATIONS = 80
@@ -46,37 +45,36 @@ class Events(NamedTuple):
     nearest: Callable[..., Any]
 
 
-def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
-    """The kernels for one law of the line and one integrator.
+def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Places) -> Events:
+    """The kernels for one law of the line, two bodies and one integrator.
 
     Valid    steps in which the signals turn at most once in an eighth of the step
     Checked  tests/tethered_deorbit/test_robust.py
     """
-    _, dense_begin, work_end = layout.places_of(scheme)
+    begin_state, end_state, here_state, slope_state = places.begin, places.end, places.here, places.slope
+    low_error, high_error, stages, dense_begin = places.low, places.high, places.stages, places.dense
+    seen = places.size - 7
+    work_end = places.total
 
     @kernel
     def signals(record: Any, state: Array, rate: Array, elapsed: float) -> Signals:
         """The seven signals of a state: see `Events`, and CROSSING to RATE_SLOPE for their places.
 
-        state, rate   R, V, rho, rho' and their rate, in the axes of the step   (13,)
+        state, rate   of `layout`, in the axes of the step
         elapsed       since the begin of the step                    [s]
 
         Checked  tests/tethered_deorbit/test_turning.py: bits that no axes change; test_terms.py: the kinematics
         """
-        position, velocity, acceleration = state[6:9], state[9:12], rate[9:12]
-        separation = norm(position)
-        speed = length_rate(position, velocity, separation)
-        change = length_acceleration(position, velocity, acceleration, separation, speed)
-        change += turning_share(record, position, velocity, separation)
-        length = line_length(record, separation)
+        separation, length, speed = bodies.line(record, state)
+        change, apart, slope = bodies.second(record, state, rate, separation, length, speed, 1.0)
         since = record[0].state_since + elapsed
         tension = reel.tension(record, length, speed, since)
         tension_rate = reel.tension_rate(record, length, speed, change, since)
         if record[0].state_taut:
-            return -tension, -tension_rate, tension, tension_rate, separation, speed, change
+            return -tension, -tension_rate, tension, tension_rate, separation, apart, slope
         onset = reel.onset(record, length, speed, since)
         onset_rate = reel.onset_rate(record, length, speed, change, since)
-        return onset, onset_rate, tension, tension_rate, separation, speed, change
+        return onset, onset_rate, tension, tension_rate, separation, apart, slope
 
     @kernel
     def ensure_dense(record: Any, work: Array) -> None:
@@ -88,12 +86,12 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
         if r.state_dense_ready == 0:
             scheme.prepare_dense(
                 record,
-                work[layout.BEGIN : layout.END],
-                work[layout.END : layout.HERE],
+                work[begin_state:end_state],
+                work[end_state:here_state],
                 r.state_step,
-                work[layout.STAGES : dense_begin],
+                work[stages:dense_begin],
                 work[dense_begin:work_end],
-                work[layout.LOW : layout.HIGH],
+                work[low_error:high_error],
             )
             r.state_dense_ready = 1
 
@@ -104,11 +102,11 @@ def make_events(reel: Reel, scheme: AdaptiveScheme) -> Events:
         Checked  tests/tethered_deorbit/test_robust.py: a line that is touched for a moment within a step
         """
         dense = work[dense_begin:work_end]
-        here = work[layout.HERE : layout.SLOPE]
-        slope = work[layout.SLOPE : layout.LOW]
-        scheme.dense_value(work[layout.BEGIN : layout.END], dense, fraction, 6, 6, here[6:12])
+        here = work[here_state:slope_state]
+        slope = work[slope_state:low_error]
+        scheme.dense_value(work[begin_state:end_state], dense, fraction, 6, seen, here[6 : 6 + seen])
         step = record[0].state_step
-        scheme.dense_rate(dense, fraction, step, 6, 6, slope[6:12])
+        scheme.dense_rate(dense, fraction, step, 6, seen, slope[6 : 6 + seen])
         return signals(record, here, slope, fraction * step)
 
     @kernel

@@ -10,9 +10,8 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.integrators.scheme import AdaptiveScheme
-from fmu_src.tethered_deorbit import layout
 from fmu_src.tethered_deorbit.events import RATE, RATE_SLOPE, SEPARATION, TENSION, TENSION_SLOPE, Events
+from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.outputs import note_pull
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -36,12 +35,13 @@ class Extremes(NamedTuple):
     publish: Callable[..., Any]
 
 
-def make_extremes(events: Events, scheme: AdaptiveScheme) -> Extremes:
+def make_extremes(events: Events, places: Places) -> Extremes:
     """The kernels for one law of the line and one integrator.
 
     Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
     """
-    end_rate = layout.places_of(scheme).last
+    begin_state, end_state, here_state, size = places.begin, places.end, places.here, places.size
+    begin_rate, end_rate = places.stages, places.last
 
     @kernel
     def begin_anew(record: Any) -> None:
@@ -158,12 +158,8 @@ def make_extremes(events: Events, scheme: AdaptiveScheme) -> Extremes:
         r = record[0]
         if r.state_step == 0.0:
             return
-        begin = events.signals(
-            record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE], 0.0
-        )
-        end = events.signals(
-            record, work[layout.END : layout.HERE], work[end_rate : end_rate + layout.SIZE], r.state_step
-        )
+        begin = events.signals(record, work[begin_state:end_state], work[begin_rate : begin_rate + size], 0.0)
+        end = events.signals(record, work[end_state:here_state], work[end_rate : end_rate + size], r.state_step)
         last = 1.0 if until >= r.state_end else max(0.0, (until - r.state_begin) / r.state_step)
         first = min(last, max(0.0, (r.state_published - r.state_begin) / r.state_step))
         if r.state_taut:

@@ -6,17 +6,17 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.extremes import Extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.outputs import begin_tug
-from fmu_src.tethered_deorbit.tether import length_rate, line_length
 from fmu_src.tethered_deorbit.thrust import Thrust
 from fmu_src.tethered_deorbit.trajectory import ROUNDING, Trajectory
 from orbital.kernel import kernel
-from orbital.vectors import Array, norm
+from orbital.vectors import Array
 
 
 class Inputs(NamedTuple):
@@ -32,13 +32,23 @@ class Inputs(NamedTuple):
     leave: Callable[..., Any]
 
 
-def make_inputs(reel: Reel, thrust: Thrust, trajectory: Trajectory, extremes: Extremes, command_slot: int) -> Inputs:
-    """The kernels for one law of the line and one thruster.
+def make_inputs(
+    reel: Reel,
+    thrust: Thrust,
+    bodies: Bodies,
+    trajectory: Trajectory,
+    extremes: Extremes,
+    places: Places,
+    command_slot: int,
+) -> Inputs:
+    """The kernels for one law of the line, one thruster and two bodies.
 
     command_slot   value reference of the law's input, which is blamed when it is no number
 
     Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py
     """
+
+    end_state, here_state, slope_state, size = places.end, places.here, places.slope, places.size
 
     @kernel
     def judge_line(record: Any, state: Array) -> float:
@@ -47,10 +57,9 @@ def make_inputs(reel: Reel, thrust: Thrust, trajectory: Trajectory, extremes: Ex
         Checked  tests/tethered_deorbit/test_start.py, test_macro_step.py: a changed length
         """
         r = record[0]
-        separation = norm(state[6:9])
-        speed: float = length_rate(state[6:9], state[9:12], separation)
-        r.state_taut = 1 if reel.taut(record, line_length(record, separation), speed) else 0
-        return speed
+        _, length, speed = bodies.line(record, state)
+        r.state_taut = 1 if reel.taut(record, length, speed) else 0
+        return float(speed)
 
     @kernel
     def begin_anew(record: Any, work: Array, duration: float) -> int:
@@ -63,10 +72,10 @@ def make_inputs(reel: Reel, thrust: Thrust, trajectory: Trajectory, extremes: Ex
         Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py: a ramp does not see what ran ahead
         """
         r = record[0]
-        here = work[layout.HERE : layout.SLOPE]
+        here = work[here_state:slope_state]
         trajectory.state_at(record, work, r.state_published, here)
-        for i in range(layout.SIZE):
-            work[layout.END + i] = here[i]
+        for i in range(size):
+            work[end_state + i] = here[i]
         extremes.begin_anew(record)
         command, command_rate = reel.asked(record)
         code = reel.prepare(record, command, command_rate, duration)
@@ -106,7 +115,7 @@ def make_inputs(reel: Reel, thrust: Thrust, trajectory: Trajectory, extremes: Ex
         code = begin_anew(record, work, duration)
         if code != 0:
             return code
-        speed = judge_line(record, work[layout.END : layout.HERE])
+        speed = judge_line(record, work[end_state:here_state])
         # The first step after a change of the line is a short one.
         trajectory.restart(record, work, r.state_published)
         if r.state_taut and not was_taut:

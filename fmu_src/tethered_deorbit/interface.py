@@ -24,6 +24,7 @@ from fmu_src.rows import (
     vector,
 )
 from fmu_src.tethered_deorbit import stress
+from fmu_src.tethered_deorbit.body_rows import ATTACHED, BOX, CYLINDER, POINT_TARGET, rigid_body
 
 CONDITIONS = ("same_orbit", "vbar", "equal_velocity", "handed_over")
 SAME_ORBIT, VBAR, EQUAL_VELOCITY, HANDED_OVER = range(4)
@@ -38,6 +39,7 @@ held only while k_p > 3 n^2 m_r, here 2.2e-3 N/m: farther out the tide pulls har
 
 NOT_FINITE, STEP_NOT_MET, TOO_MANY_EVENTS, TIME_GAP, GROUND = range(1, 6)
 BAD_ORBIT, BAD_CHORD, START_STRETCHED, NO_LENGTH, NO_LINE, BAD_PARAMETER, NO_ORBIT = range(11, 18)
+BAD_INERTIA, BAD_ATTITUDE, TOO_MANY_TURNS = 18, 19, 20
 
 FAULTS = (
     Fault(NOT_FINITE, "error", "the state is no longer finite; look at the parameters and inputs last set"),
@@ -55,7 +57,7 @@ FAULTS = (
     Fault(
         START_STRETCHED,
         "error",
-        "start.separation exceeds the line and target.attachment_distance: a locked line would start stretched",
+        "start.separation exceeds the line and its attachments: a locked line would start stretched",
         True,
     ),
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),
@@ -64,6 +66,14 @@ FAULTS = (
     Fault(
         NO_ORBIT, "error", "start.condition needs an orbit, and there is none; take equal_velocity or handed_over", True
     ),
+    Fault(
+        BAD_INERTIA,
+        "error",
+        "no body has that inertia: its principal moments must be positive, none greater than the sum of the others",
+        True,
+    ),
+    Fault(BAD_ATTITUDE, "error", "the attitude at the start must be a quaternion of unit length, or zero", True),
+    Fault(TOO_MANY_TURNS, "error", "the line has wrapped round the target over more edges than can be followed"),
 )
 
 
@@ -75,8 +85,6 @@ COMMANDS = ("reel.length_offset", "reel.tension")
 BODIES = (
     positive("chaser.mass", "kg", "chaser with thruster, reel and propellant; held constant", 2000.0, 1e6),
     positive("target.mass", "kg", "debris with the net that holds it", 1000.0, 1e6),
-    parameter("target.attachment_distance", "m", "from the target's centre of mass to where the line is made fast",
-              0.0, 0.0, 1e4),
 )  # fmt: skip
 
 ORBIT = (
@@ -138,7 +146,7 @@ OUTPUTS = (
     peak("tug[#].peak", "N", "its largest tension; grows until the line is slack again", shape=(TUGS,),
          at_start=COMMANDS),
     peak("tug[#].speed", "m/s", "rate of lengthening as it began", shape=(TUGS,), at_start=COMMANDS),
-    output("separation", "m", "distance of the two centres of mass", 10.0, "tether.length_rate"),
+    output("separation", "m", "distance of the two centres of mass", 10.0, "rate.separation"),
     peak("approach.distance", "m", "least separation since the start of this instance", 10.0),
     peak("approach.time", "s", "when that was, since the start of this instance"),
     *moving("chaser", "inertial", "inertial", 7e6, 7e3, "rate.chaser_velocity[#]"),
@@ -185,6 +193,7 @@ STATE = (
     state("state.tug_peak", "N", "largest tension of the current tug up to the begin of the step"),
     state("state.total_mass", "kg", "of the pair"),
     state("state.reduced_mass", "kg", "of the pair"),
+    state("state.effective_mass", "kg", "least that the line can have to move"),
     state("state.chaser_share", "1", "chaser's part of the mass"),
     state("state.target_share", "1", "target's part of the mass"),
     state("state.mean_motion", "rad/s", "of the reference orbit, zero without one"),
@@ -202,6 +211,7 @@ STATE = (
     state("state.taut_tolerance", "m", "of the stretch while taut"),
     rate("tension", "N/s"),
     rate("length_rate", "m/s2"),
+    rate("separation", "m/s"),
     rate("angle", "rad/s"),
     rate("chaser_velocity", "m/s2", (3,)),
     rate("target_velocity", "m/s2", (3,)),
@@ -314,6 +324,45 @@ ENVIRONMENTS = Group(
     default="central",
 )  # fmt: skip
 
+_TURNING = (
+    _told("tether.angle", "of the line of centres, chaser to target, in the orbital plane, from the local vertical "
+          "towards along-track"),
+    _told("energy.relative", "Jacobi integral of the relative motion, with that of the bodies' turning and the line's "
+          "elastic energy; constant without thrust and damping on a circular orbit, to first order in length over "
+          "radius"),
+    *ATTACHED,
+)  # fmt: skip
+
+TARGETS = Group(
+    {
+        "point": Term("a point mass, the line made fast at a distance from it that turns with the line", POINT_TARGET),
+        "rigid": Term(
+            "a rigid body that turns, the line made fast where it says: full inertia, torques of the line and of the "
+            "gravity gradient",
+            (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING),
+        ),
+        "box": Term(
+            "a rigid body with the surface of a box, round which the line wraps",
+            (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *BOX),
+        ),
+        "cylinder": Term(
+            "a rigid body with the surface of a cylinder, round which the line wraps",
+            (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *CYLINDER),
+        ),
+    },
+    selector="body",
+    default="point",
+)
+
+CHASERS = Group(
+    {
+        "point": Term("a point mass, the line made fast at it"),
+        "rigid": Term("a rigid body that turns, as of the target", (*rigid_body("chaser", (0.0, 1.0, 0.0)), *_TURNING)),
+    },
+    selector="body",
+    default="point",
+)
+
 SCHEMES = Group(
     {
         "dop853": Term("Dormand-Prince 8(5,3), explicit: the fastest wherever nothing is stiff"),
@@ -328,7 +377,14 @@ MODEL = Model(
     name="tethered_deorbit",
     summary="A chaser with a thruster and a reel tows a captured target on a tether.",
     base=BASE,
-    groups={"reel": REELS, "thrust": THRUSTS, "environment": ENVIRONMENTS, "solver": SCHEMES},
+    groups={
+        "reel": REELS,
+        "thrust": THRUSTS,
+        "environment": ENVIRONMENTS,
+        "target": TARGETS,
+        "chaser": CHASERS,
+        "solver": SCHEMES,
+    },
     faults=FAULTS,
     module="fmu_src.tethered_deorbit.model",
     stop_time=86400.0,

@@ -1,9 +1,11 @@
 """Where things lie: the components of the state, and the work memory of an instance.
 
-The state is one centre of mass and one relative vector (target minus chaser), inertial axes, and what they gather:
+The state is one centre of mass and one relative vector (target minus chaser), inertial axes, the attitude and rate of
+every body that turns, and what they gather:
 
     0:3 R   centre of mass [m]      3:6 V   its velocity [m/s]      6:9 rho   relative [m]      9:12 its rate [m/s]
-    12  J   impulse of the line [N s]: dJ/dt is the tension that the equations have in them
+    then, for each body that turns, q attitude (4) [-], body to inertial axes, and w its rate (3) [rad/s], body axes
+    last J  impulse of the line [N s]: dJ/dt is the tension that the equations have in them
 """
 
 from __future__ import annotations
@@ -12,39 +14,62 @@ from typing import NamedTuple
 
 from fmu_src.integrators.scheme import AdaptiveScheme
 
-VECTORS = 12
-"""Components that the equations depend on, four vectors."""
-IMPULSE = 12
-SIZE = 13
+PAIR = 12
+"""Components of the motion of the two centres of mass, four vectors. Those of the bodies that turn lie behind."""
+ATTITUDE = 7
+"""Components of one body that turns."""
 
-BEGIN = 0
-"""State at the begin of the current step."""
-END = BEGIN + SIZE
-"""State at its end."""
-HERE = END + SIZE
-"""State at the point last asked of the dense output."""
-SLOPE = HERE + SIZE
-"""Rate of that state."""
-LOW = SLOPE + SIZE
-HIGH = LOW + SIZE
-STAGES = HIGH + SIZE
-"""Stage memory of the scheme, as long as it wants; behind it its dense output."""
+
+class StateLayout(NamedTuple):
+    """Components of the state.
+
+    moving      how many the equations depend on: all but the last
+    impulse     place of J
+    size        how many there are
+    """
+
+    moving: int
+    impulse: int
+    size: int
+
+
+def state_layout(turning: int) -> StateLayout:
+    """The components of a pair of which so many bodies turn, 0 to 2."""
+    moving = PAIR + ATTITUDE * turning
+    return StateLayout(moving, moving, moving + 1)
 
 
 class Places(NamedTuple):
-    """What lies behind STAGES, where the sizes are the scheme's.
+    """Where things lie in the work memory.
 
-    last    derivative at the end of the current step
-    dense   dense output of that step
-    end     of the work memory: doubles in all
+    size        components of a state
+    begin       state at the begin of the current step
+    end         state at its end
+    here        state at the point last asked of the dense output
+    slope       rate of that state
+    low, high   errors of a step
+    stages      stage memory of the scheme, as long as it wants
+    last        in it, derivative at the end of the current step
+    dense       dense output of that step
+    total       length of the memory, in doubles
     """
 
+    size: int
+    begin: int
+    end: int
+    here: int
+    slope: int
+    low: int
+    high: int
+    stages: int
     last: int
     dense: int
-    end: int
+    total: int
 
 
-def places_of(scheme: AdaptiveScheme) -> Places:
-    """The places for one scheme."""
-    dense = STAGES + scheme.stages
-    return Places(STAGES + scheme.last, dense, dense + scheme.dense)
+def places_of(state: StateLayout, scheme: AdaptiveScheme) -> Places:
+    """The places for one state and one scheme."""
+    begin, end, here, slope, low, high, stages = (row * state.size for row in range(7))
+    dense = stages + scheme.stages
+    total = dense + scheme.dense
+    return Places(state.size, begin, end, here, slope, low, high, stages, stages + scheme.last, dense, total)

@@ -63,7 +63,7 @@ def make_locked(interface: Interface) -> Reel:
             stiffness = line_stiffness(r.tether_youngs_modulus, r.tether_diameter, shortest)
         # Above critical damping the dashpot is the fastest thing there is.
         fastest = max(1.0, 2.0 * r.tether_damping_ratio)
-        r.state_frequency = natural_frequency(stiffness, r.state_reduced_mass) * fastest
+        r.state_frequency = natural_frequency(stiffness, r.state_effective_mass) * fastest
         r.state_taut_tolerance = r.solver_tolerance_stretch
         return 0
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, STEP, UNDER_WAY, check_implemented
 from fmu_src.limits import make_limits
-from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
 from fmu_src.tethered_deorbit.equations import make_equations
@@ -17,16 +17,16 @@ from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
+from fmu_src.tethered_deorbit.layout import places_of, state_layout
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, make_reel
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.start import make_start
-from fmu_src.tethered_deorbit.tether import length_rate
 from fmu_src.tethered_deorbit.thrust import DIRECTIONS, Thrust, make_thrust
 from fmu_src.tethered_deorbit.trajectory import make_squared_error, make_trajectory
 from orbital.kernel import entry, kernel
 from orbital.oscillators import reduced_mass
-from orbital.vectors import Array, norm
+from orbital.vectors import Array
 
 EVENT_LIMIT = 1_000_000
 SLICE = 4096
@@ -39,6 +39,8 @@ LIMITED = (
     "chaser.mass",
     "target.mass",
     "target.attachment_distance",
+    "target.rate_frame",
+    "chaser.rate_frame",
     "solver.tolerance_orbit",
     "solver.tolerance_separation",
     "solver.tolerance_stretch",
@@ -54,15 +56,20 @@ LIMITED = (
 )
 """Parameters whose limits the kernel minds too; out of theirs, others end in a fault of their own."""
 
-IMPLEMENTED = {"reel": tuple(LAWS), "thrust": DIRECTIONS, "environment": FIELDS, "solver": tuple(SCHEMES)}
+IMPLEMENTED = {
+    "reel": tuple(LAWS),
+    "thrust": DIRECTIONS,
+    "environment": FIELDS,
+    "solver": tuple(SCHEMES),
+    **KINDS,
+}
 """Terms that are composed here."""
 
 
 def make_entry(terms: Mapping[str, str]) -> Any:
     """The compiled entry `(command, record, work, time, step) -> status` of the model with the given terms.
 
-    terms         {"reel": ..., "thrust": ..., "environment": ..., "solver": ...}; without "thrust" there is no thruster
-                  in it, and the others have defaults
+    terms         of `MODEL.groups`; without "thrust" there is no thruster in it, and all but "reel" have defaults
 
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
@@ -73,18 +80,26 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     reel = make_reel(terms["reel"], interface)
     command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     limits = make_limits(interface, *LIMITED)
-    thrust = make_thrust(terms["thrust"], environment.along_track, interface) if "thrust" in terms else Thrust()
+    bodies = make_bodies(terms, environment.place, environment.gradient, interface)
+    thrust = Thrust()
+    if "thrust" in terms:
+        thrust = make_thrust(terms["thrust"], environment.along_track, bodies.along, interface)
 
-    inertial, derivative = make_equations(environment, reel, thrust)
-    scheme = SCHEMES[terms["solver"]](derivative, make_squared_error(), layout.VECTORS, layout.SIZE - layout.VECTORS)
-    work_size = layout.places_of(scheme).end
-    events = make_events(reel, scheme)
-    extremes = make_extremes(events, scheme)
-    trajectory = make_trajectory(derivative, scheme, events)
-    inputs = make_inputs(reel, thrust, trajectory, extremes, command_slot)
-    start_state = make_start(environment, interface)
-    publish = make_publish(reel, environment)
-    differentiate = make_differentiate(inertial, reel, environment)
+    layout = state_layout(bodies.turning)
+    inertial, derivative = make_equations(environment, reel, thrust, bodies, layout)
+    scheme = SCHEMES[terms["solver"]](
+        derivative, make_squared_error(bodies), layout.moving, layout.size - layout.moving
+    )
+    places = places_of(layout, scheme)
+    events = make_events(reel, bodies, scheme, places)
+    extremes = make_extremes(events, places)
+    trajectory = make_trajectory(derivative, bodies, scheme, events, places)
+    inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, places, command_slot)
+    start_state = make_start(environment, bodies, interface)
+    publish = make_publish(reel, environment, bodies, layout)
+    differentiate = make_differentiate(inertial, reel, environment, bodies)
+    size, impulse, work_size = layout.size, layout.impulse, places.total
+    end_state, here_state, slope_state, low_error = places.end, places.here, places.slope, places.low
 
     @kernel
     def finite(state: Array) -> bool:
@@ -93,7 +108,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         Checked  tests/tethered_deorbit/test_robust.py
         """
         total = 0.0
-        for i in range(layout.SIZE):
+        for i in range(size):
             total += state[i]
         return math.isfinite(total)
 
@@ -112,6 +127,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_target_share = r.target_mass / r.state_total_mass
         r.state_reduced_mass = reduced_mass(r.chaser_mass, r.target_mass)
         environment.begin(record)
+        code = bodies.begin(record)
+        if code != 0:
+            return fail(record, code, 0.0)
         command, _ = reel.asked(record)
         code = reel.prepare(record, command, 0.0, 0.0)
         if code != 0:
@@ -122,11 +140,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return fail(record, code, 0.0)
         force, _ = thrust.asked(record)
         thrust.put(record, force, 0.0)
-        end = work[layout.END : layout.HERE]
+        end = work[end_state:here_state]
         code = start_state(record, end, reel.start_limit(record))
         if code != 0:
             return fail(record, code, 0.0)
-        end[layout.IMPULSE] = 0.0
+        end[impulse] = 0.0
         if not finite(end):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), 0.0)
         r.state_published = 0.0
@@ -138,7 +156,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_step = 0.0
         trajectory.restart(record, work, 0.0)
         r.state_since = 0.0
-        publish(record, end, norm(end[6:9]), speed, 0.0)
+        separation, length, _ = bodies.line(record, end)
+        publish(record, end, separation, length, speed, 0.0)
         if r.state_taut:
             begin_tug(record, 0.0, speed)
             note_pull(record, r.tether_tension)
@@ -153,13 +172,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         Checked  tests/consistency/test_table2.py: the first five tugs
         """
         r = record[0]
-        end = work[layout.END : layout.HERE]
-        trajectory.state_at(record, work, r.state_end, end)
+        _, _, speed = trajectory.state_at(record, work, r.state_end, work[end_state:here_state])
         if r.state_taut:
             r.state_taut = 0
         else:
             r.state_taut = 1
-            begin_tug(record, r.state_end, length_rate(end[6:9], end[9:12], norm(end[6:9])))
+            begin_tug(record, r.state_end, speed)
         trajectory.restart(record, work, r.state_end)
 
     @kernel
@@ -195,7 +213,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 r.fault_time = r.state_start + r.state_end
                 return UNDER_WAY
             left -= 1
-            radius = environment.fallen(work[layout.END : layout.END + 3])
+            radius = environment.fallen(work[end_state : end_state + 3])
             if radius >= 0.0:
                 return fail(record, blame(record, GROUND, 0, radius), r.state_end)
             extremes.note(record, work, r.state_end)
@@ -211,14 +229,14 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if code != 0:
                 return fail(record, code, r.state_begin)
         extremes.note(record, work, target)
-        here = work[layout.HERE : layout.SLOPE]
-        separation, speed = trajectory.state_at(record, work, target, here)
+        here = work[here_state:slope_state]
+        separation, length, speed = trajectory.state_at(record, work, target, here)
         if not finite(here):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), target)
         radius = environment.fallen(here[0:3])
         if radius >= 0.0:
             return fail(record, blame(record, GROUND, 0, radius), target)
-        publish(record, here, separation, speed, r.state_since + (target - r.state_begin))
+        publish(record, here, separation, length, speed, r.state_since + (target - r.state_begin))
         thrust.publish(record, target)
         r.state_published = target
         r.state_changes = 0
@@ -239,8 +257,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                  length
         """
         r = record[0]
-        here = work[layout.HERE : layout.SLOPE]
-        separation, speed = trajectory.state_at(record, work, r.state_published, here)
+        here = work[here_state:slope_state]
+        separation, length, speed = trajectory.state_at(record, work, r.state_published, here)
         command, command_rate, taut = r.state_command, r.state_command_rate, r.state_taut
         force, force_rate = r.state_thrust, r.state_thrust_rate
         asked, asked_rate = reel.asked(record)
@@ -256,11 +274,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if differentiating:
             asked_force, asked_force_rate = thrust.asked(record)
             thrust.put(record, asked_force, force_rate if asked_force == force else asked_force_rate)
-            differentiate(record, here, work[layout.SLOPE : layout.LOW], separation, speed)
+            differentiate(record, here, work[slope_state:low_error], separation, length, speed)
             thrust.publish_rate(record)
             thrust.put(record, force, force_rate)
         else:
-            publish(record, here, separation, speed, 0.0)
+            publish(record, here, separation, length, speed, 0.0)
         reel.prepare(record, command, command_rate, 0.0)
         r.state_taut = taut
         return 0

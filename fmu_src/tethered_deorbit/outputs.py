@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.interface import TUGS
 from fmu_src.tethered_deorbit.law import Reel
-from fmu_src.tethered_deorbit.tether import line_length
+from fmu_src.tethered_deorbit.layout import StateLayout
 from orbital.frames import relative_to_orbital
 from orbital.hill import hill_jacobi
 from orbital.kernel import kernel
@@ -75,28 +75,29 @@ def note_pull(record: Any, tension: float) -> None:
     r.tether_tug_count += 1
 
 
-def make_publish(reel: Reel, environment: Environment) -> Callable[..., Any]:
+def make_publish(reel: Reel, environment: Environment, bodies: Bodies, layout: StateLayout) -> Callable[..., Any]:
     """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
+    impulse = layout.impulse
 
     @kernel
-    def publish(record: Any, state: Array, separation: float, rate: float, since: float) -> None:
-        """Outputs at one instant; `state` (13,) as in `layout`, and `state.taut`, the line's condition there.
+    def publish(record: Any, state: Array, separation: float, length: float, rate: float, since: float) -> None:
+        """Outputs at one instant; `state` as in `layout`, and `state.taut`, the line's condition there.
 
         separation    s      of the centres of mass              [m]
-        rate          s'     its rate, which is the line's       [m/s]
+        length, rate  of the line                                [m], [m/s]
         since         time   since the inputs in force began to move  [s]
 
-        energy.relative = m_r (hill_jacobi + k d^2/(2 m_r)),   d = l - l0 while taut (a locked reel's elastic energy)
+        energy.relative = m_r (hill_jacobi + k d^2/(2 m_r)) + that of the bodies' turning,   d = l - l0 while taut (a
+        locked reel's elastic energy)
 
         Checked  tests/tethered_deorbit/test_start.py
         """
         r = record[0]
         position, velocity = state[6:9], state[9:12]
-        length = line_length(record, separation)
         r.separation = separation
         r.tether_length = length
         r.tether_length_rate = rate
-        r.tether_impulse = state[layout.IMPULSE]
+        r.tether_impulse = state[impulse]
         r.tether_taut = r.state_taut
         r.tether_tension = max(0.0, reel.tension(record, length, rate, since)) if r.state_taut else 0.0
         for i in range(3):
@@ -111,6 +112,8 @@ def make_publish(reel: Reel, environment: Environment) -> Callable[..., Any]:
         relative_to_orbital(r.relative_position, r.relative_velocity, r.state_basis, turning, position, velocity)
         r.tether_angle = math.atan2(r.relative_position[1], r.relative_position[0])
         r.energy_relative = r.state_reduced_mass * hill_jacobi(r.relative_position, r.relative_velocity, turning)
+        bodies.publish(record, state)
+        r.energy_relative += bodies.energy(record, state, turning)
         if r.state_taut:
             r.energy_relative += reel.energy(record, length, since)
 

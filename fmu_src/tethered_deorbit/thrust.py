@@ -99,24 +99,12 @@ def _along_velocity(record: Any, state: Array) -> tuple[float, float, float]:
     return state[3] - share * state[9], state[4] - share * state[10], state[5] - share * state[11]
 
 
-@kernel
-def _along_tether(record: Any, state: Array) -> tuple[float, float, float]:
-    """Direction of the line, towards the target [m].
-
-        u = rho
-
-    state         R, V, rho, rho'  of `layout`                   (12,)
-
-    Source   as `_add_along`
-    Checked  tests/tethered_deorbit/test_terms.py, test_uncompiled.py
-    """
-    return state[6], state[7], state[8]
-
-
 DIRECTIONS = ("along_track", "velocity", "tether")
 
 
-def make_thrust(name: str, along_track: Callable[..., Any], interface: Interface) -> Thrust:
+def make_thrust(
+    name: str, along_track: Callable[..., Any], along_line: Callable[..., Any], interface: Interface
+) -> Thrust:
     """A thruster on the chaser.
 
         R'' += F u/M,   rho'' -= F u/m_c,   F = level + offset,   propellant = integral of |F|/(Isp g0)
@@ -128,13 +116,14 @@ def make_thrust(name: str, along_track: Callable[..., Any], interface: Interface
 
     name          of the direction: along_track, velocity or tether
     along_track   kernel of the environment that gives this one
+    along_line    kernel of the bodies that gives the third
     interface     whose record it is for
 
     Valid    point masses: no torque, no plume on the target
     Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, test_ramps.py
     """
-    direction = {"along_track": along_track, "velocity": _along_velocity, "tether": _along_tether}[name]
+    direction = {"along_track": along_track, "velocity": _along_velocity, "tether": along_line}[name]
     offset_slot = interface.references["thrust.offset"]
 
     @kernel

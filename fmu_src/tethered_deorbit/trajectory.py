@@ -12,11 +12,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.integrators.scheme import AdaptiveScheme
-from fmu_src.tethered_deorbit import layout
+from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.events import CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, Events, Signals
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
-from fmu_src.tethered_deorbit.tether import length_rate
+from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.turning import add_turning, set_turning, turn_back
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
@@ -36,7 +36,7 @@ SHORTEST = 32.0 * ROUNDING
 """Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
 
 
-def make_squared_error() -> Callable[..., Any]:
+def make_squared_error(bodies: Bodies) -> Callable[..., Any]:
     """Size of an error of the state in units of the tolerances."""
 
     @kernel
@@ -44,11 +44,12 @@ def make_squared_error() -> Callable[..., Any]:
         """Square of the error's size [-].
 
             sum of (e_R/tol_o)^2, (e_V/(tol_o n))^2, (e_rho/tol_s)^2, (e_rho'/(tol_s n))^2,
-            and while taut, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2
+            and while taut, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2,
+            and what the bodies add for their attitudes
 
         Each tolerance is at least a few units in the last place of what it bounds.
 
-        state, error     R, V, rho, rho'  of `layout`            (12,)
+        state, error     of `layout`
 
         Valid    n the pace of the environment, on an orbit its mean motion, omega the taut line's frequency
         Source   ours
@@ -67,14 +68,14 @@ def make_squared_error() -> Callable[..., Any]:
         if r.state_taut and length > 0.0:
             taut = r.state_taut_tolerance + ROUNDING * length
             taut_rate = taut * r.state_frequency
-            along = dot(error[6:9], state[6:9]) / length
-            along_rate = dot(error[9:12], state[6:9]) / length
-            across = dot(error[9:12], error[9:12]) - along_rate * along_rate
+            along, along_rate = bodies.stretch_error(record, state, error)
+            radial = dot(error[9:12], state[6:9]) / length
+            across = dot(error[9:12], error[9:12]) - radial * radial
             square += along * along / (taut * taut) + along_rate * along_rate / (taut_rate * taut_rate)
             square += max(0.0, across) / (apart_rate * apart_rate)
         else:
             square += dot(error[9:12], error[9:12]) / (apart_rate * apart_rate)
-        return float(square)
+        return float(square + bodies.squared_error(record, state, error))
 
     return squared_error
 
@@ -86,14 +87,14 @@ def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
     def longest_taut_step(record: Any) -> float:
         """Longest step [s] of a taut line: as far as the scheme reaches over its vibration.
 
-            h omega <= reach(zeta),   zeta = c / (2 m_r omega)
+            h omega <= reach(zeta),   zeta = c / (2 m omega),   m the line's effective mass
 
         Valid    omega the frequency of the fastest motion, that of the dashpot when it is faster than the spring
         Source   `AdaptiveScheme.reach`, which for a scheme that damps what is stiff has no end
         Checked  tests/tethered_deorbit/test_turning.py
         """
         r = record[0]
-        damping = r.state_damping / (2.0 * r.state_reduced_mass * r.state_frequency)
+        damping = r.state_damping / (2.0 * r.state_effective_mass * r.state_frequency)
         longest: float = reach(damping) / r.state_frequency
         return longest
 
@@ -105,9 +106,9 @@ class Trajectory(NamedTuple):
 
     restart(record, work, time)               begin anew at the state stored as END
     advance(record, work, longest) -> fault   take the next step, up to a change of the line, but no longer [s]
-    state_at(record, work, time, out) -> (separation [m], its rate [m/s])   state within the current step, inertial
-                                              axes; the separation from before the axes are turned back: the bits of
-                                              the tension do not depend on who asks
+    state_at(record, work, time, out) -> (separation [m], length of the line [m], its rate [m/s])   state within the
+                                              current step, inertial axes; the three from before the axes are turned
+                                              back: the bits of the tension do not depend on who asks
     """
 
     restart: Callable[..., Any]
@@ -115,13 +116,17 @@ class Trajectory(NamedTuple):
     state_at: Callable[..., Any]
 
 
-def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, events: Events) -> Trajectory:
-    """The kernels for one set of equations, integrator and events.
+def make_trajectory(
+    derivative: Callable[..., Any], bodies: Bodies, scheme: AdaptiveScheme, events: Events, places: Places
+) -> Trajectory:
+    """The kernels for one set of equations, two bodies, an integrator and events.
 
     Valid    tolerances that rounding can meet
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
-    last, dense_begin, work_end = layout.places_of(scheme)
+    begin_state, end_state, here_state, size = places.begin, places.end, places.here, places.size
+    low, high, stages, last = places.low, places.high, places.stages, places.last
+    dense_begin, work_end = places.dense, places.total
 
     longest_taut_step = make_longest_taut_step(scheme.reach)
 
@@ -132,8 +137,9 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py: a ramp does not see what ran ahead
         """
         r = record[0]
-        for i in range(layout.SIZE):
-            work[layout.BEGIN + i] = work[layout.END + i]
+        for i in range(size):
+            work[begin_state + i] = work[end_state + i]
+        bodies.hold(record, work[begin_state:end_state])
         for i in range(3):
             r.state_turning[i] = 0.0
         r.state_begin = time
@@ -155,10 +161,10 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         """
         scheme.attempt(
             record,
-            work[layout.BEGIN : layout.END],
+            work[begin_state:end_state],
             step,
-            work[layout.STAGES : dense_begin],
-            work[layout.END : layout.HERE],
+            work[stages:dense_begin],
+            work[end_state:here_state],
         )
         r = record[0]
         r.state_step = step
@@ -172,7 +178,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         Checked  tests/tethered_deorbit/test_tugs.py
         """
         signals: Signals = events.signals(
-            record, work[layout.END : layout.HERE], work[last : last + layout.SIZE], record[0].state_step
+            record, work[end_state:here_state], work[last : last + size], record[0].state_step
         )
         return signals
 
@@ -186,9 +192,7 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         Checked  tests/tethered_deorbit/test_tugs.py, against an independent integration: no change is lost
         """
         r = record[0]
-        begin = events.signals(
-            record, work[layout.BEGIN : layout.END], work[layout.STAGES : layout.STAGES + layout.SIZE], 0.0
-        )
+        begin = events.signals(record, work[begin_state:end_state], work[stages : stages + size], 0.0)
         end = end_signals(record, work)
         steepest = max(abs(begin[TENSION_SLOPE]), abs(end[TENSION_SLOPE]))
         return bool(2.0 * r.state_step * steepest < min(begin[TENSION], end[TENSION]))
@@ -232,27 +236,34 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         """
         r = record[0]
         r.state_since += r.state_step
-        begin = work[layout.BEGIN : layout.END]
-        rate = work[layout.STAGES : layout.STAGES + layout.SIZE]
-        for i in range(layout.SIZE):
-            begin[i] = work[layout.END + i]
+        begin = work[begin_state:end_state]
+        rate = work[stages : stages + size]
+        for i in range(size):
+            begin[i] = work[end_state + i]
         if r.state_fresh:
             set_turning(record, begin)
             derivative(record, begin, rate, 0.0)
             r.state_fresh = 0
         else:
-            for i in range(layout.SIZE):
+            for i in range(size):
                 rate[i] = work[last + i]
             if r.state_taut:
                 add_turning(record, begin, rate, 1.0)
+                bodies.add_turning(record, begin, rate, 1.0)
                 turn_back(record, r.state_step, begin)
                 turn_back(record, r.state_step, rate)
+                bodies.turn_back(record, r.state_step, begin)
+                bodies.turn_back(record, r.state_step, rate)
                 set_turning(record, begin)
                 add_turning(record, begin, rate, -1.0)
+                bodies.add_turning(record, begin, rate, -1.0)
+        bodies.settle(begin, rate)
+        bodies.hold(record, begin)
         r.state_begin = r.state_end
         r.state_event = 0
         r.solver_steps += 1
         step = min(r.state_next_step, max(longest, SHORTEST * abs(r.state_begin)))
+        step = min(step, bodies.longest(record, begin))
         if r.state_taut:
             step = min(step, longest_taut_step(record))
             turn = norm(r.state_turning)
@@ -265,12 +276,15 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
             attempt(record, work, step)
             error = scheme.error(
                 record,
-                work[layout.END : layout.HERE],
+                work[end_state:here_state],
                 step,
-                work[layout.STAGES : dense_begin],
-                work[layout.LOW : layout.HIGH],
-                work[layout.HIGH : layout.STAGES],
+                work[stages:dense_begin],
+                work[low:high],
+                work[high:stages],
             )
+            code = bodies.trouble(record)
+            if code != 0:
+                return blame(record, code, 0, 0.0)
             if error <= 1.0:
                 break
             r.state_error = error
@@ -286,29 +300,27 @@ def make_trajectory(derivative: Callable[..., Any], scheme: AdaptiveScheme, even
         return 0
 
     @kernel
-    def state_at(record: Any, work: Array, time: float, out: Array) -> tuple[float, float]:
-        """Separation [m] and its rate [m/s] at a time; out becomes the state there, along inertial axes.
+    def state_at(record: Any, work: Array, time: float, out: Array) -> tuple[float, float, float]:
+        """Separation [m], length of the line [m] and its rate [m/s] at a time; out becomes the state, inertial axes.
 
         time          within the current step, or its end            [s]
-        out           R, V, rho, rho', J  of `layout`                (13,)
+        out           of `layout`
 
         Checked  tests/tethered_deorbit/test_macro_step.py: the same bits whatever the macro step
         """
         r = record[0]
         since = r.state_step
         if time >= r.state_end or r.state_step == 0.0:
-            for i in range(layout.SIZE):
-                out[i] = work[layout.END + i]
+            for i in range(size):
+                out[i] = work[end_state + i]
         else:
             events.ensure_dense(record, work)
             fraction = max(0.0, (time - r.state_begin) / r.state_step)
             since = fraction * r.state_step
-            scheme.dense_value(
-                work[layout.BEGIN : layout.END], work[dense_begin:work_end], fraction, 0, layout.SIZE, out
-            )
-        separation = norm(out[6:9])
-        speed = length_rate(out[6:9], out[9:12], separation)
+            scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], fraction, 0, size, out)
+        separation, length, speed = bodies.line(record, out)
         turn_back(record, since, out)
-        return separation, speed
+        bodies.turn_back(record, since, out)
+        return separation, length, speed
 
     return Trajectory(restart, advance, state_at)

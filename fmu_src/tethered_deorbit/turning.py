@@ -65,7 +65,7 @@ def add_turning(record: Any, state: Array, rate: Array, sign: float) -> None:
     """
     turning = record[0].state_turning
     x, y, z = sign * turning[0], sign * turning[1], sign * turning[2]
-    for i in range(0, layout.VECTORS, 3):
+    for i in range(0, layout.PAIR, 3):
         rate[i] += y * state[i + 2] - z * state[i + 1]
         rate[i + 1] += z * state[i] - x * state[i + 2]
         rate[i + 2] += x * state[i + 1] - y * state[i]
@@ -80,7 +80,7 @@ def turn_back(record: Any, time: float, vectors: Array) -> None:
     The two factors are their series, which round alike everywhere; the sum is formed so that a length keeps its last
     digit over a hundred thousand steps.
 
-    vectors       any number of vectors one after the other; what is left over stays
+    vectors       R, V, rho, rho'  of `layout`                   (12,); what lies behind them stays
 
     Valid    |q| < 0.3
     Source   Rodrigues' formula
@@ -93,33 +93,10 @@ def turn_back(record: Any, time: float, vectors: Array) -> None:
         return
     a = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0))))
     b = 0.5 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0))))
-    for i in range(0, len(vectors) - 2, 3):
+    for i in range(0, layout.PAIR, 3):
         u = y * vectors[i + 2] - z * vectors[i + 1]
         v = z * vectors[i] - x * vectors[i + 2]
         w = x * vectors[i + 1] - y * vectors[i]
         vectors[i] += a * u + b * (y * w - z * v)
         vectors[i + 1] += a * v + b * (z * u - x * w)
         vectors[i + 2] += a * w + b * (x * v - y * u)
-
-
-@kernel
-def turning_share(record: Any, position: Array, velocity: Array, length: float) -> float:
-    """What the second derivative of the length [m/s^2] lacks when it is formed from the rate of rho' in turning axes.
-
-        rho . (w x rho') / l
-
-    position      rho    target minus chaser                     [m]    (3,)
-    velocity      rho'   its inertial rate                       [m/s]  (3,)
-    length        l      |rho|                                   [m]
-
-    Valid    any; zero where the bodies coincide
-    Source   the transport theorem
-    Checked  tests/tethered_deorbit/test_turning.py
-    """
-    if length == 0.0:
-        return 0.0
-    w = record[0].state_turning
-    x = velocity[1] * position[2] - velocity[2] * position[1]
-    y = velocity[2] * position[0] - velocity[0] * position[2]
-    z = velocity[0] * position[1] - velocity[1] * position[0]
-    return float((w[0] * x + w[1] * y + w[2] * z) / length)

@@ -9,7 +9,9 @@ import pytest
 
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.tethered_deorbit.interface import (
+    BAD_ATTITUDE,
     BAD_CHORD,
+    BAD_INERTIA,
     BAD_ORBIT,
     BAD_PARAMETER,
     GROUND,
@@ -109,6 +111,8 @@ ELSEWHERE = {
     TOO_MANY_EVENTS: "test_uncompiled.py",
     STEP_NOT_MET: "test_steps_too_short_for_the_time",
     NO_ORBIT: "test_field_free.py",
+    BAD_INERTIA: "test_rigid.py",
+    BAD_ATTITUDE: "test_rigid.py",
 }
 
 

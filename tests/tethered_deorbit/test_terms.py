@@ -11,7 +11,8 @@ import pytest
 
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.packaging import compile
-from fmu_src.tethered_deorbit import tether
+from fmu_src.tethered_deorbit import kinematics
+from fmu_src.tethered_deorbit.bodies import points
 from fmu_src.tethered_deorbit.environment.central import add_gravity, along_track
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.thrust import make_thrust
@@ -76,8 +77,8 @@ def test_line_kinematics() -> None:
         return (-x[0] + 16 * x[1] - 30 * x[2] + 16 * x[3] - x[4]) / (12 * h * h)
 
     for rate, acceleration in (
-        (tether.length_rate, tether.length_acceleration),
-        (tether.length_rate.py_func, tether.length_acceleration.py_func),  # type: ignore[attr-defined]
+        (kinematics.distance_rate, kinematics.distance_acceleration),
+        (kinematics.distance_rate.py_func, kinematics.distance_acceleration.py_func),  # type: ignore[attr-defined]
     ):
         speed = rate(at[2], first(at), lengths[2])
         assert speed == pytest.approx(first(lengths), rel=1e-10)
@@ -92,7 +93,7 @@ def test_thrust_directions(direction: str) -> None:
     way = {"along_track": np.cross(np.cross(r, v), r), "velocity": v, "tether": STATE[6:9]}[direction]
     force = -0.01 * way / np.linalg.norm(way)
     rate = np.zeros(12)
-    make_thrust(direction, along_track, MODEL.interface(TERMS)).add(masses(), STATE, rate, 0.0)
+    make_thrust(direction, along_track, points.along, MODEL.interface(TERMS)).add(masses(), STATE, rate, 0.0)
     assert rate[3:6] == pytest.approx(force / 3000.0, rel=1e-12)
     assert rate[9:] == pytest.approx(-force / 2000.0, rel=1e-12)
     assert not rate[:3].any()
@@ -101,7 +102,7 @@ def test_thrust_directions(direction: str) -> None:
 
 def test_tension_pulls_together() -> None:
     rate = np.zeros(12)
-    tether.add_tension(masses(), STATE, rate, 3.0, float(np.linalg.norm(STATE[6:9])))
+    points.pull(masses(), STATE, rate, 3.0, float(np.linalg.norm(STATE[6:9])))
     assert rate[9:] == pytest.approx(-3.0 / (2000.0 / 3.0) * STATE[6:9] / np.linalg.norm(STATE[6:9]), rel=1e-14)
     assert not rate[:9].any()
 

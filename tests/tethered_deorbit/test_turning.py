@@ -11,7 +11,8 @@ from scipy.spatial.transform import Rotation
 from fmu_src.instance import Instance
 from fmu_src.integrators.dop853 import DAMPED_REACH, UNDAMPED_REACH, make_dop853
 from fmu_src.integrators.dop853 import reach as reach_of_dop853
-from fmu_src.tethered_deorbit import turning
+from fmu_src.tethered_deorbit import kinematics, turning
+from fmu_src.tethered_deorbit.bodies import points
 from fmu_src.tethered_deorbit.environment.central import add_gravity, along_track
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.thrust import make_thrust
@@ -70,9 +71,9 @@ def test_rates_in_turning_axes() -> None:
 def test_second_derivative_of_the_length() -> None:
     position, velocity = STATE[6:9].copy(), STATE[9:].copy()
     length = float(np.linalg.norm(position))
-    share = turning.turning_share(taut_record(TURNING), position, velocity, length)
+    share = kinematics.turning_share(taut_record(TURNING), position, velocity, length)
     assert share == pytest.approx(position @ np.cross(TURNING, velocity) / length, rel=1e-13)
-    assert turning.turning_share(taut_record(TURNING), np.zeros(3), velocity, 0.0) == 0.0
+    assert kinematics.turning_share(taut_record(TURNING), np.zeros(3), velocity, 0.0) == 0.0
 
 
 def test_axes_follow_a_taut_line() -> None:
@@ -99,7 +100,7 @@ def _uneven(record: Any, state: Any, rate: Any) -> None:
 def test_laws_look_the_same_from_any_axes(direction: str) -> None:
     """f(Q x) = Q f(x) for gravity and every thrust; a force fixed in space would not be so."""
     by, record = np.array([0.3, -1.0, 0.7]), taut_record()
-    push = make_thrust(direction, along_track, MODEL.interface(TERMS)).add
+    push = make_thrust(direction, along_track, points.along, MODEL.interface(TERMS)).add
 
     def add(record: Any, state: Any, rate: Any) -> None:
         push(record, state, rate, 0.0)
@@ -167,7 +168,7 @@ def test_longest_step() -> None:
 
     for zeta, reach in ((0.05, 3.0), (0.01, 2.453), (1e-3, 1.840), (1e-5, 1.034)):
         record = taut_record()
-        record["state_reduced_mass"] = 1.0
+        record["state_effective_mass"] = 1.0
         record["state_damping"] = 2.0 * zeta * FREQUENCY
         longest = float(longest_taut_step(record)) * FREQUENCY
         assert longest == pytest.approx(reach, abs=1e-3)

@@ -19,6 +19,7 @@ class Environment(NamedTuple):
     same_orbit(record, state) -> fault                 the state at the start, both on one orbit
     add_gravity(record, state, rate)                   rate of the state under gravity alone; writes all twelve
     along_track(record, state) -> (x, y, z)            direction of the chaser's along-track, of any length
+    gradient(position) -> 3 mu/r^5                     strength of its gradient at a place [1/(m2 s2)]
     fallen(position) -> radius                         of a centre of mass that has come down [m], or -1
     frame(record, position, velocity) -> rate          the frame in which the pair is seen: as `place`
     publish(record)                                    outputs of its own, from those of both bodies and the centre
@@ -33,6 +34,7 @@ class Environment(NamedTuple):
     same_orbit: Any
     add_gravity: Any
     along_track: Any
+    gradient: Any
     fallen: Any
     frame: Any
     publish: Any

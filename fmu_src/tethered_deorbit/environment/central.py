@@ -152,6 +152,17 @@ def along_track(record: Any, state: Array) -> tuple[float, float, float]:
 
 
 @kernel
+def gradient(position: Array) -> float:
+    """What the gradient of gravity turns a body by, over its moments of inertia [1/(m2 s2)]: 3 mu/r^5.
+
+    Source   `orbital.rigid.gradient_torque`
+    Checked  tests/tethered_deorbit/test_rigid.py
+    """
+    square = dot(position, position)
+    return 3.0 * EARTH_MU / (square * square * math.sqrt(square))
+
+
+@kernel
 def fallen(position: Array) -> float:
     """Distance [m] from the Earth's centre of what has come below the equatorial radius, or -1.
 
@@ -340,6 +351,7 @@ def make_central(interface: Interface) -> Environment:
         same_orbit,
         add_gravity,
         along_track,
+        gradient,
         fallen,
         frame,
         publish,

@@ -81,6 +81,12 @@ def along_track(record: Any, state: Array) -> tuple[float, float, float]:
 
 
 @kernel
+def gradient(position: Array) -> float:
+    """No field, no gradient [1/(m2 s2)]."""
+    return 0.0
+
+
+@kernel
 def fallen(position: Array) -> float:
     """There is no ground: -1.
 
@@ -146,6 +152,7 @@ def make_none(interface: Interface) -> Environment:
         same_orbit,
         add_gravity,
         along_track,
+        gradient,
         fallen,
         frame,
         publish,

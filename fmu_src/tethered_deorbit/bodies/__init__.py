@@ -1,0 +1,76 @@
+"""What the line is made fast to: two points, or bodies that turn; and the straight line between the two attachments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from fmu_src.interface import Interface
+
+
+class Bodies(NamedTuple):
+    """Kernels of the two bodies at the ends of the line. `state` and `rate` are those of `layout`; axes may turn.
+
+    turning                                     how many of the two have an attitude
+    begin(record) -> fault                      least effective mass of the line, and what does not change
+    place(record, state, longest) -> fault      attitudes and rates at the start, the centres being in the state; a line
+                                                longer than `longest` [m] is refused
+    move(record, state, rate)                   rate of attitudes and body rates without the line; writes all of them
+    line(record, state) -> (separation, length, its rate)   of the centres of mass [m]; of the line [m], [m/s]
+    along(record, state) -> (x, y, z)           direction of the line at the chaser, towards the target, of any length
+    second(record, state, rate, separation, length, length_rate, turned) -> (length'', separation', separation'')
+                                                [m/s^2], [m/s], [m/s^2]; `turned` is 1 where the axes of the rate turn
+                                                with the step, 0 where they are at rest
+    pull(record, state, rate, tension, separation)   add the pull of the line [N] to the rate
+    add_turning(record, state, rate, sign)      what the turning of the axes adds to the rate of attitudes
+    turn_back(record, time, state)              attitudes that axes turning for a time [s] have; in place
+    hold(record, state)                         the way of the line to a state becomes the one that others are followed from
+    longest(record, state) -> h                 longest step [s] over which it can be
+    trouble(record) -> fault                    of a line that could not be followed
+    settle(state, rate)                         attitudes back to unit length, and their rates alike
+    squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
+    stretch_error(record, state, error) -> (along, across^2, along', across'^2)   error of the line's vector [m], [m/s]
+    publish(record, state)                      outputs of their own
+    energy(record, state, turning) -> E         of the attitudes [J], constant in a frame that turns evenly [rad/s] but
+                                                for what the line does
+    differentiate(record, state, rate, turning, change) -> E'   rates of their outputs; power [W]
+    """
+
+    turning: int
+    begin: Callable[..., Any]
+    place: Callable[..., Any]
+    move: Callable[..., Any]
+    line: Callable[..., Any]
+    along: Callable[..., Any]
+    second: Callable[..., Any]
+    pull: Callable[..., Any]
+    add_turning: Callable[..., Any]
+    turn_back: Callable[..., Any]
+    hold: Callable[..., Any]
+    longest: Callable[..., Any]
+    trouble: Callable[..., Any]
+    settle: Callable[..., Any]
+    squared_error: Callable[..., Any]
+    stretch_error: Callable[..., Any]
+    publish: Callable[..., Any]
+    energy: Callable[..., Any]
+    differentiate: Callable[..., Any]
+
+
+KINDS = {"target": ("point", "rigid", "box", "cylinder"), "chaser": ("point", "rigid")}
+
+
+def make_bodies(
+    terms: Mapping[str, str], frame_at: Callable[..., Any], strength_at: Callable[..., Any], interface: Interface
+) -> Bodies:
+    """The kernels for a record of this interface.
+
+    terms         of `interface`: those of "target" and "chaser" are among `KINDS`
+    frame_at, strength_at   kernels `place` and `gradient` of the environment
+    """
+    from fmu_src.tethered_deorbit.bodies import attached, points
+
+    turning = tuple(role for role in ("target", "chaser") if terms[role] != "point")
+    if not turning:
+        return points.make_points(interface)
+    return attached.make_attached(turning, terms["target"], frame_at, strength_at, interface)

@@ -1,0 +1,378 @@
+"""A pair of which one body or both turn, the line made fast at an attachment that turns with its body.
+
+    d = rho + b_t - b_c,   l = |d|,   force T d/l on the chaser and -T d/l on the target, each at its attachment
+
+A body that does not turn has its attachment at its centre of mass; a point target, at a distance from it on the line.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.bodies.rigid import Rigid, Way, make_rigid, nothing, zero
+from fmu_src.tethered_deorbit.bodies.surfaces import SURFACES
+from fmu_src.tethered_deorbit.bodies.wrapping import make_wrapping
+from fmu_src.tethered_deorbit.body_rows import WAYS
+from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
+from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
+from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR
+from orbital.kernel import kernel
+from orbital.vectors import Array, dot, norm
+
+FOLLOWED = 0.5
+"""By how much body and line may turn in a step for the line's way to be followed [rad]."""
+OVERRUN = 1e-12
+"""Share of its length by which a line may be longer at the start, by rounding of the attitude."""
+
+
+@kernel
+def no_share(record: Any) -> tuple[float, int]:
+    """The line feels its mass alone."""
+    return 0.0, 0
+
+
+@kernel
+def no_fault(*arguments: Any) -> int:
+    """Nothing is wrong."""
+    return 0
+
+
+STILL = Rigid(
+    begin=no_share,
+    place=no_fault,
+    move=nothing,
+    reach=nothing,
+    reach_acceleration=nothing,
+    relief=zero,
+    reach_error=nothing,
+    pull=nothing,
+    add_turning=nothing,
+    turn_back=nothing,
+    settle=nothing,
+    squared_error=zero,
+    publish=nothing,
+    energy=zero,
+    differentiate=zero,
+)
+"""A body that does not turn."""
+
+
+def make_attached(
+    turning: Sequence[str],
+    surface: str,
+    frame_at: Callable[..., Any],
+    strength_at: Callable[..., Any],
+    interface: Interface,
+) -> Bodies:
+    """The kernels for a record of this interface.
+
+    turning       which bodies turn: "target", "chaser", or both, in the order of their attitudes in the state
+    surface       of the target, among `SURFACES` or none
+    frame_at, strength_at   kernels `place` and `gradient` of the environment
+
+    Checked  tests/tethered_deorbit/test_rigid.py
+    """
+    wraps = surface in SURFACES
+    way, lay_out, keep, show, show_rates = Way(), nothing, nothing, nothing, nothing
+    if wraps:
+        shape = SURFACES[surface]
+        lay_out = shape.lay_out
+        wrapping = make_wrapping(shape.faces, shape.edges, WAYS[surface])
+        way, keep = Way("state_departure", wrapping.follow, wrapping.relief), wrapping.keep
+        show, show_rates = wrapping.publish, wrapping.differentiate
+    ways = {"target": way, "chaser": Way()}
+    signs = {"target": 1.0, "chaser": -1.0}
+    made = {
+        role: make_rigid(role, PAIR + ATTITUDE * at, signs[role], ways[role], strength_at, interface)
+        for at, role in enumerate(turning)
+    }
+    target, chaser = made.get("target", STILL), made.get("chaser", STILL)
+    separation_slot = interface.references["start.separation"]
+    shorter = "target_attachment_distance" if "target" not in turning else "state_no_length"
+    on_body = "state_wrapped" if wraps else "state_no_length"
+
+    @kernel
+    def clear(record: Any) -> None:
+        """A line that runs over no edge yet."""
+        if wraps:
+            r = record[0]
+            r.held_count = 0
+            r.state_way_fault = 0
+
+    @kernel
+    def begin(record: Any) -> int:
+        """Least mass that the line moves [kg]: see `Bodies`. Returns 0 or a fault.
+
+            1/m = 1/m_r + |a_t|^2/I_t + |a_c|^2/I_c,   each I the least principal moment
+
+        Valid    a bound; the mass of a pull along n is 1/m_r + (a x n).I^-1 (a x n), for either body
+        Source   impulse on a free rigid body
+        Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
+        """
+        r = record[0]
+        lay_out(record)
+        clear(record)
+        of_target, fault = target.begin(record)
+        if fault != 0:
+            return int(fault)
+        of_chaser, fault = chaser.begin(record)
+        if fault != 0:
+            return int(fault)
+        r.state_effective_mass = 1.0 / (1.0 / r.state_reduced_mass + of_target + of_chaser)
+        return 0
+
+    @kernel
+    def span(record: Any, state: Array) -> None:
+        """The line's vector and its rate, from the chaser's attachment to where it meets the target, in `state.line`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        vector, velocity = record[0].state_line[0], record[0].state_line[1]
+        for i in range(3):
+            vector[i] = state[6 + i]
+            velocity[i] = state[9 + i]
+        chaser.reach(record, state, vector, velocity)
+        target.reach(record, state, vector, velocity)
+
+    @kernel
+    def line(record: Any, state: Array) -> tuple[float, float, float]:
+        """Separation of the centres [m], length of the line [m] and its rate [m/s]: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        span(record, state)
+        distance = norm(r.state_line[0])
+        speed: float = distance_rate(r.state_line[0], r.state_line[1], distance)
+        return norm(state[6:9]), distance + r[on_body] - r[shorter], speed
+
+    @kernel
+    def trouble(record: Any) -> int:
+        """Fault of a line that could not be followed, or 0.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        if wraps:
+            return int(record[0].state_way_fault)
+        return 0
+
+    @kernel
+    def hold(record: Any, state: Array) -> None:
+        """The way of the line to a state becomes that from which others are followed.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        if wraps:
+            line(record, state)
+            keep(record)
+
+    @kernel
+    def longest(record: Any, state: Array) -> float:
+        """Longest step [s] over which the line's way can be followed: half a radian of the target and of the line.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        if not wraps:
+            return math.inf
+        apart = norm(state[6:9])
+        turning = norm(state[PAIR + 4 : PAIR + 7])
+        if apart > 0.0:
+            turning += norm(state[9:12]) / apart
+        return FOLLOWED / turning if turning > 0.0 else math.inf
+
+    @kernel
+    def along(record: Any, state: Array) -> tuple[float, float, float]:
+        """Direction of the line at the chaser, towards the target [m].
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        span(record, state)
+        vector = record[0].state_line[0]
+        return vector[0], vector[1], vector[2]
+
+    @kernel
+    def second(
+        record: Any, state: Array, rate: Array, separation: float, length: float, speed: float, turned: float
+    ) -> tuple[float, float, float]:
+        """Second derivative of the length, and rates of the separation [m/s^2], [m/s], [m/s^2]; after `line`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py, against differences
+        """
+        r = record[0]
+        vector, velocity, acceleration = r.state_line[0], r.state_line[1], r.state_line[2]
+        for i in range(3):
+            acceleration[i] = rate[9 + i]
+        target.reach_acceleration(record, state, rate, acceleration)
+        chaser.reach_acceleration(record, state, rate, acceleration)
+        distance = norm(vector)
+        change: float = distance_acceleration(vector, velocity, acceleration, distance, speed)
+        # of rho' alone the rate is one in turning axes
+        change += turned * turning_share(record, vector, state[9:12], distance)
+        change -= target.relief(record, state, vector, velocity)
+        apart = distance_rate(state[6:9], state[9:12], separation)
+        slope: float = distance_acceleration(state[6:9], state[9:12], rate[9:12], separation, apart)
+        slope += turned * turning_share(record, state[6:9], state[9:12], separation)
+        return change, apart, slope
+
+    @kernel
+    def pull(record: Any, state: Array, rate: Array, tension: float, separation: float) -> None:
+        """Add the pull of the line to the rate of the state, and its torques; after `line` of the same state.
+
+            rho'' -= T/m_r d/|d|
+
+        tension       T                                          [N]
+
+        Source   Newton's third law
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        vector = r.state_line[0]
+        distance = norm(vector)
+        if distance > 0.0:
+            force = tension / distance
+            for i in range(3):
+                rate[9 + i] -= force / r.state_reduced_mass * vector[i]
+            target.pull(record, state, rate, force * vector[0], force * vector[1], force * vector[2])
+            chaser.pull(record, state, rate, force * vector[0], force * vector[1], force * vector[2])
+
+    @kernel
+    def stretch_error(record: Any, state: Array, error: Array) -> tuple[float, float]:
+        """Parts along the line of the errors of its vector and of the rate of that [m], [m/s].
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        span(record, state)
+        vector = r.state_line[0]
+        distance = norm(vector)
+        if distance == 0.0:
+            return 0.0, 0.0
+        off, off_rate = r.state_line[2], r.state_line[3]
+        for i in range(3):
+            off[i] = error[6 + i]
+            off_rate[i] = error[9 + i]
+        target.reach_error(record, state, error, off, off_rate)
+        chaser.reach_error(record, state, error, off, off_rate)
+        return dot(off, vector) / distance, dot(off_rate, vector) / distance
+
+    @kernel
+    def place(record: Any, state: Array, longest: float) -> int:
+        """Attitudes at the start, in the frame of the orbit's point; fault of a line that is stretched there, or 0.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        turning_rate = frame_at(record, r.state_vector[0], r.state_vector[1])
+        code = target.place(record, state, r.state_basis, turning_rate)
+        if code == 0:
+            code = chaser.place(record, state, r.state_basis, turning_rate)
+        if code != 0:
+            return int(code)
+        _, length, _ = line(record, state)
+        if r.start_condition == HANDED_OVER:
+            return 0
+        if not length > 0.0:
+            return blame(record, BAD_PARAMETER, separation_slot, r.start_separation)
+        return blame(record, START_STRETCHED, separation_slot, length) if length > longest * (1.0 + OVERRUN) else 0
+
+    @kernel
+    def move(record: Any, state: Array, rate: Array) -> None:
+        """Rates of attitudes and body rates without the line.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        target.move(record, state, rate)
+        chaser.move(record, state, rate)
+
+    @kernel
+    def add_turning(record: Any, state: Array, rate: Array, sign: float) -> None:
+        """What the turning of the axes adds to the rates of the attitudes.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: axes change nothing
+        """
+        target.add_turning(record, state, rate, sign)
+        chaser.add_turning(record, state, rate, sign)
+
+    @kernel
+    def turn_back(record: Any, time: float, vector: Array) -> None:
+        """Attitudes along axes at rest.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: axes change nothing
+        """
+        target.turn_back(record, time, vector)
+        chaser.turn_back(record, time, vector)
+
+    @kernel
+    def settle(state: Array, rate: Array) -> None:
+        """Attitudes back to unit length.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        target.settle(state, rate)
+        chaser.settle(state, rate)
+
+    @kernel
+    def squared_error(record: Any, state: Array, error: Array) -> float:
+        """Square of the size of the errors of the attitudes [-].
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        return float(target.squared_error(record, state, error) + chaser.squared_error(record, state, error))
+
+    @kernel
+    def publish(record: Any, state: Array) -> None:
+        """Outputs of both, after `line`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        target.publish(record, state)
+        chaser.publish(record, state)
+        show(record)
+
+    @kernel
+    def energy(record: Any, state: Array, turning_rate: float) -> float:
+        """Energy of both attitudes [J].
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        return float(target.energy(record, state, turning_rate) + chaser.energy(record, state, turning_rate))
+
+    @kernel
+    def differentiate(record: Any, state: Array, rate: Array, turning_rate: float, change: float) -> float:
+        """Rates of their outputs; power [W].
+
+        Checked  tests/tethered_deorbit/test_rigid.py, against differences
+        """
+        if wraps:
+            arms = record[0].state_target_arms
+            target.relief(record, state, record[0].state_line[0], record[0].state_line[1])
+            show_rates(record, arms[2], arms[3])
+        power = target.differentiate(record, state, rate, turning_rate, change)
+        return float(power + chaser.differentiate(record, state, rate, turning_rate, change))
+
+    return Bodies(
+        turning=len(turning),
+        begin=begin,
+        place=place,
+        move=move,
+        line=line,
+        along=along,
+        second=second,
+        pull=pull,
+        add_turning=add_turning,
+        turn_back=turn_back,
+        hold=hold,
+        longest=longest,
+        trouble=trouble,
+        settle=settle,
+        squared_error=squared_error,
+        stretch_error=stretch_error,
+        publish=publish,
+        energy=energy,
+        differentiate=differentiate,
+    )

@@ -1,0 +1,176 @@
+"""Two points. The line is made fast at the chaser's centre of mass and at a fixed distance from the target's.
+
+A target that is a point turns with the line, so that its attachment always lies on the line of centres.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
+from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
+from orbital.kernel import kernel
+from orbital.vectors import Array, dot, norm
+
+
+@kernel
+def nothing(*arguments: Any) -> None:
+    """A point has no attitude: there is nothing to do."""
+
+
+@kernel
+def zero(*arguments: Any) -> float:
+    """Nor an energy of its own [J], nor an error in it."""
+    return 0.0
+
+
+@kernel
+def no_end(*arguments: Any) -> float:
+    """A straight line is followed over any step [s]."""
+    return math.inf
+
+
+@kernel
+def no_fault(record: Any) -> int:
+    """Nothing is wrong."""
+    return 0
+
+
+@kernel
+def begin(record: Any) -> int:
+    """The line moves the pair's reduced mass [kg].
+
+    Checked  tests/tethered_deorbit/test_snap.py
+    """
+    r = record[0]
+    r.state_effective_mass = r.state_reduced_mass
+    return 0
+
+
+@kernel
+def line_length(record: Any, separation: float) -> float:
+    """Length of the line between its attachments [m]; negative where the chaser is nearer than the target's.
+
+        l = s - a
+
+    separation    s      of the centres of mass                  [m]
+
+    with a the parameter target.attachment_distance; l has the rates of s.
+
+    Valid    attachment on the line of centres
+    Source   fmu_src/tethered_deorbit/README.md, What is computed
+    Checked  tests/tethered_deorbit/test_attachment.py
+    """
+    length: float = separation - record[0].target_attachment_distance
+    return length
+
+
+@kernel
+def line(record: Any, state: Array) -> tuple[float, float, float]:
+    """Separation of the centres [m], length of the line [m] and its rate [m/s]: see `Bodies`.
+
+    Checked  tests/tethered_deorbit/test_attachment.py, test_terms.py
+    """
+    separation = norm(state[6:9])
+    speed: float = distance_rate(state[6:9], state[9:12], separation)
+    return separation, line_length(record, separation), speed
+
+
+@kernel
+def along(record: Any, state: Array) -> tuple[float, float, float]:
+    """Direction of the line, towards the target [m]: rho.
+
+    Checked  tests/tethered_deorbit/test_terms.py, test_uncompiled.py
+    """
+    return state[6], state[7], state[8]
+
+
+@kernel
+def second(
+    record: Any, state: Array, rate: Array, separation: float, length: float, speed: float, turned: float
+) -> tuple[float, float, float]:
+    """Second derivative of the length, which is that of the separation [m/s^2], and the rates of that: see `Bodies`.
+
+    Checked  tests/tethered_deorbit/test_turning.py, test_terms.py
+    """
+    change: float = distance_acceleration(state[6:9], state[9:12], rate[9:12], separation, speed)
+    change += turned * turning_share(record, state[6:9], state[9:12], separation)
+    return change, speed, change
+
+
+@kernel
+def pull(record: Any, state: Array, rate: Array, tension: float, separation: float) -> None:
+    """Add the pull of the line to the rate of the state [m/s^2].
+
+        rho'' -= T/m_r rho/s
+
+    state         R, V, rho, rho'  of `layout`                   (12,)
+    tension       T                                              [N]
+    separation    s      |rho|                                   [m]
+
+    The two pulls are opposite, so that the centre of mass feels nothing.
+
+    Valid    massless straight line, s > 0
+    Source   Newton's third law
+    Checked  tests/tethered_deorbit/test_terms.py
+    """
+    if separation > 0.0:
+        factor = tension / (record[0].state_reduced_mass * separation)
+        for i in range(3):
+            rate[9 + i] -= factor * state[6 + i]
+
+
+@kernel
+def stretch_error(record: Any, state: Array, error: Array) -> tuple[float, float]:
+    """Parts along the line of the errors of its vector and of the rate of that [m], [m/s].
+
+    Valid    |rho| > 0
+    Checked  tests/tethered_deorbit/test_integrator.py
+    """
+    length = norm(state[6:9])
+    return dot(error[6:9], state[6:9]) / length, dot(error[9:12], state[6:9]) / length
+
+
+def make_points(interface: Interface) -> Bodies:
+    """The kernels for a record of this interface."""
+    separation_slot = interface.references["start.separation"]
+
+    @kernel
+    def place(record: Any, state: Array, longest: float) -> int:
+        """Fault of a start whose line has no length, or more than it may [m], or 0; what is handed over is as it is.
+
+        Checked  tests/tethered_deorbit/test_robust.py, test_attachment.py: what starts stretched is refused
+        """
+        r = record[0]
+        if r.start_condition == HANDED_OVER:
+            return 0
+        length = line_length(record, r.start_separation)
+        if not length > 0.0:
+            return blame(record, BAD_PARAMETER, separation_slot, r.start_separation)
+        return blame(record, START_STRETCHED, separation_slot, r.start_separation) if length > longest else 0
+
+    return Bodies(
+        turning=0,
+        begin=begin,
+        place=place,
+        move=nothing,
+        line=line,
+        along=along,
+        second=second,
+        pull=pull,
+        add_turning=nothing,
+        turn_back=nothing,
+        hold=nothing,
+        longest=no_end,
+        trouble=no_fault,
+        settle=nothing,
+        squared_error=zero,
+        stretch_error=stretch_error,
+        publish=nothing,
+        energy=zero,
+        differentiate=zero,
+    )

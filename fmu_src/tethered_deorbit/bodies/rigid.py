@@ -1,0 +1,497 @@
+"""One rigid body: its attitude and rate, the torques on it, and where the line is made fast on it.
+
+The attitude is a quaternion of any length, which is divided out wherever it is used: its equation is linear, so that it
+may be set back to unit length between steps, and its rate with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.body_rows import RATE_FRAMES
+from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.interface import BAD_ATTITUDE, BAD_INERTIA, BAD_PARAMETER
+from fmu_src.tethered_deorbit.layout import ATTITUDE
+from orbital.kernel import kernel
+from orbital.rigid import euler, extreme_moments, gradient_torque, inertia_matrix, invert_symmetric
+from orbital.rotations import from_matrix, multiply, normalise
+from orbital.vectors import Array, add, add_scaled, cross, dot, matrix_vector, norm, transposed_matrix_vector
+
+INERTIAL, ORBITAL, LINE = range(len(RATE_FRAMES))
+SHARE = 5e-3
+"""Error of an attitude in one step, in tolerances of the separation: a spin is kept to 1e-12 through tugs, for half as
+many steps again while the line is slack."""
+UNIT = 1e-6
+"""By how much the length of an attitude that is given may differ from one."""
+
+
+class Rigid(NamedTuple):
+    """Kernels of one body; vectors without a word on it lie along the axes of the state, which may turn.
+
+    begin(record) -> (1/m, fault)               the most that its turning adds to the inverse of the line's effective
+                                                mass [1/kg]
+    place(record, state, basis, turning) -> fault   attitude and rate at the start, as given relative to a frame
+    move(record, state, rate)                   attitude and rate without the line
+    reach(record, state, vector, velocity)      add what the attachment adds to the line's vector, from the chaser's
+                                                attachment to the target's [m], and to its rate [m/s]
+    reach_acceleration(record, state, rate, out)   and to the rate of that, inertial [m/s^2]; after `reach`
+    relief(record, state, vector, velocity) -> l''   what a line that slides over the body takes off l'' [m/s^2]; after
+                                                `reach`
+    reach_error(record, state, error, vector, velocity)   add what errors of the attitude add to those of the vector;
+                                                after `reach`
+    pull(record, state, rate, x, y, z)          add the torque of the line, a force [N] on the chaser; after `reach`
+    add_turning, turn_back, settle, squared_error, energy   as of `Bodies`
+    publish(record, state)
+    differentiate(record, state, rate, turning, change) -> power [W]
+    """
+
+    begin: Callable[..., Any]
+    place: Callable[..., Any]
+    move: Callable[..., Any]
+    reach: Callable[..., Any]
+    reach_acceleration: Callable[..., Any]
+    relief: Callable[..., Any]
+    reach_error: Callable[..., Any]
+    pull: Callable[..., Any]
+    add_turning: Callable[..., Any]
+    turn_back: Callable[..., Any]
+    settle: Callable[..., Any]
+    squared_error: Callable[..., Any]
+    publish: Callable[..., Any]
+    energy: Callable[..., Any]
+    differentiate: Callable[..., Any]
+
+
+@kernel
+def nothing(*arguments: Any) -> None:
+    """A line that goes straight has no way to be followed."""
+
+
+@kernel
+def zero(*arguments: Any) -> float:
+    """And does not slide [m/s^2]."""
+    return 0.0
+
+
+class Way(NamedTuple):
+    """How the line comes to the body; as it stands, straight to its attachment.
+
+    leaving     row of the point where it leaves the body, body axes [m]; "" the attachment
+    follow(record, point)               see `wrapping.Wrapping`
+    relief(record, across) -> l''
+    """
+
+    leaving: str = ""
+    follow: Callable[..., Any] = nothing
+    relief: Callable[..., Any] = zero
+
+
+@kernel
+def to_matrix(out: Array, q: Array) -> None:
+    """out = matrix (3, 3) from body to reference components of a quaternion of any length but zero.
+
+    Source   the product q v q*, over |q|^2
+    Checked  tests/tethered_deorbit/test_rigid.py
+    """
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    out[0, 0] = 1.0 - s * (y * y + z * z)
+    out[1, 1] = 1.0 - s * (x * x + z * z)
+    out[2, 2] = 1.0 - s * (x * x + y * y)
+    out[0, 1] = s * (x * y - w * z)
+    out[1, 0] = s * (x * y + w * z)
+    out[0, 2] = s * (x * z + w * y)
+    out[2, 0] = s * (x * z - w * y)
+    out[1, 2] = s * (y * z - w * x)
+    out[2, 1] = s * (y * z + w * x)
+
+
+def make_rigid(
+    role: str, first: int, sign: float, way: Way, strength_at: Callable[..., Any], interface: Interface
+) -> Rigid:
+    """The kernels of one body for a record of this interface.
+
+    role        "target" or "chaser", with which the names of its variables begin
+    first       place of its attitude in the state
+    sign        of its centre in the relative vector: r = R + sign (share of the other's mass) rho
+    way         of the line about it
+    strength_at kernel of the environment: strength of the field's gradient at a place [1/(m2 s2)]
+
+    Checked  tests/tethered_deorbit/test_rigid.py
+    """
+    places = interface.references
+    inertia_slot, attachment_slot, attitude_slot = (
+        places[f"{role}.{name}[1]"] for name in ("inertia", "attachment", "start_attitude")
+    )
+    mass, share = f"{role}_mass", "state_chaser_share" if role == "target" else "state_target_share"
+    moments, attachment = f"{role}_inertia", f"{role}_attachment"
+    leaving, follow, slide = way.leaving or attachment, way.follow, way.relief
+    start_attitude, start_rate, rate_frame = (
+        f"{role}_{name}" for name in ("start_attitude", "start_rate", "rate_frame")
+    )
+    gradient = f"{role}_gravity_gradient"
+    inertia, inverse, turned, arms, scale = (
+        f"state_{role}_{name}" for name in ("inertia", "inverse", "turned", "arms", "scale")
+    )
+    shown, shown_rate, spin, spin_energy = (f"{role}_{name}" for name in ("attitude", "rate", "spin", "spin_energy"))
+    rates = tuple(f"rate_{role}_{name}" for name in ("attitude", "rate", "spin", "spin_energy"))
+    rate_attitude, rate_rate, rate_spin, rate_energy = rates
+    middle, last = first + 4, first + ATTITUDE
+
+    @kernel
+    def begin(record: Any) -> tuple[float, int]:
+        """Inertia and its inverse from the parameters; see `Rigid`.
+
+            1/m <= |a|^2/I_least
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        inertia_matrix(r[inertia], r[moments])
+        least, greatest = extreme_moments(r[inertia])
+        trace = r[moments][0] + r[moments][1] + r[moments][2]
+        if not (least > 0.0 and greatest <= 0.5 * trace * (1.0 + 1.0e-9)):
+            return 0.0, blame(record, BAD_INERTIA, inertia_slot, r[moments][0])
+        invert_symmetric(r[inverse], r[inertia])
+        reach = norm(r[attachment])
+        if not math.isfinite(reach):
+            return 0.0, blame(record, BAD_PARAMETER, attachment_slot, reach)
+        r[scale] = max(reach, math.sqrt(greatest / r[mass]))
+        return reach * reach / least, 0
+
+    @kernel
+    def place(record: Any, state: Array, basis: Array, turning: float) -> int:
+        """Attitude and rate as given, made those of inertial axes; returns 0 or a fault.
+
+            w = w_given + A^T Omega,   Omega = 0, n o or rho x rho'/|rho|^2
+
+        basis       of the frame in which the attitude is given  (3, 3)
+        turning     n      its rate about axis 3, o              [rad/s]
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        q = state[first:middle]
+        rate = state[middle:last]
+        given = r[start_attitude]
+        length = math.sqrt(given[0] * given[0] + given[1] * given[1] + given[2] * given[2] + given[3] * given[3])
+        if not (length == 0.0 or abs(length - 1.0) <= UNIT):
+            return blame(record, BAD_ATTITUDE, attitude_slot, given[0])
+        normalise(q, given)
+        frame = r[shown]
+        from_matrix(frame, basis)
+        for i in range(1, 4):
+            frame[i] = -frame[i]
+        multiply(q, frame, q)
+        room = r[arms][0]
+        for i in range(3):
+            room[i] = turning * basis[2, i] if r[rate_frame] == ORBITAL else 0.0
+        square = dot(state[6:9], state[6:9])
+        if r[rate_frame] == LINE and square > 0.0:
+            cross(room, state[6:9], state[9:12])
+            for i in range(3):
+                room[i] /= square
+        to_matrix(r[turned], q)
+        transposed_matrix_vector(room, r[turned], room)
+        for i in range(3):
+            rate[i] = r[start_rate][i] + room[i]
+        return 0
+
+    @kernel
+    def move(record: Any, state: Array, rate: Array) -> None:
+        """Rate of attitude and body rate without the line [1/s], [rad/s^2]; fills the matrix `turned` too.
+
+            q' = q (0, w)/2,   w' = I^-1 (3 mu/r^5 r x I r - w x I w)
+
+        Source   `orbital.rigid`
+        Checked  tests/tethered_deorbit/test_rigid.py, against Jacobi's elliptic functions and scipy
+        """
+        r = record[0]
+        a, b, c, d = state[first], state[first + 1], state[first + 2], state[first + 3]
+        x, y, z = 0.5 * state[middle], 0.5 * state[middle + 1], 0.5 * state[middle + 2]
+        rate[first] = -b * x - c * y - d * z
+        rate[first + 1] = a * x + c * z - d * y
+        rate[first + 2] = a * y - b * z + d * x
+        rate[first + 3] = a * z + b * y - c * x
+        to_matrix(r[turned], state[first:middle])
+        torque = rate[middle:last]
+        lever = sign * r[share]
+        for i in range(3):
+            torque[i] = state[i] + lever * state[6 + i]
+        strength = r[gradient] * strength_at(torque)
+        transposed_matrix_vector(torque, r[turned], torque)
+        gradient_torque(torque, r[inertia], torque, strength)
+        euler(torque, r[inertia], r[inverse], state[middle:last], torque)
+
+    @kernel
+    def reach(record: Any, state: Array, vector: Array, velocity: Array) -> None:
+        """Add where the line leaves the body, and its rate, from the centre of mass: see `Rigid`.
+
+            b = A a,   b' = A (w x a),   a the attachment, or where a line that wraps round the body leaves it
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        to_matrix(r[turned], state[first:middle])
+        room = r[arms][2]
+        transposed_matrix_vector(room, r[turned], vector)
+        for i in range(3):
+            room[i] *= -sign
+        follow(record, room)
+        matrix_vector(r[arms][0], r[turned], r[leaving])
+        cross(r[arms][1], state[middle:last], r[leaving])
+        matrix_vector(r[arms][1], r[turned], r[arms][1])
+        add_scaled(vector, vector, sign, r[arms][0])
+        add_scaled(velocity, velocity, sign, r[arms][1])
+
+    @kernel
+    def reach_acceleration(record: Any, state: Array, rate: Array, out: Array) -> None:
+        """Add the second derivative of the attachment, inertial [m/s^2].
+
+            b'' = A (w' x a + w x (w x a))
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        whole, part = r[arms][2], r[arms][3]
+        cross(whole, state[middle:last], r[leaving])
+        cross(whole, state[middle:last], whole)
+        cross(part, rate[middle:last], r[leaving])
+        add(whole, whole, part)
+        matrix_vector(whole, r[turned], whole)
+        add_scaled(out, out, sign, whole)
+
+    @kernel
+    def pull(record: Any, state: Array, rate: Array, x: float, y: float, z: float) -> None:
+        """Add what a force at the attachment does to the body rate [rad/s^2]; `turned` must be that of the state.
+
+            w' += I^-1 (a x A^T F),   F the force on this body
+
+        x, y, z     the force on the chaser                      [N]
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        room = r[arms][2]
+        room[0] = -sign * x
+        room[1] = -sign * y
+        room[2] = -sign * z
+        transposed_matrix_vector(room, r[turned], room)
+        cross(room, r[leaving], room)
+        matrix_vector(room, r[inverse], room)
+        for i in range(3):
+            rate[middle + i] += room[i]
+
+    @kernel
+    def add_turning(record: Any, state: Array, rate: Array, spin_sign: float) -> None:
+        """Add what the turning of the axes adds to the rate of the attitude [1/s].
+
+            q' += s (0, w) q/2,   s = -1 into turning axes, 1 back
+
+        Checked  tests/tethered_deorbit/test_rigid.py: axes change nothing
+        """
+        w = record[0].state_turning
+        half = 0.5 * spin_sign
+        x, y, z = half * w[0], half * w[1], half * w[2]
+        a, b, c, d = state[first], state[first + 1], state[first + 2], state[first + 3]
+        rate[first] -= x * b + y * c + z * d
+        rate[first + 1] += x * a + y * d - z * c
+        rate[first + 2] += y * a + z * b - x * d
+        rate[first + 3] += z * a + x * c - y * b
+
+    @kernel
+    def turn_back(record: Any, time: float, vector: Array) -> None:
+        """Attitude, or its rate, along axes at rest, given along axes that have turned for a time [s]; in place.
+
+            q = (cos(h), w t sin(h)/|w t|) q,   h = |w t|/2, by their series
+
+        Valid    |w t| < 0.3
+        Checked  tests/tethered_deorbit/test_rigid.py: axes change nothing
+        """
+        turning = record[0].state_turning
+        x, y, z = 0.5 * time * turning[0], 0.5 * time * turning[1], 0.5 * time * turning[2]
+        s = x * x + y * y + z * z
+        if s == 0.0:
+            return
+        cosine = 1.0 - 0.5 * s * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0))))
+        sine = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0)))
+        x, y, z = sine * x, sine * y, sine * z
+        a, b, c, d = vector[first], vector[first + 1], vector[first + 2], vector[first + 3]
+        vector[first] = cosine * a - x * b - y * c - z * d
+        vector[first + 1] = cosine * b + x * a + y * d - z * c
+        vector[first + 2] = cosine * c + y * a + z * b - x * d
+        vector[first + 3] = cosine * d + z * a + x * c - y * b
+
+    @kernel
+    def settle(state: Array, rate: Array) -> None:
+        """Attitude back to unit length, and its rate by the same factor.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        q = state[first:middle]
+        factor = 1.0 / math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+        for i in range(first, middle):
+            state[i] *= factor
+            rate[i] *= factor
+
+    @kernel
+    def squared_error(record: Any, state: Array, error: Array) -> float:
+        """Square of the size of the errors of attitude and rate, in units of the tolerance [-].
+
+            (2 L |e_q|/tol)^2 + (L |e_w|/(tol p))^2,   L = max(|a|, radius of gyration),   p = max(pace, |w|),
+            tol = SHARE tol_s
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        pace = max(r.state_pace, norm(state[middle:last]))
+        square = dot(error[middle:last], error[middle:last]) / (pace * pace)
+        for i in range(first, middle):
+            square += 4.0 * error[i] * error[i]
+        size = r[scale] / (SHARE * r.solver_tolerance_separation)
+        return float(size * size * square)
+
+    @kernel
+    def relief(record: Any, state: Array, vector: Array, velocity: Array) -> float:
+        """What the line's sliding over the body takes off the second derivative of its length [m/s^2]; after `reach`.
+
+        The rate of the far end as the body sees it, w = -A^T d' + w_b x A^T d, is left in `arms[2]`, the part along the
+        line, and `arms[3]`, that across it.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
+        """
+        r = record[0]
+        along, across = r[arms][2], r[arms][3]
+        transposed_matrix_vector(along, r[turned], vector)
+        transposed_matrix_vector(r[arms][4], r[turned], velocity)
+        cross(across, state[middle:last], along)
+        add_scaled(across, across, -1.0, r[arms][4])
+        square = dot(along, along)
+        part = dot(across, along) / square if square > 0.0 else 0.0
+        for i in range(3):
+            along[i] *= part
+            across[i] -= along[i]
+        return float(slide(record, across))
+
+    @kernel
+    def reach_error(record: Any, state: Array, error: Array, vector: Array, velocity: Array) -> None:
+        """Add the errors of the attachment and of its rate that those of attitude and rate make: see `Rigid`.
+
+            e_b = t x b,   e_b' = t x b' + A (e_w x a),   t = 2 vec(e_q q*)/|q|^2
+
+        Checked  tests/tethered_deorbit/test_rigid.py: the error of the stretch
+        """
+        r = record[0]
+        w, x, y, z = state[first], state[first + 1], state[first + 2], state[first + 3]
+        e, f, g, h = error[first], error[first + 1], error[first + 2], error[first + 3]
+        factor = 2.0 / (w * w + x * x + y * y + z * z)
+        tilt, part = r[arms][2], r[arms][3]
+        tilt[0] = factor * (w * f - e * x - (g * z - h * y))
+        tilt[1] = factor * (w * g - e * y - (h * x - f * z))
+        tilt[2] = factor * (w * h - e * z - (f * y - g * x))
+        cross(part, tilt, r[arms][0])
+        add_scaled(vector, vector, sign, part)
+        cross(part, tilt, r[arms][1])
+        add_scaled(velocity, velocity, sign, part)
+        cross(part, error[middle:last], r[leaving])
+        matrix_vector(part, r[turned], part)
+        add_scaled(velocity, velocity, sign, part)
+
+    @kernel
+    def publish(record: Any, state: Array) -> None:
+        """Attitude, rate, angular momentum and energy of the turning; fills the matrix `turned` too.
+
+            H = A I w,   E = w.I w/2
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        to_matrix(r[turned], state[first:middle])
+        normalise(r[shown], state[first:middle])
+        room = r[spin]
+        matrix_vector(room, r[inertia], state[middle:last])
+        r[spin_energy] = 0.5 * dot(room, state[middle:last])
+        matrix_vector(room, r[turned], room)
+        for i in range(3):
+            r[shown_rate][i] = state[middle + i]
+
+    @kernel
+    def energy(record: Any, state: Array, rate_of_frame: float) -> float:
+        """What the body's turning adds to the energy of the pair [J], in the frame whose basis is in the record.
+
+            w.I w/2 - n o.A I w + (3/2) n^2 (r.I r - tr I/3),   r and o the axes 1 and 3 of the frame, in the body's
+
+        It is constant on a circular orbit but for what the line does. To be called after `publish`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        r = record[0]
+        room = r[arms][3]
+        transposed_matrix_vector(room, r[turned], r.state_basis[0])
+        other = r[arms][4]
+        matrix_vector(other, r[inertia], room)
+        trace = r[moments][0] + r[moments][1] + r[moments][2]
+        tide = r[gradient] * 1.5 * rate_of_frame * rate_of_frame * (dot(room, other) - trace / 3.0)
+        matrix_vector(other, r[inertia], state[middle:last])
+        turning = 0.5 * dot(other, state[middle:last])
+        transposed_matrix_vector(room, r[turned], r.state_basis[2])
+        return float(turning - rate_of_frame * dot(room, other) + tide)
+
+    @kernel
+    def differentiate(record: Any, state: Array, rate: Array, rate_of_frame: float, change: float) -> float:
+        """Rates of what `publish` fills; returns the rate of `energy` [W].
+
+        rate            of the state, along inertial axes
+        change          of the frame's rate                      [rad/s^2]
+
+        Checked  tests/tethered_deorbit/test_rigid.py, against differences
+        """
+        r = record[0]
+        n = rate_of_frame
+        momentum, torque, axis, other = r[arms][0], r[arms][1], r[arms][2], r[arms][3]
+        w = state[middle:last]
+        matrix_vector(momentum, r[inertia], w)
+        matrix_vector(torque, r[inertia], rate[middle:last])
+        cross(axis, w, momentum)
+        for i in range(3):
+            torque[i] += axis[i]
+            r[rate_rate][i] = rate[middle + i]
+        for i in range(4):
+            r[rate_attitude][i] = rate[first + i]
+        matrix_vector(r[rate_spin], r[turned], torque)
+        work = dot(w, torque)
+        r[rate_energy] = work
+        transposed_matrix_vector(axis, r[turned], r.state_basis[2])
+        power = work - n * dot(axis, torque) - change * dot(axis, momentum)
+        # rate of axis 1 as the body sees it: n times axis 2 less w x r
+        transposed_matrix_vector(axis, r[turned], r.state_basis[0])
+        cross(other, axis, w)
+        transposed_matrix_vector(torque, r[turned], r.state_basis[1])
+        for i in range(3):
+            other[i] += n * torque[i]
+        matrix_vector(momentum, r[inertia], axis)
+        trace = r[moments][0] + r[moments][1] + r[moments][2]
+        size = dot(axis, momentum) - trace / 3.0
+        power += r[gradient] * (3.0 * n * change * size + 3.0 * n * n * dot(other, momentum))
+        return float(power)
+
+    return Rigid(
+        begin=begin,
+        place=place,
+        move=move,
+        reach=reach,
+        reach_acceleration=reach_acceleration,
+        relief=relief,
+        reach_error=reach_error,
+        pull=pull,
+        add_turning=add_turning,
+        turn_back=turn_back,
+        settle=settle,
+        squared_error=squared_error,
+        publish=publish,
+        energy=energy,
+        differentiate=differentiate,
+    )

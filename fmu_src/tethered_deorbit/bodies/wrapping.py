@@ -1,0 +1,514 @@
+"""The line round a convex body: the shortest way from where it is made fast, over edges, to where it leaves.
+
+The body is a polyhedron of faces n . x <= h and edges o + t d, in body axes. A line that is pulled taut runs from the
+attachment x_0 over points x_i = o_i + t_i d_i of some edges to the other body at x_(k+1), and its length
+
+    L = min over 0 <= t_i <= l_i of  sum |x_(i+1) - x_i|
+
+is a convex function, whose gradient by the far end is the direction in which the line leaves the last edge: the line
+slides without friction, pulls the body where it leaves it, and is caught at corners. Which edges it runs over follows
+from those of the step's begin: an edge on which the line would pull is left, and where it would pass through the body
+it is led round, over the edge between the face it enters by and the one it leaves by. So turns are counted, and the length
+is one of the state alone, smooth but for its second derivative where an edge is met.
+
+Source   convex minimisation; Newton's method for a tridiagonal Hessian
+Checked  tests/tethered_deorbit/test_wrapping.py
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from fmu_src.tethered_deorbit.interface import TOO_MANY_TURNS
+from orbital.kernel import kernel
+from orbital.vectors import Array, distance, dot
+
+DEPTH = 1e-10
+"""Depth below the faces, as a share of the body's size, from which on a line passes through the body."""
+ROUNDS, ITERATIONS, HALVINGS = 400, 40, 8
+CLOSE = 4.0 * 2.220446049250313e-16
+NONE = -1
+
+
+class Wrapping(NamedTuple):
+    """Kernels of the line round a body; `point` is where it ends at the other body, in axes of this one [m] (3,).
+
+    follow(record, point)            the way from that of the step's begin: fills `state.departure` [m], `state.wrapped`,
+                                     the length on the body [m], and what the others ask; fault: `state.way_fault`
+    keep(record)                     the way last followed becomes that of the step's begin
+    slip(record, across) -> t'       how fast the line slides along the last edge [m/s], for a velocity across it of the
+                                     far end, body axes [m/s] (3,)
+    relief(record, across) -> l''    and what that takes off the second derivative of its length [m/s^2]
+    publish(record)                  outputs of the way
+    differentiate(record, along, across)   and their rates, for the parts of the velocity along the line and across it
+    """
+
+    follow: Callable[..., Any]
+    keep: Callable[..., Any]
+    slip: Callable[..., Any]
+    relief: Callable[..., Any]
+    publish: Callable[..., Any]
+    differentiate: Callable[..., Any]
+
+
+def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
+    """The kernels for a body of so many faces and edges, and ways over so many edges."""
+
+    @kernel
+    def at_edge(record: Any, out: Array, edge: int, along: float) -> None:
+        """out = point of an edge [m] at a distance along it.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        row = record[0].state_edges[edge]
+        for i in range(3):
+            out[i] = row[i] + along * row[3 + i]
+
+    @kernel
+    def measure(record: Any, count: int) -> float:
+        """Length of the way [m]; fills its points, directions and lengths.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        points, ways, lengths = r.path_points, r.path_ways, r.path_lengths
+        total = 0.0
+        for k in range(count):
+            at_edge(record, points[k + 1], r.path_edges[k], r.path_along[k])
+        for k in range(count + 1):
+            square = 0.0
+            for i in range(3):
+                ways[k][i] = points[k + 1][i] - points[k][i]
+                square += ways[k][i] * ways[k][i]
+            length = math.sqrt(square)
+            least = max(length, 1.0e-12 * r.state_extent)
+            for i in range(3):
+                ways[k][i] /= least
+            lengths[k] = least
+            total += length
+        return total
+
+    @kernel
+    def tighten(record: Any, count: int) -> float:
+        """Shortest length [m] of a way over its edges, by Newton's method held within the edges.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py, against scipy
+        """
+        r = record[0]
+        ways, lengths = r.path_ways, r.path_lengths
+        diagonal, beside, change = r.path_diagonal, r.path_beside, r.path_change
+        total = measure(record, count)
+        for _ in range(ITERATIONS):
+            for k in range(count):
+                direction = r.state_edges[r.path_edges[k]][3:6]
+                into, out = dot(direction, ways[k]), dot(direction, ways[k + 1])
+                gradient = into - out
+                diagonal[k] = (1.0 - into * into) / lengths[k] + (1.0 - out * out) / lengths[k + 1]
+                beside[k] = 0.0
+                along, end = r.path_along[k], r.state_edges[r.path_edges[k]][6]
+                held = (along <= 0.0 and gradient > 0.0) or (along >= end and gradient < 0.0)
+                r.path_held[k] = 1 if held else 0
+                change[k] = 0.0 if held else -gradient
+                if held:
+                    diagonal[k] = 1.0
+                elif k > 0 and r.path_held[k - 1] == 0:
+                    before = r.state_edges[r.path_edges[k - 1]][3:6]
+                    beside[k] = (dot(before, ways[k]) * into - dot(before, direction)) / lengths[k]
+            for k in range(count):
+                if k > 0:
+                    factor = beside[k] / diagonal[k - 1]
+                    diagonal[k] -= factor * beside[k]
+                    change[k] -= factor * change[k - 1]
+                diagonal[k] = max(diagonal[k], 1.0e-9 / lengths[k])
+            largest = 0.0
+            for j in range(count):
+                k = count - 1 - j
+                following = beside[k + 1] * change[k + 1] if k + 1 < count else 0.0
+                change[k] = (change[k] - following) / diagonal[k]
+            share = 1.0
+            for k in range(count):
+                r.path_before[k] = r.path_along[k]
+            for _ in range(HALVINGS):
+                largest = 0.0
+                for k in range(count):
+                    end = r.state_edges[r.path_edges[k]][6]
+                    moved = min(end, max(0.0, r.path_before[k] + share * change[k]))
+                    largest = max(largest, abs(moved - r.path_before[k]))
+                    r.path_along[k] = moved
+                shorter = measure(record, count)
+                if shorter <= total * (1.0 + CLOSE):
+                    break
+                share *= 0.25
+            total = shorter
+            if largest <= CLOSE * r.state_extent:
+                break
+        return total
+
+    @kernel
+    def leave(record: Any, count: int) -> int:
+        """Number of edges once the one on which the line pulls most, in place of pressing, is left; -1 if it presses on
+        all.
+
+            (u_(i+1) - u_i) . (n_a + n_b) < 0
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        worst, most = NONE, 1.0e-14
+        for k in range(count):
+            a, b = r.state_faces[r.state_sides[r.path_edges[k]][0]], r.state_faces[r.state_sides[r.path_edges[k]][1]]
+            pull = 0.0
+            for i in range(3):
+                pull += (r.path_ways[k + 1][i] - r.path_ways[k][i]) * (a[i] + b[i])
+            if pull > most:
+                worst, most = k, pull
+        if worst == NONE:
+            return NONE
+        for k in range(worst, count - 1):
+            r.path_edges[k] = r.path_edges[k + 1]
+            r.path_along[k] = r.path_along[k + 1]
+        return count - 1
+
+    @kernel
+    def on_both(record: Any, first: int, second: int) -> bool:
+        """Whether two edges have a face in common: between them the line lies on it.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        sides = record[0].state_sides
+        a, b, c, d = sides[first][0], sides[first][1], sides[second][0], sides[second][1]
+        return bool(a in (c, d) or b in (c, d))
+
+    @kernel
+    def face_beyond(record: Any, edge: int, way: Array, sign: float) -> int:
+        """The face of an edge over which a line goes on that comes to it along a way, or, sign -1, has come from.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        a, b = r.state_sides[edge][0], r.state_sides[edge][1]
+        return int(a if sign * (dot(way, r.state_faces[a][0:3]) - dot(way, r.state_faces[b][0:3])) > 0.0 else b)
+
+    @kernel
+    def passes(record: Any, first: Array, last: Array) -> tuple[bool, int, int, float, float]:
+        """Whether a straight line passes through the body, the faces by which it enters and leaves, and where.
+
+        Returns (it does, face, face, fraction, fraction); a point within the body enters by the face that is nearest.
+
+        Source   clipping by half-spaces: Cyrus and Beck, Computers and Graphics 3 (1978) 23
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        begin, end, face_in, face_out = 0.0, 1.0, NONE, NONE
+        nearest, height = 0, -math.inf
+        depth = DEPTH * r.state_extent
+        for f in range(faces):
+            face = r.state_faces[f]
+            above = dot(face[0:3], first) - face[3]
+            slope = dot(face[0:3], last) - face[3] - above
+            if above > height:
+                nearest, height = f, above
+            above += depth
+            if slope < 0.0:
+                where = -above / slope
+                if where > begin:
+                    begin, face_in = where, f
+            elif slope > 0.0:
+                where = -above / slope
+                if where < end:
+                    end, face_out = where, f
+            elif above > 0.0:
+                return False, NONE, NONE, 0.0, 0.0
+        if face_in == NONE:
+            face_in = nearest
+        return bool(begin < end and face_out != NONE), face_in, face_out, begin, end
+
+    @kernel
+    def between(record: Any, first: int, second: int) -> int:
+        """The edge between two faces, or -1.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        sides = record[0].state_sides
+        for e in range(edges):
+            if (sides[e][0] == first and sides[e][1] == second) or (sides[e][0] == second and sides[e][1] == first):
+                return e
+        return NONE
+
+    @kernel
+    def insert(record: Any, count: int, place: int, edge: int, along: float) -> None:
+        """Put an edge into the way, before the one at `place`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        for j in range(count - place):
+            k = count - j
+            r.path_edges[k] = r.path_edges[k - 1]
+            r.path_along[k] = r.path_along[k - 1]
+        r.path_edges[place] = edge
+        r.path_along[place] = min(r.state_edges[edge][6], max(0.0, along))
+
+    @kernel
+    def nearest_to(record: Any, edge: int, first: Array, last: Array) -> float:
+        """Where along an edge [m] a straight line between two points comes nearest to it.
+
+        Source   common perpendicular of two lines
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        row = record[0].state_edges[edge]
+        aa, ab, ac, bc = 0.0, 0.0, 0.0, 0.0
+        for i in range(3):
+            way, off = last[i] - first[i], row[i] - first[i]
+            aa += way * way
+            ab += way * row[3 + i]
+            ac += way * off
+            bc += row[3 + i] * off
+        divisor = aa - ab * ab
+        return (ab * ac - aa * bc) / divisor if divisor > 1.0e-12 * aa else 0.5 * row[6]
+
+    @kernel
+    def crossing(record: Any, edge: int, normal: Array) -> float:
+        """Where along an edge [m] a plane through the body's middle crosses it, or -1.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        row = r.state_edges[edge]
+        low, slope = 0.0, 0.0
+        for i in range(3):
+            low += normal[i] * (row[i] - r.state_middle[i])
+            slope += normal[i] * row[3 + i]
+        high = low + slope * row[6]
+        if (low > 0.0) == (high > 0.0):
+            return -1.0
+        return -low / slope
+
+    @kernel
+    def round_by(
+        record: Any, count: int, place: int, face: int, goal: int, normal: Array, forth: bool, put: bool
+    ) -> tuple[float, int]:
+        """Length [m] of the way over the faces that a plane cuts, from one face to another, and its number of edges.
+
+        forth         which way round
+        put           put its edges into the way, before `place`
+
+        Returns infinity where there is no such way.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: an attachment behind the body
+        """
+        r = record[0]
+        last, length, found, came = r.path_points[place], 0.0, 0, NONE
+        here = r.path_room[0]
+        for i in range(3):
+            here[i] = last[i]
+        for _ in range(faces):
+            step, along = NONE, -1.0
+            for e in range(edges):
+                if e == came or not (r.state_sides[e][0] == face or r.state_sides[e][1] == face):
+                    continue
+                where = crossing(record, e, normal)
+                if where < 0.0:
+                    continue
+                if came == NONE:
+                    # the first of the two edges of this face: by the side of the middle on which it lies
+                    row, side = r.state_edges[e], 0.0
+                    for i in range(3):
+                        side += r.path_room[1][i] * (row[i] + where * row[3 + i] - last[i])
+                    if (side > 0.0) != forth:
+                        continue
+                step, along = e, where
+                break
+            if step == NONE or (put and count + found >= capacity):
+                return math.inf, 0
+            square = 0.0
+            for i in range(3):
+                next_to = r.state_edges[step][i] + along * r.state_edges[step][3 + i]
+                square += (next_to - here[i]) * (next_to - here[i])
+                here[i] = next_to
+            length += math.sqrt(square)
+            if put:
+                insert(record, count + found, place + found, step, along)
+            found += 1
+            came = step
+            face = r.state_sides[step][0] if r.state_sides[step][1] == face else r.state_sides[step][1]
+            if face == goal:
+                square = 0.0
+                for i in range(3):
+                    square += (r.path_room[2][i] - here[i]) * (r.path_room[2][i] - here[i])
+                return length + math.sqrt(square), found
+        return math.inf, 0
+
+    @kernel
+    def lead_round(record: Any, count: int) -> int:
+        """Number of edges once a stretch that passes through the body is led round it; -1 if none does, -2 if there is
+        no room or no way.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        points, ways = r.path_points, r.path_ways
+        for k in range(count + 1):
+            if 0 < k < count and on_both(record, r.path_edges[k - 1], r.path_edges[k]):
+                continue
+            through, face_in, face_out, _, _ = passes(record, points[k], points[k + 1])
+            if not through:
+                continue
+            if k > 0:
+                face_in = face_beyond(record, r.path_edges[k - 1], ways[k - 1], 1.0)
+            if k < count:
+                face_out = face_beyond(record, r.path_edges[k], ways[k + 1], -1.0)
+            if face_in == face_out:
+                continue
+            if count >= capacity:
+                return -2
+            edge = between(record, face_in, face_out)
+            if edge != NONE:
+                insert(record, count, k, edge, nearest_to(record, edge, points[k], points[k + 1]))
+                return count + 1
+            # the plane through both ends and the middle, and in it the direction across the line
+            normal, across, goal = r.path_room[3], r.path_room[1], r.path_room[2]
+            for i in range(3):
+                a, b = (i + 1) % 3, (i + 2) % 3
+                one = (points[k][a] - r.state_middle[a], points[k][b] - r.state_middle[b])
+                two = (points[k + 1][a] - r.state_middle[a], points[k + 1][b] - r.state_middle[b])
+                normal[i] = one[0] * two[1] - one[1] * two[0]
+                goal[i] = points[k + 1][i]
+            size = dot(normal, normal)
+            if size <= 1.0e-20 * r.state_extent * r.state_extent * dot(goal, goal):
+                # ends and middle on one line: any plane through it
+                thin = 0
+                for i in range(3):
+                    if abs(ways[k][i]) < abs(ways[k][thin]):
+                        thin = i
+                for i in range(3):
+                    normal[i] = (1.0 if i == thin else 0.0) - ways[k][thin] * ways[k][i]
+            for i in range(3):
+                a, b = (i + 1) % 3, (i + 2) % 3
+                across[i] = normal[a] * ways[k][b] - normal[b] * ways[k][a]
+            one_way, _ = round_by(record, count, k, face_in, face_out, normal, True, False)
+            other_way, _ = round_by(record, count, k, face_in, face_out, normal, False, False)
+            if not min(one_way, other_way) < math.inf:
+                return -2
+            _, found = round_by(record, count, k, face_in, face_out, normal, one_way <= other_way, True)
+            return count + found if found > 0 else -2
+        return NONE
+
+    @kernel
+    def settle(record: Any, point: Array) -> None:
+        """The shortest way to a point from the edges that are there: see `Wrapping.follow`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        count = r.path_count
+        for i in range(3):
+            r.path_points[0][i] = r.target_attachment[i]
+        total = 0.0
+        for _ in range(ROUNDS):
+            for i in range(3):
+                r.path_points[count + 1][i] = point[i]
+            total = tighten(record, count)
+            fewer = leave(record, count)
+            if fewer >= 0:
+                count = fewer
+                continue
+            more = lead_round(record, count)
+            if more == -2:
+                r.state_way_fault = TOO_MANY_TURNS
+                break
+            if more < 0:
+                break
+            count = more
+        r.path_count = count
+        r.state_wrapped = total
+        for i in range(3):
+            r.state_departure[i] = r.path_points[count][i]
+        r.state_wrapped -= r.path_lengths[count]
+
+    @kernel
+    def follow(record: Any, point: Array) -> None:
+        """The way from that of the step's begin: see `Wrapping`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        r.path_count = r.held_count
+        for k in range(r.held_count):
+            r.path_edges[k] = r.held_edges[k]
+            r.path_along[k] = r.held_along[k]
+        settle(record, point)
+
+    @kernel
+    def keep(record: Any) -> None:
+        """The way last followed becomes that of the step's begin.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        r.held_count = r.path_count
+        for k in range(r.path_count):
+            r.held_edges[k] = r.path_edges[k]
+            r.held_along[k] = r.path_along[k]
+
+    @kernel
+    def slip(record: Any, across: Array) -> float:
+        """How fast the line slides along the last edge [m/s]: see `Wrapping`.
+
+            t' = d . w/(l p),   d the last edge, p the last pivot of the Hessian, w across the line of length l
+
+        Source   Schur complement of the Hessian of the length
+        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
+        """
+        r = record[0]
+        last = r.path_count - 1
+        if last < 0 or r.path_held[last] == 1:
+            return 0.0
+        direction = r.state_edges[r.path_edges[last]][3:6]
+        return dot(direction, across) / (r.path_lengths[last + 1] * r.path_diagonal[last])
+
+    @kernel
+    def relief(record: Any, across: Array) -> float:
+        """What that takes off the second derivative of the length [m/s^2]: t'^2 p.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
+        """
+        r = record[0]
+        sliding = slip(record, across)
+        return float(sliding * sliding * r.path_diagonal[max(0, r.path_count - 1)])
+
+    @kernel
+    def publish(record: Any) -> None:
+        """Length on the body, straight distance of the attachments, and the number of edges; after `follow`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        r.tether_wrapped = r.state_wrapped
+        r.tether_bends = r.path_count
+        r.tether_span = distance(r.path_points[r.path_count + 1], r.path_points[0])
+
+    @kernel
+    def differentiate(record: Any, along: Array, across: Array) -> None:
+        """Their rates [m/s], from parts of the velocity of the far end as the body sees it; after `follow`.
+
+            wrapped' = t' d . u,   span' = (w_along + w_across) . s/|s|,   s from the one attachment to the other
+
+        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
+        """
+        r = record[0]
+        last = r.path_count - 1
+        r.rate_wrapped = 0.0
+        if last >= 0:
+            direction = r.state_edges[r.path_edges[last]][3:6]
+            r.rate_wrapped = slip(record, across) * dot(direction, r.path_ways[last + 1])
+        r.rate_span = 0.0
+        size = distance(r.path_points[r.path_count + 1], r.path_points[0])
+        if size > 0.0:
+            for i in range(3):
+                straight = (r.path_points[r.path_count + 1][i] - r.path_points[0][i]) / size
+                r.rate_span += straight * (along[i] + across[i])
+
+    return Wrapping(follow, keep, slip, relief, publish, differentiate)
