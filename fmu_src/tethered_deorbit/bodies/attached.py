@@ -78,13 +78,13 @@ def make_attached(
     Checked  tests/tethered_deorbit/test_rigid.py
     """
     wraps = surface in SURFACES
-    way, lay_out, keep, show, show_rates = Way(), nothing, nothing, nothing, nothing
+    way, lay_out, keep, start, show, show_rates = Way(), nothing, nothing, nothing, nothing, nothing
     if wraps:
         shape = SURFACES[surface]
         lay_out = shape.lay_out
         wrapping = make_wrapping(shape.faces, shape.edges, WAYS[surface])
         way, keep = Way("state_departure", wrapping.follow, wrapping.relief), wrapping.keep
-        show, show_rates = wrapping.publish, wrapping.differentiate
+        start, show, show_rates = wrapping.start, wrapping.publish, wrapping.differentiate
     ways = {"target": way, "chaser": Way()}
     signs = {"target": 1.0, "chaser": -1.0}
     made = {
@@ -273,6 +273,12 @@ def make_attached(
             code = chaser.place(record, state, r.state_basis, turning_rate)
         if code != 0:
             return int(code)
+        line(record, state)
+        if wraps:
+            # where the other attachment is, left there by `line`
+            for i in range(3):
+                r.state_line[3][i] = r.path_points[r.path_count + 1][i]
+            start(record, r.state_line[3])
         _, length, _ = line(record, state)
         if r.start_condition == HANDED_OVER:
             return 0

@@ -5,7 +5,8 @@ attachment x_0 over points x_i = o_i + t_i d_i of some edges to the other body a
 
     L = min over 0 <= t_i <= l_i of  sum |x_(i+1) - x_i|
 
-is a convex function, whose gradient by the far end is the direction in which the line leaves the last edge: the line
+is a convex function (a length on the body counts as sqrt(|..|^2 + e^2), e a millionth of the body: so it stays smooth where
+two edges meet at a corner), whose gradient by the far end is the direction in which the line leaves the last edge: the line
 slides without friction, pulls the body where it leaves it, and is caught at corners. Which edges it runs over follows
 from those of the step's begin: an edge on which the line would pull is left, and where it would pass through the body
 it is led round, over the edge between the face it enters by and the one it leaves by. So turns are counted, and the length
@@ -23,18 +24,25 @@ from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.interface import TOO_MANY_TURNS
 from orbital.kernel import kernel
-from orbital.vectors import Array, distance, dot
+from orbital.vectors import Array, add_scaled, cross, distance, dot, unit
 
 DEPTH = 1e-10
 """Depth below the faces, as a share of the body's size, from which on a line passes through the body."""
 ROUNDS, ITERATIONS, HALVINGS = 400, 40, 8
+DIRECTIONS = 16
+"""In which a line sets out round the body at the start, of which the shortest is taken."""
 CLOSE = 4.0 * 2.220446049250313e-16
+SOFT, TOGETHER = 1e-6, 1e-5
+"""Shares of the body's size: length by which lengths on it are softened, and within which points are at one corner."""
+OPPOSITE = 0.01
+"""Square of the sum of two faces' normals below which they count as opposite."""
 NONE = -1
 
 
 class Wrapping(NamedTuple):
     """Kernels of the line round a body; `point` is where it ends at the other body, in axes of this one [m] (3,).
 
+    start(record, point)             the shortest way, to be followed from then on
     follow(record, point)            the way from that of the step's begin: fills `state.departure` [m], `state.wrapped`,
                                      the length on the body [m], and what the others ask; fault: `state.way_fault`
     keep(record)                     the way last followed becomes that of the step's begin
@@ -45,6 +53,7 @@ class Wrapping(NamedTuple):
     differentiate(record, along, across)   and their rates, for the parts of the velocity along the line and across it
     """
 
+    start: Callable[..., Any]
     follow: Callable[..., Any]
     keep: Callable[..., Any]
     slip: Callable[..., Any]
@@ -68,7 +77,7 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
 
     @kernel
     def measure(record: Any, count: int) -> float:
-        """Length of the way [m]; fills its points, directions and lengths.
+        """Length of the way [m]; fills its points, directions and lengths. What lies on the body is softened.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
@@ -82,12 +91,11 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
             for i in range(3):
                 ways[k][i] = points[k + 1][i] - points[k][i]
                 square += ways[k][i] * ways[k][i]
-            length = math.sqrt(square)
-            least = max(length, 1.0e-12 * r.state_extent)
+            soft = SOFT * r.state_extent if k < count else 0.0
+            lengths[k] = max(math.sqrt(square + soft * soft), 1.0e-12 * r.state_extent)
             for i in range(3):
-                ways[k][i] /= least
-            lengths[k] = least
-            total += length
+                ways[k][i] /= lengths[k]
+            total += lengths[k]
         return total
 
     @kernel
@@ -147,21 +155,41 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         return total
 
     @kernel
-    def leave(record: Any, count: int) -> int:
-        """Number of edges once the one on which the line pulls most, in place of pressing, is left; -1 if it presses on
-        all.
-
-            (u_(i+1) - u_i) . (n_a + n_b) < 0
+    def outward(record: Any, out: Array, point: Array) -> None:
+        """out = sum of the normals of the faces that meet at a point [-].
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
         r = record[0]
-        worst, most = NONE, 1.0e-14
+        for i in range(3):
+            out[i] = 0.0
+        for f in range(faces):
+            face = r.state_faces[f]
+            if abs(dot(face[0:3], point) - face[3]) <= TOGETHER * r.state_extent:
+                for i in range(3):
+                    out[i] += face[i]
+
+    @kernel
+    def leave(record: Any, count: int) -> int:
+        """Number of edges once the one is left on which the line pulls most, in place of pressing; -1 if it presses on all.
+
+            (u_(i+1) - u_i) . (n_a + n_b + ..) < 0,   n the normals of the faces that meet there, u the directions before
+                                                      and after a corner as a whole
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        worst, most, normal = NONE, 1.0e-14, r.path_room[0]
         for k in range(count):
-            a, b = r.state_faces[r.state_sides[r.path_edges[k]][0]], r.state_faces[r.state_sides[r.path_edges[k]][1]]
+            before, after = k, k + 1
+            while before > 0 and r.path_lengths[before] <= TOGETHER * r.state_extent:
+                before -= 1
+            while after < count and r.path_lengths[after] <= TOGETHER * r.state_extent:
+                after += 1
+            outward(record, normal, r.path_points[k + 1])
             pull = 0.0
             for i in range(3):
-                pull += (r.path_ways[k + 1][i] - r.path_ways[k][i]) * (a[i] + b[i])
+                pull += (r.path_ways[after][i] - r.path_ways[before][i]) * normal[i]
             if pull > most:
                 worst, most = k, pull
         if worst == NONE:
@@ -226,6 +254,15 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         return bool(begin < end and face_out != NONE), face_in, face_out, begin, end
 
     @kernel
+    def other_side(record: Any, edge: int, face: int) -> int:
+        """The face of an edge that is not this one.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        sides = record[0].state_sides[edge]
+        return int(sides[0] if sides[1] == face else sides[1])
+
+    @kernel
     def between(record: Any, first: int, second: int) -> int:
         """The edge between two faces, or -1.
 
@@ -270,8 +307,8 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         return (ab * ac - aa * bc) / divisor if divisor > 1.0e-12 * aa else 0.5 * row[6]
 
     @kernel
-    def crossing(record: Any, edge: int, normal: Array) -> float:
-        """Where along an edge [m] a plane through the body's middle crosses it, or -1.
+    def crossing(record: Any, edge: int, normal: Array, through: Array) -> float:
+        """Where along an edge [m] a plane through a point crosses it, or -1.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
@@ -279,7 +316,7 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         row = r.state_edges[edge]
         low, slope = 0.0, 0.0
         for i in range(3):
-            low += normal[i] * (row[i] - r.state_middle[i])
+            low += normal[i] * (row[i] - through[i])
             slope += normal[i] * row[3 + i]
         high = low + slope * row[6]
         if (low > 0.0) == (high > 0.0):
@@ -309,7 +346,7 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
             for e in range(edges):
                 if e == came or not (r.state_sides[e][0] == face or r.state_sides[e][1] == face):
                     continue
-                where = crossing(record, e, normal)
+                where = crossing(record, e, normal, last)
                 if where < 0.0:
                     continue
                 if came == NONE:
@@ -333,13 +370,27 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
                 insert(record, count + found, place + found, step, along)
             found += 1
             came = step
-            face = r.state_sides[step][0] if r.state_sides[step][1] == face else r.state_sides[step][1]
+            face = other_side(record, step, face)
             if face == goal:
                 square = 0.0
                 for i in range(3):
                     square += (r.path_room[2][i] - here[i]) * (r.path_room[2][i] - here[i])
                 return length + math.sqrt(square), found
         return math.inf, 0
+
+    @kernel
+    def crosswise(out: Array, way: Array) -> None:
+        """out = a direction [-] across another.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        thin = 0
+        for i in range(3):
+            if abs(way[i]) < abs(way[thin]):
+                thin = i
+        for i in range(3):
+            out[i] = (1.0 if i == thin else 0.0) - way[thin] * way[i]
+        unit(out, out)
 
     @kernel
     def lead_round(record: Any, count: int) -> int:
@@ -365,35 +416,38 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
             if count >= capacity:
                 return -2
             edge = between(record, face_in, face_out)
+            if k > 0 and edge == r.path_edges[k - 1]:
+                # back over the edge it has come by is no way round: on over its other face
+                face_in = other_side(record, edge, face_in)
+                edge = between(record, face_in, face_out)
+            if k < count and edge == r.path_edges[k]:
+                face_out = other_side(record, edge, face_out)
+                edge = between(record, face_in, face_out)
+            if face_in == face_out:
+                continue
             if edge != NONE:
                 insert(record, count, k, edge, nearest_to(record, edge, points[k], points[k + 1]))
                 return count + 1
-            # the plane through both ends and the middle, and in it the direction across the line
-            normal, across, goal = r.path_room[3], r.path_room[1], r.path_room[2]
+            # the plane of the line and of what is outward between the two faces; between opposite ones, from the middle
+            normal, across, goal, way = r.path_room[3], r.path_room[1], r.path_room[2], ways[k]
             for i in range(3):
-                a, b = (i + 1) % 3, (i + 2) % 3
-                one = (points[k][a] - r.state_middle[a], points[k][b] - r.state_middle[b])
-                two = (points[k + 1][a] - r.state_middle[a], points[k + 1][b] - r.state_middle[b])
-                normal[i] = one[0] * two[1] - one[1] * two[0]
                 goal[i] = points[k + 1][i]
-            size = dot(normal, normal)
-            if size <= 1.0e-20 * r.state_extent * r.state_extent * dot(goal, goal):
-                # ends and middle on one line: any plane through it
-                thin = 0
+                across[i] = r.state_faces[face_in][i] + r.state_faces[face_out][i]
+            if dot(across, across) < OPPOSITE:
                 for i in range(3):
-                    if abs(ways[k][i]) < abs(ways[k][thin]):
-                        thin = i
-                for i in range(3):
-                    normal[i] = (1.0 if i == thin else 0.0) - ways[k][thin] * ways[k][i]
-            for i in range(3):
-                a, b = (i + 1) % 3, (i + 2) % 3
-                across[i] = normal[a] * ways[k][b] - normal[b] * ways[k][a]
-            one_way, _ = round_by(record, count, k, face_in, face_out, normal, True, False)
-            other_way, _ = round_by(record, count, k, face_in, face_out, normal, False, False)
-            if not min(one_way, other_way) < math.inf:
+                    across[i] = 0.5 * (points[k][i] + points[k + 1][i]) - r.state_middle[i]
+            add_scaled(across, across, -dot(across, way), way)
+            if not unit(across, across) > 0.0:
+                crosswise(across, way)
+            cross(normal, way, across)
+            length, found = round_by(record, count, k, face_in, face_out, normal, True, False)
+            forth = length < math.inf
+            if not forth:
+                length, found = round_by(record, count, k, face_in, face_out, normal, False, False)
+            if not length < math.inf or count + found > capacity:
                 return -2
-            _, found = round_by(record, count, k, face_in, face_out, normal, one_way <= other_way, True)
-            return count + found if found > 0 else -2
+            round_by(record, count, k, face_in, face_out, normal, forth, True)
+            return count + found
         return NONE
 
     @kernel
@@ -454,6 +508,44 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
             r.held_along[k] = r.path_along[k]
 
     @kernel
+    def start(record: Any, point: Array) -> None:
+        """The shortest way to a point, of those that set out in `DIRECTIONS` round the straight line.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: against a search over a graph
+        """
+        r = record[0]
+        r.held_count = 0
+        follow(record, point)
+        keep(record)
+        if r.path_count == 0:
+            return
+        shortest = r.state_wrapped + r.path_lengths[r.path_count]
+        for turn in range(DIRECTIONS):
+            for i in range(3):
+                r.path_points[1][i] = point[i]
+                r.path_room[2][i] = point[i]
+            tighten(record, 0)
+            _, face_in, face_out, _, _ = passes(record, r.path_points[0], r.path_points[1])
+            # two directions across the line, and the plane that it and a turn of them span
+            way, normal, across = r.path_ways[0], r.path_room[3], r.path_room[1]
+            crosswise(across, way)
+            cross(normal, way, across)
+            cosine, sine = math.cos(2.0 * math.pi * turn / DIRECTIONS), math.sin(2.0 * math.pi * turn / DIRECTIONS)
+            for i in range(3):
+                across[i] = cosine * across[i] + sine * normal[i]
+            cross(normal, way, across)
+            _, found = round_by(record, 0, 0, face_in, face_out, normal, True, True)
+            if found == 0:
+                continue
+            r.path_count = found
+            settle(record, point)
+            length = r.state_wrapped + r.path_lengths[r.path_count]
+            if length < shortest * (1.0 - 1.0e-12):
+                shortest = length
+                keep(record)
+        follow(record, point)
+
+    @kernel
     def slip(record: Any, across: Array) -> float:
         """How fast the line slides along the last edge [m/s]: see `Wrapping`.
 
@@ -511,4 +603,4 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
                 straight = (r.path_points[r.path_count + 1][i] - r.path_points[0][i]) / size
                 r.rate_span += straight * (along[i] + across[i])
 
-    return Wrapping(follow, keep, slip, relief, publish, differentiate)
+    return Wrapping(start, follow, keep, slip, relief, publish, differentiate)
