@@ -73,7 +73,7 @@ def run_and_write(
             gc.freeze()  # what has been imported by now stays
             gc.enable()
             threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
-            result = run_scene(scene, archives.instantiate, progress)
+            result = run_scene(scene, archives.instantiate, progress, archives.adopt)
             facts = archives.facts()
         result.attained = attained
         notes += [*nothing_recorded(result), *remarks(facts)]

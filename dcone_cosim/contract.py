@@ -61,7 +61,7 @@ EXTREMES: Mapping[str, Extreme] = {
     "cord.tension_peak": Extreme(max),
 }
 
-Need = Literal["always", "hand-over", "take-over", "captured", "settled", "tether_taut", "slack", "optional"]
+Need = Literal["always", "hand-over", "take-over", "captured", "settled", "tether_taut", "slack", "spin", "optional"]
 NEEDS: Mapping[str, str] = {
     "always": "always",
     "hand-over": "to hand over to the next phase",
@@ -70,10 +70,11 @@ NEEDS: Mapping[str, str] = {
     "settled": 'for hand_over = "settled"',
     "tether_taut": 'for hand_over = "tether_taut"',
     "slack": "to be handed the line as it is; without it the line handed over is longer by as much",
+    "spin": "to be handed the spin; without it the target is a point, and taken only where a bound allows",
     "optional": "reported if it is there",
 }
 """What a variable is needed for."""
-OPTIONAL = ("slack", "optional")
+OPTIONAL = ("slack", "spin", "optional")
 """Needs without which an FMU can be swapped in all the same."""
 
 

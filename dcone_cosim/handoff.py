@@ -1,8 +1,8 @@
 """The hand-off: what the capture leaves behind becomes what the removal begins with, and a ledger proves it.
 
-Net, bullets and vertex join the target inelastically: their masses, momenta, spins and inertias add. The removal
-carries two point masses, so the spin of the joined body is dropped, and booked as dropped with its size; when it
-would move the tether's far end fast enough to change the first tug, the hand-off is refused.
+Net, bullets and vertex join the target inelastically: their masses, momenta, spins and inertias add. A removal whose
+target turns takes all of it over; one of two point masses drops the spin of the joined body, which is booked as dropped
+with its size, and is only taken where `level` bounds by how little that changes the first tug.
 
 Frames. Positions and velocities are given in the orbital frame of the target's initial centre of mass, velocities as
 seen in that turning frame; spins are relative to inertial space, along the orbital axes.
@@ -10,7 +10,6 @@ seen in that turning frame; spins are relative to inertial space, along the orbi
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -69,7 +68,8 @@ class Body:
 @dataclass(frozen=True)
 class Handoff:
     """What is handed over: the bodies before, the joined body, where the line is made fast on it [m] (3,), how far the
-    target reaches from its centre of mass [m], and the removal's parameters."""
+    target reaches from its centre of mass [m], the removal's parameters, and the target's attitude, a unit quaternion
+    from body to orbital axes (4,)."""
 
     chaser: Body
     target: Body
@@ -80,6 +80,7 @@ class Handoff:
     reach: float
     turning: Vector
     parameters: dict[str, float]
+    attitude: Vector
 
 
 def mean_motion(altitude: float) -> float:
@@ -144,7 +145,8 @@ def prepare(capture: Values, frame_rate: float) -> Handoff:
     """
     turning = np.array([0.0, 0.0, frame_rate])
     chaser = Body(capture["chaser.mass"], _vector(capture, "chaser.position"), _vector(capture, "chaser.velocity"))
-    turn = rotation_matrix(np.array([capture[f"target.attitude[{i}]"] for i in range(1, 5)]))
+    attitude = np.array([capture[f"target.attitude[{i}]"] for i in range(1, 5)])
+    turn = rotation_matrix(attitude)
     target = Body(
         capture["target.mass"],
         _vector(capture, "target.position"),
@@ -167,9 +169,8 @@ def prepare(capture: Values, frame_rate: float) -> Handoff:
     inner += float(turning @ seen_spin) + 0.5 * float(turning @ inertia @ turning)
     joint = join(target, catch, turning)
     vertex = _vector(capture, "vertex.position")
-    return Handoff(
-        chaser, target, catch, inner, joint, vertex, capture["target.reach"], turning, pair_parameters(chaser, joint)
-    )
+    parameters = pair_parameters(chaser, joint)
+    return Handoff(chaser, target, catch, inner, joint, vertex, capture["target.reach"], turning, parameters, attitude)
 
 
 def held_bodies(removal: Values) -> tuple[Body, Body]:
@@ -189,45 +190,6 @@ def spin_energy(body: Body) -> float:
     if not body.inertia.any():
         return 0.0
     return 0.5 * float(body.spin @ np.linalg.solve(body.inertia, body.spin))
-
-
-@dataclass(frozen=True)
-class SpinCheck:
-    """How much the dropped spin would have mattered.
-
-    attachment_speed   |H| / I_min times how far the target reaches: how fast it may carry the tether's end [m/s]
-    tug_speed          estimate of the speed at which the line first comes taut [m/s]
-    """
-
-    attachment_speed: float
-    tug_speed: float
-    tolerance: float
-
-    @property
-    def share(self) -> float:
-        return self.attachment_speed / self.tug_speed if self.tug_speed > 0.0 else math.inf
-
-    @property
-    def accepted(self) -> bool:
-        return self.attachment_speed <= self.tolerance * self.tug_speed
-
-
-def check_spin(handed: Handoff, slack: float, thrust: float, tolerance: float) -> SpinCheck:
-    """Compare the speed the dropped spin gives the attachment with the relative speed of the first tug.
-
-        v_tug^2 = v_rel^2 + 2 (|F|/m_chaser) s
-
-    slack         s of the tether                                [m]
-    thrust        F of the chaser                                [N]
-
-    Valid    as an estimate: gravity between hand-over and first tug is left out
-    """
-    joint, chaser = handed.joint, handed.chaser
-    smallest = float(np.linalg.eigvalsh(joint.inertia)[0])
-    speed = float(np.linalg.norm(joint.spin)) / smallest * handed.reach if smallest > 0.0 else 0.0
-    relative = joint.velocity - chaser.velocity
-    tug = math.sqrt(float(relative @ relative) + 2.0 * abs(thrust) / chaser.mass * max(0.0, slack))
-    return SpinCheck(speed, tug, tolerance)
 
 
 def without_recoil(handed: Handoff, start_velocity: Vector) -> dict[str, float]:

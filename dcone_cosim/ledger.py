@@ -9,11 +9,16 @@ sums would hide everything: 1e-12 of the geocentric angular momentum is 160 N m 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dcone_cosim.handoff import Body, Handoff, Values, Vector, held_bodies, spin_energy
+
+if TYPE_CHECKING:
+    from dcone_cosim.level import HeldTurning
 
 CLOSURE = 1e-12
 """Largest difference of a row, as a share of the sum of the magnitudes that enter."""
@@ -68,14 +73,31 @@ class LedgerRow:
         }
 
 
-def ledger(handed: Handoff, removal: Values) -> list[LedgerRow]:
-    """Every conserved quantity, before from the capture, after from what the removal was read back to hold."""
+def ledger(handed: Handoff, removal: Values, turning: HeldTurning | None = None) -> list[LedgerRow]:
+    """Every conserved quantity, before from the capture, after from what the removal was read back to hold.
+
+    turning      of its target, None for a point
+    """
     before = [handed.chaser, handed.target, handed.catch]
-    after = list(held_bodies(removal))
+    chaser, target = held_bodies(removal)
+    if turning is not None:
+        target = replace(target, spin=turning.spin, inertia=turning.inertia)
+    after = [chaser, target]
     rows = _sum_rows(before, after)
     rows += _angular_rows(before, after, handed.joint, handed.turning)
+    if turning is not None:
+        rows += _inertia_rows(handed.joint, target)
     rows.append(_energy_row(handed, after))
     return rows
+
+
+def _inertia_rows(joint: Body, held: Body) -> Iterator[LedgerRow]:
+    """Moments of inertia of target and net, along orbital axes."""
+    size = float(np.abs(joint.inertia).sum())
+    for i, first in enumerate(AXES):
+        for j, second in enumerate(AXES[i:], i):
+            was, now = float(joint.inertia[i, j]), float(held.inertia[i, j])
+            yield LedgerRow(f"inertia, target and net, {first}, {second}", "kg m2", was, now, 0.0, "", size)
 
 
 def _sum_rows(before: list[Body], after: list[Body]) -> list[LedgerRow]:
@@ -116,6 +138,8 @@ def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: V
     spins = [b.spin for b in before]
     size = sum(float(np.linalg.norm(p)) for p in orbital)
     size_spin = sum(float(np.linalg.norm(p)) for p in (*spins, moved))
+    carried = after[1].inertia.any()
+    account = "" if carried else "dropped: a point target has no spin"
     rows = []
     for axis, label in enumerate(AXES):
         rows.append(
@@ -135,9 +159,9 @@ def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: V
                 f"angular momentum, spin part, {label}",
                 "N m s",
                 math.fsum(float(p[axis]) for p in (*spins, moved)),
-                0.0,
-                float(joint.spin[axis]),
-                "dropped: a point target has no spin",
+                float(after[1].spin[axis]),
+                0.0 if carried else float(joint.spin[axis]),
+                account,
                 size_spin,
             )
         )
@@ -153,18 +177,21 @@ def _energy_row(handed: Handoff, after: list[Body]) -> LedgerRow:
 
     before = [of_motion(b) for b in (handed.chaser, handed.target, handed.catch)]
     before += [spin_energy(handed.target), handed.catch_energy]
-    dropped = spin_energy(handed.joint)
+    held = spin_energy(after[1])
+    spun = spin_energy(handed.joint)
+    dropped = 0.0 if after[1].inertia.any() else spun
     target, catch = handed.target, handed.catch
     closing = catch.inertial_velocity(turning) - target.inertial_velocity(turning)
     reduced = target.mass * catch.mass / handed.joint.mass
     meeting = 0.5 * reduced * float(closing @ closing)
-    lost = meeting + spin_energy(target) + handed.catch_energy - dropped
+    lost = meeting + spin_energy(target) + handed.catch_energy - spun
     return LedgerRow(
         "kinetic energy",
         "J",
         math.fsum(before),
-        math.fsum(of_motion(b) for b in after),
+        math.fsum([*(of_motion(b) for b in after), held]),
         lost + dropped,
-        f"{lost:.6g} J lost where net and target become one body, {dropped:.6g} J dropped with the spin",
+        f"{lost:.6g} J lost where net and target become one body"
+        + (f", {dropped:.6g} J dropped with the spin" if dropped else ""),
         math.fsum(abs(e) for e in before),
     )

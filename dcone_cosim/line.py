@@ -89,6 +89,24 @@ def line_notes(offered: Container[str]) -> list[str]:
     return [] if ATTACHMENT in offered else [LENGTHENED if REST_LENGTH in offered else LOST]
 
 
+def attached_rows(line: Line, held: Mapping[str, float], attachment: np.ndarray, apart: np.ndarray) -> list[LedgerRow]:
+    """The same rows where the removal's target turns, its attachment where the capture's is.
+
+    attachment   from the target's centre of mass, as it was read back, orbital axes [m] (3,)
+    apart        from the chaser to that centre, likewise [m] (3,)
+    """
+    size = (line.length or 0.0) + line.reach + line.attachment + line.distance
+    rows = [LedgerRow(OFFSET, "m", line.attachment, float(np.linalg.norm(attachment)), 0.0, "", size)]
+    if line.length is None or REST_LENGTH not in held:
+        return rows
+    reach = float(np.linalg.norm(apart + attachment))
+    return [
+        *rows,
+        LedgerRow(LENGTH, "m", line.length, held[REST_LENGTH], 0.0, "", size),
+        LedgerRow(SLACK, "m", line.length - line.reach, held[REST_LENGTH] - reach, 0.0, "", size),
+    ]
+
+
 def line_rows(line: Line, given: Mapping[str, float], held: Mapping[str, float], distance: float) -> list[LedgerRow]:
     """Rows of the ledger: distance of the attachment, length of the line, slack, as far as they are known.
 

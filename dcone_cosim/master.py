@@ -9,29 +9,34 @@ away what was reached: they end up in the `RunResult`, whose `exit_code` says wh
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from dcone_cosim.errors import FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
 from dcone_cosim.fmu.component import NUMBERS, CallError, Steppable
 from dcone_cosim.phases import kind_of
-from dcone_cosim.phases.phase import Instantiate, Loop, Stage
+from dcone_cosim.phases.phase import Adopt, Instantiate, Loop, Stage
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import Handover, RunResult
-from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.mistakes import places_named
 
 
-def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress) -> RunResult:
+def adopt_nothing(phase: PhaseScene) -> None:
+    """For FMUs that are the same whatever is handed over."""
+
+
+def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress, adopt: Adopt = adopt_nothing) -> RunResult:
     """Run every phase of the scene; a fault of an FMU before its first step is an `InputError`, since it is the
     parameters that it refuses, unless a phase before has handed them over."""
     run, phases = RunResult(scene), scene.phases
     for before, phase, after in zip((None, *phases), phases, (*phases[1:], None), strict=False):
-        _run(Stage(run, phase, before, after, instantiate, progress))
+        _run(Stage(run, phase, before, after, instantiate, progress), adopt)
         if run.exit_code != SUCCESS:
             break
     return run
 
 
-def _run(stage: Stage) -> None:
+def _run(stage: Stage, adopt: Adopt) -> None:
     """One phase from the hand-over before it to the one after it."""
     run, name, kind = stage.run, stage.phase.name, kind_of(stage.phase.name)
     try:
@@ -41,6 +46,10 @@ def _run(stage: Stage) -> None:
         run.fail("hand-off refused", str(error), HANDOFF_FAILED)
         return
     try:
+        if handover is not None and handover.phase is not stage.phase:
+            stage = replace(stage, phase=handover.phase)
+            run.scene = run.scene.with_phase(stage.phase)
+            adopt(stage.phase)
         component = stage.instantiate(name, name)
     except FmuError as error:
         if handover is None:

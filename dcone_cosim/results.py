@@ -13,7 +13,7 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.steppable import Steppable, Terminated
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
-from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene.data import PhaseScene, Scene
 
 
 @dataclass
@@ -62,6 +62,7 @@ class Handover(Protocol):
 
     time       of the hand-over, as the phase before counts it                                   [s]
     start      time that the FMU of the phase is told to begin at                                [s]
+    phase      the phase that takes over, with the terms that what is handed over needs
     reach      how far the target reaches from its centre of mass, None where that is not known  [m]
     rows       of the ledger, once it is closed
     failure    why it failed, "" if it did not
@@ -69,6 +70,7 @@ class Handover(Protocol):
 
     time: float
     start: float
+    phase: PhaseScene
     rows: list[LedgerRow]
     failure: str
 

@@ -28,7 +28,8 @@ class SceneFmus:
 
     def __init__(self, scene: Scene, progress: Progress, shelf: Shelf | None = None) -> None:
         self._of: dict[tuple[str, str], Archive] = {}
-        self._shelf = shelf
+        self._adopted: dict[tuple[str, str], tuple[Mapping[str, str], Archive]] = {}
+        self._shelf, self._progress = shelf, progress
         self.serve(scene)
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
@@ -54,6 +55,21 @@ class SceneFmus:
         self._phases = {phase.name: phase for phase in scene.phases}
         self._coupled: dict[str, Any] = {}
 
+    def adopt(self, phase: PhaseScene) -> None:
+        """From now on, for this scene, a phase whose main model has other terms, as a hand-over asks for."""
+        key = (phase.name, phase.main.name)
+        if key not in self._adopted or self._adopted[key][0] != phase.main.terms:
+            with self._progress.working("building"):
+                (path,) = build.ensure([(phase.main.model, phase.main.terms)], self._progress.say)
+            self._adopted[key] = (phase.main.terms, self._ours(path, phase.main))
+        self._phases[phase.name] = phase
+
+    def _archive(self, phase: PhaseScene, component: ComponentScene) -> Archive:
+        terms, adopted = self._adopted.get((phase.name, component.name), (None, None))
+        if adopted is not None and terms == component.terms:
+            return adopted
+        return self._of[phase.name, component.name]
+
     def instantiate(self, phase: str, name: str) -> Steppable:
         """A component of that phase: its one FMU under this name, or all of its FMUs coupled.
 
@@ -64,7 +80,7 @@ class SceneFmus:
         try:
             return self._together(plan, name)
         except InputError as error:
-            if plan is self._scene.phases[0]:
+            if plan.name == self._scene.phases[0].name:
                 raise
             raise FmuError(str(error)) from error
 
@@ -101,7 +117,7 @@ class SceneFmus:
             return opened(path, component)
 
     def _one(self, phase: PhaseScene, component: ComponentScene, name: str) -> Steppable:
-        archive = self._of[phase.name, component.name]
+        archive = self._archive(phase, component)
         apart = isolated(component, archive)
         if not apart and component.fmu is not None:
             guard_exit()
@@ -156,7 +172,7 @@ class SceneFmus:
         return facts
 
     def _identity(self, phase: PhaseScene, component: ComponentScene) -> dict[str, Any]:
-        archive = self._of[phase.name, component.name]
+        archive = self._archive(phase, component)
         apart = isolated(component, archive)
         rows = archive.description.modelVariables
         texts = {row.name: row.start for row in rows if row.type == "String" and row.causality == "parameter"}
@@ -182,7 +198,7 @@ class SceneFmus:
         isolation.dismiss()
         if self._shelf is not None:
             self._shelf.clear()
-        for archive in self._of.values():
+        for archive in (*self._of.values(), *(adopted for _, adopted in self._adopted.values())):
             archive.close()
 
     def __exit__(self, *_: object) -> None:

@@ -15,9 +15,32 @@ from dcone_cosim.contract import HANDED_OVER
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinCheck, check_spin, held_bodies, spin_energy
+from dcone_cosim.handoff import REMOVAL_SETS, Handoff, held_bodies, spin_energy
 from dcone_cosim.ledger import LedgerRow, ledger
-from dcone_cosim.line import ATTACHMENT, LINE_HELD, OFFSET, REST_LENGTH, SLACK, Line, line_parameters, line_rows
+from dcone_cosim.level import (
+    GROUP,
+    POINT,
+    RATE_FRAME,
+    TURNING_SETS,
+    PointBound,
+    body_rate,
+    carries_spin,
+    held_turning,
+    needed,
+    point_bound,
+    turning_parameters,
+)
+from dcone_cosim.line import (
+    ATTACHMENT,
+    LINE_HELD,
+    OFFSET,
+    REST_LENGTH,
+    SLACK,
+    Line,
+    attached_rows,
+    line_parameters,
+    line_rows,
+)
 from dcone_cosim.scene.data import PhaseScene
 
 CROSS_CHECK = 1e-4
@@ -42,8 +65,11 @@ class HandoffRecord:
 
     time              of the hand-over, since the shot [s]
     start             the same, as time that the removal's FMU is told to begin at [s]
-    phase             the removal
+    phase             the removal, with the level of its target
+    bound             by how much a point would err
+    shape             of the capture's target, `level.SHAPE`
     line_parameters   what is set in the removal so that its line is the capture's
+    turning           what is set in it so that its target turns as the capture's; empty for a point
     """
 
     time: float
@@ -52,8 +78,10 @@ class HandoffRecord:
     phase: PhaseScene
     handed: Handoff
     line: Line
-    spin: SpinCheck = field(default_factory=lambda: SpinCheck(0.0, 0.0, 0.0))
+    bound: PointBound = field(default_factory=PointBound)
+    shape: dict[str, float] = field(default_factory=dict)
     line_parameters: dict[str, float] = field(default_factory=dict)
+    turning: dict[str, float] = field(default_factory=dict)
     rows: list[LedgerRow] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
     failure: str = ""
@@ -63,11 +91,34 @@ class HandoffRecord:
         return self.handed.reach
 
     def parameters(self, component: Steppable) -> dict[str, float]:
-        """Masses, relative state, anomaly of the orbit, and the line, as far as the component offers it."""
-        self.line_parameters = line_parameters(self.line, component.variables)
+        """Masses, relative state, anomaly of the orbit, the line and the target's turning, as far as it offers them."""
+        if carries_spin(component.variables):
+            inertial = self.phase.choice(RATE_FRAME, "inertial") if RATE_FRAME in self.phase.main.choices else 0.0
+            self.turning = turning_parameters(self.handed, self.shape, component.variables, inertial)
+        else:
+            self.line_parameters = line_parameters(self.line, component.variables)
         anomaly = advanced(self.phase.setting("orbit.true_anomaly") or 0.0, self.handed.turning[2] * self.time)
         begun = {"orbit.true_anomaly": anomaly, "start.condition": self.phase.choice("start.condition", HANDED_OVER)}
-        return self.handed.parameters | begun | self.line_parameters
+        return self.handed.parameters | begun | self.line_parameters | self.turning
+
+    @property
+    def turns(self) -> bool:
+        """Whether the removal's target turns."""
+        return carries_spin(self.phase.main.defaults)
+
+    @property
+    def level(self) -> str:
+        """Name of the removal's target: a term of ours, or what a file offers."""
+        return self.phase.main.terms.get(GROUP, "rigid" if self.turns else POINT)
+
+    @property
+    def reason(self) -> str:
+        """Why it is this level."""
+        worst = f"a point's first tug may be off by {100 * self.bound.largest:.3g} %"
+        if self.bound.largest == np.inf:
+            worst = "by the first tug the attachment may be out of sight, and the line wraps"
+        than = "more than" if not self.bound.accepted else "within"
+        return f"{worst}: {than} the {100 * self.bound.tolerance:g} % of handoff.point_tolerance"
 
     def close(self, component: Steppable) -> None:
         close_ledger(self, component)
@@ -77,17 +128,23 @@ class HandoffRecord:
 
     def told(self) -> dict[str, Any]:
         """All of it, with units."""
-        handed, spin, line = self.handed, self.spin, self.line
+        handed, bound, line = self.handed, self.bound, self.line
         return {
             "time": {"value": self.time, "unit": "s", "clock": "since the shot"},
             "located_by": self.located_by,
             "rows": [row.as_dict() for row in self.rows],
             "cross_checks": [vars(check) for check in self.checks],
-            "spin": {
-                "dropped": {"value": float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
-                "attachment_speed": {"value": spin.attachment_speed, "unit": "m/s"},
-                "tug_speed": {"value": spin.tug_speed, "unit": "m/s"},
-                "tolerance": spin.tolerance,
+            "level": {
+                "target": self.level,
+                "reason": self.reason,
+                "spin": {"value": float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
+                "rate_relative_to_line": {"value": bound.rate, "unit": "rad/s"},
+                "angle_at_first_tug": {"value": bound.angle, "unit": "rad"},
+                "first_tug": {"value": bound.tug_time, "unit": "s"},
+                "tug_speed": {"value": bound.tug_speed, "unit": "m/s"},
+                "bound_time": bound.time,
+                "bound_peak": bound.peak,
+                "tolerance": bound.tolerance,
             },
             "joint_body": {
                 "mass": {"value": handed.joint.mass, "unit": "kg"},
@@ -101,7 +158,7 @@ class HandoffRecord:
                 "attachment_distance": {"value": line.attachment, "unit": "m"},
                 "slack": {"value": line.slack, "unit": "m"},
             },
-            "set_in_removal": handed.parameters | self.line_parameters,
+            "set_in_removal": handed.parameters | self.line_parameters | self.turning,
             "failure": self.failure,
         }
 
@@ -111,32 +168,36 @@ def advanced(anomaly: float, by: float) -> float:
     return float(np.remainder(anomaly + by, 2.0 * np.pi))
 
 
-def check_before(record: HandoffRecord, phase: PhaseScene, tolerance: float) -> None:
-    """Refuse a hand-off that the removal could not carry truthfully.
+def check_before(record: HandoffRecord, tolerance: float, surface: str) -> None:
+    """Refuse a hand-off that the removal could not carry truthfully; take the level of target that can, if it is open.
 
-    phase        the removal
-    tolerance    spin allowed to the attachment, as a share of the first tug's speed
+    tolerance    largest bound with which the target is a point
+    surface      term of the capture's target, "" where there is none
     """
-    handed, line = record.handed, record.line
+    phase, handed, line = record.phase, record.handed, record.line
     elastic, commanded = phase.setting(REST_LENGTH), phase.setting("reel.length")
     length = commanded if elastic is None else elastic
-    slack = 0.0 if length is None else length + line.attachment - line.distance
-    spin = check_spin(handed, slack, phase.setting("thrust.level") or 0.0, tolerance)
-    record.spin = spin
+    slack = 0.0 if length is None else length - line.reach
+    bound = point_bound(handed, line, slack, phase.setting("thrust.level") or 0.0, tolerance)
+    record.bound = bound
     if elastic is not None and line.overrun:
         raise HandoffError(
             f"hand-off refused: at t = {record.time:.6g} s the chaser and the net's vertex are {line.reach:.6g} m "
             f"apart, the tether is {line.length:.6g} m long; give it more, or shoot from nearer"
         )
-    if not spin.accepted:
-        raise HandoffError(
-            "hand-off refused: the removal's point target cannot carry the spin, and the spin would change the answer\n"
-            f"  spin of target and net {float(np.linalg.norm(handed.joint.spin)):.4g} N m s "
-            f"moves the tether's end at up to {spin.attachment_speed:.4g} m/s,\n"
-            f"  {spin.share:.3g} times the {spin.tug_speed:.4g} m/s of the first tug; "
-            f"handoff.spin_tolerance allows {spin.tolerance:g}\n"
-            "  a removal whose target is a rigid body would carry it"
-        )
+    if record.turns or bound.accepted:
+        return
+    turning = needed(phase, surface)
+    if turning is not None:
+        record.phase = turning
+        return
+    raise HandoffError(
+        "hand-off refused: the removal's target is a point, and a body that turns would change the answer\n"
+        f"  target and net turn at {np.degrees(bound.rate):.4g} deg/s relative to the line, the attachment by up to "
+        f"{np.degrees(bound.angle):.4g} deg until the first tug\n"
+        f"  {record.reason}\n"
+        f'  leave out [{phase.name}.target] body = "point", or swap in an FMU whose target turns'
+    )
 
 
 def close_ledger(record: HandoffRecord, component: Steppable) -> None:
@@ -144,10 +205,16 @@ def close_ledger(record: HandoffRecord, component: Steppable) -> None:
     missing = [name for name in REMOVAL_SETS if name not in component.variables]
     if missing:
         raise HandoffError(f"hand-off violated: the removal FMU lacks {', '.join(missing)}")
-    held = component.get([*REMOVAL_SETS, *(name for name in LINE_HELD if name in component.variables)])
+    there = [name for name in (*LINE_HELD, *TURNING_SETS) if name in component.variables]
+    held = component.get([*REMOVAL_SETS, *there])
     chaser, target = held_bodies(held)
-    apart = float(np.linalg.norm(target.position - chaser.position))
-    record.rows = ledger(record.handed, held) + line_rows(record.line, record.line_parameters, held, apart)
+    turning = held_turning(held)
+    apart = target.position - chaser.position
+    if turning is None:
+        of_line = line_rows(record.line, record.line_parameters, held, float(np.linalg.norm(apart)))
+    else:
+        of_line = attached_rows(record.line, held, turning.attachment, apart)
+    record.rows = ledger(record.handed, held, turning) + of_line
     record.checks = _cross_check(record, component)
     broken = [
         f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}, "
@@ -179,6 +246,14 @@ def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:
     if attachment is not None:
         length = abs(distance - attachment)
         expected.append(("size of tether.length", ("tether.length",), length, CROSS_CHECK * distance, "m"))
+    if record.turning:
+        spin, span = float(np.linalg.norm(joint.spin)), record.line.reach
+        turns = float(np.linalg.norm(body_rate(handed)))
+        expected += [
+            ("size of target.spin", _elements("target.spin"), spin, CROSS_CHECK * spin, "N m s"),
+            ("size of target.rate", _elements("target.rate"), turns, CROSS_CHECK * turns, "rad/s"),
+            ("tether.span", ("tether.span",), span, CROSS_CHECK * span, "m"),
+        ]
     checks = []
     for label, names, given, tolerance, unit in expected:
         if all(name in component.variables for name in names):
@@ -192,26 +267,35 @@ def _elements(name: str) -> tuple[str, ...]:
 
 
 def findings(record: HandoffRecord) -> Iterator[Finding]:
-    handed, spin = record.handed, record.spin
+    handed, bound = record.handed, record.bound
     relative = handed.joint.velocity - handed.chaser.velocity
     distance = handed.joint.position - handed.chaser.position
-    dropped, speed = float(np.linalg.norm(handed.joint.spin)), spin.attachment_speed
+    spin, energy = float(np.linalg.norm(handed.joint.spin)), spin_energy(handed.joint)
     yield Finding("hand-off", "time", "after the shot", record.time, "s")
     yield Finding("hand-off", "mass", "target and net", handed.joint.mass, "kg")
     yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
     yield Finding(
         "hand-off", "relative_speed", "relative speed", float(np.linalg.norm(relative)), "m/s", shown_in="mm/s"
     )
-    yield Finding("hand-off", "spin_dropped", "spin dropped (a point target has none)", dropped, "N m s")
-    yield Finding("hand-off", "spin_energy_dropped", "energy of the dropped spin", spin_energy(handed.joint), "J")
-    yield Finding("hand-off", "attachment_speed", "it moves the tether's end by at most", speed, "m/s", shown_in="mm/s")
-    yield Finding("hand-off", "tug_speed", "speed of the first tug, estimated", spin.tug_speed, "m/s", shown_in="mm/s")
+    yield Finding("hand-off", "target", "target in the removal", record.level)
+    yield Finding("hand-off", "target_reason", "since", record.reason)
+    what = ("spin", "carried over") if record.turns else ("spin_dropped", "dropped (a point target has none)")
+    yield Finding("hand-off", what[0], f"spin {what[1]}", spin, "N m s")
+    what = ("spin_energy", "of it") if record.turns else ("spin_energy_dropped", "of the dropped spin")
+    yield Finding("hand-off", what[0], f"energy {what[1]}", energy, "J")
+    yield Finding(
+        "hand-off", "body_rate", "target turns, relative to the line, at", bound.rate, "rad/s", shown_in="deg/s"
+    )
+    yield Finding("hand-off", "tug_speed", "speed of the first tug, estimated", bound.tug_speed, "m/s", shown_in="mm/s")
+    if np.isfinite(bound.largest):
+        yield Finding("hand-off", "point_bound_time", "a point's first tug comes within", bound.time)
+        yield Finding("hand-off", "point_bound_peak", "and its peak is within", bound.peak)
     yield from _of_line(record)
     if record.rows:
         worst = max(record.rows, key=lambda row: row.closure)
         yield Finding("hand-off", "ledger_closure", "ledger closes to", worst.closure)
-        energy = next(row for row in record.rows if row.quantity == "kinetic energy")
-        lost = energy.accounted - spin_energy(handed.joint)
+        book = next(row for row in record.rows if row.quantity == "kinetic energy")
+        lost = book.accounted - (0.0 if record.turns else spin_energy(handed.joint))
         yield Finding("hand-off", "energy_lost", "energy lost as the net joins", lost, "J")
 
 

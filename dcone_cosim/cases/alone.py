@@ -50,7 +50,7 @@ class Alone:
         if len(self.scene.phases) == 1:
             return
         with SceneFmus(self.scene, progress) as fmus:
-            result = run_scene(self.scene, fmus.instantiate, progress)
+            result = run_scene(self.scene, fmus.instantiate, progress, fmus.adopt)
         if result.exit_code:
             raise InputError(f"{self.scene.source}: the scene itself does not come to its end: {result.message}")
         for name in result.handovers:

@@ -80,7 +80,7 @@ class Fleet:
         try:
             if self._fmus is None:
                 self._fmus = SceneFmus(case.scene, Progress(), self.shelf)
-            result = run_scene(case.scene, self._fmus.instantiate, Progress())
+            result = run_scene(case.scene, self._fmus.instantiate, Progress(), self._fmus.adopt)
             apart = sum(max(phase.cpu, 0.0) for phase in result.phases.values())
             spent = max(clock.process_time() - cpu, apart)
             row = tell(case, result, {"cpu": spent, "wall": clock.perf_counter() - began})

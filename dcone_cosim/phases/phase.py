@@ -28,6 +28,8 @@ Figure = tuple[str, Callable[[Path], object]]
 """File name, and what draws it there."""
 Instantiate = Callable[[str, str], Steppable]
 """`instantiate(phase, name)` makes a component of that phase's FMU."""
+Adopt = Callable[[PhaseScene], None]
+"""`adopt(phase)` makes ready for a phase with other FMUs than its scene has for it."""
 
 LEAST_RANGE = 1e-9
 """Share of an output's size below which its range is rounding."""

@@ -16,6 +16,7 @@ from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import DconeError, FmuError, Interrupted
 from dcone_cosim.findings import Finding
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
+from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
 from dcone_cosim.phases import chaos, removal_criteria, removal_quantities, removal_report
 from dcone_cosim.phases.phase import Document, Figure, Phase, Stage
@@ -35,6 +36,9 @@ _STATES = tuple(f"{body}.{what}" for body in ("chaser", "target", "center") for 
 RELATIVE = tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in EACH)
 
 
+_TURNING = tuple(dict.fromkeys(name.partition("[")[0] for name in (*TURNING_SETS, *CENTER, *SHAPE)))
+
+
 class Tow(Phase):
     """What all tows of two bodies are, wherever they begin: what they want of their FMU, and what is told of them."""
 
@@ -44,6 +48,8 @@ class Tow(Phase):
     wanted = (
         ("take-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
         ("slack", (ATTACHMENT,)),
+        ("spin", TURNING_SETS),
+        ("optional", (*CENTER, *SHAPE)),
         ("always", ("separation", "tether.tension")),
         ("optional", (REST_LENGTH, "thrust.level")),
         ("optional", RELATIVE),
@@ -53,7 +59,7 @@ class Tow(Phase):
         ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
         ("hand-over", tuple(f"{whose}{each}" for whose in _STATES for each in EACH)),
     )
-    taken_over: Sequence[str] = ("start.", ATTACHMENT, *(name.partition("[")[0] for name in REMOVAL_SETS))
+    taken_over: Sequence[str] = ("start.", ATTACHMENT, *_TURNING, *(name.partition("[")[0] for name in REMOVAL_SETS))
     judged_by = removal_quantities.NAMES
     figure_names = ("orbital_radius.png", "tether_tension.png")
 
@@ -111,7 +117,7 @@ class Removal(Tow):
     name = "removal"
     follows: Sequence[str] = ("capture",)
     handoff_keys: Mapping[str, Expected] = {
-        "spin_tolerance": Expected("1", example="0.1", minimum=0.0),
+        "point_tolerance": Expected("1", example="1 %", minimum=0.0, share=True),
         "compare_without_recoil": Expected("1", kind="Boolean"),
     }
     recognised_by: Sequence[str] = ("separation", *REMOVAL_SETS)
@@ -184,7 +190,7 @@ class Removal(Tow):
         return build.masses_after({**main.defaults, **main.parameters}) if main.fmu is None else {}
 
     def take_over(self, stage: Stage) -> Handover | None:
-        """The capture's bodies and line as the removal's; `HandoffError` if a point target cannot carry the spin."""
+        """The capture's bodies and line as the removal's, of the level that carries them; `HandoffError` where none does."""
         if stage.before is None:
             return None
         run, phase, capture = stage.run, stage.phase, stage.run.phases[stage.before.name]
@@ -196,7 +202,9 @@ class Removal(Tow):
         start = capture.origin + capture.located
         record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line)
         run.handovers[self.name] = record
-        check_before(record, phase, run.scene.handoff.spin_tolerance)
+        held = run.parameters[stage.before.name]
+        record.shape = {name: held[name] for name in SHAPE if name in held}
+        check_before(record, run.scene.handoff.point_tolerance, stage.before.main.terms.get(GROUP, ""))
         return record
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:

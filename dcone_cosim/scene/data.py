@@ -20,11 +20,12 @@ SHARED = "orbit"
 class HandoffOptions:
     """How a capture hands over.
 
-    spin_tolerance           speed of the tether's end by the spin that is dropped, over that of the first tug   [1]
+    point_tolerance          largest change of the first tug's time and peak, by a bound, with which the target is a
+                             point                                                                        [1]
     compare_without_recoil   run the removal once more without the shot's recoil
     """
 
-    spin_tolerance: float = 0.1
+    point_tolerance: float = 0.01
     compare_without_recoil: bool = True
 
 
@@ -77,6 +78,7 @@ class ComponentScene:
     name         of the instance; that of the phase for its main component
     model        name of a model of ours, "" when `fmu` is given
     terms        of a model of ours: group and the term of it that the scene names
+    unnamed      groups of which the scene names no term: the default one is among `terms`
     fmu          path of an FMU file, None for a model of ours
     isolate      run it in a child process; None: unless it was built here
     timeout      longest time one call to an isolated FMU may take [s]
@@ -100,6 +102,7 @@ class ComponentScene:
     tolerance: float | None = None
     texts: Mapping[str, str] = field(default_factory=dict)
     tables: Mapping[str, TableFile] = field(default_factory=dict)
+    unnamed: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -161,6 +164,10 @@ class Scene:
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
     accuracy: Accuracy | None = None
+
+    def with_phase(self, phase: PhaseScene) -> Scene:
+        """The same with a phase in the place of the one of its name."""
+        return replace(self, phases=tuple(phase if p.name == phase.name else p for p in self.phases))
 
     def isolating(self, isolate: bool | None) -> Scene:
         """The same with every FMU run in a child process, or none; as it is for None."""

@@ -73,6 +73,7 @@ class _Component:
             self.options.get("solver_tolerance"),
             self.part.texts,
             self.part.tables,
+            frozenset(self.part.unnamed),
         )
 
 

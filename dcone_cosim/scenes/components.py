@@ -59,6 +59,7 @@ class ReadComponent:
     texts: dict[str, str] = field(default_factory=dict)
     files: dict[str, build.Table] = field(default_factory=dict)
     tables: dict[str, TableFile] = field(default_factory=dict)
+    unnamed: set[str] = field(default_factory=set)
 
     @property
     def groups(self) -> Mapping[str, build.Group]:
@@ -90,6 +91,7 @@ def of_model(
         table = tables.get(group.table or group_name)
         if group.default and (table is None or (isinstance(table, dict) and group.selector not in table)):
             part.terms[group_name] = group.default
+            part.unnamed.add(group_name)
             continue
         if table is None:
             if not group.optional:

@@ -18,6 +18,9 @@ CYLINDER_SIDES = 24
 WAYS = {"box": 64, "cylinder": 6 * CYLINDER_SIDES}
 """Over how many edges the line may run: sixteen turns round a box, six round a cylinder."""
 
+CORNER_EDGES = 8
+"""How many edges may meet at a corner beside those by which a line comes to it."""
+
 ATTACHED = (
     state("state.line[#][#]", "1", "vector of the line, its rate, and room", shape=(4, 3)),
     state("state.no_length", "m", "zero: the line ends where it is made fast"),
@@ -83,6 +86,7 @@ def surface(faces: int, edges: int, ways: int) -> tuple[Variable, ...]:
         vector("state.departure", "m", "where the line leaves the body, body axes", "state"),
         state("state.wrapped", "m", "length of the line on the body"),
         state("state.way_fault", "1", "fault of a way that could not be followed", kind="Integer"),
+        state("held.stuck", "1", "they are held although they do not hold", kind="Integer"),
         state("held.count", "1", "edges of the way at the begin of the step", kind="Integer"),
         state("held.edges[#]", "1", "these edges", kind="Integer", shape=(ways,)),
         state("held.along[#]", "m", "where along them", shape=(ways,)),
@@ -96,6 +100,12 @@ def surface(faces: int, edges: int, ways: int) -> tuple[Variable, ...]:
         state("path.points[#][#]", "m", "of the way, its ends among them", shape=(ways + 2, 3)),
         state("path.ways[#][#]", "1", "directions between them", shape=(ways + 1, 3)),
         state("path.lengths[#]", "m", "lengths between them", shape=(ways + 1,)),
+        state("corner.edges[#]", "1", "other edges of a corner", kind="Integer", shape=(CORNER_EDGES,)),
+        state("corner.along[#]", "m", "where along them", shape=(CORNER_EDGES,)),
+        state("kept.edges[#]", "1", "edges held before a vain search", kind="Integer", shape=(ways,)),
+        state("kept.along[#]", "m", "where along them", shape=(ways,)),
+        state("old.edges[#]", "1", "edges of the way before it slips", kind="Integer", shape=(ways,)),
+        state("old.along[#]", "m", "where along them", shape=(ways,)),
         state("path.room[#][#]", "1", "room for vectors", shape=(4, 3)),
     )  # fmt: skip
 

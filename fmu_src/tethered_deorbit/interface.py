@@ -172,7 +172,12 @@ OUTPUTS = (
 
 STATE = (
     state("state.taut", "1", "0 slack, 1 taut", kind="Integer"),
-    state("state.event", "1", "the current step ends in a change between slack and taut", kind="Integer"),
+    state(
+        "state.event",
+        "1",
+        "the current step ends in a change between slack and taut: 1, at a corner: 2",
+        kind="Integer",
+    ),
     state("state.fresh", "1", "the derivative at the end of the step is yet to be computed", kind="Integer"),
     state("state.dense_ready", "1", "the dense output of the current step is in the work memory", kind="Integer"),
     state("state.start", "s", "time of the importer at which this instance began; all others count from there"),

@@ -167,13 +167,17 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     @kernel
     def change_line(record: Any, work: Array) -> None:
-        """The step ended where the line changes between slack and taut: let it.
+        """The step ended where the line changes between slack and taut, or comes over other edges: let it.
 
         Checked  tests/consistency/test_table2.py: the first five tugs
         """
         r = record[0]
-        _, _, speed = trajectory.state_at(record, work, r.state_end, work[end_state:here_state])
-        if r.state_taut:
+        end = work[end_state:here_state]
+        _, _, speed = trajectory.state_at(record, work, r.state_end, end)
+        if r.state_event == 2:
+            bodies.renew(record, end)
+            inputs.judge_line(record, end)
+        elif r.state_taut:
             r.state_taut = 0
         else:
             r.state_taut = 1

@@ -29,6 +29,11 @@ WIDEST_TURN = 0.25
 SHORTEST_CONTACT = 1.0e-6
 """Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
 LANDING_ITERATIONS = 5
+SHORTEST_BETWEEN_EDGES, LEAST_BETWEEN_EDGES = 1.0e-3, 1.0e-3
+"""Least time between two changes of the edges, in radians of the line's motion, and [s]: what the line passes through the
+body in between is of second order in its length."""
+EDGE = 1.0e-10
+"""Fraction of a step to which the instant is found at which the line meets an edge or leaves one."""
 LAST = 1.0 - 1.0e-12
 """Fraction of a step from which on it is over, to the accuracy with which a change is located."""
 ROUNDING = 4.0 * 2.220446049250313e-16
@@ -125,6 +130,7 @@ def make_trajectory(
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
     begin_state, end_state, here_state, size = places.begin, places.end, places.here, places.size
+    slope_state = places.slope
     low, high, stages, last = places.low, places.high, places.stages, places.last
     dense_begin, work_end = places.dense, places.total
 
@@ -226,6 +232,27 @@ def make_trajectory(
         r.state_event = 1 if max(there[CROSSING], there[CROSSING_SLOPE]) > 0.0 else 0
 
     @kernel
+    def stop_at_edge(record: Any, work: Array) -> None:
+        """Redo the step so that it ends where the line's way over edges has just ceased to hold, by halving.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        low, high = 0.0, 1.0
+        here = work[here_state:slope_state]
+        events.ensure_dense(record, work)
+        while high - low > EDGE:
+            middle = 0.5 * (low + high)
+            scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], middle, 0, size, here)
+            if bodies.holds(record, here):
+                low = middle
+            else:
+                high = middle
+        least = min(LEAST_BETWEEN_EDGES, SHORTEST_BETWEEN_EDGES / r.state_frequency)
+        attempt(record, work, max(high * r.state_step, min(r.state_step, least)))
+        r.state_event = 2
+
+    @kernel
     def advance(record: Any, work: Array, longest: float) -> int:
         """Take the next step; returns 0 or a fault. It ends early where the line changes.
 
@@ -297,6 +324,10 @@ def make_trajectory(
             # Where moving inputs end a step, a change in its last digit is for the next to judge: they may turn round.
             if fraction >= 0.0 and not (fraction >= LAST and longest < math.inf):
                 land(record, work, fraction)
+        if not bodies.holds(record, work[end_state:here_state]):
+            stop_at_edge(record, work)
+        elif r.state_event == 0 and bodies.retry(record, work[end_state:here_state]):
+            r.state_event = 2
         return 0
 
     @kernel

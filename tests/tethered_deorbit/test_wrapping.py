@@ -126,7 +126,7 @@ def wound(radius: float, distance: float, angle: float) -> float:
 
 
 def test_a_line_is_wound_round_a_cylinder(validated: Validated) -> None:
-    """sqrt(D^2 - R^2) + R (phi - acos(R/D)), D the distance of the axis, within the prism's 1.4e-3 R; by the turn 2 pi R."""
+    """sqrt(D^2 - R^2) + R (phi - acos(R/D)), D the distance of the axis, within 1.4e-3 R; by the turn 2 pi R."""
     radius, distance, rate = 1.3, 9.0, 0.4
     arrays = {
         "target_attachment": (0.0, -radius, 0.4),
@@ -154,7 +154,7 @@ def test_a_line_is_wound_round_a_cylinder(validated: Validated) -> None:
 
 
 def test_the_unwinding_line_turns_the_cylinder() -> None:
-    """A pull of T at the radius R: the energy that the reel pays is T times the length that comes off, turn for turn."""
+    """The energy that a reel of constant tension pays is the tension times the length that comes off."""
     radius, pull = 1.3, 5.0
     terms = CYLINDER | {"reel": "commanded"}
     arrays = {
@@ -178,7 +178,8 @@ def test_the_unwinding_line_turns_the_cylinder() -> None:
 
 
 def test_what_wraps_too_often_is_told() -> None:
-    i = pair(BOX, {"target_start_rate": (0.0, 0.0, 0.5)}, tether__rest_length=1e5)
+    flat = {"target_start_rate": (0.0, 0.0, 0.5), "target_inertia": (1671.0, 924.0, 1788.0, 0.0, 0.0, 0.0)}
+    i = pair(BOX, flat, tether__rest_length=1e5)
     with pytest.raises(ModelFault, match="the line has wrapped"):
         i.step(1000.0)
     assert i["tether.bends"] == 0
@@ -188,7 +189,7 @@ def test_what_wraps_too_often_is_told() -> None:
 
 
 def in_plane(size: np.ndarray, attached: np.ndarray, end: np.ndarray) -> tuple[float, np.ndarray]:
-    """Length of the shorter way round a rectangle in its plane, and where it leaves it; by corners, one after another."""
+    """Length of the shorter way round a rectangle in its plane, and the corner or attachment where it leaves it."""
     half = 0.5 * size[:2]
     corners = [np.array(c) * half for c in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
 
@@ -218,7 +219,7 @@ def in_plane(size: np.ndarray, attached: np.ndarray, end: np.ndarray) -> tuple[f
 
 
 def test_tugs_of_a_wrapped_line_in_a_plane(validated: Validated) -> None:
-    """A box that turns at 2 deg/s about the axis across the line of a chaser that pulls away: tugs as of scipy's DOP853."""
+    """A box that turns at 2 deg/s across the line of a chaser that pulls away: tugs as of scipy's DOP853."""
     rate, drift = math.radians(2.0), 0.005
     inertia = 1788.0
     arrays = {

@@ -24,9 +24,12 @@ class Bodies(NamedTuple):
     pull(record, state, rate, tension, separation)   add the pull of the line [N] to the rate
     add_turning(record, state, rate, sign)      what the turning of the axes adds to the rate of attitudes
     turn_back(record, time, state)              attitudes that axes turning for a time [s] have; in place
-    hold(record, state)                         the way of the line to a state becomes the one that others are followed from
+    hold(record, state)                         from the way of the line to this state others are followed
     longest(record, state) -> h                 longest step [s] over which it can be
     trouble(record) -> fault                    of a line that could not be followed
+    holds(record, state)                        whether the line's way over edges of the body is still the one that was
+    renew(record, state)                        take the one that is
+    retry(record, state)                        the same where none could be found that holds: whether now one is
     settle(state, rate)                         attitudes back to unit length, and their rates alike
     squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
     stretch_error(record, state, error) -> (along, across^2, along', across'^2)   error of the line's vector [m], [m/s]
@@ -49,6 +52,9 @@ class Bodies(NamedTuple):
     hold: Callable[..., Any]
     longest: Callable[..., Any]
     trouble: Callable[..., Any]
+    holds: Callable[..., Any]
+    renew: Callable[..., Any]
+    retry: Callable[..., Any]
     settle: Callable[..., Any]
     squared_error: Callable[..., Any]
     stretch_error: Callable[..., Any]

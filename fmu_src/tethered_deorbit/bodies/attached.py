@@ -79,11 +79,13 @@ def make_attached(
     """
     wraps = surface in SURFACES
     way, lay_out, keep, start, show, show_rates = Way(), nothing, nothing, nothing, nothing, nothing
+    way_holds, renew_way, retry_way = nothing, nothing, nothing
     if wraps:
         shape = SURFACES[surface]
         lay_out = shape.lay_out
         wrapping = make_wrapping(shape.faces, shape.edges, WAYS[surface])
         way, keep = Way("state_departure", wrapping.follow, wrapping.relief), wrapping.keep
+        way_holds, renew_way, retry_way = wrapping.holds, wrapping.renew, wrapping.retry
         start, show, show_rates = wrapping.start, wrapping.publish, wrapping.differentiate
     ways = {"target": way, "chaser": Way()}
     signs = {"target": 1.0, "chaser": -1.0}
@@ -160,6 +162,45 @@ def make_attached(
         if wraps:
             return int(record[0].state_way_fault)
         return 0
+
+    @kernel
+    def holds(record: Any, state: Array) -> bool:
+        """Whether the way of the line to a state goes over the edges that are held.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        if wraps:
+            line(record, state)
+            return bool(way_holds(record))
+        return True
+
+    @kernel
+    def renew(record: Any, state: Array) -> None:
+        """Hold the edges over which it does go.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        if wraps:
+            r = record[0]
+            line(record, state)
+            for i in range(3):
+                r.state_line[3][i] = r.path_points[r.path_count + 1][i]
+            renew_way(record, r.state_line[3])
+
+    @kernel
+    def retry(record: Any, state: Array) -> bool:
+        """The same where none could be found that holds: whether now one is.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        if wraps:
+            r = record[0]
+            if r.held_stuck == 1:
+                line(record, state)
+                for i in range(3):
+                    r.state_line[3][i] = r.path_points[r.path_count + 1][i]
+                return bool(retry_way(record, r.state_line[3]))
+        return False
 
     @kernel
     def hold(record: Any, state: Array) -> None:
@@ -375,6 +416,9 @@ def make_attached(
         hold=hold,
         longest=longest,
         trouble=trouble,
+        holds=holds,
+        renew=renew,
+        retry=retry,
         settle=settle,
         squared_error=squared_error,
         stretch_error=stretch_error,

@@ -35,6 +35,18 @@ def no_end(*arguments: Any) -> float:
 
 
 @kernel
+def always(*arguments: Any) -> bool:
+    """A straight line goes straight."""
+    return True
+
+
+@kernel
+def never(*arguments: Any) -> bool:
+    """And needs no other way."""
+    return False
+
+
+@kernel
 def no_fault(record: Any) -> int:
     """Nothing is wrong."""
     return 0
@@ -167,6 +179,9 @@ def make_points(interface: Interface) -> Bodies:
         hold=nothing,
         longest=no_end,
         trouble=no_fault,
+        holds=always,
+        renew=nothing,
+        retry=never,
         settle=nothing,
         squared_error=zero,
         stretch_error=stretch_error,

@@ -5,12 +5,13 @@ attachment x_0 over points x_i = o_i + t_i d_i of some edges to the other body a
 
     L = min over 0 <= t_i <= l_i of  sum |x_(i+1) - x_i|
 
-is a convex function (a length on the body counts as sqrt(|..|^2 + e^2), e a millionth of the body: so it stays smooth where
-two edges meet at a corner), whose gradient by the far end is the direction in which the line leaves the last edge: the line
-slides without friction, pulls the body where it leaves it, and is caught at corners. Which edges it runs over follows
-from those of the step's begin: an edge on which the line would pull is left, and where it would pass through the body
-it is led round, over the edge between the face it enters by and the one it leaves by. So turns are counted, and the length
-is one of the state alone, smooth but for its second derivative where an edge is met.
+is a convex function, whose gradient by the far end is the direction in which the line leaves the last edge: the line
+slides without friction, and pulls the body where it leaves it. (A length on the body counts as
+sqrt(|..|^2 + e^2), e a millionth of the body, so that it stays smooth where two edges meet at a corner.) Over a step of
+the integrator the edges stay as they are, and the length is a smooth function of the state. The step ends where they no
+longer hold: where the line would pull on an edge, pass through the body, or has slid to a corner. Then an edge on which
+it pulls is left; where it passes through the body it is led round, over the edge between the face it enters by and the
+one it leaves by; and off a corner it slips to the other side, where it is shorter at once. So turns are counted.
 
 Source   convex minimisation; Newton's method for a tridiagonal Hessian
 Checked  tests/tethered_deorbit/test_wrapping.py
@@ -22,10 +23,13 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from fmu_src.tethered_deorbit.body_rows import CORNER_EDGES
 from fmu_src.tethered_deorbit.interface import TOO_MANY_TURNS
 from orbital.kernel import kernel
 from orbital.vectors import Array, add_scaled, cross, distance, dot, unit
 
+PULL = 1e-11
+"""Bend of the line away from the body [rad] from which on it pulls."""
 DEPTH = 1e-10
 """Depth below the faces, as a share of the body's size, from which on a line passes through the body."""
 ROUNDS, ITERATIONS, HALVINGS = 400, 40, 8
@@ -34,6 +38,8 @@ DIRECTIONS = 16
 CLOSE = 4.0 * 2.220446049250313e-16
 SOFT, TOGETHER = 1e-6, 1e-5
 """Shares of the body's size: length by which lengths on it are softened, and within which points are at one corner."""
+APART = 0.02
+"""Share of an edge from which on the way over it is sought."""
 OPPOSITE = 0.01
 """Square of the sum of two faces' normals below which they count as opposite."""
 NONE = -1
@@ -43,10 +49,13 @@ class Wrapping(NamedTuple):
     """Kernels of the line round a body; `point` is where it ends at the other body, in axes of this one [m] (3,).
 
     start(record, point)             the shortest way, to be followed from then on
-    follow(record, point)            the way from that of the step's begin: fills `state.departure` [m], `state.wrapped`,
-                                     the length on the body [m], and what the others ask; fault: `state.way_fault`
-    keep(record)                     the way last followed becomes that of the step's begin
-    slip(record, across) -> t'       how fast the line slides along the last edge [m/s], for a velocity across it of the
+    follow(record, point)            the way over the edges that are held: fills `state.departure` and `state.wrapped`,
+                                     the length on the body [m], and what the others ask
+    holds(record)                    whether the edges hold for the way last followed
+    renew(record, point)             the edges that do, to be held from then on; fault: `state.way_fault`
+    retry(record, point)             the same where none that hold had been found: whether they are now
+    keep(record)                     the way last followed is where the next is sought from
+    sliding(record, across) -> t'    how fast the line slides along the last edge [m/s], for a velocity across it of the
                                      far end, body axes [m/s] (3,)
     relief(record, across) -> l''    and what that takes off the second derivative of its length [m/s^2]
     publish(record)                  outputs of the way
@@ -55,8 +64,11 @@ class Wrapping(NamedTuple):
 
     start: Callable[..., Any]
     follow: Callable[..., Any]
+    holds: Callable[..., Any]
+    renew: Callable[..., Any]
+    retry: Callable[..., Any]
     keep: Callable[..., Any]
-    slip: Callable[..., Any]
+    sliding: Callable[..., Any]
     relief: Callable[..., Any]
     publish: Callable[..., Any]
     differentiate: Callable[..., Any]
@@ -170,16 +182,20 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
                     out[i] += face[i]
 
     @kernel
-    def leave(record: Any, count: int) -> int:
-        """Number of edges once the one is left on which the line pulls most, in place of pressing; -1 if it presses on all.
+    def pulling(record: Any, count: int) -> int:
+        """Place of the edge on which the line pulls most and does not press, or from which it turns back; or -1.
 
-            (u_(i+1) - u_i) . (n_a + n_b + ..) < 0,   n the normals of the faces that meet there, u the directions before
-                                                      and after a corner as a whole
+            (u_(i+1) - u_i) . (n_a + n_b + ..) < 0,   n the normals of the faces that meet there, u the directions
+                                                      before and after a corner as a whole
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
         r = record[0]
-        worst, most, normal = NONE, 1.0e-14, r.path_room[0]
+        worst, most, normal = NONE, PULL, r.path_room[0]
+        for k in range(1, count):
+            here, next_edge = r.path_edges[k], r.path_edges[min(k + 1, count - 1)]
+            if here == r.path_edges[k - 1] or (k + 1 < count and next_edge == r.path_edges[k - 1]):
+                return k
         for k in range(count):
             before, after = k, k + 1
             while before > 0 and r.path_lengths[before] <= TOGETHER * r.state_extent:
@@ -192,6 +208,16 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
                 pull += (r.path_ways[after][i] - r.path_ways[before][i]) * normal[i]
             if pull > most:
                 worst, most = k, pull
+        return worst
+
+    @kernel
+    def leave(record: Any, count: int) -> int:
+        """Number of edges once the one on which the line pulls most is left; -1 if it presses on all.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        worst = pulling(record, count)
         if worst == NONE:
             return NONE
         for k in range(worst, count - 1):
@@ -394,8 +420,8 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
 
     @kernel
     def lead_round(record: Any, count: int) -> int:
-        """Number of edges once a stretch that passes through the body is led round it; -1 if none does, -2 if there is
-        no room or no way.
+        """Number of edges once a stretch that passes through the body is led round it; -1 if none does, or there is no
+        way, -2 if there is no room for it.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
@@ -444,15 +470,28 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
             forth = length < math.inf
             if not forth:
                 length, found = round_by(record, count, k, face_in, face_out, normal, False, False)
-            if not length < math.inf or count + found > capacity:
+            if not length < math.inf:
+                continue
+            if count + found > capacity:
                 return -2
             round_by(record, count, k, face_in, face_out, normal, forth, True)
             return count + found
         return NONE
 
     @kernel
+    def show_departure(record: Any, total: float) -> None:
+        """Where the line leaves the body [m], and how much of its length [m] lies on it.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        for i in range(3):
+            r.state_departure[i] = r.path_points[r.path_count][i]
+        r.state_wrapped = total - r.path_lengths[r.path_count]
+
+    @kernel
     def settle(record: Any, point: Array) -> None:
-        """The shortest way to a point from the edges that are there: see `Wrapping.follow`.
+        """The shortest way to a point by the edges that hold, from those that are there.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
@@ -477,14 +516,11 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
                 break
             count = more
         r.path_count = count
-        r.state_wrapped = total
-        for i in range(3):
-            r.state_departure[i] = r.path_points[count][i]
-        r.state_wrapped -= r.path_lengths[count]
+        show_departure(record, total)
 
     @kernel
     def follow(record: Any, point: Array) -> None:
-        """The way from that of the step's begin: see `Wrapping`.
+        """The way over the edges that are held: see `Wrapping`.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
@@ -493,7 +529,10 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         for k in range(r.held_count):
             r.path_edges[k] = r.held_edges[k]
             r.path_along[k] = r.held_along[k]
-        settle(record, point)
+        for i in range(3):
+            r.path_points[0][i] = r.target_attachment[i]
+            r.path_points[r.held_count + 1][i] = point[i]
+        show_departure(record, tighten(record, r.held_count))
 
     @kernel
     def keep(record: Any) -> None:
@@ -515,7 +554,9 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         """
         r = record[0]
         r.held_count = 0
+        r.held_stuck = 0
         follow(record, point)
+        settle(record, point)
         keep(record)
         if r.path_count == 0:
             return
@@ -546,7 +587,195 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         follow(record, point)
 
     @kernel
-    def slip(record: Any, across: Array) -> float:
+    def sound(record: Any) -> bool:
+        """Whether the line presses on all edges of the way last followed, and passes nowhere through the body.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        count = r.path_count
+        if pulling(record, count) != NONE:
+            return False
+        for k in range(count + 1):
+            if 0 < k < count and on_both(record, r.path_edges[k - 1], r.path_edges[k]):
+                continue
+            through, face_in, face_out, _, _ = passes(record, r.path_points[k], r.path_points[k + 1])
+            if through and face_in != face_out:
+                return False
+        return True
+
+    @kernel
+    def run_at_corner(record: Any) -> tuple[int, int]:
+        """First and last place in the way of the edges that it meets at one corner to which it has slid, or (-1, -1).
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        """
+        r = record[0]
+        near = TOGETHER * r.state_extent
+        for k in range(r.path_count):
+            last = k
+            while last + 1 < r.path_count and r.path_lengths[last + 1] <= near:
+                last += 1
+            if last > k or r.path_held[k] == 1:
+                return k, last
+        return NONE, NONE
+
+    @kernel
+    def holds(record: Any) -> bool:
+        """Whether the edges hold for the way last followed; those that could not be renewed are held all the same.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        if r.held_stuck == 1:
+            return True
+        return bool(sound(record) and run_at_corner(record)[0] == NONE)
+
+    @kernel
+    def at_corner(record: Any, edge: int, corner: Array) -> float:
+        """Where along an edge [m] a corner lies, or -1.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        """
+        r = record[0]
+        row, near = r.state_edges[edge], TOGETHER * r.state_extent
+        for end in range(2):
+            along, square = end * row[6], 0.0
+            for i in range(3):
+                off = row[i] + along * row[3 + i] - corner[i]
+                square += off * off
+            if square <= near * near:
+                return float(along)
+        return -1.0
+
+    @kernel
+    def relax(record: Any, count: int, point: Array) -> float:
+        """Length [m] of the way to a point over as many edges, or fewer: those on which it presses.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        """
+        r = record[0]
+        while True:
+            for i in range(3):
+                r.path_points[count + 1][i] = point[i]
+            r.path_count = count
+            length = tighten(record, count)
+            fewer = leave(record, count)
+            if fewer < 0:
+                return float(length)
+            count = fewer
+
+    @kernel
+    def round_corner(record: Any, first: int, last: int) -> int:
+        """How many edges lead round a corner on the other side than a run of the way's edges; fills `corner`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        """
+        r = record[0]
+        edge, corner = r.path_edges[first], r.path_room[0]
+        end = r.state_edges[edge][6]
+        at_edge(record, corner, edge, 0.0 if r.path_along[first] < 0.5 * end else end)
+        face = face_beyond(record, edge, r.path_ways[first], -1.0)
+        goal = face_beyond(record, r.path_edges[last], r.path_ways[last + 1], 1.0)
+        came, found = edge, 0
+        while found < CORNER_EDGES and (face != goal or found == 0):
+            step, along = NONE, -1.0
+            for e in range(edges):
+                if e != came and (r.state_sides[e][0] == face or r.state_sides[e][1] == face):
+                    along = at_corner(record, e, corner)
+                    if along >= 0.0:
+                        step = e
+                        break
+            if step == NONE:
+                break
+            r.corner_edges[found] = step
+            r.corner_along[found] = along + (APART if along == 0.0 else -APART) * r.state_edges[step][6]
+            found += 1
+            came, face = step, other_side(record, step, face)
+        return found
+
+    @kernel
+    def slip(record: Any, point: Array) -> None:
+        """The way last followed slips off a corner, if that makes it shorter.
+
+        The edges that it meets there give place to none, to one of the others of that corner, or to all of them, over
+        which it comes round on the other side: whatever makes it shortest.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        """
+        r = record[0]
+        keep(record)
+        first, last = run_at_corner(record)
+        if first == NONE:
+            return
+        shortest = r.state_wrapped + r.path_lengths[r.path_count]
+        behind, whole = r.path_count - last - 1, r.path_count
+        others = round_corner(record, first, last)
+        for k in range(whole):
+            r.old_edges[k] = r.path_edges[k]
+            r.old_along[k] = r.path_along[k]
+        for attempt in range(-1, others + 1):
+            # -1 none of them, then each, then all
+            begin, end = (0, others) if attempt == others else (max(0, attempt), attempt + 1)
+            count = first
+            for k in range(first):
+                r.path_edges[k] = r.old_edges[k]
+                r.path_along[k] = r.old_along[k]
+            if count + end - begin + behind > capacity:
+                continue
+            for k in range(begin, end):
+                r.path_edges[count] = r.corner_edges[k]
+                r.path_along[count] = r.corner_along[k]
+                count += 1
+            for k in range(behind):
+                r.path_edges[count] = r.old_edges[last + 1 + k]
+                r.path_along[count] = r.old_along[last + 1 + k]
+                count += 1
+            length = relax(record, count, point)
+            # led round no further: it might come round by the other side of the body, and lose a turn
+            if length < shortest - CLOSE * r.state_extent and sound(record):
+                shortest = length
+                keep(record)
+        follow(record, point)
+
+    @kernel
+    def renew(record: Any, point: Array) -> None:
+        """The edges that hold from here: see `Wrapping`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        r.held_stuck = 0
+        follow(record, point)
+        settle(record, point)
+        keep(record)
+        slip(record, point)
+        r.held_stuck = 0 if holds(record) else 1
+
+    @kernel
+    def retry(record: Any, point: Array) -> bool:
+        """Renew edges that are held although they do not hold, if that can be done; else they are held on.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        count = r.held_count
+        for k in range(count):
+            r.kept_edges[k] = r.held_edges[k]
+            r.kept_along[k] = r.held_along[k]
+        renew(record, point)
+        if r.held_stuck == 0:
+            return True
+        r.held_count = count
+        for k in range(count):
+            r.held_edges[k] = r.kept_edges[k]
+            r.held_along[k] = r.kept_along[k]
+        r.state_way_fault = 0
+        follow(record, point)
+        return False
+
+    @kernel
+    def sliding(record: Any, across: Array) -> float:
         """How fast the line slides along the last edge [m/s]: see `Wrapping`.
 
             t' = d . w/(l p),   d the last edge, p the last pivot of the Hessian, w across the line of length l
@@ -559,7 +788,7 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         if last < 0 or r.path_held[last] == 1:
             return 0.0
         direction = r.state_edges[r.path_edges[last]][3:6]
-        return dot(direction, across) / (r.path_lengths[last + 1] * r.path_diagonal[last])
+        return float(dot(direction, across) / (r.path_lengths[last + 1] * r.path_diagonal[last]))
 
     @kernel
     def relief(record: Any, across: Array) -> float:
@@ -568,8 +797,8 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         Checked  tests/tethered_deorbit/test_wrapping.py, against differences
         """
         r = record[0]
-        sliding = slip(record, across)
-        return float(sliding * sliding * r.path_diagonal[max(0, r.path_count - 1)])
+        speed = sliding(record, across)
+        return float(speed * speed * r.path_diagonal[max(0, r.path_count - 1)])
 
     @kernel
     def publish(record: Any) -> None:
@@ -595,7 +824,7 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         r.rate_wrapped = 0.0
         if last >= 0:
             direction = r.state_edges[r.path_edges[last]][3:6]
-            r.rate_wrapped = slip(record, across) * dot(direction, r.path_ways[last + 1])
+            r.rate_wrapped = sliding(record, across) * dot(direction, r.path_ways[last + 1])
         r.rate_span = 0.0
         size = distance(r.path_points[r.path_count + 1], r.path_points[0])
         if size > 0.0:
@@ -603,4 +832,4 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
                 straight = (r.path_points[r.path_count + 1][i] - r.path_points[0][i]) / size
                 r.rate_span += straight * (along[i] + across[i])
 
-    return Wrapping(start, follow, keep, slip, relief, publish, differentiate)
+    return Wrapping(start, follow, holds, renew, retry, keep, sliding, relief, publish, differentiate)
