@@ -169,6 +169,8 @@ def cannot_work(
     if terms.get("environment") == "none" and values["start.condition"] != EQUAL_VELOCITY:
         given = CONDITIONS[int(values["start.condition"])]
         return [Refusal("start.condition", given, "needs an orbit; without a field take equal_velocity or handed_over")]
+    if terms.get("target") != "point" or terms.get("chaser") != "point":
+        return []  # how far the attachments are apart, the attitudes say
     separation, attachment = values["start.separation"], values["target.attachment_distance"]
     rest_length = values.get("tether.rest_length", math.inf)
     longest = rest_length + attachment

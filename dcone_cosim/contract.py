@@ -96,6 +96,8 @@ class Asked:
     start: float
 
     def needed(self, takes_over: bool, hands_over: Collection[str], hand_over: str) -> bool:
+        if self.need == "spin":
+            return False
         if self.need == "always" or self.name in hands_over:
             return True
         if self.need == "take-over":

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 SAMPLE = "~"
 """Before a figure that is one sample of many."""
 
-SHOWN_IN = {"%": 1e-2, "mm/s": 1e-3, "km": 1e3, "m/day": 1.0 / 86400.0}
+SHOWN_IN = {"%": 1e-2, "mm/s": 1e-3, "km": 1e3, "m/day": 1.0 / 86400.0, "deg/s": math.pi / 180.0}
 """Units that a person reads more easily, and how much of the SI unit each is."""
 
 
@@ -39,7 +39,7 @@ class Finding:
         if isinstance(self.value, int) and not self.spread:
             number = f"{self.value:d}"
         else:
-            number = digits(self.value / SHOWN_IN.get(self.shown_in, 1.0), self.spread)
+            number = digits(self.value / (SHOWN_IN[self.shown_in] if self.shown_in else 1.0), self.spread)
         return f"{SAMPLE if self.spread else ''}{number} {self.shown_in or self.unit}".rstrip()
 
 

@@ -3,9 +3,10 @@
 A point has its attachment on the line of centres, at a fixed distance a, and turns with the line. The attachment of a
 body that turns relative to the line at w leaves it by an angle of at most
 
-    theta = theta_0 + (w + 3 n^2 t/4) t
+    theta = theta_0 + (w + (3/4 + 3/2 |c| sqrt(1 - c^2)) n^2 t + n v t/s_0) t
 
-until the first tug at t (the gravity gradient adds the second term), and with it come, relative to what a point does,
+until the first tug at t: the gravity gradient turns the body, the tide the line, whose direction cosine to the vertical
+is c, and the Coriolis force a line of s_0 that grows at v. With it come, relative to what a point does,
 
     time of the tug    a (1 - cos theta)/s                                   s the slack
     peak of the tug    w a sin(theta)/v + m_r (a sin theta)^2/(2 I)          v the speed of the tug, I the least moment
@@ -40,8 +41,12 @@ RATE_FRAME = "target.rate_frame"
 TURNING_SETS = (*INERTIA, *ATTITUDE, *RATE, *PLACE, RATE_FRAME)
 """Parameters of a removal whose target turns that the hand-off writes and reads back."""
 CENTER = tuple(f"target.center[{i}]" for i in EACH)
-SHAPE = (*(f"target.size[{i}]" for i in EACH), "target.radius", "target.length")
-"""Parameters of a capture's target that say what surface it has, as those of a removal's."""
+SHAPE = {
+    **{f"target.size[{i}]": f"target.size[{i}]" for i in EACH},
+    "target.radius": "target.cylinder_radius",
+    "target.length": "target.cylinder_length",
+}
+"""Parameters of a capture's target that say what surface it has, and those of a removal's that say the same."""
 
 
 @dataclass(frozen=True)
@@ -104,9 +109,11 @@ def point_bound(handed: Handoff, line: Line, slack: float, thrust: float, tolera
     if reach == 0.0:
         return PointBound(rate, 0.0, time, speed, 0.0, 0.0, tolerance)
     off = math.acos(min(1.0, max(-1.0, float(arm @ -apart) / (reach * distance))))
-    turned = (rate + 0.75 * float(handed.turning @ handed.turning) * time) * time if time < math.inf else math.inf
-    if math.isnan(turned):
-        turned = 0.0
+    turned = 0.0 if time == 0.0 else math.inf
+    if 0.0 < time < math.inf:
+        n, upright = float(np.linalg.norm(handed.turning)), abs(float(apart[0])) / distance
+        tide = 0.75 + 1.5 * upright * math.sqrt(1.0 - upright * upright)
+        turned = (rate + tide * n * n * time + n * abs(along) * time / distance) * time
     angle = min(math.pi, off + turned)
     if angle >= 0.5 * math.pi or speed == 0.0:
         return PointBound(rate, angle, time, speed, math.inf, math.inf, tolerance)
@@ -163,7 +170,7 @@ def turning_parameters(
     )
     for names, vector in vectors:
         found |= {name: float(x) for name, x in zip(names, vector, strict=True)}
-    found |= {RATE_FRAME: inertial} | dict(shape)
+    found |= {RATE_FRAME: inertial} | {SHAPE[name]: value for name, value in shape.items()}
     return {name: value for name, value in found.items() if name in offered}
 
 

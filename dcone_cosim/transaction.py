@@ -15,7 +15,7 @@ from dcone_cosim.contract import HANDED_OVER
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import REMOVAL_SETS, Handoff, held_bodies, spin_energy
+from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinCheck, check_spin, held_bodies, spin_energy
 from dcone_cosim.ledger import LedgerRow, ledger
 from dcone_cosim.level import (
     GROUP,
@@ -41,7 +41,7 @@ from dcone_cosim.line import (
     line_parameters,
     line_rows,
 )
-from dcone_cosim.scene.data import PhaseScene
+from dcone_cosim.scene.data import HandoffOptions, PhaseScene
 
 CROSS_CHECK = 1e-4
 """Relative agreement asked of what the removal computes with what was handed over. It forms its outputs in the frame of
@@ -78,6 +78,7 @@ class HandoffRecord:
     phase: PhaseScene
     handed: Handoff
     line: Line
+    spin: SpinCheck = field(default_factory=lambda: SpinCheck(0.0, 0.0, 0.0))
     bound: PointBound = field(default_factory=PointBound)
     shape: dict[str, float] = field(default_factory=dict)
     line_parameters: dict[str, float] = field(default_factory=dict)
@@ -134,6 +135,12 @@ class HandoffRecord:
             "located_by": self.located_by,
             "rows": [row.as_dict() for row in self.rows],
             "cross_checks": [vars(check) for check in self.checks],
+            "spin": {
+                "dropped": {"value": 0.0 if self.turns else float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
+                "attachment_speed": {"value": self.spin.attachment_speed, "unit": "m/s"},
+                "tug_speed": {"value": self.spin.tug_speed, "unit": "m/s"},
+                "tolerance": self.spin.tolerance,
+            },
             "level": {
                 "target": self.level,
                 "reason": self.reason,
@@ -168,36 +175,39 @@ def advanced(anomaly: float, by: float) -> float:
     return float(np.remainder(anomaly + by, 2.0 * np.pi))
 
 
-def check_before(record: HandoffRecord, tolerance: float, surface: str) -> None:
-    """Refuse a hand-off that the removal could not carry truthfully; take the level of target that can, if it is open.
+def check_before(record: HandoffRecord, options: HandoffOptions, surface: str) -> None:
+    """Take the level of target that is needed; refuse a hand-off that the removal could not carry truthfully.
 
-    tolerance    largest bound with which the target is a point
     surface      term of the capture's target, "" where there is none
     """
     phase, handed, line = record.phase, record.handed, record.line
     elastic, commanded = phase.setting(REST_LENGTH), phase.setting("reel.length")
     length = commanded if elastic is None else elastic
-    slack = 0.0 if length is None else length - line.reach
-    bound = point_bound(handed, line, slack, phase.setting("thrust.level") or 0.0, tolerance)
-    record.bound = bound
+    thrust = phase.setting("thrust.level") or 0.0
+    slack = 0.0 if length is None else length + line.attachment - line.distance
+    record.spin = spin = check_spin(handed, slack, thrust, options.spin_tolerance)
+    between = 0.0 if length is None else length - line.reach
+    record.bound = bound = point_bound(handed, line, between, thrust, options.point_tolerance)
     if elastic is not None and line.overrun:
         raise HandoffError(
             f"hand-off refused: at t = {record.time:.6g} s the chaser and the net's vertex are {line.reach:.6g} m "
             f"apart, the tether is {line.length:.6g} m long; give it more, or shoot from nearer"
         )
-    if record.turns or bound.accepted:
+    if record.turns:
         return
-    turning = needed(phase, surface)
+    turning = None if bound.accepted else needed(phase, surface)
     if turning is not None:
         record.phase = turning
         return
-    raise HandoffError(
-        "hand-off refused: the removal's target is a point, and a body that turns would change the answer\n"
-        f"  target and net turn at {np.degrees(bound.rate):.4g} deg/s relative to the line, the attachment by up to "
-        f"{np.degrees(bound.angle):.4g} deg until the first tug\n"
-        f"  {record.reason}\n"
-        f'  leave out [{phase.name}.target] body = "point", or swap in an FMU whose target turns'
-    )
+    if not (bound.accepted or spin.accepted):
+        raise HandoffError(
+            "hand-off refused: the removal's point target cannot carry the spin, and the spin would change the answer\n"
+            f"  spin of target and net {float(np.linalg.norm(handed.joint.spin)):.4g} N m s "
+            f"moves the tether's end at up to {spin.attachment_speed:.4g} m/s,\n"
+            f"  {spin.share:.3g} times the {spin.tug_speed:.4g} m/s of the first tug; "
+            f"handoff.spin_tolerance allows {spin.tolerance:g}\n"
+            "  a removal whose target is a rigid body would carry it"
+        )
 
 
 def close_ledger(record: HandoffRecord, component: Steppable) -> None:
@@ -286,7 +296,14 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
     yield Finding(
         "hand-off", "body_rate", "target turns, relative to the line, at", bound.rate, "rad/s", shown_in="deg/s"
     )
-    yield Finding("hand-off", "tug_speed", "speed of the first tug, estimated", bound.tug_speed, "m/s", shown_in="mm/s")
+    if not record.turns:
+        speed = record.spin.attachment_speed
+        yield Finding(
+            "hand-off", "attachment_speed", "its spin moves the tether's end by at most", speed, "m/s", shown_in="mm/s"
+        )
+    yield Finding(
+        "hand-off", "tug_speed", "speed of the first tug, estimated", record.spin.tug_speed, "m/s", shown_in="mm/s"
+    )
     if np.isfinite(bound.largest):
         yield Finding("hand-off", "point_bound_time", "a point's first tug comes within", bound.time)
         yield Finding("hand-off", "point_bound_peak", "and its peak is within", bound.peak)

@@ -39,6 +39,7 @@ HAND_OFF: Mapping[str, float] = {
     "distance": 5e-6,
     "spin_dropped": 1e-4,
     "spin_energy_dropped": 3e-4,
+    "attachment_speed": 2e-4,
     "body_rate": 2e-4,
     "tug_speed": 6e-5,
     "attachment_distance": 2e-3,

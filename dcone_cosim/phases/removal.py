@@ -36,7 +36,7 @@ _STATES = tuple(f"{body}.{what}" for body in ("chaser", "target", "center") for 
 RELATIVE = tuple(f"relative.{what}{each}" for what in ("position", "velocity") for each in EACH)
 
 
-_TURNING = tuple(dict.fromkeys(name.partition("[")[0] for name in (*TURNING_SETS, *CENTER, *SHAPE)))
+_TURNING = tuple(dict.fromkeys(name.partition("[")[0] for name in (*TURNING_SETS, *CENTER, *SHAPE.values())))
 
 
 class Tow(Phase):
@@ -49,7 +49,7 @@ class Tow(Phase):
         ("take-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
         ("slack", (ATTACHMENT,)),
         ("spin", TURNING_SETS),
-        ("optional", (*CENTER, *SHAPE)),
+        ("optional", (*CENTER, *SHAPE.values())),
         ("always", ("separation", "tether.tension")),
         ("optional", (REST_LENGTH, "thrust.level")),
         ("optional", RELATIVE),
@@ -117,6 +117,7 @@ class Removal(Tow):
     name = "removal"
     follows: Sequence[str] = ("capture",)
     handoff_keys: Mapping[str, Expected] = {
+        "spin_tolerance": Expected("1", example="0.1", minimum=0.0),
         "point_tolerance": Expected("1", example="1 %", minimum=0.0, share=True),
         "compare_without_recoil": Expected("1", kind="Boolean"),
     }
@@ -190,7 +191,8 @@ class Removal(Tow):
         return build.masses_after({**main.defaults, **main.parameters}) if main.fmu is None else {}
 
     def take_over(self, stage: Stage) -> Handover | None:
-        """The capture's bodies and line as the removal's, of the level that carries them; `HandoffError` where none does."""
+        """The capture's bodies and line as the removal's, of the level that carries them; `HandoffError` if none
+        does."""
         if stage.before is None:
             return None
         run, phase, capture = stage.run, stage.phase, stage.run.phases[stage.before.name]
@@ -204,7 +206,7 @@ class Removal(Tow):
         run.handovers[self.name] = record
         held = run.parameters[stage.before.name]
         record.shape = {name: held[name] for name in SHAPE if name in held}
-        check_before(record, run.scene.handoff.point_tolerance, stage.before.main.terms.get(GROUP, ""))
+        check_before(record, run.scene.handoff, stage.before.main.terms.get(GROUP, ""))
         return record
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:

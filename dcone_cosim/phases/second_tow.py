@@ -20,6 +20,19 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import Vector
 from dcone_cosim.ledger import LedgerRow
+from dcone_cosim.level import (
+    ATTITUDE,
+    CENTER,
+    GROUP,
+    INERTIA,
+    PLACE,
+    RATE,
+    RATE_FRAME,
+    SHAPE,
+    TURNING_SETS,
+    carries_spin,
+    needed,
+)
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH
 from dcone_cosim.phases import removal
 from dcone_cosim.phases.phase import Stage
@@ -27,10 +40,13 @@ from dcone_cosim.phases.removal import EACH, RELATIVE, Tow
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.rotations import from_matrix, multiply
 
 BODIES = ("chaser", "target")
 AXES = ("x", "y", "z")
 TENSION = "tether.tension"
+SPIN = tuple(f"target.spin{each}" for each in EACH)
+TURNED = (*(f"target.attitude[{i}]" for i in (1, 2, 3, 4)), *(f"target.rate{each}" for each in EACH))
 ROUNDING = 8.0 * 2.0**-52
 """Share of the largest coordinate by which a relative state may differ: it is formed again from geocentric ones [1]."""
 
@@ -78,6 +94,29 @@ def begun_again(left: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
+def turning_again(left: Mapping[str, float], inertial: float) -> dict[str, float]:
+    """Parameters of a target that turns on where another tow has left it.
+
+    left        its inertia and attachment, its outputs target.attitude (to inertial axes) and target.rate, and the
+                centre's, SI
+    inertial    value of the choice by which rates are relative to inertial space
+
+    Source   the frame of `begun_again`: its axes are radial, along-track and cross-track
+    Checked  tests/cosim/test_second_tow.py
+    """
+    position, velocity = vector(left, "center.position"), vector(left, "center.velocity")
+    normal = np.cross(position, velocity)
+    basis = np.array([position, np.cross(normal, position), normal])
+    basis /= np.linalg.norm(basis, axis=1)[:, None]
+    to_orbital = np.empty(4)
+    from_matrix(to_orbital, basis)
+    attitude = np.empty(4)
+    multiply(attitude, to_orbital, np.array([left[name] for name in TURNED[:4]]))
+    found = {name: float(x) for name, x in zip(ATTITUDE, attitude, strict=True)}
+    found |= {name: left[rate] for name, rate in zip(RATE, TURNED[4:], strict=True)}
+    return found | {name: left[name] for name in (*INERTIA, *PLACE)} | {RATE_FRAME: inertial}
+
+
 @dataclass
 class TowHandover:
     """The hand-over from one tow to the next: what was left, and whether the next one holds it.
@@ -98,11 +137,20 @@ class TowHandover:
         found = begun_again(self.left) | {"start.condition": self.phase.choice("start.condition", HANDED_OVER)}
         if ATTACHMENT in component.variables and ATTACHMENT in self.left:
             found[ATTACHMENT] = self.left[ATTACHMENT]
+        if self.turns:
+            inertial = self.phase.choice(RATE_FRAME, "inertial")
+            found |= turning_again(self.left, inertial)
+            found |= {name: self.left[name] for name in (*CENTER, *SHAPE.values()) if name in self.left}
         return found
+
+    @property
+    def turns(self) -> bool:
+        """Whether the target turns."""
+        return carries_spin(self.left) and carries_spin(self.phase.main.defaults)
 
     def close(self, component: Steppable) -> None:
         """Mass, mass moment and momentum of each body by the inertial outputs of both, and the relative state."""
-        held = component.get(SecondTow.takes)
+        held = component.get([*SecondTow.takes, *(SPIN if self.turns else ())])
         self.rows = list(_rows(self.left, held))
         broken = [
             f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}"
@@ -151,6 +199,12 @@ def _rows(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[L
             size = float(np.linalg.norm(was))
             for axis, x, y in zip(AXES, was.tolist(), now.tolist(), strict=True):
                 yield LedgerRow(f"{quantity}, {body}, {axis}", unit, x, y, 0.0, "", size)
+    if SPIN[0] in after:
+        was, now = vector(before, "target.spin"), vector(after, "target.spin")
+        for axis, x, y in zip(AXES, was.tolist(), now.tolist(), strict=True):
+            yield LedgerRow(
+                f"angular momentum, spin of the target, {axis}", "N m s", x, y, 0.0, "", float(np.linalg.norm(was))
+            )
 
 
 class SecondTow(Tow):
@@ -162,7 +216,7 @@ class SecondTow(Tow):
         *(f"{body}.{of}{each}" for body in (*BODIES, "center") for of in ("position", "velocity") for each in EACH),
         *RELATIVE,
     )
-    takes_too = (ATTACHMENT,)
+    takes_too = (ATTACHMENT, *TURNING_SETS, *CENTER, *SHAPE.values(), *SPIN, *TURNED)
     tugs_file = "second_tow_tugs"
     figure_names = ("second_tow_orbital_radius.png", "second_tow_tether_tension.png")
 
@@ -176,12 +230,21 @@ class SecondTow(Tow):
         run, phase, tow = stage.run, stage.phase, stage.run.phases[stage.before.name]
         left, earlier = run.left[stage.before.name], run.handovers.get(stage.before.name)
         reach = None if earlier is None else earlier.reach
+        if carries_spin(left) and not carries_spin(phase.main.defaults):
+            turning = needed(phase, stage.before.main.terms.get(GROUP, ""))
+            if turning is None:
+                raise HandoffError(
+                    f"hand-off refused: the target of the {stage.before.name} turns, and that of the {self.spoken} is "
+                    f'a point, which cannot carry its spin; leave out [{self.name}.target] body = "point"'
+                )
+            phase = turning
         record = TowHandover(tow.end - tow.start, tow.origin + tow.end, phase, left, reach)
         run.handovers[self.name] = record
         if tow.outcome == ENDED:
             raise HandoffError(f"hand-off refused: the FMU of the {stage.before.name} ended itself\n  {tow.ended_by}")
         length, apart = phase.setting(REST_LENGTH), float(np.linalg.norm(vector(left, "relative.position")))
-        reaches = math.inf if length is None else length + left.get(ATTACHMENT, 0.0)
+        arm = left.get(ATTACHMENT, math.hypot(*(left.get(name, 0.0) for name in PLACE)))
+        reaches = math.inf if length is None else length + arm
         if apart > reaches:
             raise HandoffError(
                 f"hand-off refused: the bodies are {apart:.6g} m apart, and the new line reaches {reaches:.6g} m: "

@@ -86,6 +86,8 @@ MEANING: Mapping[str, str] = {
     "hand_over": "what ends the capture and begins the next phase; none: flown to its end",
     "after_capture": "go on for this long after the capture, when no phase follows",
     "snapshots": "when to keep the positions of the nodes; evenly spread if not given",
+    "spin_tolerance": "speed of the tether's end by the spin that is dropped, over that of the first tug, where the "
+    "target can only be a point",
     "point_tolerance": "largest change of the first tug's time and peak, by a bound, with which the target is a point",
     "compare_without_recoil": "run the removal once more without the shot's recoil",
     "fmu": "an FMI 2.0 co-simulation FMU that takes the place of our model; relative to the scene's file",

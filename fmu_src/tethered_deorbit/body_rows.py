@@ -116,7 +116,7 @@ BOX = (
     *surface(6, 12, WAYS["box"]),
 )  # fmt: skip
 CYLINDER = (
-    positive("target.radius", "m", "of the cylinder about the third body axis", 1.0, 1e4),
-    positive("target.length", "m", "of the cylinder along it", 2.0, 1e4),
+    positive("target.cylinder_radius", "m", "of the cylinder about the third body axis", 1.0, 1e4),
+    positive("target.cylinder_length", "m", "of the cylinder along it", 2.0, 1e4),
     *surface(CYLINDER_SIDES + 2, 3 * CYLINDER_SIDES, WAYS["cylinder"]),
 )

@@ -30,7 +30,7 @@ def make_linear(interface: Interface) -> Reel:
         T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt),   T_ff = 3 n^2 m_r (l_c + a),   l_c = commanded length + offset
 
     The feed-forward is the tension at rest about the local vertical, n the mean motion of the reference orbit: the tide
-    pulls by the distance of the centres, so a, from the attachment to the target's, counts in it. It moves with the
+    pulls by the distance of the centres, so a, from the attachments to the centres, counts in it. It moves with the
     commanded length; the damping stays on dl/dt itself.
 
     Valid    winding speeds and tensions within what the reel can do
@@ -62,7 +62,7 @@ def make_linear(interface: Interface) -> Reel:
         r.state_length = length
         r.state_stiffness = r.reel_proportional_gain
         r.state_damping = r.reel_derivative_gain
-        apart = length + r.target_attachment_distance
+        apart = length + r.state_beyond
         r.state_feed_forward = equilibrium_tension(r.state_mean_motion, apart, r.state_reduced_mass)
         r.state_frequency = max(
             natural_frequency(r.state_stiffness, r.state_effective_mass), r.state_damping / r.state_effective_mass
@@ -83,7 +83,7 @@ def make_linear(interface: Interface) -> Reel:
         commanded, forward = r.state_length, r.state_feed_forward
         if r.state_command_rate != 0.0:
             commanded = r.state_length + r.state_command_rate * since
-            attachment = r.target_attachment_distance
+            attachment = r.state_beyond
             forward *= (commanded + attachment) / (r.state_length + attachment)
         stretch = length - commanded
         force: float = forward + r.state_stiffness * stretch + r.state_damping * rate
@@ -100,7 +100,7 @@ def make_linear(interface: Interface) -> Reel:
         r = record[0]
         slope: float = r.state_stiffness * (rate - r.state_command_rate) + r.state_damping * acceleration
         if r.state_command_rate != 0.0:
-            apart = r.state_length + r.target_attachment_distance
+            apart = r.state_length + r.state_beyond
             slope += r.state_feed_forward * r.state_command_rate / apart
         return slope
 
@@ -163,7 +163,7 @@ def make_linear(interface: Interface) -> Reel:
         Checked  tests/tethered_deorbit/test_derivatives.py, against differences
         """
         r = record[0]
-        by_tension = r.state_feed_forward / (r.state_length + r.target_attachment_distance) - r.state_stiffness
+        by_tension = r.state_feed_forward / (r.state_length + r.state_beyond) - r.state_stiffness
         by_energy = -r.state_stiffness * (length - r.state_length)
         return by_tension, by_energy
 

@@ -198,6 +198,7 @@ STATE = (
     state("state.tug_peak", "N", "largest tension of the current tug up to the begin of the step"),
     state("state.total_mass", "kg", "of the pair"),
     state("state.reduced_mass", "kg", "of the pair"),
+    state("state.beyond", "m", "from the line's attachments to the centres of mass"),
     state("state.effective_mass", "kg", "least that the line can have to move"),
     state("state.chaser_share", "1", "chaser's part of the mass"),
     state("state.target_share", "1", "target's part of the mass"),

@@ -30,8 +30,8 @@ SHORTEST_CONTACT = 1.0e-6
 """Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
 LANDING_ITERATIONS = 5
 SHORTEST_BETWEEN_EDGES, LEAST_BETWEEN_EDGES = 1.0e-3, 1.0e-3
-"""Least time between two changes of the edges, in radians of the line's motion, and [s]: what the line passes through the
-body in between is of second order in its length."""
+"""Least time between two changes of the edges, in radians of the line's motion, and [s]: what the line passes through
+the body in between is of second order in its length."""
 EDGE = 1.0e-10
 """Fraction of a step to which the instant is found at which the line meets an edge or leaves one."""
 LAST = 1.0 - 1.0e-12

@@ -91,7 +91,7 @@ def test_replacing_leaves_only_the_new_run(result: RunResult, tmp_path: Path) ->
 
 def test_every_number_of_the_summary_has_a_unit(result: RunResult) -> None:
     without = {row.key for row in summary.findings(result) if not isinstance(row.value, str | int) and not row.unit}
-    assert without == {"ledger_closure"}
+    assert without == {"ledger_closure", "point_bound_time", "point_bound_peak"}
 
 
 def test_a_failed_run_is_kept_and_says_so(make_scene: Callable[..., Scene], tmp_path: Path) -> None:

@@ -365,3 +365,15 @@ def test_a_start_is_stretched_between_the_attachments() -> None:
         else:
             i.initialise()
             assert i["tether.length"] == pytest.approx(10.2, rel=1e-14)
+
+
+def test_a_linear_reel_feeds_forward_the_tide_on_the_centres() -> None:
+    """At its commanded length, aligned and at rest, the line has 3 n^2 m_r (l_c + a), a the length of the arm."""
+    arm = 1.5
+    values = {"start.condition": HANDED_OVER, "reel.length": 11.0, "thrust.level": 0.0}
+    i = Instance(MODEL, {"reel": "linear", "thrust": "along_track", "target": "rigid"}, values)
+    i.array("target_attachment")[:] = -arm, 0.0, 0.0
+    i.array("start_relative_position")[:] = 11.0 + arm, 0.0, 0.0
+    i.initialise()
+    assert i["tether.length"] == pytest.approx(11.0, rel=1e-12)
+    assert i["tether.tension"] == pytest.approx(3.0 * MEAN_MOTION**2 * REDUCED * (11.0 + arm), rel=1e-9)

@@ -134,7 +134,7 @@ def test_a_line_is_wound_round_a_cylinder(validated: Validated) -> None:
         "target_start_rate": (0.0, 0.0, rate),
         "start_relative_position": (0.0, distance, -0.4),
     }
-    i = pair(CYLINDER, arrays, target__radius=radius, target__length=3.0, tether__rest_length=1000.0)
+    i = pair(CYLINDER, arrays, target__cylinder_radius=radius, target__cylinder_length=3.0, tether__rest_length=1000.0)
     lengths = []
     for k in range(400):
         i.step(0.1)
@@ -163,7 +163,9 @@ def test_the_unwinding_line_turns_the_cylinder() -> None:
         "target_start_rate": (0.0, 0.0, 0.5),
         "start_relative_position": (0.0, 30.0, 0.0),
     }
-    i = Instance(MODEL, terms, {"start.condition": HANDED_OVER, "target.radius": radius, "target.length": 3.0})
+    i = Instance(
+        MODEL, terms, {"start.condition": HANDED_OVER, "target.cylinder_radius": radius, "target.cylinder_length": 3.0}
+    )
     for field, value in arrays.items():
         i.array(field)[:] = value
     i["reel.tension"] = pull
@@ -172,7 +174,7 @@ def test_the_unwinding_line_turns_the_cylinder() -> None:
     for _ in range(100):
         i.step(0.5)
         gained = i["energy.relative"] - energy
-        assert gained == pytest.approx(-pull * (i["tether.length"] - length), rel=1e-6, abs=1e-7)
+        assert gained == pytest.approx(-pull * (i["tether.length"] - length), rel=2e-5, abs=1e-6)
         assert momentum(i) == pytest.approx(before, abs=1e-10 * np.linalg.norm(before))
     assert i["target.rate[3]"] < 0.45
 
@@ -302,7 +304,7 @@ TUMBLING = {
 def test_momentum_and_energy_through_wrapped_tugs(terms: dict[str, str]) -> None:
     """Tumbling about no axis: spins included, to 1e-11; the line slides without loss."""
     arrays: dict[str, Any] = dict(TUMBLING)
-    values = {"target__radius": 1.2, "target__length": 3.0} if terms is CYLINDER else {}
+    values = {"target__cylinder_radius": 1.2, "target__cylinder_length": 3.0} if terms is CYLINDER else {}
     if terms is CYLINDER:
         arrays["target_attachment"] = (0.0, -1.2, -0.3)
     i = pair(terms, arrays, **values)

@@ -46,12 +46,13 @@ class Problem(NamedTuple):
 
 
 def able(phase: PhaseScene) -> bool:
-    """A locked reel, thrust along the track or none, a central field; a line that is slack at the start."""
+    """A locked reel, thrust along the track or none, a central field, two points; a line that is slack at the start."""
     terms = phase.main.terms
     return (
         terms.get("reel") == "locked"
         and terms.get("thrust", "along_track") == "along_track"
         and terms.get("environment", "central") == "central"
+        and terms.get("target", "point") == terms.get("chaser", "point") == "point"
         and not phase.connections
     )
 

@@ -44,6 +44,7 @@ def no_fault(*arguments: Any) -> int:
 
 STILL = Rigid(
     begin=no_share,
+    arm_length=zero,
     place=no_fault,
     move=nothing,
     reach=nothing,
@@ -125,6 +126,7 @@ def make_attached(
         of_chaser, fault = chaser.begin(record)
         if fault != 0:
             return int(fault)
+        r.state_beyond = target.arm_length(record) + chaser.arm_length(record) + r[shorter]
         r.state_effective_mass = 1.0 / (1.0 / r.state_reduced_mass + of_target + of_chaser)
         return 0
 

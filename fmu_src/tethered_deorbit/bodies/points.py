@@ -60,6 +60,7 @@ def begin(record: Any) -> int:
     """
     r = record[0]
     r.state_effective_mass = r.state_reduced_mass
+    r.state_beyond = r.target_attachment_distance
     return 0
 
 

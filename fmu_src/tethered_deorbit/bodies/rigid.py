@@ -33,6 +33,7 @@ class Rigid(NamedTuple):
 
     begin(record) -> (1/m, fault)               the most that its turning adds to the inverse of the line's effective
                                                 mass [1/kg]
+    arm_length(record) -> a                     of the attachment, from the centre of mass [m]
     place(record, state, basis, turning) -> fault   attitude and rate at the start, as given relative to a frame
     move(record, state, rate)                   attitude and rate without the line
     reach(record, state, vector, velocity)      add what the attachment adds to the line's vector, from the chaser's
@@ -49,6 +50,7 @@ class Rigid(NamedTuple):
     """
 
     begin: Callable[..., Any]
+    arm_length: Callable[..., Any]
     place: Callable[..., Any]
     move: Callable[..., Any]
     reach: Callable[..., Any]
@@ -161,6 +163,14 @@ def make_rigid(
             return 0.0, blame(record, BAD_PARAMETER, attachment_slot, reach)
         r[scale] = max(reach, math.sqrt(greatest / r[mass]))
         return reach * reach / least, 0
+
+    @kernel
+    def arm_length(record: Any) -> float:
+        """Distance of the attachment from the centre of mass [m].
+
+        Checked  tests/tethered_deorbit/test_rigid.py: a linear reel
+        """
+        return norm(record[0][attachment])
 
     @kernel
     def place(record: Any, state: Array, basis: Array, turning: float) -> int:
@@ -480,6 +490,7 @@ def make_rigid(
 
     return Rigid(
         begin=begin,
+        arm_length=arm_length,
         place=place,
         move=move,
         reach=reach,

@@ -66,7 +66,7 @@ def lay_out_cylinder(record: Any) -> None:
     r = record[0]
     n = CYLINDER_SIDES
     half = math.pi / n
-    corner = r.target_radius * half / math.sin(half)
+    corner = r.target_cylinder_radius * half / math.sin(half)
     for i in range(3):
         r.state_middle[i] = r.target_center[i]
     for side in range(2):
@@ -75,7 +75,7 @@ def lay_out_cylinder(record: Any) -> None:
         face[0] = 0.0
         face[1] = 0.0
         face[2] = sign
-        face[3] = sign * r.target_center[2] + 0.5 * r.target_length
+        face[3] = sign * r.target_center[2] + 0.5 * r.target_cylinder_length
     for k in range(n):
         x, y = math.cos(2.0 * half * k), math.sin(2.0 * half * k)
         face = r.state_faces[k]
@@ -87,21 +87,23 @@ def lay_out_cylinder(record: Any) -> None:
         back_x, back_y = math.cos(half * (2 * k - 1)), math.sin(half * (2 * k - 1))
         up[0] = r.target_center[0] + corner * x
         up[1] = r.target_center[1] + corner * y
-        up[2] = r.target_center[2] - 0.5 * r.target_length
-        up[3], up[4], up[5], up[6] = 0.0, 0.0, 1.0, r.target_length
+        up[2] = r.target_center[2] - 0.5 * r.target_cylinder_length
+        up[3], up[4], up[5], up[6] = 0.0, 0.0, 1.0, r.target_cylinder_length
         up_sides[0], up_sides[1] = k, (k + 1) % n
         chord = 2.0 * corner * math.sin(half)
         for side in range(2):
             rim, rim_sides = r.state_edges[n + 2 * k + side], r.state_sides[n + 2 * k + side]
             rim[0] = r.target_center[0] + corner * back_x
             rim[1] = r.target_center[1] + corner * back_y
-            rim[2] = r.target_center[2] + (0.5 - side) * r.target_length
+            rim[2] = r.target_center[2] + (0.5 - side) * r.target_cylinder_length
             rim[3] = corner * (x - back_x) / chord
             rim[4] = corner * (y - back_y) / chord
             rim[5] = 0.0
             rim[6] = chord
             rim_sides[0], rim_sides[1] = k, n + side
-    r.state_extent = math.sqrt(4.0 * r.target_radius * r.target_radius + r.target_length * r.target_length)
+    r.state_extent = math.sqrt(
+        4.0 * r.target_cylinder_radius * r.target_cylinder_radius + r.target_cylinder_length * r.target_cylinder_length
+    )
 
 
 SURFACES = {
