@@ -85,6 +85,18 @@ class Handoff:
     attitude: Vector
 
 
+@dataclass(frozen=True)
+class HeldTurning:
+    """A target that turns as the removal's parameters say when read back, along orbital axes.
+
+    spin [N m s] (3,), inertia [kg m2] (3, 3), attachment from the centre of mass [m] (3,)
+    """
+
+    spin: Vector
+    inertia: Vector
+    attachment: Vector
+
+
 def mean_motion(altitude: float) -> float:
     """Rate at which the orbital frame turns on a circular orbit [rad/s].
 

@@ -11,14 +11,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dcone_cosim.handoff import Body, Handoff, Values, Vector, held_bodies, spin_energy
-
-if TYPE_CHECKING:
-    from dcone_cosim.level import HeldTurning
+from dcone_cosim.handoff import Body, Handoff, HeldTurning, Values, Vector, held_bodies, spin_energy
 
 CLOSURE = 1e-12
 """Largest difference of a row, as a share of the sum of the magnitudes that enter."""

@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dcone_cosim import build
-from dcone_cosim.handoff import Handoff, Vector, rotation_matrix
+from dcone_cosim.handoff import Handoff, HeldTurning, Vector, rotation_matrix
 from dcone_cosim.line import Line
 from dcone_cosim.scene.data import ComponentScene, PhaseScene
 
@@ -172,18 +172,6 @@ def turning_parameters(
         found |= {name: float(x) for name, x in zip(names, vector, strict=True)}
     found |= {RATE_FRAME: inertial} | {SHAPE[name]: value for name, value in shape.items()}
     return {name: value for name, value in found.items() if name in offered}
-
-
-@dataclass(frozen=True)
-class HeldTurning:
-    """A target that turns as the removal's parameters say when read back, along orbital axes.
-
-    spin [N m s] (3,), inertia [kg m2] (3, 3), attachment from the centre of mass [m] (3,)
-    """
-
-    spin: Vector
-    inertia: Vector
-    attachment: Vector
 
 
 def held_turning(removal: Mapping[str, float]) -> HeldTurning | None:

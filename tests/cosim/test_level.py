@@ -85,8 +85,8 @@ def test_spin_counts_relative_to_the_line() -> None:
 
 
 def test_the_bound_is_arithmetic_one_can_follow() -> None:
-    """20 mm/s over 4 m without thrust: 200 s. An arm of 2 m that turns at 0.1 deg/s goes round by 20 deg and 3 n^2 t^2/4
-    of the gravity gradient, and the line by n v t^2/s of the Coriolis force."""
+    """20 mm/s over 4 m without thrust: 200 s. An arm of 2 m that turns at 0.1 deg/s goes round by 20 deg and, by the
+    gravity gradient, 3 n^2 t^2/4; the line by n v t^2/s of the Coriolis force."""
     apart, arm = np.array([0.0, 12.0, 0.0]), np.array([0.0, -2.0, 0.0])
     w = np.array([math.radians(0.1), 0.0, RATE])
     found = handed(w, arm, apart, np.array([0.0, 0.02, 0.0]))
