@@ -32,7 +32,8 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
     yield from _orbit(evidence)
     if evidence.terms.get("reel") == "locked":
         yield from _longer(evidence)
-        yield from _snaps(evidence)
+        if evidence.terms.get("target", "point") == evidence.terms.get("chaser", "point") == "point":
+            yield from _snaps(evidence)  # off the centre of a body the closed form has another mass
         yield from _jacobi(evidence)
 
 

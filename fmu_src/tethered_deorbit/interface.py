@@ -346,14 +346,17 @@ TARGETS = Group(
             "a rigid body that turns, the line made fast where it says: full inertia, torques of the line and of the "
             "gravity gradient",
             (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING),
+            extremes=stress.TURNING,
         ),
         "box": Term(
             "a rigid body with the surface of a box, round which the line wraps",
             (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *BOX),
+            extremes=stress.TURNING,
         ),
         "cylinder": Term(
             "a rigid body with the surface of a cylinder, round which the line wraps",
             (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *CYLINDER),
+            extremes=stress.TURNING,
         ),
     },
     selector="body",

@@ -74,6 +74,20 @@ THRUST = tuple(
     for level, duration in ((-1e-6, 0.0), (-1.0, 0.0), (-1e2, 0.25 * DAY), (-1e4, 600.0))
 )  # fmt: skip
 
+TURNING = (
+    Extreme("target at 60 deg/s", "the line is wound up ten times a minute", "longer",
+            {"target.start_rate": (0.3, 0.6, 0.8)}, duration=600.0, chief=True),
+    Extreme("target at 60 deg/s about its line", "it spins where nothing winds", "longer",
+            {"target.start_rate": (0.0, 1.047, 0.0)}, duration=600.0),
+    Extreme("target of hardly any inertia", "the line turns it at once", "longer",
+            {"target.inertia": (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)}, duration=HOUR),
+    Extreme("target like a needle", "moments a thousand times apart", "longer",
+            {"target.inertia": (10.0, 1e4, 1e4, 0.0, 0.0, 0.0)}, duration=HOUR),
+    Extreme("line made fast behind the target", "it begins wrapped, or passes by the centre", "longer",
+            {"target.attachment": (0.0, 1.0, 0.0)}, duration=HOUR),
+)  # fmt: skip
+"""Of a target that turns."""
+
 EXTREMES = (
     *(
         Extreme(f"target {ratio:g} times the chaser's mass", "a reduced mass far from both", "longer",
