@@ -230,6 +230,8 @@ class SecondTow(Tow):
         run, phase, tow = stage.run, stage.phase, stage.run.phases[stage.before.name]
         left, earlier = run.left[stage.before.name], run.handovers.get(stage.before.name)
         reach = None if earlier is None else earlier.reach
+        record = TowHandover(tow.end - tow.start, tow.origin + tow.end, phase, left, reach)
+        run.handovers[self.name] = record
         if carries_spin(left) and not carries_spin(phase.main.defaults):
             turning = needed(phase, stage.before.main.terms.get(GROUP, ""))
             if turning is None:
@@ -237,9 +239,7 @@ class SecondTow(Tow):
                     f"hand-off refused: the target of the {stage.before.name} turns, and that of the {self.spoken} is "
                     f'a point, which cannot carry its spin; leave out [{self.name}.target] body = "point"'
                 )
-            phase = turning
-        record = TowHandover(tow.end - tow.start, tow.origin + tow.end, phase, left, reach)
-        run.handovers[self.name] = record
+            record.phase = phase = turning
         if tow.outcome == ENDED:
             raise HandoffError(f"hand-off refused: the FMU of the {stage.before.name} ended itself\n  {tow.ended_by}")
         length, apart = phase.setting(REST_LENGTH), float(np.linalg.norm(vector(left, "relative.position")))

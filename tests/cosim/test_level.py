@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from dcone_cosim.errors import HandoffError
 from dcone_cosim.handoff import Body, Handoff, pair_parameters
 from dcone_cosim.level import body_rate, held_turning, point_bound, turning_parameters
 from dcone_cosim.line import line_of
+from dcone_cosim.loading import load
+from dcone_cosim.transaction import HandoffRecord, check_before
 from fmu_src.instance import Instance
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from orbital.plain import mean_motion
@@ -121,6 +124,33 @@ def test_what_has_no_bound(change: dict[str, Any], why: str) -> None:
     }
     found = handed(**(usual | change))
     assert point_bound(found, line_of(found, LENGTH), 4.9, 0.0, 0.01).largest == math.inf, why
+
+
+SETTINGS = {"open": (), "a point": ('removal.target.body="point"',), "wider": ('handoff.point_tolerance="100 %"',)}
+
+
+@pytest.mark.parametrize("which", SETTINGS)
+def test_the_level_that_is_needed_is_taken(which: str) -> None:
+    """Of a scene that leaves it open; one that asks for a point is refused, one with a wider tolerance gets it."""
+    scene = load("tumbling-mission", SETTINGS[which])
+    capture, removal = scene.phases
+    spin = 1e-6 if which == "wider" else 0.03
+    found = handed(
+        np.array([0.0, 0.0, RATE + spin]),
+        np.array([0.0, -1.9, 0.0]),
+        np.array([0.0, 11.0, 0.0]),
+        np.array([0, 0.02, 0]),
+    )
+    record = HandoffRecord(10.0, 10.0, "told", removal, found, line_of(found, LENGTH))
+    if which == "a point":
+        with pytest.raises(HandoffError, match="cannot carry the spin"):
+            check_before(record, scene.handoff, capture.main.terms["target"])
+        return
+    check_before(record, scene.handoff, capture.main.terms["target"])
+    assert record.level == ("point" if which == "wider" else "box")
+    assert record.turns == (which != "wider")
+    assert ("wraps" in record.reason) == (which != "wider")
+    assert (record.phase is removal) == (which == "wider")
 
 
 def test_all_of_it_comes_over_in_the_target_s_axes() -> None:

@@ -35,7 +35,7 @@ def scene(*settings: str, text: str = TWO_TOWS) -> Scene:
 
 def run(chosen: Scene) -> RunResult:
     with SceneFmus(chosen, Progress()) as fmus:
-        return run_scene(chosen, fmus.instantiate, Progress())
+        return run_scene(chosen, fmus.instantiate, Progress(), fmus.adopt)
 
 
 def last(result: RunResult, phase: str, name: str) -> np.ndarray:
@@ -69,6 +69,29 @@ def test_a_tow_cut_in_two_and_tied_again_is_one_tow(orbit: tuple[str, ...], cut:
     tugs = sorted(row for row in one.phases["removal"].tugs.rows.values() if row[0] > cut + 50.0)
     after = sorted((time + cut, *rest) for time, *rest in two.phases["second_tow"].tugs.rows.values() if time > 50.0)
     assert np.array(after) == pytest.approx(np.array(tugs), rel=1e-5)
+
+
+def test_a_target_that_turns_goes_on_turning() -> None:
+    """Cut and tied again with the same line, a tumbling target is the one it would have been; a point is refused."""
+    body = (
+        'removal.target.body="rigid"',
+        'removal.target.attachment=["0.2 m", "-1 m", "0.1 m"]',
+        'removal.target.inertia=["900 kg m2", "500 kg m2", "1000 kg m2", "20 kg m2", "0 kg m2", "-10 kg m2"]',
+        'removal.target.start_rate=["0.2 deg/s", "0.1 deg/s", "-0.15 deg/s"]',
+    )
+    same = ("removal.macro_step=50 s", "second_tow.macro_step=50 s", "second_tow.tether.rest_length=12 m")
+    one = run(scene("phases=['removal']", "removal.duration=3000 s", *same, *body))
+    two = run(scene("removal.duration=1500 s", "second_tow.duration=1500 s", *same, *body))
+    assert (one.exit_code, two.exit_code) == (SUCCESS, SUCCESS), two.message
+    assert two.scene.phases[1].main.terms["target"] == "rigid"
+    for name, tolerance in (("relative.position", 1e-5), ("target.spin", 1e-6), ("target.rate", 1e-8)):
+        assert last(two, "second_tow", name) == pytest.approx(last(one, "removal", name), abs=tolerance), name
+    rows = [row for row in two.handovers["second_tow"].rows if "spin" in row.quantity]
+    assert len(rows) == 3
+    assert all(row.closed for row in rows)
+    refused = run(scene("removal.duration=500 s", *same, *body, 'second_tow.target.body="point"'))
+    assert refused.exit_code == HANDOFF_FAILED
+    assert "which cannot carry its spin" in refused.message
 
 
 def test_another_line_makes_another_tow() -> None:

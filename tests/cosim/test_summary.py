@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -325,6 +326,7 @@ class TestShapesDrawn:
         (799451.29, "m", "km", "799.451 km"),
         (0.0170482, "m/s", "mm/s", "17.0482 mm/s"),
         (554.84 / 86400.0, "m/s", "m/day", "554.84 m/day"),
+        (math.pi / 60.0, "rad/s", "deg/s", "3 deg/s"),
         (12.5, "N", "", "12.5 N"),
     ],
 )
@@ -334,8 +336,13 @@ def test_what_a_person_reads_is_the_si_value_in_another_unit(
     assert Finding("removal", "key", "label", value, unit, shown_in=shown_in).shown() == shown
 
 
+def test_a_unit_that_nobody_reads_is_no_silent_one() -> None:
+    with pytest.raises(KeyError):
+        Finding("removal", "key", "label", 1.0, "rad/s", shown_in="rpm").shown()
+
+
 def test_every_unit_that_a_person_reads_is_as_large_as_astropy_has_it() -> None:
     import astropy.units as u
 
-    si = {"%": u.one, "mm/s": u.m / u.s, "km": u.m, "m/day": u.m / u.s}
+    si = {"%": u.one, "mm/s": u.m / u.s, "km": u.m, "m/day": u.m / u.s, "deg/s": u.rad / u.s}
     assert {name: u.Unit(name).to(si[name]) for name in SHOWN_IN} == pytest.approx(SHOWN_IN, rel=1e-14)
