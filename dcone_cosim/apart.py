@@ -17,6 +17,7 @@ from typing import Any
 from dcone_cosim import build
 from dcone_cosim.errors import InputError
 from dcone_cosim.files import regular
+from dcone_cosim.level import with_term
 from dcone_cosim.phases import kind_of
 from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 
@@ -76,7 +77,11 @@ def _handed_over(scene: Scene, own: PhaseScene, folder: Path) -> PhaseScene:
         raise InputError(f"--from-run {folder}: that run has no {own.name}: {said}")
     start = float(phase["origin"]["value"]) + float(phase["start"]["value"])
     parameters = {name: float(value) for name, value in {**phase["parameters"], **phase.get("given", {})}.items()}
-    return replace(own, main=replace(own.main, parameters=parameters), start=start)
+    main = own.main
+    for group, term in phase.get("terms", {}).items():
+        if main.terms.get(group) != term:  # what was handed over needed another than the scene's own
+            main = with_term(main, group, term)
+    return replace(own, main=replace(main, parameters=parameters), start=start)
 
 
 def _json(folder: Path, name: str) -> dict[str, Any]:
