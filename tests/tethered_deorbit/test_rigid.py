@@ -176,7 +176,7 @@ def test_an_off_centre_snap_moves_the_effective_mass(validated: Validated) -> No
     validated(formula, "off-centre snap: peak", i["tug[1].peak"], expected, "N", rel=1e-4)
     assert not i["tether.taut"]
     assert i["tether.impulse"] == pytest.approx(2.0 * mass * v, rel=1e-4)
-    assert i["tether.length_rate"] == pytest.approx(-v, rel=1e-3)
+    assert i["tether.length_rate"] == pytest.approx(-v, rel=5e-3)  # it turns on until the second is over
 
 
 def test_small_librations_under_the_gradient(validated: Validated) -> None:

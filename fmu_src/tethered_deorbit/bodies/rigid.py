@@ -21,9 +21,9 @@ from orbital.rotations import from_matrix, multiply, normalise
 from orbital.vectors import Array, add, add_scaled, cross, dot, matrix_vector, norm, transposed_matrix_vector
 
 INERTIAL, ORBITAL, LINE = range(len(RATE_FRAMES))
-SHARE = 5e-3
-"""Error of an attitude in one step, in tolerances of the separation: a spin is kept to 1e-12 through tugs, for half as
-many steps again while the line is slack."""
+SHARE, TAUT_SHARE = 5e-3, 0.1
+"""Error of an attitude in one step, in tolerances of the separation, while the line is slack and while it is taut: a spin
+is kept to 1e-12 through tugs."""
 UNIT = 1e-6
 """By how much the length of an attitude that is given may differ from one."""
 
@@ -351,17 +351,19 @@ def make_rigid(
     def squared_error(record: Any, state: Array, error: Array) -> float:
         """Square of the size of the errors of attitude and rate, in units of the tolerance [-].
 
-            (2 L |e_q|/tol)^2 + (L |e_w|/(tol p))^2,   L = max(|a|, radius of gyration),   p = max(pace, |w|),
-            tol = SHARE tol_s
+            (2 L |e_q|/tol)^2 + (L |e_w|/(tol p))^2,   L = max(|a|, radius of gyration),   tol = SHARE tol_s,
+            p = max(pace, |w|), and while taut the line's frequency
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
         r = record[0]
-        pace = max(r.state_pace, norm(state[middle:last]))
+        pace, share = max(r.state_pace, norm(state[middle:last])), SHARE
+        if r.state_taut:
+            pace, share = max(pace, r.state_frequency), TAUT_SHARE
         square = dot(error[middle:last], error[middle:last]) / (pace * pace)
         for i in range(first, middle):
             square += 4.0 * error[i] * error[i]
-        size = r[scale] / (SHARE * r.solver_tolerance_separation)
+        size = r[scale] / (share * r.solver_tolerance_separation)
         return float(size * size * square)
 
     @kernel
