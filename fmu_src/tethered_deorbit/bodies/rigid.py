@@ -22,8 +22,8 @@ from orbital.vectors import Array, add, add_scaled, cross, dot, matrix_vector, n
 
 INERTIAL, ORBITAL, LINE = range(len(RATE_FRAMES))
 SHARE, TAUT_SHARE = 5e-3, 0.1
-"""Error of an attitude in one step, in tolerances of the separation, while the line is slack and while it is taut: a spin
-is kept to 1e-12 through tugs."""
+"""Error of an attitude in one step, in tolerances of the separation, slack and taut: a spin is kept to 1e-12 through
+tugs."""
 UNIT = 1e-6
 """By how much the length of an attitude that is given may differ from one."""
 
