@@ -105,7 +105,7 @@ class ComponentScene:
     tolerance: float | None = None
     texts: Mapping[str, str] = field(default_factory=dict)
     tables: Mapping[str, TableFile] = field(default_factory=dict)
-    unnamed: frozenset[str] = frozenset()
+    unnamed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -73,7 +73,7 @@ class _Component:
             self.options.get("solver_tolerance"),
             self.part.texts,
             self.part.tables,
-            frozenset(self.part.unnamed),
+            tuple(sorted(self.part.unnamed)),
         )
 
 

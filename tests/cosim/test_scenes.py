@@ -49,7 +49,7 @@ def test_table_2_is_the_papers() -> None:
         "thrust.specific_impulse": 3000.0,
     }
     physics = {"reel": "locked", "thrust": "along_track", "environment": "central"}
-    assert phase.main.terms == physics | {"solver": "dop853"}
+    assert phase.main.terms == physics | {"solver": "dop853", "target": "point", "chaser": "point"}
     assert (phase.macro_step, phase.duration) == (60.0, 86400.0)
 
 

@@ -101,7 +101,10 @@ def make_attached(
 
     @kernel
     def clear(record: Any) -> None:
-        """A line that runs over no edge yet."""
+        """A line that runs over no edge yet.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py: nothing is left of an earlier run
+        """
         if wraps:
             r = record[0]
             r.held_count = 0

@@ -30,7 +30,10 @@ def zero(*arguments: Any) -> float:
 
 @kernel
 def no_end(*arguments: Any) -> float:
-    """A straight line is followed over any step [s]."""
+    """A straight line is followed over any step [s].
+
+    Checked  tests/tethered_deorbit/test_macro_step.py
+    """
     return math.inf
 
 
