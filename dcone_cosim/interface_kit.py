@@ -32,7 +32,7 @@ _TEMPLATE_HAS = (
     *("t_capture", "outcome", "separation", "relative.position", "relative.velocity"),
     *("tether.rest_length", "target.attachment_distance", "thrust.level"),
 )
-"""Optional variables that the templates have, beside all that is needed for something."""
+"""Optional variables that the templates have, beside all that is needed for something; their target is a point."""
 LOG_CATEGORIES = (
     ("logStatusError", "why a call was refused, or the model failed"),
     ("logStatusDiscard", "why a step was discarded, or that the model came to its end"),
@@ -88,7 +88,7 @@ def write_template(phase: str, kind: str, folder: Path) -> list[Path]:
         clear_left(left)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"{folder} already exists; a template is written to a new or an empty folder")
-    rows = [r for r in asked(kinds()[phase]) if r.need != "optional" or r.name.startswith(_TEMPLATE_HAS)]
+    rows = [r for r in asked(kinds()[phase]) if r.need not in ("spin", "optional") or r.name.startswith(_TEMPLATE_HAS)]
     content = _c_files(phase, rows) if kind == "c" else _python_files(phase, rows)
     if folder.exists():  # somebody may be in it: it stays, and the files come into it
         with Scratch(folder) as draft:

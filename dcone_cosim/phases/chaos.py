@@ -41,6 +41,8 @@ HAND_OFF: Mapping[str, float] = {
     "spin_energy_dropped": 3e-4,
     "attachment_speed": 2e-4,
     "body_rate": 2e-4,
+    "point_bound_time": 2e-2,
+    "point_bound_peak": 2e-2,
     "tug_speed": 6e-5,
     "attachment_distance": 2e-3,
     "slack": 8e-4,

@@ -35,6 +35,9 @@ class NoArchives:
         type(self).meanwhile()
         return MockCapture(reports=True) if phase == "capture" else MockRemoval(tugs=[(12.0, 5.0, 0.01)])
 
+    def adopt(self, phase: object) -> None:
+        raise AssertionError("stand-ins have no levels")
+
     def facts(self) -> dict[str, dict[str, object]]:
         return {}
 

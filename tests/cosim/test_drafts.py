@@ -99,6 +99,7 @@ def test_the_next_run_says_so(tmp_path: Path, make_scene, monkeypatch: pytest.Mo
         def instantiate(self, *_: object) -> MockCapture:
             return MockCapture()
 
+        def adopt(self, *_: object) -> None: ...
         def facts(self) -> dict[str, object]:
             return {}
 

@@ -274,7 +274,7 @@ def refusal(work: Callable[[], object]) -> str:
     return ""
 
 
-@pytest.mark.parametrize("count", [5, pytest.param(400, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("count", [9, pytest.param(400, marks=pytest.mark.evidence)])
 def test_a_damaged_archive_is_one_error_or_none(tmp_path: Path, count: int) -> None:
     """The file, its description, and a package around it: whole, or refused; never anything else."""
     fmu = build(tmp_path)

@@ -74,6 +74,8 @@ class Unpacking:
         self.unpacked = Scratch.temporary()
         (self.unpacked.path / "modelDescription.xml").write_text("<fmi/>")
 
+    def adopt(self, phase: object) -> None: ...
+
     def __enter__(self) -> Unpacking:
         return self
 

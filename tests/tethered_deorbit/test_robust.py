@@ -25,6 +25,7 @@ from fmu_src.tethered_deorbit.interface import (
     STEP_NOT_MET,
     TIME_GAP,
     TOO_MANY_EVENTS,
+    TOO_MANY_TURNS,
     VBAR,
 )
 
@@ -113,6 +114,7 @@ ELSEWHERE = {
     NO_ORBIT: "test_field_free.py",
     BAD_INERTIA: "test_rigid.py",
     BAD_ATTITUDE: "test_rigid.py",
+    TOO_MANY_TURNS: "test_wrapping.py",
 }
 
 
