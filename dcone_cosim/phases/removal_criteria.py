@@ -32,8 +32,7 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
     yield from _orbit(evidence)
     if evidence.terms.get("reel") == "locked":
         yield from _longer(evidence)
-        if evidence.terms.get("target", "point") == evidence.terms.get("chaser", "point") == "point":
-            yield from _snaps(evidence)  # off the centre of a body the closed form has another mass
+        yield from _snaps(evidence)
         yield from _jacobi(evidence)
 
 
@@ -91,6 +90,10 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
 
         |T - T_snap| <= 2 P,   P = 3 n^2 m_r l (1 + e)^3 + F m_t/M
 
+    A body that turns gives way: off its centre the line moves less mass, and the snap is no harder than on points,
+
+        T <= max(v sqrt(k m_r), c v) + 2 P
+
     Source   `orbital.oscillators.damped_snap_peak`; a preload adds at most 2 P (`snap_peak`)
     """
     values = evidence.values
@@ -102,6 +105,7 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
     steady += abs(force(evidence)) * target / (chaser + target)
     if math.sqrt(stiffness / reduced) < FAST * math.sqrt(EARTH_MU / perigee**3):
         return  # so long a snap is part of the orbit's motion
+    points = evidence.terms.get("target", "point") == evidence.terms.get("chaser", "point") == "point"
     begin = evidence.columns["time"][0]
     # the newest may still grow, and one at the start has no speed of its own
     worst, compared = 0.0, 0
@@ -109,7 +113,11 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
         if not speed > 0.0:
             continue
         expected = damped_snap_peak(speed, stiffness, reduced, zeta)
-        off = max(0.0, abs(peak - expected) - 2.0 * steady) / max(expected, 2.0 * steady)
+        miss = abs(peak - expected)
+        if not points:
+            expected = speed * math.sqrt(stiffness * reduced) * max(1.0, 2.0 * zeta)
+            miss = peak - expected
+        off = max(0.0, miss - 2.0 * steady) / max(expected, 2.0 * steady)
         worst, compared = max(worst, off), compared + 1
     if compared:
         yield Criterion("snap", "peaks of the first tugs from the closed form", worst, "1", SNAP, SNAP_STABLE)
