@@ -39,7 +39,7 @@ held only while k_p > 3 n^2 m_r, here 2.2e-3 N/m: farther out the tide pulls har
 
 NOT_FINITE, STEP_NOT_MET, TOO_MANY_EVENTS, TIME_GAP, GROUND = range(1, 6)
 BAD_ORBIT, BAD_CHORD, START_STRETCHED, NO_LENGTH, NO_LINE, BAD_PARAMETER, NO_ORBIT = range(11, 18)
-BAD_INERTIA, BAD_ATTITUDE, TOO_MANY_TURNS = 18, 19, 20
+BAD_INERTIA, BAD_ATTITUDE, TOO_MANY_TURNS, BODIES_MET = 18, 19, 20, 21
 
 FAULTS = (
     Fault(NOT_FINITE, "error", "the state is no longer finite; look at the parameters and inputs last set"),
@@ -73,6 +73,7 @@ FAULTS = (
         True,
     ),
     Fault(BAD_ATTITUDE, "error", "the attitude at the start must be a quaternion of unit length, or zero", True),
+    Fault(BODIES_MET, "end", "the bodies have met: the chaser's end of the line has come into the target"),
     Fault(TOO_MANY_TURNS, "error", "the line has wrapped round the target over more edges than can be followed"),
 )
 

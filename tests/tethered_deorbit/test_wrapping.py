@@ -380,3 +380,14 @@ def test_an_attachment_out_of_sight_wraps_first() -> None:
             i.step(1.0)
         firsts.append(i["tug[1].time"])
     assert firsts[1] < 0.5 * firsts[0]
+
+
+def test_bodies_that_meet_end_the_tow() -> None:
+    """A chaser that flies at 50 mm/s from 12 m at a face 1.95 m from the centre is there after 201 s."""
+    i = pair(BOX, {"start_relative_velocity": (0.0, -0.05, 0.0), "target_attachment": (0.5, -0.5 * SIZE[1], 0.3)})
+    i.step(200.9)
+    with pytest.raises(ModelFault, match="the bodies have met") as told:
+        i.step(1.0)
+    assert float(str(told.value).rpartition(" at ")[2].removesuffix(" s)")) == pytest.approx(201.0, abs=1e-6)
+    with pytest.raises(ModelFault, match="the bodies have met"):
+        pair(BOX, {"start_relative_position": (0.0, 1.0, 0.0)})

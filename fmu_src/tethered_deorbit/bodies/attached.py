@@ -325,6 +325,8 @@ def make_attached(
             for i in range(3):
                 r.state_line[3][i] = r.path_points[r.path_count + 1][i]
             start(record, r.state_line[3])
+            if r.state_way_fault != 0:
+                return blame(record, r.state_way_fault, 0, 0.0)
         _, length, _ = line(record, state)
         if r.start_condition == HANDED_OVER:
             return 0

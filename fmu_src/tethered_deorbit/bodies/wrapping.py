@@ -24,7 +24,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.body_rows import CORNER_EDGES
-from fmu_src.tethered_deorbit.interface import TOO_MANY_TURNS
+from fmu_src.tethered_deorbit.interface import BODIES_MET, TOO_MANY_TURNS
 from orbital.kernel import kernel
 from orbital.vectors import Array, add_scaled, cross, distance, dot, unit
 
@@ -553,6 +553,9 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         Checked  tests/tethered_deorbit/test_wrapping.py: against a search over a graph
         """
         r = record[0]
+        if met(record, point):
+            r.state_way_fault = BODIES_MET
+            return
         r.held_count = 0
         r.held_stuck = 0
         follow(record, point)
@@ -621,12 +624,27 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         return NONE, NONE
 
     @kernel
+    def met(record: Any, point: Array) -> bool:
+        """Whether the other body has come into this one, its attachment below all faces.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: bodies that meet
+        """
+        r = record[0]
+        for f in range(faces):
+            face = r.state_faces[f]
+            if dot(face[0:3], point) - face[3] >= 0.0:
+                return False
+        return True
+
+    @kernel
     def holds(record: Any) -> bool:
         """Whether the edges hold for the way last followed; those that could not be renewed are held all the same.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
         r = record[0]
+        if met(record, r.path_points[r.path_count + 1]):
+            return False
         if r.held_stuck == 1:
             return True
         return bool(sound(record) and run_at_corner(record)[0] == NONE)
@@ -745,6 +763,9 @@ def make_wrapping(faces: int, edges: int, capacity: int) -> Wrapping:
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
         r = record[0]
+        if met(record, point):
+            r.state_way_fault = BODIES_MET
+            return
         r.held_stuck = 0
         follow(record, point)
         settle(record, point)
