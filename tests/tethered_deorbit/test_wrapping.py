@@ -382,6 +382,54 @@ def test_an_attachment_out_of_sight_wraps_first() -> None:
     assert firsts[1] < 0.5 * firsts[0]
 
 
+def test_a_line_slips_off_a_corner() -> None:
+    """Wound aslant it slides to the end of the box and off it. At all times its way passes nowhere through the box, is
+    as long as it says, and no shorter than the shortest one of a graph; where it slips it is shorter at once."""
+    i = pair(BOX, TUMBLING, tether__rest_length=1000.0)
+    before, speed, slips = i["tether.length"], i["tether.length_rate"], 0
+    for k in range(400):
+        i.step(0.5)
+        bends, points = int(i["tether.bends"]), i.array("path_points")
+        way = points[: bends + 2]
+        found = i["tether.length"]
+        assert found == pytest.approx(float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum()), rel=1e-6)
+        assert not any(passes_through(p, q, SIZE * (1.0 - 1e-6)) for p, q in itertools.pairwise(way))
+        slips += found < before - 0.5 * (abs(speed) + abs(i["tether.length_rate"])) - 0.05
+        before, speed = found, i["tether.length_rate"]
+        if k % 20 == 0:
+            assert found > searched(np.array(TUMBLING["target_attachment"]), 3, way[-1], SIZE) * (1.0 - 2e-3)
+    assert slips >= 1
+
+
+@pytest.mark.parametrize("count", [4, pytest.param(100, marks=pytest.mark.evidence)])
+def test_tows_of_any_tumbling_body_run_to_an_end(count: int) -> None:
+    """Sizes, attachments, spins and thrusts at random: a tow ends after its time or where the bodies meet."""
+    rng = np.random.default_rng(7)
+    for k in range(count):
+        size, pull = rng.uniform(0.5, 5.0, 3), -(10.0 ** rng.uniform(-1.0, 1.0))
+        way, axis = rng.normal(size=3), int(rng.integers(3))
+        first = rng.uniform(-0.5, 0.5, 3) * size
+        first[axis] = math.copysign(0.5 * size[axis], first[axis])
+        arrays = {
+            "target_inertia": (*(1000.0 / 12.0 * (size @ size - size**2)), 0.0, 0.0, 0.0),
+            "target_attachment": first,
+            "target_start_rate": rng.normal(size=3) * 10.0 ** rng.uniform(-3.0, -0.8),
+            "start_relative_position": way / np.linalg.norm(way) * rng.uniform(6.0, 9.0),
+            "start_relative_velocity": rng.normal(size=3) * 0.02,
+        }
+        values = {"thrust__level": pull, "tether__damping_ratio": float(rng.choice([0.0, 0.05, 0.5]))}
+        if k % 2 == 0:
+            i = pair(BOX, arrays | {"target_size": size}, **values)
+        else:
+            values |= {"target__cylinder_radius": 0.5 * size[0], "target__cylinder_length": size[2]}
+            i = pair(CYLINDER, arrays, **values)
+        try:
+            i.step(1000.0)
+        except ModelFault as end:
+            if "the bodies have met" not in str(end):
+                raise
+
+
 def test_bodies_that_meet_end_the_tow() -> None:
     """A chaser that flies at 50 mm/s from 12 m at a face 1.95 m from the centre is there after 201 s."""
     i = pair(BOX, {"start_relative_velocity": (0.0, -0.05, 0.0), "target_attachment": (0.5, -0.5 * SIZE[1], 0.3)})
