@@ -34,6 +34,7 @@ class Events(NamedTuple):
     ensure_dense(record, work)                            compute the dense output of the step unless it is there
     find_change(record, work) -> fraction                 of the step at which slack and taut change, or -1
     tension_range(record, work, first, last) -> (least, largest)   tension [N] between two fractions of the step
+    first_above(record, work, limit) -> fraction          of the step at which the tension first exceeds one [N], or -1
     nearest(record, work, last) -> (fraction, distance)   where the separation turns from less to more and is least
                                                           [m], up to a fraction of the step; infinite if nowhere
     """
@@ -42,6 +43,7 @@ class Events(NamedTuple):
     ensure_dense: Callable[..., Any]
     find_change: Callable[..., Any]
     tension_range: Callable[..., Any]
+    first_above: Callable[..., Any]
     nearest: Callable[..., Any]
 
 
@@ -110,19 +112,20 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
         return signals(record, here, slope, fraction * step)
 
     @kernel
-    def root(record: Any, work: Array, low: float, high: float, which: int) -> float:
-        """Fraction of the step [-] at which a signal changes sign between two fractions.
+    def root(record: Any, work: Array, low: float, high: float, which: int, level: float) -> float:
+        """Fraction of the step [-] at which a signal passes a level between two fractions.
 
         Regula falsi in the Illinois form, halved when it stalls; the step is redone afterwards to land exactly.
 
-        low, high     fractions with signals of different sign       [-]
+        low, high     fractions with the signal on different sides   [-]
         which         place of the signal
+        level         in its unit
 
         Source   Dowell and Jarratt, BIT 11 (1971) 168
         Checked  tests/tethered_deorbit/test_commanded.py: a ramp through zero; test_robust.py
         """
-        at_low = at(record, work, low)[which]
-        at_high = at(record, work, high)[which]
+        at_low = at(record, work, low)[which] - level
+        at_high = at(record, work, high)[which] - level
         kept = 0
         for i in range(ROOT_ITERATIONS):
             if high - low <= 1.0e-13:
@@ -132,7 +135,7 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
                 guess = (low * at_high - high * at_low) / (at_high - at_low)
                 if low < guess < high:
                     middle = guess
-            value = at(record, work, middle)[which]
+            value = at(record, work, middle)[which] - level
             if value == 0.0:
                 return middle
             if (value > 0.0) == (at_high > 0.0):
@@ -169,14 +172,14 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
             value_high, slope_high, _, _, _, _, _ = at(record, work, high)
             first, value_first, last, value_last = low, value_low, high, value_high
             if slope_low <= 0.0 < slope_high:
-                first = root(record, work, low, high, CROSSING_SLOPE)
+                first = root(record, work, low, high, CROSSING_SLOPE, 0.0)
                 value_first = at(record, work, first)[CROSSING]
             elif slope_high <= 0.0 < slope_low:
-                last = root(record, work, low, high, CROSSING_SLOPE)
+                last = root(record, work, low, high, CROSSING_SLOPE, 0.0)
                 value_last = at(record, work, last)[CROSSING]
             if max(slope_low, slope_high) > 0.0 and value_last > 0.0:
                 # above zero from where it begins to rise, by rounding: the change is due at once
-                return root(record, work, first, last, CROSSING) if value_first <= 0.0 else first
+                return root(record, work, first, last, CROSSING, 0.0) if value_first <= 0.0 else first
             low, value_low, slope_low = high, value_high, slope_high
         return -1.0
 
@@ -196,10 +199,33 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
             slope_high = there[TENSION_SLOPE]
             least, largest = min(least, there[TENSION]), max(largest, there[TENSION])
             if (slope_low > 0.0) != (slope_high > 0.0):
-                turn = at(record, work, root(record, work, low, high, TENSION_SLOPE))
+                turn = at(record, work, root(record, work, low, high, TENSION_SLOPE, 0.0))
                 least, largest = min(least, turn[TENSION]), max(largest, turn[TENSION])
             low, slope_low = high, slope_high
         return least, largest
+
+    @kernel
+    def first_above(record: Any, work: Array, limit: float) -> float:
+        """Fraction of the step [-] at which the tension first exceeds a limit [N], or -1.
+
+        Checked  tests/tethered_deorbit/test_acting.py: a line that breaks just below its peak
+        """
+        ensure_dense(record, work)
+        low, here = 0.0, at(record, work, 0.0)
+        if here[TENSION] > limit:
+            return 0.0
+        slope_low = here[TENSION_SLOPE]
+        for i in range(INTERVALS):
+            high = (i + 1.0) / INTERVALS
+            there = at(record, work, high)
+            last, tension = high, there[TENSION]
+            if tension <= limit and slope_low > 0.0 >= there[TENSION_SLOPE]:
+                last = root(record, work, low, high, TENSION_SLOPE, 0.0)
+                tension = at(record, work, last)[TENSION]
+            if tension > limit:
+                return root(record, work, low, last, TENSION, limit)
+            low, slope_low = high, there[TENSION_SLOPE]
+        return -1.0
 
     @kernel
     def nearest(record: Any, work: Array, last: float) -> tuple[float, float]:
@@ -216,11 +242,11 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
             high = (i + 1.0) / INTERVALS
             rate_high = at(record, work, high)[RATE]
             if rate_low <= 0.0 < rate_high:
-                fraction = root(record, work, low, high, RATE)
+                fraction = root(record, work, low, high, RATE, 0.0)
                 separation = at(record, work, fraction)[SEPARATION]
                 if fraction <= last and separation < distance:
                     found, distance = fraction, separation
             low, rate_low = high, rate_high
         return found, distance
 
-    return Events(signals, ensure_dense, find_change, tension_range, nearest)
+    return Events(signals, ensure_dense, find_change, tension_range, first_above, nearest)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from fmu_src.tethered_deorbit.acting import Acting
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.extremes import Extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
@@ -25,11 +26,13 @@ class Inputs(NamedTuple):
     judge_line(record, state) -> rate              decide afresh whether the line is taut
     take(record, work, duration) -> fault          as a macro step begins [s]
     leave(record, work, duration) -> fault         as one ends in which inputs have moved
+    act(record, work, target, by_state) -> fault   at the end of the step, where a part acts, until the macro step's end
     """
 
     judge_line: Callable[..., Any]
     take: Callable[..., Any]
     leave: Callable[..., Any]
+    act: Callable[..., Any]
 
 
 def make_inputs(
@@ -38,11 +41,13 @@ def make_inputs(
     bodies: Bodies,
     trajectory: Trajectory,
     extremes: Extremes,
+    acting: Acting,
     places: Places,
     command_slot: int,
 ) -> Inputs:
     """The kernels for one law of the line, one thruster and two bodies.
 
+    acting         what they do by themselves
     command_slot   value reference of the law's input, which is blamed when it is no number
 
     Checked  tests/tethered_deorbit/test_macro_step.py, test_ramps.py
@@ -143,4 +148,40 @@ def make_inputs(
         thrust.leave(record, duration)
         return int(begin_anew(record, work, 0.0))
 
-    return Inputs(judge_line, take, leave)
+    @kernel
+    def act(record: Any, work: Array, target: float, by_state: bool) -> int:
+        """Let the parts act at the end of the step, with what moves carried on to there, and begin anew.
+
+        target        end of the macro step, until which inputs move [s]
+        by_state      a part's condition has ceased
+
+        Returns 0 or a fault.
+
+        Checked  tests/tethered_deorbit/test_acting.py
+        """
+        r = record[0]
+        now = r.state_end
+        end = work[end_state:here_state]
+        trajectory.state_at(record, work, now, end)
+        since = r.state_since + r.state_step
+        command, command_rate = r.state_command + r.state_command_rate * since, r.state_command_rate
+        force, force_rate = r.state_thrust + r.state_thrust_rate * since, r.state_thrust_rate
+        trajectory.restart(record, work, now)
+        r.state_since = 0.0
+        code: int = reel.prepare(record, command, command_rate, target - now)
+        if code != 0:
+            return fail(record, code, now)
+        thrust.account(record, now)
+        thrust.put(record, force, force_rate)
+        was_taut = r.state_taut
+        code = acting.act(record, end, now, by_state)
+        if code != 0:
+            return fail(record, code, now)
+        speed = judge_line(record, end)
+        trajectory.restart(record, work, now)
+        r.state_since = 0.0
+        if r.state_taut and not was_taut:
+            begin_tug(record, now, speed)
+        return 0
+
+    return Inputs(judge_line, take, leave, act)

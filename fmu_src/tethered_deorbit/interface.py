@@ -176,7 +176,7 @@ STATE = (
     state(
         "state.event",
         "1",
-        "the current step ends in a change between slack and taut: 1, at a corner: 2",
+        "the current step ends in a change between slack and taut: 1, at a corner: 2, where a part acts: 3",
         kind="Integer",
     ),
     state("state.fresh", "1", "the derivative at the end of the step is yet to be computed", kind="Integer"),

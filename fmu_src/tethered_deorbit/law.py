@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from fmu_src.tethered_deorbit.acting import IDLE, Acting
+
 
 class Reel(NamedTuple):
     """Kernels of one law; lengths in m, rates in m/s, tension in N. `length` is that of the line between its
@@ -28,6 +30,7 @@ class Reel(NamedTuple):
     energy_rate(record, length, rate, since)                its time derivative [W]
     partials(record, length, rate) -> (by tension, by energy)   derivatives by the command of a taut line, at since = 0
     start_limit(record)                                     longest line with which a pair may start
+    acting                                                  what the reel does by itself
     """
 
     asked: Callable[..., Any]
@@ -42,3 +45,4 @@ class Reel(NamedTuple):
     energy_rate: Callable[..., Any]
     partials: Callable[..., Any]
     start_limit: Callable[..., Any]
+    acting: Acting = IDLE

@@ -8,6 +8,7 @@ from typing import Any
 
 from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, STEP, UNDER_WAY, check_implemented
 from fmu_src.limits import make_limits
+from fmu_src.tethered_deorbit.acting import IDLE, together
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
@@ -23,7 +24,7 @@ from fmu_src.tethered_deorbit.reel import LAWS, make_reel
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.start import make_start
 from fmu_src.tethered_deorbit.thrust import DIRECTIONS, Thrust, make_thrust
-from fmu_src.tethered_deorbit.trajectory import make_squared_error, make_trajectory
+from fmu_src.tethered_deorbit.trajectory import ACTS, EDGES, LINE, make_squared_error, make_trajectory
 from orbital.kernel import entry, kernel
 from orbital.oscillators import reduced_mass
 from orbital.vectors import Array
@@ -93,8 +94,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     places = places_of(layout, scheme)
     events = make_events(reel, bodies, scheme, places)
     extremes = make_extremes(events, places)
-    trajectory = make_trajectory(derivative, bodies, scheme, events, places)
-    inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, places, command_slot)
+    acting = together((reel.acting, thrust.acting))
+    acts = acting is not IDLE
+    trajectory = make_trajectory(derivative, bodies, scheme, events, acting, places)
+    inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)
     publish = make_publish(reel, environment, bodies, layout)
     differentiate = make_differentiate(inertial, reel, environment, bodies)
@@ -147,6 +150,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         end[impulse] = 0.0
         if not finite(end):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), 0.0)
+        if acts:
+            code = acting.begin(record, end)
+            if code != 0:
+                return fail(record, code, 0.0)
         r.state_published = 0.0
         r.state_changes = 0
         r.solver_steps = 0
@@ -174,7 +181,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r = record[0]
         end = work[end_state:here_state]
         _, _, speed = trajectory.state_at(record, work, r.state_end, end)
-        if r.state_event == 2:
+        if r.state_event == EDGES:
             bodies.renew(record, end)
             inputs.judge_line(record, end)
         elif r.state_taut:
@@ -221,15 +228,24 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if radius >= 0.0:
                 return fail(record, blame(record, GROUND, 0, radius), r.state_end)
             extremes.note(record, work, r.state_end)
-            if r.state_event:
+            event = r.state_event
+            if event:
                 r.state_changes += 1
                 if r.state_changes > EVENT_LIMIT:
                     return fail(record, blame(record, TOO_MANY_EVENTS, 0, float(r.state_changes)), r.state_end)
-                change_line(record, work)
+                if event in (LINE, EDGES):
+                    change_line(record, work)
+            if acts and (event == ACTS or acting.due(record) <= r.state_end):
+                code = inputs.act(record, work, target, event == ACTS)
+                if code != 0:
+                    return code
             # A moving input is known up to the communication point only: there the last step ends.
             if moving and r.state_end == target:
                 break
-            code = trajectory.advance(record, work, target - r.state_end if moving else math.inf)
+            longest = target - r.state_end if moving else math.inf
+            if acts:
+                longest = min(longest, acting.due(record) - r.state_end)
+            code = trajectory.advance(record, work, longest)
             if code != 0:
                 return fail(record, code, r.state_begin)
         extremes.note(record, work, target)

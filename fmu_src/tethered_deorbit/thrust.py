@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from orbital.constants import STANDARD_GRAVITY
@@ -43,6 +44,7 @@ class Thrust(NamedTuple):
     put(record, force, rate)          put a force in force, to move at a rate
     publish(record, time)             propellant used up to `time`
     publish_rate(record)              and how fast it is used
+    acting                            what the thruster does by itself
     """
 
     reset: Callable[..., Any] = nothing
@@ -54,6 +56,7 @@ class Thrust(NamedTuple):
     put: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     publish_rate: Callable[..., Any] = nothing
+    acting: Acting = IDLE
 
 
 @kernel

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.integrators.scheme import AdaptiveScheme
+from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.events import CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, Events, Signals
 from fmu_src.tethered_deorbit.faults import blame
@@ -29,6 +30,8 @@ WIDEST_TURN = 0.25
 SHORTEST_CONTACT = 1.0e-6
 """Least time between two changes, in radians of the line's motion: a line that grazes goes on."""
 LANDING_ITERATIONS = 5
+LINE, EDGES, ACTS = 1, 2, 3
+"""What ends a step, by `state.event`: a change between slack and taut, of the line's way over edges, or a part acts."""
 SHORTEST_BETWEEN_EDGES, LEAST_BETWEEN_EDGES = 1.0e-3, 1.0e-3
 """Least time between two changes of the edges, in radians of the line's motion, and [s]: what the line passes through
 the body in between is of second order in its length."""
@@ -122,9 +125,14 @@ class Trajectory(NamedTuple):
 
 
 def make_trajectory(
-    derivative: Callable[..., Any], bodies: Bodies, scheme: AdaptiveScheme, events: Events, places: Places
+    derivative: Callable[..., Any],
+    bodies: Bodies,
+    scheme: AdaptiveScheme,
+    events: Events,
+    acting: Acting,
+    places: Places,
 ) -> Trajectory:
-    """The kernels for one set of equations, two bodies, an integrator and events.
+    """The kernels for one set of equations, two bodies, an integrator, events, and parts that act by themselves.
 
     Valid    tolerances that rounding can meet
     Checked  tests/tethered_deorbit/test_macro_step.py
@@ -135,6 +143,7 @@ def make_trajectory(
     dense_begin, work_end = places.dense, places.total
 
     longest_taut_step = make_longest_taut_step(scheme.reach)
+    acts = acting is not IDLE
 
     @kernel
     def restart(record: Any, work: Array, time: float) -> None:
@@ -229,28 +238,58 @@ def make_trajectory(
             attempt(record, work, step)
         there = end_signals(record, work)
         # What has risen and fallen again within the least time between two changes was none.
-        r.state_event = 1 if max(there[CROSSING], there[CROSSING_SLOPE]) > 0.0 else 0
+        r.state_event = LINE if max(there[CROSSING], there[CROSSING_SLOPE]) > 0.0 else 0
 
     @kernel
-    def stop_at_edge(record: Any, work: Array) -> None:
-        """Redo the step so that it ends where the line's way over edges has just ceased to hold, by halving.
+    def ceased(record: Any, work: Array, state: Array, since: float) -> int:
+        """What has ceased to hold in a state, as a number of `state.event`, or 0.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py
+        Checked  tests/tethered_deorbit/test_wrapping.py, test_acting.py
+        """
+        if not bodies.holds(record, state):
+            return EDGES
+        if acts and not acting.holds(record, state, since):
+            return ACTS
+        return 0
+
+    @kernel
+    def stop_where_ceased(record: Any, work: Array) -> None:
+        """Redo the step so that it ends where the line's way over edges, or what a part goes by, has just ceased to
+        hold, by halving.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py, test_acting.py
         """
         r = record[0]
         low, high = 0.0, 1.0
+        event = ceased(record, work, work[end_state:here_state], r.state_since + r.state_step)
         here = work[here_state:slope_state]
         events.ensure_dense(record, work)
         while high - low > EDGE:
             middle = 0.5 * (low + high)
             scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], middle, 0, size, here)
-            if bodies.holds(record, here):
+            there = ceased(record, work, here, r.state_since + middle * r.state_step)
+            if there == 0:
                 low = middle
             else:
-                high = middle
+                high, event = middle, there
         least = min(LEAST_BETWEEN_EDGES, SHORTEST_BETWEEN_EDGES / r.state_frequency)
         attempt(record, work, max(high * r.state_step, min(r.state_step, least)))
-        r.state_event = 2
+        r.state_event = event
+
+    @kernel
+    def stop_at_limit(record: Any, work: Array) -> None:
+        """Redo the step so that it ends where the tension exceeds what a part lets pass, unless it ends before.
+
+        Checked  tests/tethered_deorbit/test_acting.py
+        """
+        r = record[0]
+        limit = acting.limit(record)
+        if r.state_taut and limit < math.inf:
+            fraction = events.first_above(record, work, limit)
+            if fraction >= 0.0:
+                least = min(r.state_step, SHORTEST_CONTACT / r.state_frequency)
+                attempt(record, work, max(least, fraction * r.state_step))
+                r.state_event = ACTS
 
     @kernel
     def advance(record: Any, work: Array, longest: float) -> int:
@@ -291,6 +330,8 @@ def make_trajectory(
         r.solver_steps += 1
         step = min(r.state_next_step, max(longest, SHORTEST * abs(r.state_begin)))
         step = min(step, bodies.longest(record, begin))
+        if acts:
+            step = min(step, acting.longest(record, begin))
         if r.state_taut:
             step = min(step, longest_taut_step(record))
             turn = norm(r.state_turning)
@@ -324,10 +365,12 @@ def make_trajectory(
             # Where moving inputs end a step, a change in its last digit is for the next to judge: they may turn round.
             if fraction >= 0.0 and not (fraction >= LAST and longest < math.inf):
                 land(record, work, fraction)
-        if not bodies.holds(record, work[end_state:here_state]):
-            stop_at_edge(record, work)
+        if acts:
+            stop_at_limit(record, work)
+        if ceased(record, work, work[end_state:here_state], r.state_since + r.state_step) != 0:
+            stop_where_ceased(record, work)
         elif r.state_event == 0 and bodies.retry(record, work[end_state:here_state]):
-            r.state_event = 2
+            r.state_event = EDGES
         return 0
 
     @kernel
