@@ -55,6 +55,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         return
     yield from _of_tension(phase, result)
     last = recorder.last()
+    if last.get("break.broken"):
+        yield Finding(phase, "broke_at", "the line broke, and both ends fly on, at", last["break.time"], "s")
     for name, label, unit, shown_in in (
         ("separation", "distance at the end", "m", ""),
         ("altitude", "altitude at the end", "m", "km"),

@@ -73,7 +73,7 @@ def _both(first: Acting, second: Acting) -> Acting:
     def begin(record: Any, state: Array) -> int:
         """The start of both.
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         fault: int = first.begin(record, state)
         return fault if fault != 0 else int(second.begin(record, state))
@@ -82,7 +82,7 @@ def _both(first: Acting, second: Acting) -> Acting:
     def due(record: Any) -> float:
         """The earlier instant [s].
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         return min(float(first.due(record)), float(second.due(record)))
 
@@ -90,7 +90,7 @@ def _both(first: Acting, second: Acting) -> Acting:
     def limit(record: Any) -> float:
         """The lower tension [N].
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         return min(float(first.limit(record)), float(second.limit(record)))
 
@@ -98,7 +98,7 @@ def _both(first: Acting, second: Acting) -> Acting:
     def longest(record: Any, state: Array) -> float:
         """The shorter step [s].
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         return min(float(first.longest(record, state)), float(second.longest(record, state)))
 
@@ -106,7 +106,7 @@ def _both(first: Acting, second: Acting) -> Acting:
     def holds(record: Any, state: Array, since: float) -> bool:
         """Whether neither need act.
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         return bool(first.holds(record, state, since)) and bool(second.holds(record, state, since))
 
@@ -114,7 +114,7 @@ def _both(first: Acting, second: Acting) -> Acting:
     def act(record: Any, state: Array, time: float, by_state: bool) -> int:
         """Each in its turn: what is not concerned sets what is set.
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         fault = int(first.act(record, state, time, by_state))
         return fault if fault != 0 else int(second.act(record, state, time, by_state))

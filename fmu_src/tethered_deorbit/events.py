@@ -208,7 +208,7 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
     def first_above(record: Any, work: Array, limit: float) -> float:
         """Fraction of the step [-] at which the tension first exceeds a limit [N], or -1.
 
-        Checked  tests/tethered_deorbit/test_acting.py: a line that breaks just below its peak
+        Checked  tests/tethered_deorbit/test_ends.py: a line that breaks just below its peak
         """
         ensure_dense(record, work)
         low, here = 0.0, at(record, work, 0.0)

@@ -157,7 +157,7 @@ def make_inputs(
 
         Returns 0 or a fault.
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         r = record[0]
         now = r.state_end

@@ -10,7 +10,9 @@ from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, S
 from fmu_src.limits import make_limits
 from fmu_src.tethered_deorbit.acting import IDLE, together
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
+from fmu_src.tethered_deorbit.breaking import breakable
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
+from fmu_src.tethered_deorbit.ends import make_ends
 from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
 from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
@@ -54,6 +56,14 @@ LIMITED = (
     "reel.derivative_gain",
     "thrust.level",
     "thrust.specific_impulse",
+    "ends.altitude",
+    "ends.perigee",
+    "ends.raised_perigee",
+    "ends.chaser_extent",
+    "ends.target_extent",
+    "ends.clearance",
+    "ends.wrapped",
+    "break.strength",
 )
 """Parameters whose limits the kernel minds too; out of theirs, others end in a fault of their own."""
 
@@ -62,6 +72,8 @@ IMPLEMENTED = {
     "thrust": DIRECTIONS,
     "environment": FIELDS,
     "solver": tuple(SCHEMES),
+    "ends": ("watched",),
+    "break": ("breaks",),
     **KINDS,
 }
 """Terms that are composed here."""
@@ -78,7 +90,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     terms = interface.terms
     check_implemented(MODEL, IMPLEMENTED, terms)
     environment = make_environment(terms["environment"], interface)
-    reel = make_reel(terms["reel"], interface)
+    reel = breakable(make_reel(terms["reel"], interface), terms)
     command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     limits = make_limits(interface, *LIMITED)
     bodies = make_bodies(terms, environment.place, environment.gradient, interface)
@@ -94,7 +106,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     places = places_of(layout, scheme)
     events = make_events(reel, bodies, scheme, places)
     extremes = make_extremes(events, places)
-    acting = together((reel.acting, thrust.acting))
+    acting = together((reel.acting, thrust.acting, make_ends(terms, bodies, interface)))
     acts = acting is not IDLE
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)

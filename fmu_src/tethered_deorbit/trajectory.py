@@ -244,7 +244,7 @@ def make_trajectory(
     def ceased(record: Any, work: Array, state: Array, since: float) -> int:
         """What has ceased to hold in a state, as a number of `state.event`, or 0.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py, test_acting.py
+        Checked  tests/tethered_deorbit/test_wrapping.py, test_ends.py
         """
         if not bodies.holds(record, state):
             return EDGES
@@ -257,7 +257,7 @@ def make_trajectory(
         """Redo the step so that it ends where the line's way over edges, or what a part goes by, has just ceased to
         hold, by halving.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py, test_acting.py
+        Checked  tests/tethered_deorbit/test_wrapping.py, test_ends.py
         """
         r = record[0]
         low, high = 0.0, 1.0
@@ -280,7 +280,7 @@ def make_trajectory(
     def stop_at_limit(record: Any, work: Array) -> None:
         """Redo the step so that it ends where the tension exceeds what a part lets pass, unless it ends before.
 
-        Checked  tests/tethered_deorbit/test_acting.py
+        Checked  tests/tethered_deorbit/test_ends.py
         """
         r = record[0]
         limit = acting.limit(record)
