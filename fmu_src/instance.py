@@ -109,7 +109,8 @@ class Instance:
             where = {k: self.record["fault_" + k][0] for k in ("index", "value", "time")}
             index = int(where["index"])
             at = self._names.get(index) if fault.names_variable and index else f"index {index}"
-            raise ModelFault(f"{fault.text} ({at}, value {where['value']:g}, at {where['time']:.9g} s)")
+            of = f"{at}, " if index else ""
+            raise ModelFault(f"{fault.text} ({of}value {where['value']:g}, at {where['time']:.9g} s)")
 
     def initialise(self, start_time: float = 0.0) -> Instance:
         self._call(SIZE, start_time, 0.0)

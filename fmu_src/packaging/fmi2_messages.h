@@ -44,6 +44,7 @@ static fmi2Status tell_fault(instance *i, int64_t command) {
     if (f->names && index > FAULT_VALUE && index < DCONE_SLOTS)
         return say(i, status, "%s (%s, value %.9g, at %.9g s)", f->text, name_of((fmi2ValueReference)index, name),
                    value, when);
+    if (!index) return say(i, status, "%s (value %.9g, at %.9g s)", f->text, value, when);
     return say(i, status, "%s (index %lld, value %.9g, at %.9g s)", f->text, (long long)index, value, when);
 }
 

@@ -12,6 +12,9 @@ PROPELLANT = 0.02
 """Share of the pair's mass [1] above which keeping the masses constant is told: an orbit's rate of fall and a snap's
 peak are then wrong by about as much, more than any other error of this model."""
 
+MEANT = "ends.raised_perigee"
+"""Who gives this wants the orbit raised."""
+
 Values = Mapping[str, float]
 
 
@@ -25,7 +28,7 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
     if "thrust" not in terms:
         return
     force = _force(values)
-    if _raises(values, terms):
+    if _raises(values, terms) and MEANT not in given:
         yield Caution("thrust.level", f"{force:g} N in the direction {terms['thrust']} raises the orbit")
     if force != 0.0 and "thrust.specific_impulse" not in given:
         isp = values["thrust.specific_impulse"]
@@ -36,17 +39,19 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     """From what came out."""
     propellant, altitude, axis = seen("chaser.propellant"), seen("altitude"), seen("center.semi_major_axis")
     mass = values.get("chaser.mass", math.nan) + values.get("target.mass", math.nan)
-    if propellant is not None and propellant.largest > PROPELLANT * mass:
+    if "engine" not in terms and propellant is not None and propellant.largest > PROPELLANT * mass:
         yield Caution(
             "chaser.propellant",
             f"{propellant.largest:.3g} kg were used, {100 * propellant.largest / mass:.2g} % of the pair's mass, "
-            "and yet the masses are held constant: towards the end the pair would be that much lighter",
+            "and yet the masses are held constant: towards the end the pair would be that much lighter; with an engine "
+            "they fall",
         )
     if altitude is not None and not any(low(altitude.first)):
         for sentence in low(altitude.least):
             yield Caution("altitude", f"the pair came down: {sentence}")
     separation = seen("separation")
-    if axis is not None and separation is not None and not _raises(values, terms) and _force(values) != 0.0:
+    meant = MEANT in given or _raises(values, terms)
+    if axis is not None and separation is not None and not meant and _force(values) != 0.0:
         # what the pair's own motion moves the osculating axis by
         noise = (3.0 * (separation.largest / axis.least) ** 2 + 1e-9) * axis.first
         if axis.last - axis.first > noise:

@@ -8,12 +8,13 @@ from typing import Any
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.thrust import Thrust
 from orbital.kernel import kernel
 from orbital.vectors import Array, matrix_vector
 
 
 def make_differentiate(
-    inertial: Callable[..., Any], reel: Reel, environment: Environment, bodies: Bodies
+    inertial: Callable[..., Any], reel: Reel, thrust: Thrust, environment: Environment, bodies: Bodies
 ) -> Callable[..., Any]:
     """The kernel that fills the rates and partial derivatives of the outputs.
 
@@ -59,8 +60,11 @@ def make_differentiate(
         center, velocity = state[0:3], state[3:6]
         for i in range(3):
             r.rate_center_velocity[i] = rate[3 + i]
+        thrust.lose(record, state, rate, -1.0)
+        for i in range(3):
             r.rate_chaser_velocity[i] = rate[3 + i] - r.state_target_share * rate[9 + i]
             r.rate_target_velocity[i] = rate[3 + i] + r.state_chaser_share * rate[9 + i]
+        thrust.lose(record, state, rate, 1.0)
         environment.differentiate(record, state, rate)
         environment.frame(record, center, velocity)
         room, other = r.state_vector[0], r.state_vector[1]

@@ -32,6 +32,7 @@ def make_equations(
         Source   the environment's gravity, the thrust, the bodies' turning and the pull of the line; dJ/dt = T
         Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_extremes.py: J
         """
+        thrust.weigh(record, state)
         environment.add_gravity(record, state, rate)
         thrust.add(record, state, rate, since)
         bodies.move(record, state, rate)

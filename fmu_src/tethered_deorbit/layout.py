@@ -5,6 +5,7 @@ every body that turns, and what they gather:
 
     0:3 R   centre of mass [m]      3:6 V   its velocity [m/s]      6:9 rho   relative [m]      9:12 its rate [m/s]
     then, for each body that turns, q attitude (4) [-], body to inertial axes, and w its rate (3) [rad/s], body axes
+    then, with an engine or burns, the propellant used [kg]
     last J  impulse of the line [N s]: dJ/dt is the tension that the equations have in them
 """
 
@@ -24,19 +25,22 @@ class StateLayout(NamedTuple):
     """Components of the state.
 
     moving      how many the equations depend on: all but the last
+    spent       place of the propellant, or that of J where none is kept
     impulse     place of J
     size        how many there are
     """
 
     moving: int
+    spent: int
     impulse: int
     size: int
 
 
-def state_layout(turning: int) -> StateLayout:
-    """The components of a pair of which so many bodies turn, 0 to 2."""
-    moving = PAIR + ATTITUDE * turning
-    return StateLayout(moving, moving, moving + 1)
+def state_layout(turning: int, spends: bool = False) -> StateLayout:
+    """The components of a pair of which so many bodies turn, 0 to 2, and that keeps what its thruster spends or not."""
+    spent = PAIR + ATTITUDE * turning
+    moving = spent + spends
+    return StateLayout(moving, spent, moving, moving + 1)
 
 
 class Places(NamedTuple):

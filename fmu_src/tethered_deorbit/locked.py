@@ -11,7 +11,7 @@ from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
-from orbital.oscillators import dashpot, line_stiffness, natural_frequency
+from orbital.oscillators import dashpot, line_stiffness, natural_frequency, reduced_mass
 
 
 def make_locked(interface: Interface) -> Reel:
@@ -58,7 +58,7 @@ def make_locked(interface: Interface) -> Reel:
         r.state_command_rate = rate
         r.state_length = length
         r.state_stiffness = stiffness
-        r.state_damping = dashpot(r.tether_damping_ratio, stiffness, r.state_reduced_mass)
+        r.state_damping = dashpot(r.tether_damping_ratio, stiffness, reduced_mass(r.chaser_mass, r.target_mass))
         if shortest < length:
             stiffness = line_stiffness(r.tether_youngs_modulus, r.tether_diameter, shortest)
         # Above critical damping the dashpot is the fastest thing there is.

@@ -25,7 +25,7 @@ from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish
 from fmu_src.tethered_deorbit.reel import LAWS, make_reel
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.start import make_start
-from fmu_src.tethered_deorbit.thrust import DIRECTIONS, Thrust, make_thrust
+from fmu_src.tethered_deorbit.thrust import DIRECTIONS, make_thrust
 from fmu_src.tethered_deorbit.trajectory import ACTS, EDGES, LINE, make_squared_error, make_trajectory
 from orbital.kernel import entry, kernel
 from orbital.oscillators import reduced_mass
@@ -56,6 +56,16 @@ LIMITED = (
     "reel.derivative_gain",
     "thrust.level",
     "thrust.specific_impulse",
+    "burn.start",
+    "burn.duration",
+    "burn.interval",
+    "burn.rise",
+    "burn.half_width",
+    "engine.propellant",
+    "engine.power_limit",
+    "engine.efficiency",
+    "plume.half_angle",
+    "plume.face",
     "ends.altitude",
     "ends.perigee",
     "ends.raised_perigee",
@@ -72,6 +82,9 @@ IMPLEMENTED = {
     "thrust": DIRECTIONS,
     "environment": FIELDS,
     "solver": tuple(SCHEMES),
+    "burn": ("timed", "arcs"),
+    "engine": ("electric", "chemical"),
+    "plume": ("beam",),
     "ends": ("watched",),
     "break": ("breaks",),
     **KINDS,
@@ -94,11 +107,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     limits = make_limits(interface, *LIMITED)
     bodies = make_bodies(terms, environment.place, environment.gradient, interface)
-    thrust = Thrust()
-    if "thrust" in terms:
-        thrust = make_thrust(terms["thrust"], environment.along_track, bodies.along, interface)
+    layout = state_layout(bodies.turning, "burn" in terms or "engine" in terms)
+    thrust = make_thrust(terms, environment, bodies.along, layout, interface)
 
-    layout = state_layout(bodies.turning)
     inertial, derivative = make_equations(environment, reel, thrust, bodies, layout)
     scheme = SCHEMES[terms["solver"]](
         derivative, make_squared_error(bodies), layout.moving, layout.size - layout.moving
@@ -112,8 +123,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)
     publish = make_publish(reel, environment, bodies, layout)
-    differentiate = make_differentiate(inertial, reel, environment, bodies)
-    size, impulse, work_size = layout.size, layout.impulse, places.total
+    differentiate = make_differentiate(inertial, reel, thrust, environment, bodies)
+    size, spent, impulse, work_size = layout.size, layout.spent, layout.impulse, places.total
     end_state, here_state, slope_state, low_error = places.end, places.here, places.slope, places.low
 
     @kernel
@@ -151,6 +162,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return fail(record, code, 0.0)
         thrust.reset(record)
         code = thrust.check(record)
+        if code == 0:
+            code = thrust.start(record)
         if code != 0:
             return fail(record, code, 0.0)
         force, _ = thrust.asked(record)
@@ -159,7 +172,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         code = start_state(record, end, reel.start_limit(record))
         if code != 0:
             return fail(record, code, 0.0)
+        end[spent] = 0.0
         end[impulse] = 0.0
+        thrust.weigh(record, end)
         if not finite(end):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), 0.0)
         if acts:
@@ -181,7 +196,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             begin_tug(record, 0.0, speed)
             note_pull(record, r.tether_tension)
         extremes.start(record)
-        thrust.publish(record, 0.0)
+        thrust.publish(record, end, 0.0)
         return 0
 
     @kernel
@@ -268,8 +283,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         radius = environment.fallen(here[0:3])
         if radius >= 0.0:
             return fail(record, blame(record, GROUND, 0, radius), target)
+        thrust.weigh(record, here)
         publish(record, here, separation, length, speed, r.state_since + (target - r.state_begin))
-        thrust.publish(record, target)
+        thrust.publish(record, here, target)
         r.state_published = target
         r.state_changes = 0
         extremes.publish(record)
@@ -291,6 +307,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r = record[0]
         here = work[here_state:slope_state]
         separation, length, speed = trajectory.state_at(record, work, r.state_published, here)
+        thrust.weigh(record, here)
         command, command_rate, taut = r.state_command, r.state_command_rate, r.state_taut
         force, force_rate = r.state_thrust, r.state_thrust_rate
         asked, asked_rate = reel.asked(record)
@@ -306,8 +323,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if differentiating:
             asked_force, asked_force_rate = thrust.asked(record)
             thrust.put(record, asked_force, force_rate if asked_force == force else asked_force_rate)
+            since = r.state_since
+            r.state_since = r.state_begin - r.state_published
             differentiate(record, here, work[slope_state:low_error], separation, length, speed)
-            thrust.publish_rate(record)
+            thrust.publish_rate(record, r.state_published)
+            r.state_since = since
             thrust.put(record, force, force_rate)
         else:
             publish(record, here, separation, length, speed, 0.0)

@@ -1,9 +1,24 @@
-"""The variables of what a scene may add to a tow: ends of its own, a line that breaks."""
+"""The variables of what a scene may add to a tow: burns, an engine, a plume, ends of its own, a line that breaks."""
 
 from __future__ import annotations
 
+import math
+
 from fmu_src.interface import Group, Term, Variable
-from fmu_src.rows import at_least_zero, flag, parameter, peak, positive, state
+from fmu_src.rows import (
+    angle,
+    at_least_zero,
+    choice,
+    count,
+    flag,
+    output,
+    parameter,
+    peak,
+    positive,
+    rate,
+    state,
+    vector,
+)
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
 NOWHERE, EVERYWHERE = -EARTH_EQUATORIAL_RADIUS, 1e12
@@ -52,4 +67,112 @@ BREAKING = Group(
     },
     optional=True,
     follows=lambda terms, values: "breaks",
+)  # fmt: skip
+
+_FORCE = (
+    output("thrust.force", "N", "in use, along the direction; negative against it", 0.01, "rate.thrust_force"),
+    rate("thrust_force", "N/s"),
+)
+"""Of a thruster that does not simply give what is asked for."""
+
+_BURN = (
+    choice("burn.edge", "how the thrust comes and goes: at once, in a ramp, or with the line's own rate taken out",
+           ("step", "ramp", "notch")),
+    positive("burn.rise", "s", "how long a ramp takes", 1.0, 1e6),
+    *_FORCE,
+    state("state.burn", "1", "0 off, 1 on, 2 going", kind="Integer"),
+    count("state.burns", "burns begun", "state"),
+    state("state.burn_begun", "s", "when the last began"),
+    state("state.burn_ended", "s", "when it was let go"),
+    state("state.burn_due", "s", "when it changes next by the clock"),
+    state("state.burn_rate", "rad/s", "of the pair on its line at the start"),
+)  # fmt: skip
+
+BURN = Group(
+    {
+        "timed": Term(
+            "the thruster burns at times of its own: once, or pulse after pulse",
+            (
+                at_least_zero("burn.start", "s", "when the first begins", 0.0, 1e9),
+                at_least_zero("burn.duration", "s", "of each; zero: one period of the pair on its line", 0.0, 1e9),
+                at_least_zero("burn.interval", "s", "from one beginning to the next; zero: there is one", 0.0, 1e9),
+                count("burn.count", "how many; zero: no end", "parameter"),
+                *_BURN,
+            ),
+            needs=("thrust",),
+        ),
+        "arcs": Term(
+            "the thruster burns on arcs about the apsides of the reference orbit",
+            (
+                choice("burn.about", "which apsides; on a circular orbit, the points named so by orbit.true_anomaly",
+                       ("perigee", "apogee", "both")),
+                angle("burn.half_width", "of each arc, by the angle of the centre of mass", math.radians(30.0), 1e-6,
+                      math.pi),
+                *_BURN,
+                vector("state.perigee", "1", "direction of the reference orbit's, inertial", "state"),
+            ),
+            needs=("thrust",),
+        ),
+    },
+    selector="when",
+    optional=True,
+)  # fmt: skip
+
+_ENGINE = (
+    positive("engine.propellant", "kg", "in the tank at the start, part of chaser.mass; the masses fall as it is used",
+             50.0, 1e6),
+    output("engine.propellant_left", "kg", "in the tank", 10.0, "rate.propellant_left"),
+    *_FORCE,
+    rate("propellant_left", "kg/s"),
+    state("state.chaser_mass", "kg", "with what is left in the tank"),
+    state("state.empty", "1", "the tank is empty", kind="Integer"),
+)  # fmt: skip
+
+ENGINES = Group(
+    {
+        "electric": Term(
+            "thrust within the electric power there is; the masses fall",
+            (
+                *_ENGINE,
+                positive("engine.power_limit", "W", "electric power that the thruster may draw", 1000.0, 1e7),
+                parameter("engine.efficiency", "1", "power of the jet over that drawn", 0.6, 0.0, 1.0,
+                          open_minimum=True),
+                output("engine.power", "W", "drawn", 100.0, "rate.engine_power"),
+                flag("engine.limited", "more thrust is asked for than the power allows"),
+                rate("engine_power", "W/s"),
+            ),
+            needs=("thrust",),
+        ),
+        "chemical": Term(
+            "any thrust; the masses fall",
+            (
+                *_ENGINE,
+                positive("thrust.specific_impulse", "s", "for the propellant used", 300.0, 1e6),
+            ),
+            needs=("thrust",),
+        ),
+    },
+    selector="kind",
+    optional=True,
+)  # fmt: skip
+
+PLUME = Group(
+    {
+        "beam": Term(
+            "the thruster's beam: how much of it meets the target, and whether the line lies in it",
+            (
+                parameter("plume.half_angle", "rad", "within which 95 % of the beam lie", math.radians(15.0), 1e-3, 1.5,
+                          display_unit="deg"),
+                positive("plume.face", "m", "side of the square that the target shows the chaser", 4.0, 1e3),
+                Variable("plume.pushes", "1", "parameter", "what meets the target pushes it; else it is only told",
+                         True, kind="Boolean"),
+                output("plume.share", "1", "of the beam on the target", 1.0),
+                output("plume.force", "N", "of that share", 0.01),
+                flag("plume.on_line", "the line of centres lies within the half-angle of the beam"),
+            ),
+            needs=("thrust",),
+        ),
+    },
+    optional=True,
+    follows=lambda terms, values: "beam",
 )  # fmt: skip

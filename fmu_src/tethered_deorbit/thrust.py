@@ -1,15 +1,20 @@
-"""The chaser's thruster: a signed force along one of three directions, and the propellant it takes."""
+"""The chaser's thruster: a signed force along one of three directions, and the propellant that it takes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
-from fmu_src.tethered_deorbit.acting import IDLE, Acting
+from fmu_src.tethered_deorbit.acting import IDLE, Acting, together
+from fmu_src.tethered_deorbit.burn import STEADY, make_burn
+from fmu_src.tethered_deorbit.engine import make_engine
+from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
+from fmu_src.tethered_deorbit.layout import StateLayout
+from fmu_src.tethered_deorbit.plume import make_plume
 from orbital.constants import STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -37,53 +42,32 @@ class Thrust(NamedTuple):
 
     reset(record)                     nothing used yet
     add(record, state, rate, since)   add the thrust to the rate of the state, `since` [s] after its force was set
+    weigh(record, state)              masses of the pair in a state
+    lose(record, state, rate, sign)   what their loss does to the rate of the centre of mass, with a sign
     asked(record) -> (force, rate)    what level and input say [N], [N/s]
     leave(record, duration)           write the value the input has reached after a time back to it
     check(record) -> fault            whether the input can be
+    start(record) -> fault            whether the engine can
     account(record, time)             book the propellant used up to `time`, before the force changes
     put(record, force, rate)          put a force in force, to move at a rate
-    publish(record, time)             propellant used up to `time`
-    publish_rate(record)              and how fast it is used
+    publish(record, state, time)      propellant used up to `time`, and what else is to be seen of it
+    publish_rate(record, time)        and how fast it is used
     acting                            what the thruster does by itself
     """
 
     reset: Callable[..., Any] = nothing
     add: Callable[..., Any] = nothing
+    weigh: Callable[..., Any] = nothing
+    lose: Callable[..., Any] = nothing
     asked: Callable[..., Any] = no_force
     leave: Callable[..., Any] = nothing
     check: Callable[..., Any] = no_fault
+    start: Callable[..., Any] = no_fault
     account: Callable[..., Any] = nothing
     put: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     publish_rate: Callable[..., Any] = nothing
     acting: Acting = IDLE
-
-
-@kernel
-def _add_along(record: Any, rate: Array, since: float, x: float, y: float, z: float) -> None:
-    """Add the thrust along a direction of any length to the rates of centre of mass and relative vector [m/s^2].
-
-        V' += F u/M,   rho'' -= F u/m_c,   u = (x, y, z)/|(x, y, z)|
-
-    rate          of R, V, rho, rho'  of `layout`                (12,)
-    since         since the force was set                        [s]
-
-    Valid    any; without a direction there is no thrust
-    Source   Newton's second law
-    Checked  tests/tethered_deorbit/test_terms.py
-    """
-    r = record[0]
-    length = math.sqrt(x * x + y * y + z * z)
-    if length > 0.0:
-        force = r.state_thrust + r.state_thrust_rate * since
-        on_center = force / (r.state_total_mass * length)
-        on_chaser = force / (r.chaser_mass * length)
-        rate[3] += on_center * x
-        rate[4] += on_center * y
-        rate[5] += on_center * z
-        rate[9] -= on_chaser * x
-        rate[10] -= on_chaser * y
-        rate[11] -= on_chaser * z
 
 
 @kernel
@@ -106,7 +90,11 @@ DIRECTIONS = ("along_track", "velocity", "tether")
 
 
 def make_thrust(
-    name: str, along_track: Callable[..., Any], along_line: Callable[..., Any], interface: Interface
+    terms: Mapping[str, str],
+    environment: Environment,
+    along_line: Callable[..., Any],
+    layout: StateLayout,
+    interface: Interface,
 ) -> Thrust:
     """A thruster on the chaser.
 
@@ -114,33 +102,77 @@ def make_thrust(
 
     The force may move at a constant rate; the integral is then exact, also where the force turns round.
 
-    Masses stay constant. The propellant of a tow from 800 to 200 km at 3000 s is 1.1 % of the pair's mass; keeping it
-    aboard makes the tow 0.6 % longer than `orbital.references.spiral_time` with its exhaust speed says.
+    Without an engine masses stay constant. The propellant of a tow from 800 to 200 km at 3000 s is 1.1 % of the pair's
+    mass; keeping it aboard makes the tow 0.6 % longer than `orbital.references.spiral_time` with its exhaust speed
+    says. With an engine or burns F is what these leave of it, and the propellant a component of the state.
 
-    name          of the direction: along_track, velocity or tether
-    along_track   kernel of the environment that gives this one
+    terms         those of "thrust", "burn", "engine" and "plume", as far as there are any
+    environment   whose along-track is the first direction
     along_line    kernel of the bodies that gives the third
+    layout        where the propellant stands in the state
     interface     whose record it is for
 
-    Valid    point masses: no torque, no plume on the target
+    Valid    thrust through the chaser's centre of mass: no torque
     Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, test_ramps.py
     """
-    direction = {"along_track": along_track, "velocity": _along_velocity, "tether": along_line}[name]
+    if "thrust" not in terms:
+        return Thrust()
+    direction = {"along_track": environment.along_track, "velocity": _along_velocity, "tether": along_line}[
+        terms["thrust"]
+    ]
+    burn = make_burn(terms, environment.place, interface)
+    engine = make_engine(terms, layout, interface)
+    plume = make_plume(terms, interface)
     offset_slot = interface.references["thrust.offset"]
+    spent, shaped, keeps = layout.spent, burn is not STEADY or engine.real, layout.spent < layout.impulse
+    beams = "plume" in terms
+    mass = "state_chaser_mass" if engine.real else "chaser_mass"
+
+    @kernel
+    def force_at(record: Any, since: float) -> tuple[float, float]:
+        """Force in use [N] and its rate [N/s], some time after the inputs in force began to move [s].
+
+        Checked  tests/tethered_deorbit/test_ramps.py, test_burn.py, test_engine.py
+        """
+        r = record[0]
+        force, rate = r.state_thrust + r.state_thrust_rate * since, r.state_thrust_rate
+        if not shaped:
+            return force, rate
+        share, change = burn.share(record, r.state_begin - r.state_since + since)
+        given = engine.limited(record, force)
+        return given * share, given * change + (rate * share if given == force else 0.0)
 
     @kernel
     def add(record: Any, state: Array, rate: Array, since: float) -> None:
-        """Add the thrust along its direction to the rate of the state.
+        """Add the thrust along its direction to the rates of centre of mass and relative vector [m/s^2].
 
-        state, rate   R, V, rho, rho'  of `layout`               (12,)
+            V' += F u/M,   rho'' -= F u/m_c,   u a unit vector
+
+        state, rate   of `layout`
         since         since the force was set                    [s]
 
-        Source   as `_add_along`
+        Valid    any; without a direction there is no thrust
+        Source   Newton's second law
         Checked  tests/tethered_deorbit/test_terms.py, test_uncompiled.py
         """
+        r = record[0]
+        force, _ = force_at(record, since)
         x, y, z = direction(record, state)
-        _add_along(record, rate, since, x, y, z)
+        length = math.sqrt(x * x + y * y + z * z)
+        if length > 0.0:
+            on_center = force / (r.state_total_mass * length)
+            on_chaser = force / (r[mass] * length)
+            rate[3] += on_center * x
+            rate[4] += on_center * y
+            rate[5] += on_center * z
+            rate[9] -= on_chaser * x
+            rate[10] -= on_chaser * y
+            rate[11] -= on_chaser * z
+        if keeps:
+            rate[spent] = abs(force) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
+            engine.lose(record, state, rate, 1.0)
+        plume.add(record, state, rate, force, x, y, z)
 
     @kernel
     def reset(record: Any) -> None:
@@ -230,32 +262,51 @@ def make_thrust(
         r.state_thrust_rate = rate
 
     @kernel
-    def publish(record: Any, time: float) -> None:
-        """Write the propellant used up to a time [s] to its output [kg].
+    def publish(record: Any, state: Array, time: float) -> None:
+        """Write the propellant used up to a time [s] to its output [kg], and what else is to be seen.
 
-        Checked  tests/tethered_deorbit/test_ramps.py
+        Checked  tests/tethered_deorbit/test_ramps.py, test_burn.py, test_engine.py, test_plume.py
         """
-        record[0].chaser_propellant = used(record, time)
+        r = record[0]
+        if keeps:
+            r.chaser_propellant = state[spent]
+            publish_rate(record, time)
+        else:
+            r.chaser_propellant = used(record, time)
+        if beams:
+            force, _ = force_at(record, time - (r.state_begin - r.state_since))
+            x, y, z = direction(record, state)
+            plume.publish(record, state, force, x, y, z)
 
     @kernel
-    def publish_rate(record: Any) -> None:
-        """Write how fast propellant is used [kg/s].
+    def publish_rate(record: Any, time: float) -> None:
+        """Write how fast propellant is used [kg/s], and the force and what it draws.
 
             |F|/(Isp g0)
 
-        Checked  tests/tethered_deorbit/test_derivatives.py, against differences
+        time          at which                                   [s]
+
+        Checked  tests/tethered_deorbit/test_derivatives.py, against differences; test_burn.py, test_engine.py
         """
         r = record[0]
-        r.rate_propellant = abs(r.state_thrust) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
+        force, change = force_at(record, time - (r.state_begin - r.state_since))
+        r.rate_propellant = abs(force) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
+        if keeps:
+            r.thrust_force, r.rate_thrust_force = force, change
+            engine.publish(record, force, change)
 
     return Thrust(
         reset=reset,
         add=add,
+        weigh=engine.weigh,
+        lose=engine.lose,
         asked=asked,
         leave=leave,
         check=check,
+        start=engine.check,
         account=account,
         put=put,
         publish=publish,
         publish_rate=publish_rate,
+        acting=together((burn.acting, engine.acting)),
     )

@@ -75,12 +75,23 @@ def add_turning(record: Any, state: Array, rate: Array, sign: float) -> None:
 def turn_back(record: Any, time: float, vectors: Array) -> None:
     """Components along inertial axes of vectors given along axes that have turned for a time [s]; in place.
 
+    vectors       R, V, rho, rho'  of `layout`                   (12,); what lies behind them stays
+
+    Checked  tests/tethered_deorbit/test_turning.py
+    """
+    turn_vectors_back(record, time, vectors, layout.PAIR)
+
+
+@kernel
+def turn_vectors_back(record: Any, time: float, vectors: Array, size: int) -> None:
+    """The same for any vectors, one after the other.
+
         v + a (q x v) + b q x (q x v),   q = w t,   a = sin|q|/|q|,   b = (1 - cos|q|)/|q|^2
 
     The two factors are their series, which round alike everywhere; the sum is formed so that a length keeps its last
     digit over a hundred thousand steps.
 
-    vectors       R, V, rho, rho'  of `layout`                   (12,); what lies behind them stays
+    size          three times as many as there are               [-]
 
     Valid    |q| < 0.3
     Source   Rodrigues' formula
@@ -93,7 +104,7 @@ def turn_back(record: Any, time: float, vectors: Array) -> None:
         return
     a = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0))))
     b = 0.5 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0))))
-    for i in range(0, layout.PAIR, 3):
+    for i in range(0, size, 3):
         u = y * vectors[i + 2] - z * vectors[i + 1]
         v = z * vectors[i] - x * vectors[i + 2]
         w = x * vectors[i + 1] - y * vectors[i]

@@ -185,7 +185,7 @@ def test_the_models_own_end_is_a_discard_with_terminated_and_time(make):
     assert raw.step(0.0, 1.0) == OK
     assert not raw.ended()
     assert raw.step(1.0, 1.0) == DISCARD
-    assert raw.said[-1] == (DISCARD, "logStatusDiscard", "the cart has arrived (index 0, value 0, at 1.25 s)")
+    assert raw.said[-1] == (DISCARD, "logStatusDiscard", "the cart has arrived (value 0, at 1.25 s)")
     assert raw.ended()
     assert raw.real_status() == (OK, 1.25)
     assert raw.get("x") == 0.0

@@ -13,8 +13,10 @@ from fmu_src.instance import Instance, ModelFault
 from fmu_src.packaging import compile
 from fmu_src.tethered_deorbit import kinematics
 from fmu_src.tethered_deorbit.bodies import points
-from fmu_src.tethered_deorbit.environment.central import add_gravity, along_track
+from fmu_src.tethered_deorbit.environment import make_environment
+from fmu_src.tethered_deorbit.environment.central import add_gravity
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
+from fmu_src.tethered_deorbit.layout import state_layout
 from fmu_src.tethered_deorbit.thrust import make_thrust
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from tests.validation import Validated, other_code
@@ -93,7 +95,9 @@ def test_thrust_directions(direction: str) -> None:
     way = {"along_track": np.cross(np.cross(r, v), r), "velocity": v, "tether": STATE[6:9]}[direction]
     force = -0.01 * way / np.linalg.norm(way)
     rate = np.zeros(12)
-    make_thrust(direction, along_track, points.along, MODEL.interface(TERMS)).add(masses(), STATE, rate, 0.0)
+    interface = MODEL.interface(TERMS | {"thrust": direction})
+    environment = make_environment("central", interface)
+    make_thrust(interface.terms, environment, points.along, state_layout(0), interface).add(masses(), STATE, rate, 0.0)
     assert rate[3:6] == pytest.approx(force / 3000.0, rel=1e-12)
     assert rate[9:] == pytest.approx(-force / 2000.0, rel=1e-12)
     assert not rate[:3].any()
@@ -118,8 +122,8 @@ def test_nothing_of_the_process_that_compiles_is_compiled_in(tmp_path: Path) -> 
     with_thrust = code(TERMS, tmp_path)
     assert "inttoptr" not in with_thrust
     assert "NRT_" not in re.sub(r"declare[^\n]*", "", with_thrust)
-    assert "_add_along" in with_thrust
-    assert "_add_along" not in code({"reel": "locked"}, tmp_path)
+    assert "make_thrust" in with_thrust
+    assert "make_thrust" not in code({"reel": "locked"}, tmp_path)
 
 
 def test_without_a_thruster() -> None:

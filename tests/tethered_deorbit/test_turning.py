@@ -13,8 +13,10 @@ from fmu_src.integrators.dop853 import DAMPED_REACH, UNDAMPED_REACH, make_dop853
 from fmu_src.integrators.dop853 import reach as reach_of_dop853
 from fmu_src.tethered_deorbit import kinematics, turning
 from fmu_src.tethered_deorbit.bodies import points
-from fmu_src.tethered_deorbit.environment.central import add_gravity, along_track
+from fmu_src.tethered_deorbit.environment import make_environment
+from fmu_src.tethered_deorbit.environment.central import add_gravity
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
+from fmu_src.tethered_deorbit.layout import state_layout
 from fmu_src.tethered_deorbit.thrust import make_thrust
 from fmu_src.tethered_deorbit.trajectory import make_longest_taut_step
 from orbital.kernel import kernel
@@ -100,7 +102,9 @@ def _uneven(record: Any, state: Any, rate: Any) -> None:
 def test_laws_look_the_same_from_any_axes(direction: str) -> None:
     """f(Q x) = Q f(x) for gravity and every thrust; a force fixed in space would not be so."""
     by, record = np.array([0.3, -1.0, 0.7]), taut_record()
-    push = make_thrust(direction, along_track, points.along, MODEL.interface(TERMS)).add
+    interface = MODEL.interface(TERMS | {"thrust": direction})
+    environment = make_environment("central", interface)
+    push = make_thrust(interface.terms, environment, points.along, state_layout(0), interface).add
 
     def add(record: Any, state: Any, rate: Any) -> None:
         push(record, state, rate, 0.0)

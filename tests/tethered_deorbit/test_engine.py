@@ -1,0 +1,134 @@
+"""Engines: masses that fall, power that limits, a tank that empties. Judged by Newton for each body on its own."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from fmu_src.instance import ModelFault
+from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
+from orbital.constants import EARTH_MU, STANDARD_GRAVITY
+from tests.plain import PlainInstance, plain
+
+__all__ = ["plain"]
+pytestmark = pytest.mark.usefixtures("plain")
+
+CHASER, TARGET, FORCE, IMPULSE = 2000.0, 1000.0, 400.0, 300.0
+EXHAUST = IMPULSE * STANDARD_GRAVITY
+FLOW = FORCE / EXHAUST
+
+
+def free(engine: str, **more: Any) -> PlainInstance:
+    return PlainInstance(
+        MODEL,
+        {"reel": "commanded", "environment": "none", "thrust": "along_track", "engine": engine},
+        {
+            "start.condition": HANDED_OVER,
+            "start_relative_position": (0.0, -50.0, 0.0),
+            "thrust.level": FORCE,
+            "engine.propellant": 1000.0,
+            "thrust.specific_impulse": IMPULSE,
+            **more,
+        },
+    )
+
+
+def test_the_rocket_equation() -> None:
+    """A chaser that pulls nothing: v = v_e ln(m0/m). The target stays, and the centre of mass follows from both."""
+    i = free("chemical")
+    i.step(4000.0)
+    left = CHASER - FLOW * 4000.0
+    assert i["chaser.propellant"] == pytest.approx(FLOW * 4000.0, rel=1e-13)
+    assert i["engine.propellant_left"] == pytest.approx(1000.0 - FLOW * 4000.0, rel=1e-12)
+    assert i["chaser.velocity[2]"] == pytest.approx(EXHAUST * math.log(CHASER / left), rel=1e-11)
+    assert abs(i["target.velocity[2]"]) < 1e-9
+    assert i["target.position[2]"] == pytest.approx(i.record[0].target_position[1])
+    burnt = 4000.0
+    travelled = EXHAUST * (burnt - left / FLOW * math.log(CHASER / left))
+    assert i["chaser.position[2]"] - i["target.position[2]"] == pytest.approx(50.0 + travelled, rel=1e-10)
+    share = left / (left + TARGET)
+    center = i["target.position[2]"] + share * (50.0 + travelled)
+    assert i["center.position[2]"] == pytest.approx(center, rel=1e-10)
+
+
+def test_towed_on_an_orbit_as_newton_says_of_each() -> None:
+    """Two absolute bodies, their own masses, in scipy: a constant pull, thrust along-track, half the tank used."""
+    tension, time = 100.0, 1500.0
+    i = PlainInstance(
+        MODEL,
+        {"reel": "commanded", "thrust": "along_track", "engine": "chemical"},
+        {
+            "start.condition": HANDED_OVER,
+            "start_relative_position": (0.0, 5000.0, 0.0),
+            "reel.tension": tension,
+            "thrust.level": -FORCE,
+            "engine.propellant": 1000.0,
+            "thrust.specific_impulse": IMPULSE,
+            "orbit.inclination": 0.0,
+        },
+    )
+    begin = np.concatenate(
+        [np.array(i.array(n)) for n in ("chaser_position", "chaser_velocity", "target_position", "target_velocity")]
+    )
+
+    def motion(t: float, y: Any) -> Any:
+        chaser, v, target, w = y[0:3], y[3:6], y[6:9], y[9:12]
+        mass = CHASER - FLOW * t
+        line = (target - chaser) / np.linalg.norm(target - chaser)
+        along = np.cross(np.cross(chaser, v), chaser)
+        thrust = -FORCE * along / np.linalg.norm(along)
+        a = -EARTH_MU * chaser / np.linalg.norm(chaser) ** 3 + (tension * line + thrust) / mass
+        b = -EARTH_MU * target / np.linalg.norm(target) ** 3 - tension * line / TARGET
+        return np.concatenate([v, a, w, b])
+
+    done = solve_ivp(motion, (0.0, time), begin, method="DOP853", rtol=1e-13, atol=1e-9)
+    for _ in range(5):
+        i.step(time / 5)
+    for name, at in (("chaser_position", 0), ("target_position", 6)):
+        assert np.linalg.norm(i.array(name) - done.y[at : at + 3, -1]) < 1e-3
+    for name, at in (("chaser_velocity", 3), ("target_velocity", 9)):
+        assert np.linalg.norm(i.array(name) - done.y[at : at + 3, -1]) < 1e-6
+    i.differentiate()
+    slope = motion(time, done.y[:, -1])
+    for n in range(3):
+        assert i.rate(f"chaser.velocity[{n + 1}]") == pytest.approx(slope[3 + n], abs=1e-8)
+
+
+def test_a_tank_that_empties() -> None:
+    i = free("chemical", **{"engine.propellant": 50.0})
+    i.step(1000.0)
+    assert i["thrust.force"] == 0.0
+    assert i["chaser.propellant"] == pytest.approx(50.0, rel=1e-9)
+    assert i["engine.propellant_left"] == pytest.approx(0.0, abs=1e-7)
+    assert i["chaser.velocity[2]"] == pytest.approx(EXHAUST * math.log(CHASER / (CHASER - 50.0)), rel=1e-9)
+
+
+def test_power_limits_the_thrust() -> None:
+    """|F| = 2 eta P/(Isp g0): 500 W at 60 % and 3000 s are 20.4 mN."""
+    ion = {"thrust.specific_impulse": 3000.0, "engine.power_limit": 500.0, "engine.efficiency": 0.6}
+    i = free("electric", **ion, **{"thrust.level": -1.0})
+    i.step(100.0)
+    most = 2.0 * 0.6 * 500.0 / (3000.0 * STANDARD_GRAVITY)
+    assert most == pytest.approx(0.0204, rel=2e-3)
+    assert (i["thrust.force"], i["engine.limited"]) == (pytest.approx(-most, rel=1e-14), 1)
+    assert i["engine.power"] == pytest.approx(500.0, rel=1e-14)
+    i = free("electric", **ion, **{"thrust.level": -0.01})
+    i.step(100.0)
+    assert (i["thrust.force"], i["engine.limited"]) == (-0.01, 0)
+    assert i["engine.power"] == pytest.approx(0.01 * 3000.0 * STANDARD_GRAVITY / 1.2, rel=1e-14)
+
+
+def test_a_tank_is_part_of_the_chaser() -> None:
+    with pytest.raises(ModelFault, match="out of its bounds"):
+        free("chemical", **{"engine.propellant": CHASER})
+
+
+def test_nothing_is_left_of_an_earlier_run() -> None:
+    i = free("chemical", **{"engine.propellant": 50.0})
+    i.step(1000.0)
+    i.initialise()
+    assert (i["chaser.propellant"], i["thrust.force"], i["engine.propellant_left"]) == (0.0, FORCE, 50.0)
+    i.step(100.0)
+    assert i["chaser.velocity[2]"] == pytest.approx(EXHAUST * math.log(CHASER / (CHASER - FLOW * 100.0)), rel=1e-11)
