@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
-from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import (
     CAME_CLOSE,
@@ -87,8 +86,10 @@ GAPS = {"box": box_gap, "cylinder": cylinder_gap}
 """Distance to a target with a surface, by its kind; to others, that to a sphere."""
 
 
-def make_ends(terms: Mapping[str, str], bodies: Bodies, interface: Interface) -> Acting:
+def make_ends(terms: Mapping[str, str], line: Callable[..., Any], interface: Interface) -> Acting:
     """What ends a run, for a record of this interface; IDLE where the scene has none.
+
+    line          kernel of the bodies, which finds how much of the line lies on the target
 
     Each is a condition of the state, so that the instant is found within the step. One that is met at the start
     is refused.
@@ -155,7 +156,7 @@ def make_ends(terms: Mapping[str, str], bodies: Bodies, interface: Interface) ->
         if room <= r.ends_clearance:
             return CAME_CLOSE, clearance_slot, room
         if has_surface:
-            bodies.line(record, state)
+            line(record, state)
             if r.state_wrapped > r.ends_wrapped:
                 return WRAPPED_UP, wrapped_slot, r.state_wrapped
         return 0, 0, 0.0

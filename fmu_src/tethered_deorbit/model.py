@@ -108,7 +108,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     limits = make_limits(interface, *LIMITED)
     bodies = make_bodies(terms, environment.place, environment.gradient, interface)
     layout = state_layout(bodies.turning, "burn" in terms or "engine" in terms)
-    thrust = make_thrust(terms, environment, bodies.along, layout, interface)
+    thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     inertial, derivative = make_equations(environment, reel, thrust, bodies, layout)
     scheme = SCHEMES[terms["solver"]](
@@ -117,7 +117,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     places = places_of(layout, scheme)
     events = make_events(reel, bodies, scheme, places)
     extremes = make_extremes(events, places)
-    acting = together((reel.acting, thrust.acting, make_ends(terms, bodies, interface)))
+    acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
     acts = acting is not IDLE
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)

@@ -10,7 +10,6 @@ from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.acting import IDLE, Acting, together
 from fmu_src.tethered_deorbit.burn import STEADY, make_burn
 from fmu_src.tethered_deorbit.engine import make_engine
-from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import StateLayout
@@ -91,7 +90,8 @@ DIRECTIONS = ("along_track", "velocity", "tether")
 
 def make_thrust(
     terms: Mapping[str, str],
-    environment: Environment,
+    place: Callable[..., Any],
+    along_track: Callable[..., Any],
     along_line: Callable[..., Any],
     layout: StateLayout,
     interface: Interface,
@@ -107,7 +107,8 @@ def make_thrust(
     says. With an engine or burns F is what these leave of it, and the propellant a component of the state.
 
     terms         those of "thrust", "burn", "engine" and "plume", as far as there are any
-    environment   whose along-track is the first direction
+    place         kernel of the environment: the orbit's point at the start
+    along_track   kernel of it that gives the first direction
     along_line    kernel of the bodies that gives the third
     layout        where the propellant stands in the state
     interface     whose record it is for
@@ -118,10 +119,8 @@ def make_thrust(
     """
     if "thrust" not in terms:
         return Thrust()
-    direction = {"along_track": environment.along_track, "velocity": _along_velocity, "tether": along_line}[
-        terms["thrust"]
-    ]
-    burn = make_burn(terms, environment.place, interface)
+    direction = {"along_track": along_track, "velocity": _along_velocity, "tether": along_line}[terms["thrust"]]
+    burn = make_burn(terms, place, interface)
     engine = make_engine(terms, layout, interface)
     plume = make_plume(terms, interface)
     offset_slot = interface.references["thrust.offset"]

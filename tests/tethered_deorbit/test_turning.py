@@ -104,7 +104,9 @@ def test_laws_look_the_same_from_any_axes(direction: str) -> None:
     by, record = np.array([0.3, -1.0, 0.7]), taut_record()
     interface = MODEL.interface(TERMS | {"thrust": direction})
     environment = make_environment("central", interface)
-    push = make_thrust(interface.terms, environment, points.along, state_layout(0), interface).add
+    push = make_thrust(
+        interface.terms, environment.place, environment.along_track, points.along, state_layout(0), interface
+    ).add
 
     def add(record: Any, state: Any, rate: Any) -> None:
         push(record, state, rate, 0.0)
