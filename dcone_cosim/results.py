@@ -28,6 +28,7 @@ class PhaseResult:
     error        the failure, or the interrupt, that ended the phase early
     ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
     coupling     steps of several coupled FMUs: how many, rejected, forced, smallest and largest [s]
+    passive      what becomes of a tow that stops at instants on the way, `phases.passive.Instant`, if that was asked
     """
 
     name: str
@@ -46,6 +47,7 @@ class PhaseResult:
     ended_by: str = ""
     ended_at: float = math.nan
     origin: float = 0.0
+    passive: Sequence[Any] = ()
 
     def ended(self, end: Terminated) -> None:
         """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:

@@ -136,6 +136,8 @@ def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
             yield "nodes", nodes_table(result.snapshots, clock)
         if result.tugs is not None:
             yield kind.tugs_file, tugs_table(result.tugs, clock)
+        if result.passive:
+            yield f"{name}_passive_safety", passive_table(result, clock)
     for name, result in run.comparisons.items():
         if result.tugs is not None:
             yield f"{name}_without_recoil_tugs", tugs_table(result.tugs, kind_of(name).clock(run))
@@ -170,6 +172,26 @@ def tugs_table(tugs: TugLog, clock: str) -> pa.Table:
             ("time", "s", rows[:, 1]),
             ("peak", "N", rows[:, 2]),
             ("speed", "m/s", rows[:, 3]),
+        ],
+        time={"clock": clock},
+    )
+
+
+def passive_table(result: PhaseResult, clock: str) -> pa.Table:
+    """One row per instant at which the thrust was stopped and the line cut; NaN where that could not be shown."""
+
+    def column(what: str, field: str) -> npt.NDArray[np.float64]:
+        found = [getattr(instant, what) for instant in result.passive]
+        return np.array([math.nan if near is None else getattr(near, field) for near in found])
+
+    return _table(
+        [
+            ("time", "s", np.array([instant.time for instant in result.passive])),
+            ("separation", "m", np.array([instant.separation for instant in result.passive])),
+            ("stopped.least_distance", "m", column("stopped", "distance")),
+            ("stopped.after", "s", column("stopped", "after")),
+            ("cut.least_distance", "m", column("cut", "distance")),
+            ("cut.after", "s", column("cut", "after")),
         ],
         time={"clock": clock},
     )

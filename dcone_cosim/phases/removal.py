@@ -18,8 +18,8 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
-from dcone_cosim.phases import chaos, removal_criteria, removal_quantities, removal_report
-from dcone_cosim.phases.phase import Document, Figure, Phase, Stage
+from dcone_cosim.phases import chaos, passive, removal_criteria, removal_quantities, removal_report
+from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
 from dcone_cosim.plots import tow
 from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import Handover, PhaseResult, RunResult
@@ -44,6 +44,10 @@ class Tow(Phase):
 
     model = "tethered_deorbit"
     examples = ("60 s", "1 day")
+    keys: Mapping[str, Expected] = {
+        "safety_every": Expected("s", example="10 min", minimum=1e-3),
+        "safety_horizon": Expected("s", example="3 h", minimum=1e-3),
+    }
     own_clock = True
     wanted = (
         ("take-over", (*REMOVAL_SETS, "start.condition", "orbit.altitude", "orbit.true_anomaly")),
@@ -86,6 +90,14 @@ class Tow(Phase):
             if path[:2] == (*own, "parameters") and self.takes_over(variable):
                 yield Mistake(path, given_at(document.tables, path), text)
 
+    def options(self, found: Mapping[str, Any], main: Main | None) -> passive.PassiveOptions:
+        return passive.PassiveOptions(**found)
+
+    def afterwards(self, stage: Stage, result: PhaseResult) -> None:
+        """What becomes of the pair if it stops on the way."""
+        if math.isfinite(stage.phase.options.safety_every) and result.error is None:
+            result.passive = passive.examine(stage, result)
+
     def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         return removal_report.findings(run, self.name, result)
 
@@ -100,7 +112,9 @@ class Tow(Phase):
 
     def warnings(self, run: RunResult, result: PhaseResult) -> Iterator[str]:
         record = run.handovers.get(self.name)
-        return removal_report.meeting(self.name, result, None if record is None else record.reach)
+        reach = None if record is None else record.reach
+        yield from removal_report.meeting(self.name, result, reach)
+        yield from removal_report.unsafe(run, self.name, result, reach)
 
     def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
         """The orbit of both bodies, and the tension of the line."""
@@ -212,6 +226,7 @@ class Removal(Tow):
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """The same removal with the shot's momentum left out: what the recoil changes."""
+        super().afterwards(stage, result)
         run, phase = stage.run, stage.phase
         record = run.handovers.get(self.name)
         if not isinstance(record, HandoffRecord) or not run.scene.handoff.compare_without_recoil:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from dcone_cosim.findings import Finding
+from dcone_cosim.phases import passive
 from dcone_cosim.phases.end import of_end
 from dcone_cosim.phases.tension import last_orbit, orbital_period
 from dcone_cosim.results import PhaseResult, RunResult
@@ -66,6 +68,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
             yield Finding(phase, name, label, last[name], unit, shown_in=shown_in)
     yield from _of_approach(phase, result)
     yield from _of_lowering(phase, result)
+    yield from _of_safety(run, phase, result)
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
@@ -88,6 +91,43 @@ def _of_approach(phase: str, result: PhaseResult) -> Iterator[Finding]:
         recorded = " recorded" if nearest.recorded else ""
         yield Finding(phase, "approach", f"least distance{recorded}", nearest.distance, "m")
         yield Finding(phase, "approach_time", "that was at", nearest.time, "s")
+
+
+def room(values: Mapping[str, float], reach: float | None) -> float:
+    """How near the centres may come before the bodies touch, by what is known of their size [m].
+
+    values   parameters of the tow, SI
+    reach    of the target from its centre [m], None where the hand-over does not tell
+    """
+    chaser = values.get("ends.chaser_extent") or UNKNOWN_EXTENT
+    size = [values[f"target.size[{i}]"] for i in (1, 2, 3) if f"target.size[{i}]" in values]
+    if {"target.cylinder_radius", "target.cylinder_length"} <= values.keys():
+        size = [2.0 * values["target.cylinder_radius"], values["target.cylinder_length"]]
+    known = math.hypot(*size) / 2.0 if size else reach
+    return chaser + (known or values.get("ends.target_extent") or UNKNOWN_EXTENT)
+
+
+def _of_safety(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Finding]:
+    record = run.handovers.get(phase)
+    values = run.parameters.get(phase, {})
+    for found in passive.worst(result.passive, room(values, None if record is None else record.reach)):
+        yield Finding(phase, f"if_{found.what}", f"if {found.told}: least distance", found.distance, "m")
+        yield Finding(phase, f"if_{found.what}_at", "the worst instant for it", found.time, "s")
+        yield Finding(
+            phase, f"if_{found.what}_meets", "instants after which they may meet", f"{found.meets} of {found.tried}"
+        )
+
+
+def unsafe(run: RunResult, phase: str, result: PhaseResult, reach: float | None) -> Iterator[str]:
+    """Whether the bodies may meet if the tow stops on the way."""
+    needs = room(run.parameters.get(phase, {}), reach)
+    for found in passive.worst(result.passive, needs):
+        if found.meets:
+            yield (
+                f"{phase}: if {found.told} at {found.meets} of {found.tried} instants, the bodies may meet: at worst "
+                f"their centres come within {found.distance:.3g} m, {found.after:.6g} s after {found.time:.6g} s; they "
+                f"are taken to touch at {needs:.3g} m"
+            )
 
 
 NEAR = 1e-4

@@ -84,6 +84,8 @@ MEANING: Mapping[str, str] = {
     "macro_step": "the grid of the results: every output is recorded this often",
     "duration": "the phase ends after this at the latest",
     "hand_over": "what ends the capture and begins the next phase; none: flown to its end",
+    "safety_every": "look every so often what becomes of the pair if the thrust stops or the line is cut",
+    "safety_horizon": "for how long the pair is followed from there",
     "after_capture": "go on for this long after the capture, when no phase follows",
     "snapshots": "when to keep the positions of the nodes; evenly spread if not given",
     "spin_tolerance": "speed of the tether's end by the spin that is dropped, over that of the first tug, where the "
