@@ -5,7 +5,6 @@ No other module of this package knows `fmu_src`: everything else works on an FMU
 
 from __future__ import annotations
 
-import math
 import os
 import time as clock
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -34,7 +33,6 @@ from fmu_src.tables import Table
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit import stress as tethered_deorbit_stress
 from fmu_src.tethered_deorbit import trade as tethered_deorbit_trade
-from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
 from fmu_src.trade import Rung
 
@@ -164,24 +162,11 @@ def cannot_work(
         from fmu_src.net_capture.interface import refusals
 
         return [Refusal(*row) for row in refusals(terms, values, duration)]
-    if model != TETHERED_DEORBIT.name or handed_over or values["start.condition"] == HANDED_OVER:
-        return []
-    if terms.get("environment") == "none" and values["start.condition"] != EQUAL_VELOCITY:
-        given = CONDITIONS[int(values["start.condition"])]
-        return [Refusal("start.condition", given, "needs an orbit; without a field take equal_velocity or handed_over")]
-    if terms.get("target") != "point" or terms.get("chaser") != "point":
-        return []  # how far the attachments are apart, the attitudes say
-    separation, attachment = values["start.separation"], values["target.attachment_distance"]
-    rest_length = values.get("tether.rest_length", math.inf)
-    longest = rest_length + attachment
-    if separation > longest:
-        sum_of = "tether.rest_length" + (" + target.attachment_distance" if attachment else "")
-        expected = f"must be at most {sum_of}, {longest:g} m, or the locked line would start stretched"
-    elif separation <= attachment:
-        expected = f"must exceed target.attachment_distance, {attachment:g} m: the line ends there"
-    else:
-        return []
-    return [Refusal("start.separation", f"{separation:g} m", expected)]
+    if model == TETHERED_DEORBIT.name:
+        from fmu_src.tethered_deorbit.refusals import refusals as of_tow
+
+        return [Refusal(*row) for row in of_tow(terms, values, handed_over)]
+    return []
 
 
 def cautions(

@@ -68,6 +68,14 @@ def rigid_body(role: str, attachment: tuple[float, float, float]) -> tuple[Varia
     )  # fmt: skip
 
 
+THRUSTER = (
+    vector("chaser.thruster", "m", "where the thrust acts, from the centre of mass, body axes", "parameter",
+           minimum=-1e4, maximum=1e4),
+    state("state.push[#][#]", "1", "room for a force and its torque", shape=(2, 3)),
+)  # fmt: skip
+"""Of a chaser that turns."""
+
+
 def surface(faces: int, edges: int, ways: int) -> tuple[Variable, ...]:
     """Those of a target that the line can wrap round, of so many faces and edges, and ways over so many edges."""
     return (

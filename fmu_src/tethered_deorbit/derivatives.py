@@ -18,7 +18,7 @@ def make_differentiate(
 ) -> Callable[..., Any]:
     """The kernel that fills the rates and partial derivatives of the outputs.
 
-    inertial      kernel (record, state, rate, since): rate of the state along inertial axes
+    inertial      kernel (record, state, rate, since, elapsed): rate of the state along inertial axes
     """
 
     @kernel
@@ -38,7 +38,7 @@ def make_differentiate(
         Checked  tests/tethered_deorbit/test_derivatives.py
         """
         r = record[0]
-        inertial(record, state, rate, 0.0)
+        inertial(record, state, rate, 0.0, 0.0)
         bodies.line(record, state)
         acceleration, apart, _ = bodies.second(record, state, rate, separation, length, speed, 0.0)
         r.rate_length_rate = acceleration

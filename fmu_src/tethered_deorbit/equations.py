@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from fmu_src.tethered_deorbit.aocs import Aocs
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.law import Reel
@@ -16,26 +17,28 @@ from orbital.vectors import Array
 
 
 def make_equations(
-    environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, layout: StateLayout
+    environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, aocs: Aocs, layout: StateLayout
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """The kernels `inertial(record, state, rate, since)` and `derivative(record, state, rate, elapsed)`."""
+    """The kernels `inertial(record, state, rate, since, elapsed)` and `derivative(record, state, rate, elapsed)`."""
     impulse = layout.impulse
 
     # `derivative` is where the time goes: as a call of its own, which a second caller would make it, it costs 10 %.
     @view
-    def inertial(record: Any, state: Array, rate: Array, since: float) -> None:
+    def inertial(record: Any, state: Array, rate: Array, since: float, elapsed: float) -> None:
         """rate = rate of the state along inertial axes, or axes at rest in which it stands just now.
 
         state, rate   of `layout`
         since         since the inputs in force began to move        [s]
+        elapsed       for which the axes have turned                 [s]
 
         Source   the environment's gravity, the thrust, the bodies' turning and the pull of the line; dJ/dt = T
         Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_extremes.py: J
         """
         thrust.weigh(record, state)
         environment.add_gravity(record, state, rate)
-        thrust.add(record, state, rate, since)
         bodies.move(record, state, rate)
+        thrust.add(record, state, rate, since)
+        aocs.add(record, state, rate, elapsed)
         rate[impulse] = 0.0
         if record[0].state_taut:
             separation, length, speed = bodies.line(record, state)
@@ -52,7 +55,7 @@ def make_equations(
 
         Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_turning.py
         """
-        inertial(record, state, rate, record[0].state_since + elapsed)
+        inertial(record, state, rate, record[0].state_since + elapsed, elapsed)
         if record[0].state_taut:
             add_turning(record, state, rate, -1.0)
             bodies.add_turning(record, state, rate, -1.0)

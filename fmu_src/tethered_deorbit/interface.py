@@ -24,8 +24,8 @@ from fmu_src.rows import (
     vector,
 )
 from fmu_src.tethered_deorbit import stress
-from fmu_src.tethered_deorbit.body_rows import ATTACHED, BOX, CYLINDER, POINT_TARGET, rigid_body
-from fmu_src.tethered_deorbit.optional_rows import BREAKING, BURN, ENDS, ENGINES, PLUME
+from fmu_src.tethered_deorbit.body_rows import ATTACHED, BOX, CYLINDER, POINT_TARGET, THRUSTER, rigid_body
+from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, PLUME
 
 CONDITIONS = ("same_orbit", "vbar", "equal_velocity", "handed_over")
 SAME_ORBIT, VBAR, EQUAL_VELOCITY, HANDED_OVER = range(4)
@@ -41,7 +41,9 @@ held only while k_p > 3 n^2 m_r, here 2.2e-3 N/m: farther out the tide pulls har
 NOT_FINITE, STEP_NOT_MET, TOO_MANY_EVENTS, TIME_GAP, GROUND = range(1, 6)
 BAD_ORBIT, BAD_CHORD, START_STRETCHED, NO_LENGTH, NO_LINE, BAD_PARAMETER, NO_ORBIT = range(11, 18)
 BAD_INERTIA, BAD_ATTITUDE, TOO_MANY_TURNS, BODIES_MET = 18, 19, 20, 21
-CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE, ENDS_AT_START, NO_ARCS = range(22, 30)
+CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE, ENDS_AT_START, NO_ARCS, NO_ATTITUDE = range(
+    22, 31
+)
 
 FAULTS = (
     Fault(NOT_FINITE, "error", "the state is no longer finite; look at the parameters and inputs last set"),
@@ -84,6 +86,7 @@ FAULTS = (
     Fault(BROKE, "end", "the line has broken: its tension exceeded break.strength"),
     Fault(ENDS_AT_START, "error", "the run would end as it begins: what ends it is met at the start", True),
     Fault(NO_ARCS, "error", "burn.when = arcs needs an orbit, and there is none; take timed"),
+    Fault(NO_ATTITUDE, "error", "aocs needs a chaser that turns; name chaser.body = rigid"),
     Fault(TOO_MANY_TURNS, "error", "the line has wrapped round the target over more edges than can be followed"),
 )
 
@@ -377,7 +380,9 @@ TARGETS = Group(
 CHASERS = Group(
     {
         "point": Term("a point mass, the line made fast at it"),
-        "rigid": Term("a rigid body that turns, as of the target", (*rigid_body("chaser", (0.0, 1.0, 0.0)), *_TURNING)),
+        "rigid": Term(
+            "a rigid body that turns, as of the target", (*rigid_body("chaser", (0.0, 1.0, 0.0)), *THRUSTER, *_TURNING)
+        ),
     },
     selector="body",
     default="point",
@@ -406,6 +411,7 @@ MODEL = Model(
         "environment": ENVIRONMENTS,
         "target": TARGETS,
         "chaser": CHASERS,
+        "aocs": AOCS,
         "ends": ENDS,
         "break": BREAKING,
         "solver": SCHEMES,

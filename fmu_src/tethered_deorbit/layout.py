@@ -5,6 +5,7 @@ every body that turns, and what they gather:
 
     0:3 R   centre of mass [m]      3:6 V   its velocity [m/s]      6:9 rho   relative [m]      9:12 its rate [m/s]
     then, for each body that turns, q attitude (4) [-], body to inertial axes, and w its rate (3) [rad/s], body axes
+    then, with attitude control, h momentum of the wheels (3) [N m s], body axes
     then, with an engine or burns, the propellant used [kg]
     last J  impulse of the line [N s]: dJ/dt is the tension that the equations have in them
 """
@@ -25,22 +26,26 @@ class StateLayout(NamedTuple):
     """Components of the state.
 
     moving      how many the equations depend on: all but the last
+    wheels      place of h, or what comes after it where there is none
     spent       place of the propellant, or that of J where none is kept
     impulse     place of J
     size        how many there are
     """
 
     moving: int
+    wheels: int
     spent: int
     impulse: int
     size: int
 
 
-def state_layout(turning: int, spends: bool = False) -> StateLayout:
-    """The components of a pair of which so many bodies turn, 0 to 2, and that keeps what its thruster spends or not."""
-    spent = PAIR + ATTITUDE * turning
+def state_layout(turning: int, wheels: bool = False, spends: bool = False) -> StateLayout:
+    """The components of a pair of which so many bodies turn, 0 to 2, with wheels or not, and that keeps what its
+    thruster spends or not."""
+    own = PAIR + ATTITUDE * turning
+    spent = own + 3 * wheels
     moving = spent + spends
-    return StateLayout(moving, spent, moving, moving + 1)
+    return StateLayout(moving, own, spent, moving, moving + 1)
 
 
 class Places(NamedTuple):

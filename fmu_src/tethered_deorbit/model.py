@@ -9,6 +9,7 @@ from typing import Any
 from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, STEP, UNDER_WAY, check_implemented
 from fmu_src.limits import make_limits
 from fmu_src.tethered_deorbit.acting import IDLE, together
+from fmu_src.tethered_deorbit.aocs import make_aocs
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
 from fmu_src.tethered_deorbit.breaking import breakable
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
@@ -66,6 +67,10 @@ LIMITED = (
     "engine.efficiency",
     "plume.half_angle",
     "plume.face",
+    "aocs.frequency",
+    "aocs.damping_ratio",
+    "aocs.torque_limit",
+    "aocs.momentum_limit",
     "ends.altitude",
     "ends.perigee",
     "ends.raised_perigee",
@@ -85,6 +90,7 @@ IMPLEMENTED = {
     "burn": ("timed", "arcs"),
     "engine": ("electric", "chemical"),
     "plume": ("beam",),
+    "aocs": ("wheels",),
     "ends": ("watched",),
     "break": ("breaks",),
     **KINDS,
@@ -107,10 +113,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     limits = make_limits(interface, *LIMITED)
     bodies = make_bodies(terms, environment.place, environment.gradient, interface)
-    layout = state_layout(bodies.turning, "burn" in terms or "engine" in terms)
+    layout = state_layout(bodies.turning, "aocs" in terms, "burn" in terms or "engine" in terms)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
-    inertial, derivative = make_equations(environment, reel, thrust, bodies, layout)
+    aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
+    inertial, derivative = make_equations(environment, reel, thrust, bodies, aocs, layout)
     scheme = SCHEMES[terms["solver"]](
         derivative, make_squared_error(bodies), layout.moving, layout.size - layout.moving
     )
@@ -172,6 +179,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         code = start_state(record, end, reel.start_limit(record))
         if code != 0:
             return fail(record, code, 0.0)
+        code = aocs.begin(record, end)
+        if code != 0:
+            return fail(record, code, 0.0)
         end[spent] = 0.0
         end[impulse] = 0.0
         thrust.weigh(record, end)
@@ -197,6 +207,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             note_pull(record, r.tether_tension)
         extremes.start(record)
         thrust.publish(record, end, 0.0)
+        aocs.publish(record, end)
         return 0
 
     @kernel
@@ -286,6 +297,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         thrust.weigh(record, here)
         publish(record, here, separation, length, speed, r.state_since + (target - r.state_begin))
         thrust.publish(record, here, target)
+        aocs.publish(record, here)
         r.state_published = target
         r.state_changes = 0
         extremes.publish(record)

@@ -1,4 +1,4 @@
-"""The variables of what a scene may add to a tow: burns, an engine, a plume, ends of its own, a line that breaks."""
+"""The variables of what a scene may add to a tow: burns, engine, plume, attitude control, ends, a line that breaks."""
 
 from __future__ import annotations
 
@@ -175,4 +175,34 @@ PLUME = Group(
     },
     optional=True,
     follows=lambda terms, values: "beam",
+)  # fmt: skip
+
+AOCS = Group(
+    {
+        "wheels": Term(
+            "reaction wheels hold the chaser's attitude, with the torque and the momentum they have",
+            (
+                choice("aocs.points", "what is held: the attitude of the start in the orbital frame, or the attachment "
+                       "towards the line", ("orbital", "line")),
+                positive("aocs.frequency", "rad/s", "of the closed loop", 0.05, 100.0),
+                at_least_zero("aocs.damping_ratio", "1", "of the closed loop", 0.7, 10.0),
+                positive("aocs.torque_limit", "N.m", "of all wheels together, about any axis", 0.2, 1e6),
+                positive("aocs.momentum_limit", "N.m.s", "likewise", 50.0, 1e9),
+                vector("aocs.torque", "N.m", "of the wheels on the chaser, body axes", nominal=0.1),
+                vector("aocs.momentum", "N.m.s", "of the wheels, body axes", nominal=10.0,
+                       rate="rate.aocs_momentum[#]"),
+                output("aocs.deviation", "rad", "of the attitude from that to be held", 0.01, display_unit="deg"),
+                flag("aocs.limited", "the wheels have not the torque or the momentum that is asked of them"),
+                rate("aocs_momentum", "N.m", (3,)),
+                state("state.aocs[#][#]", "1", "room for quaternions", shape=(2, 4)),
+                state("state.aocs_held[#]", "1", "attitude to be held, body axes to orbital frame", shape=(4,)),
+                state("state.aocs_off[#][#]", "1", "deviations, and room", shape=(4, 3)),
+                vector("state.aocs_torque", "N.m", "of the wheels", "state"),
+                state("state.aocs_asked", "N.m", "torque that the loop asks for"),
+                state("state.aocs_full", "1", "the wheels take no more of it", kind="Integer"),
+            ),
+        ),
+    },
+    optional=True,
+    follows=lambda terms, values: "wheels",
 )  # fmt: skip

@@ -12,11 +12,12 @@ from fmu_src.tethered_deorbit.burn import STEADY, make_burn
 from fmu_src.tethered_deorbit.engine import make_engine
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
-from fmu_src.tethered_deorbit.layout import StateLayout
+from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, StateLayout
 from fmu_src.tethered_deorbit.plume import make_plume
 from orbital.constants import STANDARD_GRAVITY
 from orbital.kernel import kernel
-from orbital.vectors import Array
+from orbital.rotations import rotate_inverse
+from orbital.vectors import Array, cross, matrix_vector
 
 
 @kernel
@@ -113,7 +114,7 @@ def make_thrust(
     layout        where the propellant stands in the state
     interface     whose record it is for
 
-    Valid    thrust through the chaser's centre of mass: no torque
+    Valid    any; on a chaser that turns it acts at chaser.thruster, on a point at its centre of mass
     Source   fmu_src/tethered_deorbit/README.md, What is computed
     Checked  tests/tethered_deorbit/test_terms.py, test_ramps.py
     """
@@ -125,8 +126,30 @@ def make_thrust(
     plume = make_plume(terms, interface)
     offset_slot = interface.references["thrust.offset"]
     spent, shaped, keeps = layout.spent, burn is not STEADY or engine.real, layout.spent < layout.impulse
-    beams = "plume" in terms
+    beams, turns = "plume" in terms, terms["chaser"] != "point"
+    q_at = PAIR + (ATTITUDE if terms["target"] != "point" else 0)
     mass = "state_chaser_mass" if engine.real else "chaser_mass"
+
+    @kernel
+    def turn(record: Any, state: Array, rate: Array, factor: float, x: float, y: float, z: float) -> None:
+        """Add the torque of a thrust beside the chaser's centre of mass.
+
+            w' += I^-1 (p x A^T F),   p chaser.thruster
+
+        factor        by which (x, y, z) is the force            [N]
+
+        Checked  tests/tethered_deorbit/test_aocs.py: a thruster off the centre
+        """
+        r = record[0]
+        p, push, torque = r.chaser_thruster, r.state_push[0], r.state_push[1]
+        if p[0] == 0.0 and p[1] == 0.0 and p[2] == 0.0:
+            return
+        torque[0], torque[1], torque[2] = factor * x, factor * y, factor * z
+        rotate_inverse(push, state[q_at : q_at + 4], torque)
+        cross(torque, p, push)
+        matrix_vector(push, r.state_chaser_inverse, torque)
+        for i in range(3):
+            rate[q_at + 4 + i] += push[i]
 
     @kernel
     def force_at(record: Any, since: float) -> tuple[float, float]:
@@ -172,6 +195,8 @@ def make_thrust(
             rate[spent] = abs(force) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
             engine.lose(record, state, rate, 1.0)
         plume.add(record, state, rate, force, x, y, z)
+        if turns and length > 0.0:
+            turn(record, state, rate, force / length, x, y, z)
 
     @kernel
     def reset(record: Any) -> None:

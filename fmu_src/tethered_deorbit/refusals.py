@@ -1,0 +1,65 @@
+"""Why a tow with the values of a scene cannot begin, told before anything is built."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
+
+Refusal = tuple[str, str, str]
+"""FMI name, its value as text, what was expected."""
+NOTCH = 2
+
+
+def refusals(terms: Mapping[str, str], values: Mapping[str, float], handed_over: bool) -> Iterator[Refusal]:
+    """What does not go together.
+
+    terms         by group
+    values        every parameter by FMI name, SI
+    handed_over   the tow begins with what the phase before hands over
+
+    Checked  tests/cosim/test_tow_refusals.py
+    """
+    yield from _of_parts(terms, values)
+    if not (handed_over or values["start.condition"] == HANDED_OVER):
+        yield from _of_start(terms, values)
+
+
+def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
+    if "aocs" in terms and terms.get("chaser") == "point":
+        yield "aocs.frequency", f"{values['aocs.frequency']:g} rad/s", "needs a chaser that turns, chaser.body = rigid"
+    if "engine" in terms and values["engine.propellant"] >= values["chaser.mass"]:
+        text = f"must be less than chaser.mass, {values['chaser.mass']:g} kg, of which it is a part"
+        yield "engine.propellant", f"{values['engine.propellant']:g} kg", text
+    if "burn" in terms:
+        yield from _of_burns(terms, values)
+
+
+def _of_burns(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
+    stiff = terms["reel"] != "commanded" and values.get("reel.proportional_gain", 1.0) > 0.0
+    if values["burn.edge"] == NOTCH and not stiff:
+        yield "burn.edge", "notch", "needs a line with a stiffness of its own; take a step or a ramp"
+    if terms["burn"] == "arcs" and terms.get("environment") == "none":
+        yield "burn.half_width", f"{values['burn.half_width']:g} rad", "arcs need an orbit; take burn.when = timed"
+    if terms["burn"] == "timed" and values["burn.duration"] == 0.0 and not stiff:
+        yield "burn.duration", "0 s", "stands for the period of the line, and this line has none; give a duration"
+
+
+def _of_start(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
+    if terms.get("environment") == "none" and values["start.condition"] != EQUAL_VELOCITY:
+        given = CONDITIONS[int(values["start.condition"])]
+        yield "start.condition", given, "needs an orbit; without a field take equal_velocity or handed_over"
+        return
+    if terms.get("target") != "point" or terms.get("chaser") != "point":
+        return  # how far the attachments are apart, the attitudes say
+    separation, attachment = values["start.separation"], values["target.attachment_distance"]
+    rest_length = values.get("tether.rest_length", math.inf)
+    longest = rest_length + attachment
+    if separation > longest:
+        sum_of = "tether.rest_length" + (" + target.attachment_distance" if attachment else "")
+        text = f"must be at most {sum_of}, {longest:g} m, or the locked line would start stretched"
+        yield "start.separation", f"{separation:g} m", text
+    elif separation <= attachment:
+        text = f"must exceed target.attachment_distance, {attachment:g} m: the line ends there"
+        yield "start.separation", f"{separation:g} m", text

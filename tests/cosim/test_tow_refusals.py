@@ -1,0 +1,57 @@
+"""What does not go together in a tow is refused before anything is built, by key, value and what was expected."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from dcone_cosim.errors import InputError
+from dcone_cosim.loading import find
+from dcone_cosim.scenes.reading import parse
+
+TABLE_2 = find("table2-deorbit").read_text(encoding="utf-8")
+RIGID = '[removal.chaser]\nbody = "rigid"\nmass = "2000 kg"'
+
+
+@pytest.mark.parametrize(
+    ("tables", "said", "mended"),
+    [
+        (
+            '[removal.aocs]\nfrequency = "0.1 rad/s"',
+            ["removal.aocs.frequency", "0.1 rad/s", "chaser.body = rigid"],
+            ('[removal.chaser]\nmass = "2000 kg"', RIGID),
+        ),
+        (
+            '[removal.engine]\nkind = "chemical"\npropellant = "2000 kg"',
+            ["removal.engine.propellant", "2000 kg", "less than chaser.mass"],
+            ('propellant = "2000 kg"', 'propellant = "1999 kg"'),
+        ),
+        (
+            '[removal.environment]\nfield = "none"\n[removal.burn]\nwhen = "arcs"\nhalf_width = "20 deg"',
+            ["removal.burn.half_width", "20 deg", "need an orbit"],
+            ('[removal.environment]\nfield = "none"', ""),
+        ),
+    ],
+)  # fmt: skip
+def test_what_does_not_go_together(tables: str, said: Sequence[str], mended: tuple[str, str]) -> None:
+    text = TABLE_2 + "\n" + tables + "\n"
+    if "field" in tables:
+        text = text.replace('condition = "same_orbit"', 'condition = "equal_velocity"')
+    with pytest.raises(InputError) as caught:
+        parse(text, "wrong", "wrong.toml")
+    assert all(word in str(caught.value) for word in said)
+    assert "wrong.toml:" in str(caught.value)
+    parse(text.replace(*mended), "right", "right.toml")
+
+
+@pytest.mark.parametrize(
+    "keys", ['when = "timed"\nduration = "0 s"', 'when = "timed"\nduration = "1 s"\nedge = "notch"']
+)
+def test_a_line_without_stiffness_has_no_period(keys: str) -> None:
+    text = TABLE_2.replace('law = "locked"', 'law = "commanded"')
+    line = text.index("[removal.tether]")
+    text = text[:line] + text[text.index("[removal.thrust]") :] + f"\n[removal.burn]\n{keys}\n"
+    with pytest.raises(InputError, match=r"removal\.burn\.(duration|edge)"):
+        parse(text, "wrong", "wrong.toml")
+    parse(text.replace('"0 s"', '"2 s"').replace("notch", "ramp"), "right", "right.toml")
