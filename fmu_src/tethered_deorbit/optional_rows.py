@@ -19,6 +19,7 @@ from fmu_src.rows import (
     state,
     vector,
 )
+from fmu_src.tethered_deorbit import stress
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
 NOWHERE, EVERYWHERE = -EARTH_EQUATORIAL_RADIUS, 1e12
@@ -63,6 +64,7 @@ BREAKING = Group(
                 peak("break.time", "s", "when it broke, since the start of this instance; zero unless broken"),
                 state("state.broken", "1", "the line is broken", kind="Integer"),
             ),
+            extremes=stress.BREAKING,
         ),
     },
     optional=True,
@@ -100,6 +102,7 @@ BURN = Group(
                 *_BURN,
             ),
             needs=("thrust",),
+            extremes=stress.BURNS,
         ),
         "arcs": Term(
             "the thruster burns on arcs about the apsides of the reference orbit",
@@ -112,6 +115,7 @@ BURN = Group(
                 vector("state.perigee", "1", "direction of the reference orbit's, inertial", "state"),
             ),
             needs=("thrust",),
+            extremes=stress.ARCS,
         ),
     },
     selector="when",
@@ -142,6 +146,7 @@ ENGINES = Group(
                 rate("engine_power", "W/s"),
             ),
             needs=("thrust",),
+            extremes=stress.ENGINES,
         ),
         "chemical": Term(
             "any thrust; the masses fall",
@@ -150,6 +155,7 @@ ENGINES = Group(
                 positive("thrust.specific_impulse", "s", "for the propellant used", 300.0, 1e6),
             ),
             needs=("thrust",),
+            extremes=stress.ENGINES,
         ),
     },
     selector="kind",
@@ -201,6 +207,7 @@ AOCS = Group(
                 state("state.aocs_asked", "N.m", "torque that the loop asks for"),
                 state("state.aocs_full", "1", "the wheels take no more of it", kind="Integer"),
             ),
+            extremes=stress.AOCS,
         ),
     },
     optional=True,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from fmu_src.extremes import Extreme, Values
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
@@ -87,6 +89,34 @@ TURNING = (
             {"target.attachment": (0.0, 1.0, 0.0)}, duration=HOUR),
 )  # fmt: skip
 """Of a target that turns."""
+
+BURNS = (
+    Extreme("pulses of a millisecond", "a thousand times shorter than what they shake", "orbit",
+            {"burn.start": 0.0, "burn.duration": 1e-3, "burn.interval": 10.0}, duration=HOUR),
+    Extreme("one pulse of a microsecond", "shorter than any step", "longer",
+            {"burn.start": 1.0, "burn.duration": 1e-6, "burn.count": 1}, duration=HOUR),
+)  # fmt: skip
+ARCS = (
+    Extreme("arcs of a thousandth of a degree", "passed within two hundredths of a second", "orbit",
+            {"burn.half_width": 1e-5}, duration=6.0 * HOUR),
+    Extreme("arcs all round", "it never stops", "orbit", {"burn.half_width": math.pi}, duration=HOUR),
+)  # fmt: skip
+ENGINES = (
+    Extreme("a tank that is empty at once", "a gramme of propellant", "orbit", {"engine.propellant": 1e-3}),
+    Extreme("a chaser that is nearly all tank", "it may lose all but a kilogramme", "longer",
+            {"engine.propellant": lambda values: values["chaser.mass"] - 1.0}, duration=HOUR),
+)  # fmt: skip
+BREAKING = (
+    Extreme("a line as weak as a cobweb", "it breaks as soon as it is taut", "pushes",
+            {"break.strength": 1e-9, "break.flies_on": True}),
+)  # fmt: skip
+AOCS = (
+    Extreme("a loop of 10 rad/s", "quicker than most lines", "longer",
+            {"aocs.frequency": 10.0, "aocs.torque_limit": 1e5, "aocs.momentum_limit": 1e7}, duration=0.25 * HOUR),
+    Extreme("wheels of a newton metre second", "full after a moment", "longer",
+            {"aocs.torque_limit": 1.0, "aocs.momentum_limit": 1.0}, duration=HOUR),
+)  # fmt: skip
+"""Of what a scene may add."""
 
 EXTREMES = (
     *(
