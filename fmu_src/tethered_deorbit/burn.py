@@ -81,7 +81,8 @@ def edge(record: Any, since: float) -> tuple[float, float]:
 def share(record: Any, now: float) -> tuple[float, float]:
     """Share of the level at a time [s], and its rate: the edge by which it came, less that by which it goes.
 
-    So every burn has the impulse of its duration, whatever its edges.
+    So a burn has the impulse of its duration, whatever its edges. A notched one that is let go within some radians of
+    the line's motion would have to push backwards for it: it stops at zero.
 
     Checked  tests/tethered_deorbit/test_burn.py
     """
@@ -92,7 +93,7 @@ def share(record: Any, now: float) -> tuple[float, float]:
     if r.state_burn == ON:
         return come, come_rate
     gone, gone_rate = edge(record, now - r.state_burn_ended)
-    return come - gone, come_rate - gone_rate
+    return (come - gone, come_rate - gone_rate) if come > gone else (0.0, 0.0)
 
 
 def make_burn(terms: Mapping[str, str], place: Callable[..., Any], interface: Interface) -> Burn:
@@ -172,14 +173,13 @@ def make_burn(terms: Mapping[str, str], place: Callable[..., Any], interface: In
         due = math.inf
         if r.state_burn == FALLING:
             due = r.state_burn_ended + edge_time(record)
-        elif r.state_burn == ON:
-            if timed:
-                due = r.state_burn_begun + duration(record)
-            come = r.state_burn_begun + edge_time(record)
-            if come > time:
-                due = min(due, come)
-        elif timed:
+        elif r.state_burn == ON and timed:
+            due = r.state_burn_begun + duration(record)
+        elif r.state_burn == OFF and timed:
             due = next_begin(record)
+        come = r.state_burn_begun + edge_time(record)
+        if r.state_burn != OFF and come > time:
+            due = min(due, come)
         r.state_burn_due = due
 
     @kernel

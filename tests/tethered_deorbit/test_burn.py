@@ -77,20 +77,31 @@ def test_half_a_period_leaves_the_most() -> None:
 )
 def test_how_the_thrust_comes_decides_what_vibrates(edge: str, rise: float, left: float) -> None:
     i = tug(**{"burn.duration": 1e3, "burn.edge": EDGES[edge], "burn.rise": rise})
-    i.step(60.0)
+    i.step(40.0)
     assert i["thrust.force"] == FORCE
     assert vibration(i, STEADY) == pytest.approx(left, abs=1e-8 * FORCE / (CHASER * OMEGA))
 
 
 @pytest.mark.parametrize("edge", EDGES)
-@pytest.mark.parametrize("duration", [20.0, 80.0])
+@pytest.mark.parametrize("duration", [10.0, 40.0])
 def test_a_burn_spends_its_duration_whatever_its_edges(edge: str, duration: float) -> None:
-    """Also where it is let go before it has come."""
-    i = tug(**{"burn.start": 3.0, "burn.duration": duration, "burn.edge": EDGES[edge], "burn.rise": 30.0})
-    for _ in range(20):
+    """Also where a ramp is let go before it has come; a notch is at 1 within 1.5e-4 by then, and never pushes back."""
+    i = tug(**{"burn.start": 3.0, "burn.duration": duration, "burn.edge": EDGES[edge], "burn.rise": 20.0})
+    for _ in range(9):
         i.step(10.0)
     assert i["thrust.force"] == 0.0
-    assert i["chaser.propellant"] == pytest.approx(FLOW * duration, rel=1e-9)
+    within = 1e-6 if (edge, duration) == ("notch", 10.0) else 1e-9
+    assert i["chaser.propellant"] == pytest.approx(FLOW * duration, rel=within)
+
+
+def test_thrust_never_turns_round_by_an_edge() -> None:
+    """A notched pulse of one radian: what its filter asks for would be negative."""
+    i = tug(**{"burn.duration": 1.0 / OMEGA, "burn.edge": EDGES["notch"]})
+    least = 0.0
+    for _ in range(60):
+        i.step(0.1)
+        least = min(least, i["thrust.force"])
+    assert least == 0.0
 
 
 def test_the_shape_of_a_notched_burn() -> None:
@@ -165,31 +176,31 @@ def on_arcs(**more: Any) -> PlainInstance:
 
 
 @pytest.mark.parametrize(
-    ("about", "first", "last", "share"),
-    [("perigee", 340.0, 380.0, 40.0), ("apogee", 160.0, 200.0, 40.0), ("both", 160.0, 200.0, 80.0)],
+    ("about", "first", "share"),
+    [("perigee", 340.0, 40.0), ("apogee", 160.0, 40.0), ("both", 160.0, 80.0)],
 )
 @pytest.mark.parametrize("tension", [0.0, 1e-3])
-def test_arcs(about: str, first: float, last: float, share: float, tension: float) -> None:
+def test_arcs(about: str, first: float, share: float, tension: float) -> None:
     """From 90 degrees past the perigee on: the arc is burnt from its begin to its end, once in a turn."""
     names = ("perigee", "apogee", "both")
     i = on_arcs(**{"burn.about": names.index(about), "orbit.true_anomaly": 0.5 * math.pi, "reel.tension": tension})
     seen = []
-    for n in range(360):
-        i.step(TURN / 360.0)
-        seen.append((n + 91 - 0.5, bool(i["thrust.force"])))
+    for n in range(72):
+        i.step(TURN / 72.0)
+        seen.append((90.0 + 5.0 * (n + 1), bool(i["thrust.force"])))
         if seen[-1][1] and len(seen) > 1 and not seen[-2][1]:
-            begun = seen[-1][0]
-            assert any(abs(begun % 360.0 - edge % 360.0) <= 1.0 for edge in (first, 340.0))
+            begun = seen[-1][0] % 360.0
+            assert any(0.0 <= begun - edge <= 5.0 for edge in (first, 340.0))
     flow = 1e-6 / (3000.0 * STANDARD_GRAVITY)
     assert i["chaser.propellant"] == pytest.approx(flow * TURN * share / 360.0, rel=1e-6)
-    assert sum(on for _, on in seen) == pytest.approx(share, abs=1.0)
+    assert 5 * sum(on for _, on in seen) == pytest.approx(share, abs=10.0)
 
 
 def test_arcs_do_not_depend_on_macro_steps() -> None:
     whole, pieces = on_arcs(), on_arcs()
-    whole.step(2.0 * TURN)
-    for _ in range(50):
-        pieces.step(2.0 * TURN / 50.0)
+    whole.step(TURN)
+    for _ in range(25):
+        pieces.step(TURN / 25.0)
     assert whole["chaser.propellant"] == pytest.approx(pieces["chaser.propellant"], rel=1e-12)
 
 
