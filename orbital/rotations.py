@@ -202,6 +202,29 @@ to_matrix = kernel(plain.to_matrix)
 
 
 @kernel
+def to_matrix_of_any_length(out: Array, q: Array) -> None:
+    """out = the rotation matrix [-] (3, 3) of a quaternion that has kept its direction but not its length.
+
+    q                    body to reference, scalar first         [-]      (4,)
+
+    Valid    any length but zero
+    Source   the product q v q*, over |q|^2
+    Checked  tests/orbital/test_rotations.py
+    """
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    out[0, 0] = 1.0 - s * (y * y + z * z)
+    out[1, 1] = 1.0 - s * (x * x + z * z)
+    out[2, 2] = 1.0 - s * (x * x + y * y)
+    out[0, 1] = s * (x * y - w * z)
+    out[1, 0] = s * (x * y + w * z)
+    out[0, 2] = s * (x * z + w * y)
+    out[2, 0] = s * (x * z - w * y)
+    out[1, 2] = s * (y * z - w * x)
+    out[2, 1] = s * (y * z + w * x)
+
+
+@kernel
 def from_matrix(out: Array, matrix: Array) -> None:
     """out = the unit quaternion [-] of a rotation matrix, with w >= 0.
 

@@ -24,8 +24,9 @@ from fmu_src.rows import (
     vector,
 )
 from fmu_src.tethered_deorbit import stress
-from fmu_src.tethered_deorbit.body_rows import ATTACHED, BOX, CYLINDER, POINT_TARGET, THRUSTER, rigid_body
+from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, PLUME
+from fmu_src.tethered_deorbit.surfaces import SURFACES
 
 CONDITIONS = ("same_orbit", "vbar", "equal_velocity", "handed_over")
 SAME_ORBIT, VBAR, EQUAL_VELOCITY, HANDED_OVER = range(4)
@@ -362,16 +363,14 @@ TARGETS = Group(
             (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING),
             extremes=stress.TURNING,
         ),
-        "box": Term(
-            "a rigid body with the surface of a box, round which the line wraps",
-            (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *BOX),
-            extremes=stress.TURNING,
-        ),
-        "cylinder": Term(
-            "a rigid body with the surface of a cylinder, round which the line wraps",
-            (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *CYLINDER),
-            extremes=stress.TURNING,
-        ),
+        **{
+            name: Term(
+                f"a rigid body with the surface of a {name}, round which the line wraps",
+                (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *surface.variables()),
+                extremes=stress.TURNING,
+            )
+            for name, surface in SURFACES.items()
+        },
     },
     selector="body",
     default="point",

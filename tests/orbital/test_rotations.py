@@ -33,6 +33,15 @@ def test_exponential_map_against_scipy_and_back(run, vector):
     assert angle == pytest.approx(np.linalg.norm(vector), rel=1e-15, abs=1e-150)
 
 
+@pytest.mark.parametrize("length", [1.0, 0.3, 1e3, -2.0])
+def test_matrix_of_a_quaternion_of_any_length(run, length):
+    """Each of the nine elements is that of the direction alone."""
+    for vector in ROTATION_VECTORS[::3]:
+        matrix = np.empty((3, 3))
+        run(rotations.to_matrix_of_any_length)(matrix, length * quaternion(vector))
+        np.testing.assert_allclose(matrix, Rotation.from_rotvec(vector).as_matrix(), atol=1e-15)
+
+
 def test_small_angle_series_meets_the_closed_form_in_extended_precision(run):
     for angle in (1e-3, 0.9999e-2, 1.0001e-2, 0.1):
         q = np.empty(4)

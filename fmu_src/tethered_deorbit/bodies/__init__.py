@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.bodies.idle import always, never, no_end, no_fault, nothing
+from fmu_src.tethered_deorbit.surfaces import SURFACES
 
 
 class Bodies(NamedTuple):
@@ -24,12 +26,6 @@ class Bodies(NamedTuple):
     pull(record, state, rate, tension, separation)   add the pull of the line [N] to the rate
     add_turning(record, state, rate, sign)      what the turning of the axes adds to the rate of attitudes
     turn_back(record, time, state)              attitudes that axes turning for a time [s] have; in place
-    hold(record, state)                         from the way of the line to this state others are followed
-    longest(record, state) -> h                 longest step [s] over which it can be
-    trouble(record) -> fault                    of a line that could not be followed
-    holds(record, state)                        whether the line's way over edges of the body is still the one that was
-    renew(record, state)                        take the one that is
-    retry(record, state)                        the same where none could be found that holds: whether now one is
     settle(state, rate)                         attitudes back to unit length, and their rates alike
     squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
     stretch_error(record, state, error) -> (along, across^2, along', across'^2)   error of the line's vector [m], [m/s]
@@ -37,6 +33,15 @@ class Bodies(NamedTuple):
     energy(record, state, turning) -> E         of the attitudes [J], constant in a frame that turns evenly [rad/s] but
                                                 for what the line does
     differentiate(record, state, rate, turning, change) -> E'   rates of their outputs; power [W]
+
+    Of a line that goes straight to its attachments nothing of what follows is asked:
+
+    hold(record, state)                         from the way of the line to this state others are followed
+    longest(record, state) -> h                 longest step [s] over which it can be
+    trouble(record) -> fault                    of a line that could not be followed
+    holds(record, state)                        whether the line's way over edges of the body is still the one that was
+    renew(record, state)                        take the one that is
+    retry(record, state)                        the same where none could be found that holds: whether now one is
     """
 
     turning: int
@@ -49,21 +54,21 @@ class Bodies(NamedTuple):
     pull: Callable[..., Any]
     add_turning: Callable[..., Any]
     turn_back: Callable[..., Any]
-    hold: Callable[..., Any]
-    longest: Callable[..., Any]
-    trouble: Callable[..., Any]
-    holds: Callable[..., Any]
-    renew: Callable[..., Any]
-    retry: Callable[..., Any]
     settle: Callable[..., Any]
     squared_error: Callable[..., Any]
     stretch_error: Callable[..., Any]
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]
+    hold: Callable[..., Any] = nothing
+    longest: Callable[..., Any] = no_end
+    trouble: Callable[..., Any] = no_fault
+    holds: Callable[..., Any] = always
+    renew: Callable[..., Any] = nothing
+    retry: Callable[..., Any] = never
 
 
-KINDS = {"target": ("point", "rigid", "box", "cylinder"), "chaser": ("point", "rigid")}
+KINDS = {"target": ("point", "rigid", *SURFACES), "chaser": ("point", "rigid")}
 
 
 def make_bodies(

@@ -13,19 +13,17 @@ from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies import Bodies
-from fmu_src.tethered_deorbit.bodies.rigid import Rigid, Way, make_rigid, nothing, zero
-from fmu_src.tethered_deorbit.bodies.surfaces import SURFACES
-from fmu_src.tethered_deorbit.bodies.wrapping import make_wrapping
-from fmu_src.tethered_deorbit.body_rows import WAYS
+from fmu_src.tethered_deorbit.bodies.idle import no_fault, nothing, zero
+from fmu_src.tethered_deorbit.bodies.rigid import Rigid, make_rigid
+from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping, make_wrapping
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR
+from fmu_src.tethered_deorbit.surfaces import SURFACES
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
-FOLLOWED = 0.5
-"""By how much body and line may turn in a step for the line's way to be followed [rad]."""
 OVERRUN = 1e-12
 """Share of its length by which a line may be longer at the start, by rounding of the attitude."""
 
@@ -36,12 +34,6 @@ def no_share(record: Any) -> tuple[float, int]:
     return 0.0, 0
 
 
-@kernel
-def no_fault(*arguments: Any) -> int:
-    """Nothing is wrong."""
-    return 0
-
-
 STILL = Rigid(
     begin=no_share,
     arm_length=zero,
@@ -50,6 +42,7 @@ STILL = Rigid(
     reach=nothing,
     reach_acceleration=nothing,
     relief=zero,
+    show_way=nothing,
     reach_error=nothing,
     pull=nothing,
     add_turning=nothing,
@@ -78,37 +71,19 @@ def make_attached(
 
     Checked  tests/tethered_deorbit/test_rigid.py
     """
-    wraps = surface in SURFACES
-    way, lay_out, keep, start, show, show_rates = Way(), nothing, nothing, nothing, nothing, nothing
-    way_holds, renew_way, retry_way = nothing, nothing, nothing
-    if wraps:
-        shape = SURFACES[surface]
-        lay_out = shape.lay_out
-        wrapping = make_wrapping(shape.faces, shape.edges, WAYS[surface])
-        way, keep = Way("state_departure", wrapping.follow, wrapping.relief), wrapping.keep
-        way_holds, renew_way, retry_way = wrapping.holds, wrapping.renew, wrapping.retry
-        start, show, show_rates = wrapping.start, wrapping.publish, wrapping.differentiate
-    ways = {"target": way, "chaser": Way()}
+    wrapping = make_wrapping(SURFACES[surface]) if surface in SURFACES else Wrapping()
+    show, keep, trouble = wrapping.publish, wrapping.keep, wrapping.trouble
+    way_holds, renew_way, retry_way, on_body = wrapping.holds, wrapping.renew, wrapping.retry, wrapping.on_body
+    lay_out, start_way, followed = wrapping.begin, wrapping.start, wrapping.turning
+    wrappings = {"target": wrapping, "chaser": Wrapping()}
     signs = {"target": 1.0, "chaser": -1.0}
     made = {
-        role: make_rigid(role, PAIR + ATTITUDE * at, signs[role], ways[role], strength_at, interface)
+        role: make_rigid(role, PAIR + ATTITUDE * at, signs[role], wrappings[role], strength_at, interface)
         for at, role in enumerate(turning)
     }
     target, chaser = made.get("target", STILL), made.get("chaser", STILL)
     separation_slot = interface.references["start.separation"]
     shorter = "target_attachment_distance" if "target" not in turning else "state_no_length"
-    on_body = "state_wrapped" if wraps else "state_no_length"
-
-    @kernel
-    def clear(record: Any) -> None:
-        """A line that runs over no edge yet.
-
-        Checked  tests/tethered_deorbit/test_macro_step.py: nothing is left of an earlier run
-        """
-        if wraps:
-            r = record[0]
-            r.held_count = 0
-            r.state_way_fault = 0
 
     @kernel
     def begin(record: Any) -> int:
@@ -122,7 +97,6 @@ def make_attached(
         """
         r = record[0]
         lay_out(record)
-        clear(record)
         of_target, fault = target.begin(record)
         if fault != 0:
             return int(fault)
@@ -159,25 +133,13 @@ def make_attached(
         return norm(state[6:9]), distance + r[on_body] - r[shorter], speed
 
     @kernel
-    def trouble(record: Any) -> int:
-        """Fault of a line that could not be followed, or 0.
-
-        Checked  tests/tethered_deorbit/test_wrapping.py
-        """
-        if wraps:
-            return int(record[0].state_way_fault)
-        return 0
-
-    @kernel
     def holds(record: Any, state: Array) -> bool:
         """Whether the way of the line to a state goes over the edges that are held.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        if wraps:
-            line(record, state)
-            return bool(way_holds(record))
-        return True
+        line(record, state)
+        return bool(way_holds(record))
 
     @kernel
     def renew(record: Any, state: Array) -> None:
@@ -185,12 +147,8 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        if wraps:
-            r = record[0]
-            line(record, state)
-            for i in range(3):
-                r.state_line[3][i] = r.path_points[r.path_count + 1][i]
-            renew_way(record, r.state_line[3])
+        line(record, state)
+        renew_way(record)
 
     @kernel
     def retry(record: Any, state: Array) -> bool:
@@ -198,14 +156,8 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        if wraps:
-            r = record[0]
-            if r.held_stuck == 1:
-                line(record, state)
-                for i in range(3):
-                    r.state_line[3][i] = r.path_points[r.path_count + 1][i]
-                return bool(retry_way(record, r.state_line[3]))
-        return False
+        line(record, state)
+        return bool(retry_way(record))
 
     @kernel
     def hold(record: Any, state: Array) -> None:
@@ -213,9 +165,8 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        if wraps:
-            line(record, state)
-            keep(record)
+        line(record, state)
+        keep(record)
 
     @kernel
     def longest(record: Any, state: Array) -> float:
@@ -223,13 +174,11 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        if not wraps:
-            return math.inf
         apart = norm(state[6:9])
         turning = norm(state[PAIR + 4 : PAIR + 7])
         if apart > 0.0:
             turning += norm(state[9:12]) / apart
-        return FOLLOWED / turning if turning > 0.0 else math.inf
+        return followed / turning if turning > 0.0 else math.inf
 
     @kernel
     def along(record: Any, state: Array) -> tuple[float, float, float]:
@@ -320,13 +269,10 @@ def make_attached(
         if code != 0:
             return int(code)
         line(record, state)
-        if wraps:
-            # where the other attachment is, left there by `line`
-            for i in range(3):
-                r.state_line[3][i] = r.path_points[r.path_count + 1][i]
-            start(record, r.state_line[3])
-            if r.state_way_fault != 0:
-                return blame(record, r.state_way_fault, 0, 0.0)
+        start_way(record)
+        code = trouble(record)
+        if code != 0:
+            return blame(record, code, 0, 0.0)
         _, length, _ = line(record, state)
         if r.start_condition == HANDED_OVER:
             return 0
@@ -402,14 +348,11 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_rigid.py, against differences
         """
-        if wraps:
-            arms = record[0].state_target_arms
-            target.relief(record, state, record[0].state_line[0], record[0].state_line[1])
-            show_rates(record, arms[2], arms[3])
+        target.show_way(record, state, record[0].state_line[0], record[0].state_line[1])
         power = target.differentiate(record, state, rate, turning_rate, change)
         return float(power + chaser.differentiate(record, state, rate, turning_rate, change))
 
-    return Bodies(
+    straight = Bodies(
         turning=len(turning),
         begin=begin,
         place=place,
@@ -420,12 +363,6 @@ def make_attached(
         pull=pull,
         add_turning=add_turning,
         turn_back=turn_back,
-        hold=hold,
-        longest=longest,
-        trouble=trouble,
-        holds=holds,
-        renew=renew,
-        retry=retry,
         settle=settle,
         squared_error=squared_error,
         stretch_error=stretch_error,
@@ -433,3 +370,6 @@ def make_attached(
         energy=energy,
         differentiate=differentiate,
     )
+    if surface not in SURFACES:
+        return straight
+    return straight._replace(hold=hold, longest=longest, trouble=trouble, holds=holds, renew=renew, retry=retry)

@@ -5,54 +5,16 @@ A target that is a point turns with the line, so that its attachment always lies
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.bodies.idle import nothing, zero
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
-
-
-@kernel
-def nothing(*arguments: Any) -> None:
-    """A point has no attitude: there is nothing to do."""
-
-
-@kernel
-def zero(*arguments: Any) -> float:
-    """Nor an energy of its own [J], nor an error in it."""
-    return 0.0
-
-
-@kernel
-def no_end(*arguments: Any) -> float:
-    """A straight line is followed over any step [s].
-
-    Checked  tests/tethered_deorbit/test_macro_step.py
-    """
-    return math.inf
-
-
-@kernel
-def always(*arguments: Any) -> bool:
-    """A straight line goes straight."""
-    return True
-
-
-@kernel
-def never(*arguments: Any) -> bool:
-    """And needs no other way."""
-    return False
-
-
-@kernel
-def no_fault(record: Any) -> int:
-    """Nothing is wrong."""
-    return 0
 
 
 @kernel
@@ -180,12 +142,6 @@ def make_points(interface: Interface) -> Bodies:
         pull=pull,
         add_turning=nothing,
         turn_back=nothing,
-        hold=nothing,
-        longest=no_end,
-        trouble=no_fault,
-        holds=always,
-        renew=nothing,
-        retry=never,
         settle=nothing,
         squared_error=zero,
         stretch_error=stretch_error,

@@ -11,13 +11,15 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.bodies.shown import make_shown
+from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping
 from fmu_src.tethered_deorbit.body_rows import RATE_FRAMES
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_ATTITUDE, BAD_INERTIA, BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import ATTITUDE
 from orbital.kernel import kernel
 from orbital.rigid import euler, extreme_moments, gradient_torque, inertia_matrix, invert_symmetric
-from orbital.rotations import from_matrix, multiply, normalise
+from orbital.rotations import from_matrix, multiply, normalise, to_matrix_of_any_length
 from orbital.vectors import Array, add, add_scaled, cross, dot, matrix_vector, norm, transposed_matrix_vector
 
 INERTIAL, ORBITAL, LINE = range(len(RATE_FRAMES))
@@ -41,6 +43,7 @@ class Rigid(NamedTuple):
     reach_acceleration(record, state, rate, out)   and to the rate of that, inertial [m/s^2]; after `reach`
     relief(record, state, vector, velocity) -> l''   what a line that slides over the body takes off l'' [m/s^2]; after
                                                 `reach`
+    show_way(record, state, vector, velocity)   rates of what is shown of its way; after `reach`
     reach_error(record, state, error, vector, velocity)   add what errors of the attitude add to those of the vector;
                                                 after `reach`
     pull(record, state, rate, x, y, z)          add the torque of the line, a force [N] on the chaser; after `reach`
@@ -56,6 +59,7 @@ class Rigid(NamedTuple):
     reach: Callable[..., Any]
     reach_acceleration: Callable[..., Any]
     relief: Callable[..., Any]
+    show_way: Callable[..., Any]
     reach_error: Callable[..., Any]
     pull: Callable[..., Any]
     add_turning: Callable[..., Any]
@@ -67,59 +71,15 @@ class Rigid(NamedTuple):
     differentiate: Callable[..., Any]
 
 
-@kernel
-def nothing(*arguments: Any) -> None:
-    """A line that goes straight has no way to be followed."""
-
-
-@kernel
-def zero(*arguments: Any) -> float:
-    """And does not slide [m/s^2]."""
-    return 0.0
-
-
-class Way(NamedTuple):
-    """How the line comes to the body; as it stands, straight to its attachment.
-
-    leaving     row of the point where it leaves the body, body axes [m]; "" the attachment
-    follow(record, point)               see `wrapping.Wrapping`
-    relief(record, across) -> l''
-    """
-
-    leaving: str = ""
-    follow: Callable[..., Any] = nothing
-    relief: Callable[..., Any] = zero
-
-
-@kernel
-def to_matrix(out: Array, q: Array) -> None:
-    """out = matrix (3, 3) from body to reference components of a quaternion of any length but zero.
-
-    Source   the product q v q*, over |q|^2
-    Checked  tests/tethered_deorbit/test_rigid.py
-    """
-    w, x, y, z = q[0], q[1], q[2], q[3]
-    s = 2.0 / (w * w + x * x + y * y + z * z)
-    out[0, 0] = 1.0 - s * (y * y + z * z)
-    out[1, 1] = 1.0 - s * (x * x + z * z)
-    out[2, 2] = 1.0 - s * (x * x + y * y)
-    out[0, 1] = s * (x * y - w * z)
-    out[1, 0] = s * (x * y + w * z)
-    out[0, 2] = s * (x * z + w * y)
-    out[2, 0] = s * (x * z - w * y)
-    out[1, 2] = s * (y * z - w * x)
-    out[2, 1] = s * (y * z + w * x)
-
-
 def make_rigid(
-    role: str, first: int, sign: float, way: Way, strength_at: Callable[..., Any], interface: Interface
+    role: str, first: int, sign: float, wrapping: Wrapping, strength_at: Callable[..., Any], interface: Interface
 ) -> Rigid:
     """The kernels of one body for a record of this interface.
 
     role        "target" or "chaser", with which the names of its variables begin
     first       place of its attitude in the state
     sign        of its centre in the relative vector: r = R + sign (share of the other's mass) rho
-    way         of the line about it
+    wrapping    of the line round it
     strength_at kernel of the environment: strength of the field's gradient at a place [1/(m2 s2)]
 
     Checked  tests/tethered_deorbit/test_rigid.py
@@ -130,17 +90,16 @@ def make_rigid(
     )
     mass, share = f"{role}_mass", "state_chaser_share" if role == "target" else "state_target_share"
     moments, attachment = f"{role}_inertia", f"{role}_attachment"
-    leaving, follow, slide = way.leaving or attachment, way.follow, way.relief
+    leaving, follow = wrapping.leaving or attachment, wrapping.follow
+    slide, show_rates = wrapping.relief, wrapping.differentiate
     start_attitude, start_rate, rate_frame = (
         f"{role}_{name}" for name in ("start_attitude", "start_rate", "rate_frame")
     )
-    gradient = f"{role}_gravity_gradient"
+    gradient, attitude = f"{role}_gravity_gradient", f"{role}_attitude"
     inertia, inverse, turned, arms, scale = (
         f"state_{role}_{name}" for name in ("inertia", "inverse", "turned", "arms", "scale")
     )
-    shown, shown_rate, spin, spin_energy = (f"{role}_{name}" for name in ("attitude", "rate", "spin", "spin_energy"))
-    rates = tuple(f"rate_{role}_{name}" for name in ("attitude", "rate", "spin", "spin_energy"))
-    rate_attitude, rate_rate, rate_spin, rate_energy = rates
+    shown = make_shown(role, first)
     middle, last = first + 4, first + ATTITUDE
 
     @kernel
@@ -191,7 +150,7 @@ def make_rigid(
         if not (length == 0.0 or abs(length - 1.0) <= UNIT):
             return blame(record, BAD_ATTITUDE, attitude_slot, given[0])
         normalise(q, given)
-        frame = r[shown]
+        frame = r[attitude]
         from_matrix(frame, basis)
         for i in range(1, 4):
             frame[i] = -frame[i]
@@ -204,7 +163,7 @@ def make_rigid(
             cross(room, state[6:9], state[9:12])
             for i in range(3):
                 room[i] /= square
-        to_matrix(r[turned], q)
+        to_matrix_of_any_length(r[turned], q)
         transposed_matrix_vector(room, r[turned], room)
         for i in range(3):
             rate[i] = r[start_rate][i] + room[i]
@@ -226,7 +185,7 @@ def make_rigid(
         rate[first + 1] = a * x + c * z - d * y
         rate[first + 2] = a * y - b * z + d * x
         rate[first + 3] = a * z + b * y - c * x
-        to_matrix(r[turned], state[first:middle])
+        to_matrix_of_any_length(r[turned], state[first:middle])
         torque = rate[middle:last]
         lever = sign * r[share]
         for i in range(3):
@@ -245,7 +204,7 @@ def make_rigid(
         Checked  tests/tethered_deorbit/test_rigid.py
         """
         r = record[0]
-        to_matrix(r[turned], state[first:middle])
+        to_matrix_of_any_length(r[turned], state[first:middle])
         room = r[arms][2]
         transposed_matrix_vector(room, r[turned], vector)
         for i in range(3):
@@ -367,11 +326,11 @@ def make_rigid(
         return float(size * size * square)
 
     @kernel
-    def relief(record: Any, state: Array, vector: Array, velocity: Array) -> float:
-        """What the line's sliding over the body takes off the second derivative of its length [m/s^2]; after `reach`.
+    def parts(record: Any, state: Array, vector: Array, velocity: Array) -> None:
+        """The rate of the line's far end as the body sees it, after `reach`: the part along the line, in `arms[2]`, and
+        that across it, in `arms[3]`.
 
-        The rate of the far end as the body sees it, w = -A^T d' + w_b x A^T d, is left in `arms[2]`, the part along the
-        line, and `arms[3]`, that across it.
+            w = -A^T d' + w_b x A^T d
 
         Checked  tests/tethered_deorbit/test_wrapping.py, against differences
         """
@@ -386,7 +345,25 @@ def make_rigid(
         for i in range(3):
             along[i] *= part
             across[i] -= along[i]
-        return float(slide(record, across))
+
+    @kernel
+    def relief(record: Any, state: Array, vector: Array, velocity: Array) -> float:
+        """What the line's sliding over the body takes off the second derivative of its length [m/s^2]; after `reach`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
+        """
+        parts(record, state, vector, velocity)
+        return float(slide(record, record[0][arms][3]))
+
+    @kernel
+    def show_way(record: Any, state: Array, vector: Array, velocity: Array) -> None:
+        """Rates of what is shown of the way; after `reach`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
+        """
+        r = record[0]
+        parts(record, state, vector, velocity)
+        show_rates(record, r[arms][2], r[arms][3])
 
     @kernel
     def reach_error(record: Any, state: Array, error: Array, vector: Array, velocity: Array) -> None:
@@ -412,84 +389,6 @@ def make_rigid(
         matrix_vector(part, r[turned], part)
         add_scaled(velocity, velocity, sign, part)
 
-    @kernel
-    def publish(record: Any, state: Array) -> None:
-        """Attitude, rate, angular momentum and energy of the turning; fills the matrix `turned` too.
-
-            H = A I w,   E = w.I w/2
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        r = record[0]
-        to_matrix(r[turned], state[first:middle])
-        normalise(r[shown], state[first:middle])
-        room = r[spin]
-        matrix_vector(room, r[inertia], state[middle:last])
-        r[spin_energy] = 0.5 * dot(room, state[middle:last])
-        matrix_vector(room, r[turned], room)
-        for i in range(3):
-            r[shown_rate][i] = state[middle + i]
-
-    @kernel
-    def energy(record: Any, state: Array, rate_of_frame: float) -> float:
-        """What the body's turning adds to the energy of the pair [J], in the frame whose basis is in the record.
-
-            w.I w/2 - n o.A I w + (3/2) n^2 (r.I r - tr I/3),   r and o the axes 1 and 3 of the frame, in the body's
-
-        It is constant on a circular orbit but for what the line does. To be called after `publish`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        r = record[0]
-        room = r[arms][3]
-        transposed_matrix_vector(room, r[turned], r.state_basis[0])
-        other = r[arms][4]
-        matrix_vector(other, r[inertia], room)
-        trace = r[moments][0] + r[moments][1] + r[moments][2]
-        tide = r[gradient] * 1.5 * rate_of_frame * rate_of_frame * (dot(room, other) - trace / 3.0)
-        matrix_vector(other, r[inertia], state[middle:last])
-        turning = 0.5 * dot(other, state[middle:last])
-        transposed_matrix_vector(room, r[turned], r.state_basis[2])
-        return float(turning - rate_of_frame * dot(room, other) + tide)
-
-    @kernel
-    def differentiate(record: Any, state: Array, rate: Array, rate_of_frame: float, change: float) -> float:
-        """Rates of what `publish` fills; returns the rate of `energy` [W].
-
-        rate            of the state, along inertial axes
-        change          of the frame's rate                      [rad/s^2]
-
-        Checked  tests/tethered_deorbit/test_rigid.py, against differences
-        """
-        r = record[0]
-        n = rate_of_frame
-        momentum, torque, axis, other = r[arms][0], r[arms][1], r[arms][2], r[arms][3]
-        w = state[middle:last]
-        matrix_vector(momentum, r[inertia], w)
-        matrix_vector(torque, r[inertia], rate[middle:last])
-        cross(axis, w, momentum)
-        for i in range(3):
-            torque[i] += axis[i]
-            r[rate_rate][i] = rate[middle + i]
-        for i in range(4):
-            r[rate_attitude][i] = rate[first + i]
-        matrix_vector(r[rate_spin], r[turned], torque)
-        work = dot(w, torque)
-        r[rate_energy] = work
-        transposed_matrix_vector(axis, r[turned], r.state_basis[2])
-        power = work - n * dot(axis, torque) - change * dot(axis, momentum)
-        # rate of axis 1 as the body sees it: n times axis 2 less w x r
-        transposed_matrix_vector(axis, r[turned], r.state_basis[0])
-        cross(other, axis, w)
-        transposed_matrix_vector(torque, r[turned], r.state_basis[1])
-        for i in range(3):
-            other[i] += n * torque[i]
-        matrix_vector(momentum, r[inertia], axis)
-        trace = r[moments][0] + r[moments][1] + r[moments][2]
-        size = dot(axis, momentum) - trace / 3.0
-        power += r[gradient] * (3.0 * n * change * size + 3.0 * n * n * dot(other, momentum))
-        return float(power)
-
     return Rigid(
         begin=begin,
         arm_length=arm_length,
@@ -498,13 +397,14 @@ def make_rigid(
         reach=reach,
         reach_acceleration=reach_acceleration,
         relief=relief,
+        show_way=show_way,
         reach_error=reach_error,
         pull=pull,
         add_turning=add_turning,
         turn_back=turn_back,
         settle=settle,
         squared_error=squared_error,
-        publish=publish,
-        energy=energy,
-        differentiate=differentiate,
+        publish=shown.publish,
+        energy=shown.energy,
+        differentiate=shown.differentiate,
     )

@@ -1,61 +1,20 @@
-"""Bodies that the line can wrap round, as faces and edges: the box, and the cylinder as a prism.
-
-Face f is n . x <= h, kept as (n, h); edge e is o + t d for 0 <= t <= l, kept as (o, d, l), between two faces. All in
-body axes, from the centre of mass; the middle of the body stands at `target.center`.
-"""
+"""The surface of a cylinder about the third body axis, as a prism."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
-from fmu_src.tethered_deorbit.body_rows import CYLINDER_SIDES
+from fmu_src.rows import positive
+from fmu_src.tethered_deorbit.surfaces.surface import Surface
 from orbital.kernel import kernel
-from orbital.vectors import norm
 
-
-class Surface(NamedTuple):
-    """A kind of body: how many faces and edges it has, and the kernel that writes them from the parameters."""
-
-    faces: int
-    edges: int
-    lay_out: Callable[[Any], None]
+SIDES = 24
+"""Sides of the prism."""
 
 
 @kernel
-def lay_out_box(record: Any) -> None:
-    """Write the faces and edges of a box with edges along the body axes, and how large it is.
-
-    Checked  tests/tethered_deorbit/test_wrapping.py
-    """
-    r = record[0]
-    for a in range(3):
-        r.state_middle[a] = r.target_center[a]
-        for side in range(2):
-            sign = 1.0 - 2.0 * side
-            face = r.state_faces[2 * a + side]
-            for i in range(3):
-                face[i] = sign if i == a else 0.0
-            face[3] = sign * r.target_center[a] + 0.5 * r.target_size[a]
-    for a in range(3):
-        b, c = (a + 1) % 3, (a + 2) % 3
-        for corner in range(4):
-            on_b, on_c = corner % 2, corner // 2
-            edge, sides = r.state_edges[4 * a + corner], r.state_sides[4 * a + corner]
-            for i in range(3):
-                edge[3 + i] = 1.0 if i == a else 0.0
-            edge[a] = r.target_center[a] - 0.5 * r.target_size[a]
-            edge[b] = r.target_center[b] + (0.5 - on_b) * r.target_size[b]
-            edge[c] = r.target_center[c] + (0.5 - on_c) * r.target_size[c]
-            edge[6] = r.target_size[a]
-            sides[0] = 2 * b + on_b
-            sides[1] = 2 * c + on_c
-    r.state_extent = norm(r.target_size)
-
-
-@kernel
-def lay_out_cylinder(record: Any) -> None:
+def lay_out(record: Any) -> None:
     """Write the faces and edges of a prism about the third body axis that is as far round as the cylinder.
 
         radius of its corners = r (pi/n)/sin(pi/n)
@@ -64,7 +23,7 @@ def lay_out_cylinder(record: Any) -> None:
     Checked  tests/tethered_deorbit/test_wrapping.py: a line round a cylinder
     """
     r = record[0]
-    n = CYLINDER_SIDES
+    n = SIDES
     half = math.pi / n
     corner = r.target_cylinder_radius * half / math.sin(half)
     for i in range(3):
@@ -106,7 +65,15 @@ def lay_out_cylinder(record: Any) -> None:
     )
 
 
-SURFACES = {
-    "box": Surface(6, 12, lay_out_box),
-    "cylinder": Surface(CYLINDER_SIDES + 2, 3 * CYLINDER_SIDES, lay_out_cylinder),
-}
+CYLINDER = Surface(
+    name="cylinder",
+    faces=SIDES + 2,
+    edges=3 * SIDES,
+    ways=6 * SIDES,
+    rows=(
+        positive("target.cylinder_radius", "m", "of the cylinder about the third body axis", 1.0, 1e4),
+        positive("target.cylinder_length", "m", "of the cylinder along it", 2.0, 1e4),
+    ),
+    lay_out=lay_out,
+)
+"""The way may go six times round."""
