@@ -120,3 +120,45 @@ def gradient_torque(out: Array, inertia: Array, position: Array, strength: float
     out[0] = strength * (y * w - z * v)
     out[1] = strength * (z * u - x * w)
     out[2] = strength * (x * v - y * u)
+
+
+@kernel
+def point_velocity(out: Array, turned: Array, rate: Array, point: Array) -> None:
+    """out = velocity of a point of a body about its centre of mass, reference axes [m/s].
+
+        b' = A (w x a)
+
+    turned        A      body to reference                       [-]      (3, 3)
+    rate          w      body axes                               [rad/s]  (3,)
+    point         a      from the centre of mass, body axes      [m]      (3,)
+
+    Source   a rigid body
+    Checked  tests/orbital/test_rigid.py
+    """
+    x = rate[1] * point[2] - rate[2] * point[1]
+    y = rate[2] * point[0] - rate[0] * point[2]
+    z = rate[0] * point[1] - rate[1] * point[0]
+    for i in range(3):
+        out[i] = turned[i, 0] * x + turned[i, 1] * y + turned[i, 2] * z
+
+
+@kernel
+def point_acceleration(out: Array, turned: Array, rate: Array, change: Array, point: Array) -> None:
+    """out = acceleration of a point of a body about its centre of mass, reference axes [m/s^2].
+
+        b'' = A (w' x a + w x (w x a))
+
+    change        w'     rate of w, body axes                    [rad/s2] (3,)
+    The others as of `point_velocity`.
+
+    Source   a rigid body
+    Checked  tests/orbital/test_rigid.py
+    """
+    a, b, c = point[0], point[1], point[2]
+    p, q, r = rate[0], rate[1], rate[2]
+    u, v, w = q * c - r * b, r * a - p * c, p * b - q * a
+    x = change[1] * c - change[2] * b + (q * w - r * v)
+    y = change[2] * a - change[0] * c + (r * u - p * w)
+    z = change[0] * b - change[1] * a + (p * v - q * u)
+    for i in range(3):
+        out[i] = turned[i, 0] * x + turned[i, 1] * y + turned[i, 2] * z

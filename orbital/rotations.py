@@ -150,6 +150,31 @@ def from_rotation_vector(out: Array, rotation: Array) -> None:
 
 
 @kernel
+def evenly_turned(out: Array, rate: Array, time: float) -> None:
+    """out = the quaternion of a turn at a constant rate for a time, by series that round alike everywhere.
+
+        q = (cos h, w t sin(h)/(2 h)),   h = |w t|/2
+
+    rate          w                                              [rad/s]  (3,)
+    time          t                                              [s]
+
+    Valid    |w t| <= 1: what is left out is below 1e-16
+    Source   Sola (2017), eq. 101
+    Checked  tests/orbital/test_rotations.py
+    """
+    x, y, z = 0.5 * time * rate[0], 0.5 * time * rate[1], 0.5 * time * rate[2]
+    s = x * x + y * y + z * z
+    c = 1.0 - s * (1.0 / 90.0) * (1.0 - s * (1.0 / 132.0) * (1.0 - s * (1.0 / 182.0)))
+    c = 1.0 - 0.5 * s * (1.0 - s * (1.0 / 12.0) * (1.0 - s * (1.0 / 30.0) * (1.0 - s * (1.0 / 56.0) * c)))
+    d = 1.0 - s * (1.0 / 72.0) * (1.0 - s * (1.0 / 110.0) * (1.0 - s * (1.0 / 156.0)))
+    d = 1.0 - s * (1.0 / 6.0) * (1.0 - s * (1.0 / 20.0) * (1.0 - s * (1.0 / 42.0) * d))
+    out[0] = c
+    out[1] = d * x
+    out[2] = d * y
+    out[3] = d * z
+
+
+@kernel
 def to_rotation_vector(out: Array, q: Array) -> float:
     """Angle of the rotation [rad], 0 to pi; out becomes its rotation vector [rad].
 

@@ -16,6 +16,11 @@ POINT_TARGET = (
 
 ATTACHED = (
     state("state.line[#][#]", "1", "vector of the line, its rate, and room", shape=(4, 3)),
+    state(
+        "state.carried", "1", "whether the step holds the line's vector in place of that of the centres", kind="Integer"
+    ),
+    state("state.seen[#]", "1", "of a step, as it is: see `layout`", shape=(31,)),
+    state("state.seen_rate[#]", "1", "and its rate", shape=(31,)),
     state("state.no_length", "m", "zero: the line ends where it is made fast"),
 )
 """Of a pair of which a body turns."""
@@ -52,6 +57,11 @@ def rigid_body(role: str, attachment: tuple[float, float, float]) -> tuple[Varia
         state(f"state.{role}_inertia[#][#]", "kg.m2", "matrix of inertia", shape=(3, 3)),
         state(f"state.{role}_inverse[#][#]", "1", "its inverse [1/(kg m2)]", shape=(3, 3)),
         state(f"state.{role}_turned[#][#]", "1", "matrix of the attitude last used", shape=(3, 3)),
+        *(state(f"state.{role}_{name}[#]", unit, text, shape=shape) for name, unit, text, shape in (
+            ("spin", "rad/s", "rate with which the attitude is carried along in a step, body axes", (3,)),
+            ("point", "m", "of the body that is carried along, body axes", (3,)),
+            ("turn", "1", "quaternion of its turn since the begin of the step", (4,)))),
+        state(f"state.{role}_room[#][#]", "1", "that point from the centre of mass, and its rate", shape=(2, 3)),
         state(f"state.{role}_arms[#][#]", "1", "attachment from the centre of mass, its rate, and room", shape=(5, 3)),
         state(f"state.{role}_scale", "m", "by which errors of the attitude are weighed"),
         rate(f"{role}_attitude", "1/s", (4,)),

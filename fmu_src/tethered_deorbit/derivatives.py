@@ -38,8 +38,8 @@ def make_differentiate(
         Checked  tests/tethered_deorbit/test_derivatives.py
         """
         r = record[0]
+        bodies.stand(record, state)
         inertial(record, state, rate, 0.0, 0.0)
-        bodies.line(record, state)
         acceleration, apart, _ = bodies.second(record, state, rate, separation, length, speed, 0.0)
         r.rate_length_rate = acceleration
         r.rate_separation = apart

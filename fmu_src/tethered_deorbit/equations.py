@@ -20,7 +20,7 @@ def make_equations(
     environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, aocs: Aocs, layout: StateLayout
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The kernels `inertial(record, state, rate, since, elapsed)` and `derivative(record, state, rate, elapsed)`."""
-    impulse = layout.impulse
+    impulse, seen = layout.impulse, bodies.seen
 
     # `derivative` is where the time goes: as a call of its own, which a second caller would make it, it costs 10 %.
     @view
@@ -30,6 +30,8 @@ def make_equations(
         state, rate   of `layout`
         since         since the inputs in force began to move        [s]
         elapsed       for which the axes have turned                 [s]
+
+        To be called after `Bodies.stand`.
 
         Source   the environment's gravity, the thrust, the bodies' turning and the pull of the line; dJ/dt = T
         Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_extremes.py: J
@@ -41,21 +43,23 @@ def make_equations(
         aocs.add(record, state, rate, elapsed)
         rate[impulse] = 0.0
         if record[0].state_taut:
-            separation, length, speed = bodies.line(record, state)
+            separation, length, speed = bodies.measure(record, state)
             tension = reel.tension(record, length, speed, since)
             bodies.pull(record, state, rate, tension, separation)
             rate[impulse] = tension
 
     @kernel
     def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:
-        """rate = rate of the state along the axes of the step, which turn with a taut line.
+        """rate = rate of the state in the coordinates of the step, along its axes, which turn with a taut line.
 
         elapsed       since the begin of the step                    [s]
         The others as in `inertial`.
 
         Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_turning.py
         """
-        inertial(record, state, rate, record[0].state_since + elapsed, elapsed)
+        as_it_is = seen(record, state, elapsed)
+        inertial(record, as_it_is, rate, record[0].state_since + elapsed, elapsed)
+        bodies.enter_rate(record, state, as_it_is, rate)
         if record[0].state_taut:
             add_turning(record, state, rate, -1.0)
             bodies.add_turning(record, state, rate, -1.0)

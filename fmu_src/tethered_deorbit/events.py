@@ -57,18 +57,21 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
     low_error, high_error, stages, dense_begin = places.low, places.high, places.stages, places.dense
     seen = places.size - 7
     work_end = places.total
+    state_seen, rate_seen = bodies.seen, bodies.seen_rate
 
     @kernel
     def signals(record: Any, state: Array, rate: Array, elapsed: float) -> Signals:
         """The seven signals of a state: see `Events`, and CROSSING to RATE_SLOPE for their places.
 
-        state, rate   of `layout`, in the axes of the step
+        state, rate   of `layout`, in the coordinates and axes of the step
         elapsed       since the begin of the step                    [s]
 
         Checked  tests/tethered_deorbit/test_turning.py: bits that no axes change; test_terms.py: the kinematics
         """
-        separation, length, speed = bodies.line(record, state)
-        change, apart, slope = bodies.second(record, state, rate, separation, length, speed, 1.0)
+        there = state_seen(record, state, elapsed)
+        separation, length, speed = bodies.measure(record, there)
+        slopes = rate_seen(record, there, rate)
+        change, apart, slope = bodies.second(record, there, slopes, separation, length, speed, 1.0)
         since = record[0].state_since + elapsed
         tension = reel.tension(record, length, speed, since)
         tension_rate = reel.tension_rate(record, length, speed, change, since)

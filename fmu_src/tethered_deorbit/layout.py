@@ -12,6 +12,7 @@ every body that turns, and what they gather:
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from fmu_src.integrators.scheme import AdaptiveScheme
@@ -46,6 +47,12 @@ def state_layout(turning: int, wheels: bool = False, spends: bool = False) -> St
     spent = own + 3 * wheels
     moving = spent + spends
     return StateLayout(moving, own, spent, moving, moving + 1)
+
+
+def layout_of(terms: Mapping[str, str]) -> StateLayout:
+    """The components of a pair with these terms."""
+    turning = sum(terms[role] != "point" for role in ("target", "chaser"))
+    return state_layout(turning, "aocs" in terms, "burn" in terms or "engine" in terms)
 
 
 class Places(NamedTuple):

@@ -21,7 +21,7 @@ from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
-from fmu_src.tethered_deorbit.layout import places_of, state_layout
+from fmu_src.tethered_deorbit.layout import layout_of, places_of
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, make_reel
 from fmu_src.tethered_deorbit.schemes import SCHEMES
@@ -113,7 +113,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
     limits = make_limits(interface, *LIMITED)
     bodies = make_bodies(terms, environment.place, environment.gradient, interface)
-    layout = state_layout(bodies.turning, "aocs" in terms, "burn" in terms or "engine" in terms)
+    layout = layout_of(terms)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)

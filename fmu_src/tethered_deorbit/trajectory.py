@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.bodies.idle import always
 from fmu_src.tethered_deorbit.events import CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, Events, Signals
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
@@ -76,9 +77,8 @@ def make_squared_error(bodies: Bodies) -> Callable[..., Any]:
         if r.state_taut and length > 0.0:
             taut = r.state_taut_tolerance + ROUNDING * length
             taut_rate = taut * r.state_frequency
-            along, along_rate = bodies.stretch_error(record, state, error)
-            radial = dot(error[9:12], state[6:9]) / length
-            across = dot(error[9:12], error[9:12]) - radial * radial
+            along, along_rate = dot(error[6:9], state[6:9]) / length, dot(error[9:12], state[6:9]) / length
+            across = dot(error[9:12], error[9:12]) - along_rate * along_rate
             square += along * along / (taut * taut) + along_rate * along_rate / (taut_rate * taut_rate)
             square += max(0.0, across) / (apart_rate * apart_rate)
         else:
@@ -144,6 +144,8 @@ def make_trajectory(
 
     longest_taut_step = make_longest_taut_step(scheme.reach)
     acts = acting is not IDLE
+    watches = acts or bodies.holds is not always
+    moving, seen = size - 1, bodies.seen
 
     @kernel
     def restart(record: Any, work: Array, time: float) -> None:
@@ -154,7 +156,7 @@ def make_trajectory(
         r = record[0]
         for i in range(size):
             work[begin_state + i] = work[end_state + i]
-        bodies.hold(record, work[begin_state:end_state])
+        bodies.rest(record)
         for i in range(3):
             r.state_turning[i] = 0.0
         r.state_begin = time
@@ -241,16 +243,28 @@ def make_trajectory(
         r.state_event = LINE if max(there[CROSSING], there[CROSSING_SLOPE]) > 0.0 else 0
 
     @kernel
-    def ceased(record: Any, work: Array, state: Array, since: float) -> int:
-        """What has ceased to hold in a state, as a number of `state.event`, or 0.
+    def ceased(record: Any, state: Array, elapsed: float) -> int:
+        """What has ceased to hold `elapsed` [s] after the begin of the step, as a number of `state.event`, or 0.
+
+        state         in the coordinates of the step, of `layout`
 
         Checked  tests/tethered_deorbit/test_wrapping.py, test_ends.py
         """
-        if not bodies.holds(record, state):
+        there = seen(record, state, elapsed)
+        if not bodies.holds(record, there):
             return EDGES
-        if acts and not acting.holds(record, state, since):
+        if acts and not acting.holds(record, there, record[0].state_since + elapsed):
             return ACTS
         return 0
+
+    @kernel
+    def retry(record: Any, work: Array) -> bool:
+        """Whether a way of the line that holds has been found where there was none.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        there = seen(record, work[end_state:here_state], record[0].state_step)
+        return bool(bodies.retry(record, there))
 
     @kernel
     def stop_where_ceased(record: Any, work: Array) -> None:
@@ -261,13 +275,13 @@ def make_trajectory(
         """
         r = record[0]
         low, high = 0.0, 1.0
-        event = ceased(record, work, work[end_state:here_state], r.state_since + r.state_step)
+        event = ceased(record, work[end_state:here_state], r.state_step)
         here = work[here_state:slope_state]
         events.ensure_dense(record, work)
         while high - low > EDGE:
             middle = 0.5 * (low + high)
             scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], middle, 0, size, here)
-            there = ceased(record, work, here, r.state_since + middle * r.state_step)
+            there = ceased(record, here, middle * r.state_step)
             if there == 0:
                 low = middle
             else:
@@ -307,6 +321,8 @@ def make_trajectory(
         for i in range(size):
             begin[i] = work[end_state + i]
         if r.state_fresh:
+            bodies.hold(record, begin)
+            bodies.enter(record, begin)
             set_turning(record, begin)
             derivative(record, begin, rate, 0.0)
             r.state_fresh = 0
@@ -315,23 +331,21 @@ def make_trajectory(
                 rate[i] = work[last + i]
             if r.state_taut:
                 add_turning(record, begin, rate, 1.0)
-                bodies.add_turning(record, begin, rate, 1.0)
                 turn_back(record, r.state_step, begin)
                 turn_back(record, r.state_step, rate)
                 bodies.turn_back(record, r.state_step, begin)
-                bodies.turn_back(record, r.state_step, rate)
+            bodies.go_on(record, r.state_step, begin, rate)
+            if r.state_taut:
                 set_turning(record, begin)
                 add_turning(record, begin, rate, -1.0)
                 bodies.add_turning(record, begin, rate, -1.0)
-        bodies.settle(begin, rate)
-        bodies.hold(record, begin)
         r.state_begin = r.state_end
         r.state_event = 0
         r.solver_steps += 1
         step = min(r.state_next_step, max(longest, SHORTEST * abs(r.state_begin)))
         step = min(step, bodies.longest(record, begin))
         if acts:
-            step = min(step, acting.longest(record, begin))
+            step = min(step, acting.longest(record, seen(record, begin, 0.0)))
         if r.state_taut:
             step = min(step, longest_taut_step(record))
             turn = norm(r.state_turning)
@@ -367,9 +381,9 @@ def make_trajectory(
                 land(record, work, fraction)
         if acts:
             stop_at_limit(record, work)
-        if ceased(record, work, work[end_state:here_state], r.state_since + r.state_step) != 0:
+        if watches and ceased(record, work[end_state:here_state], r.state_step) != 0:
             stop_where_ceased(record, work)
-        elif r.state_event == 0 and bodies.retry(record, work[end_state:here_state]):
+        elif watches and r.state_event == 0 and retry(record, work):
             r.state_event = EDGES
         return 0
 
@@ -392,7 +406,10 @@ def make_trajectory(
             fraction = max(0.0, (time - r.state_begin) / r.state_step)
             since = fraction * r.state_step
             scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], fraction, 0, size, out)
-        separation, length, speed = bodies.line(record, out)
+        there = seen(record, out, since)
+        separation, length, speed = bodies.measure(record, there)
+        for i in range(moving):
+            out[i] = there[i]
         turn_back(record, since, out)
         bodies.turn_back(record, since, out)
         return separation, length, speed

@@ -6,29 +6,40 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
-from fmu_src.tethered_deorbit.bodies.idle import always, never, no_end, no_fault, nothing
+from fmu_src.tethered_deorbit.bodies.idle import always, never, no_fault, nothing
+from fmu_src.tethered_deorbit.layout import layout_of
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 
 
 class Bodies(NamedTuple):
-    """Kernels of the two bodies at the ends of the line. `state` and `rate` are those of `layout`; axes may turn.
+    """Kernels of the two bodies at the ends of the line. `state` and `rate` are those of `layout`, as they are but
+    where it says otherwise; axes may turn.
 
-    turning                                     how many of the two have an attitude
     begin(record) -> fault                      least effective mass of the line, and what does not change
     place(record, state, longest) -> fault      attitudes and rates at the start, the centres being in the state; a line
                                                 longer than `longest` [m] is refused
-    move(record, state, rate)                   rate of attitudes and body rates without the line; writes all of them
     line(record, state) -> (separation, length, its rate)   of the centres of mass [m]; of the line [m], [m/s]
     along(record, state) -> (x, y, z)           direction of the line at the chaser, towards the target, of any length
+    stand(record, state)                        where attachments and line are; `line` and `seen` do it too. The rest is
+                                                asked of the state in which they stand
+    measure(record, state)                      what `line` returns
+    move(record, state, rate)                   rate of attitudes and body rates without the line; writes all of them
     second(record, state, rate, separation, length, length_rate, turned) -> (length'', separation', separation'')
                                                 [m/s^2], [m/s], [m/s^2]; `turned` is 1 where the axes of the rate turn
                                                 with the step, 0 where they are at rest
     pull(record, state, rate, tension, separation)   add the pull of the line [N] to the rate
     add_turning(record, state, rate, sign)      what the turning of the axes adds to the rate of attitudes
     turn_back(record, time, state)              attitudes that axes turning for a time [s] have; in place
-    settle(state, rate)                         attitudes back to unit length, and their rates alike
+    rest(record)                                a step of no length: the state is as it is
+    enter(record, state)                        from the state as it is to the coordinates of the step that begins there
+    go_on(record, time, state, rate)            from the end of a step of a time [s] to the begin of the next; attitudes
+                                                have no rate there but for what turning axes add
+    seen(record, state, elapsed) -> state       as it is, from the coordinates of a step, `elapsed` [s] after its begin
+    seen_rate(record, state, rate) -> rate      and its rate, after `seen`
+    enter_rate(record, state, seen, rate)       the rate in the coordinates of the step, from that as it is
     squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
-    stretch_error(record, state, error) -> (along, across^2, along', across'^2)   error of the line's vector [m], [m/s]
+    longest(record, state) -> h                 longest step [s] that these coordinates bear, and over which the way of
+                                                the line can be followed
     publish(record, state)                      outputs of their own
     energy(record, state, turning) -> E         of the attitudes [J], constant in a frame that turns evenly [rad/s] but
                                                 for what the line does
@@ -37,31 +48,35 @@ class Bodies(NamedTuple):
     Of a line that goes straight to its attachments nothing of what follows is asked:
 
     hold(record, state)                         from the way of the line to this state others are followed
-    longest(record, state) -> h                 longest step [s] over which it can be
     trouble(record) -> fault                    of a line that could not be followed
     holds(record, state)                        whether the line's way over edges of the body is still the one that was
     renew(record, state)                        take the one that is
     retry(record, state)                        the same where none could be found that holds: whether now one is
     """
 
-    turning: int
     begin: Callable[..., Any]
     place: Callable[..., Any]
     move: Callable[..., Any]
+    stand: Callable[..., Any]
+    measure: Callable[..., Any]
     line: Callable[..., Any]
     along: Callable[..., Any]
     second: Callable[..., Any]
     pull: Callable[..., Any]
     add_turning: Callable[..., Any]
     turn_back: Callable[..., Any]
-    settle: Callable[..., Any]
+    rest: Callable[..., Any]
+    enter: Callable[..., Any]
+    go_on: Callable[..., Any]
+    seen: Callable[..., Any]
+    seen_rate: Callable[..., Any]
+    enter_rate: Callable[..., Any]
+    longest: Callable[..., Any]
     squared_error: Callable[..., Any]
-    stretch_error: Callable[..., Any]
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]
     hold: Callable[..., Any] = nothing
-    longest: Callable[..., Any] = no_end
     trouble: Callable[..., Any] = no_fault
     holds: Callable[..., Any] = always
     renew: Callable[..., Any] = nothing
@@ -84,4 +99,4 @@ def make_bodies(
     turning = tuple(role for role in ("target", "chaser") if terms[role] != "point")
     if not turning:
         return points.make_points(interface)
-    return attached.make_attached(turning, terms["target"], frame_at, strength_at, interface)
+    return attached.make_attached(turning, terms["target"], layout_of(terms).size, frame_at, strength_at, interface)

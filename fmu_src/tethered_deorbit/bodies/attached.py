@@ -13,6 +13,7 @@ from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.bodies.carried import Carried
 from fmu_src.tethered_deorbit.bodies.idle import no_fault, nothing, zero
 from fmu_src.tethered_deorbit.bodies.rigid import Rigid, make_rigid
 from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping, make_wrapping
@@ -21,9 +22,12 @@ from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR
 from fmu_src.tethered_deorbit.surfaces import SURFACES
-from orbital.kernel import kernel
-from orbital.vectors import Array, dot, norm
+from orbital.kernel import kernel, view
+from orbital.rotations import normalise
+from orbital.vectors import Array, norm
 
+WIDEST = 1.0
+"""By how much a body may turn in a step [rad]."""
 OVERRUN = 1e-12
 """Share of its length by which a line may be longer at the start, by rounding of the attitude."""
 
@@ -38,20 +42,21 @@ STILL = Rigid(
     begin=no_share,
     arm_length=zero,
     place=no_fault,
+    stand=nothing,
     move=nothing,
     reach=nothing,
     reach_acceleration=nothing,
     relief=zero,
+    set_pivot=nothing,
     show_way=nothing,
-    reach_error=nothing,
     pull=nothing,
     add_turning=nothing,
     turn_back=nothing,
-    settle=nothing,
     squared_error=zero,
     publish=nothing,
     energy=zero,
     differentiate=zero,
+    carried=Carried(),
 )
 """A body that does not turn."""
 
@@ -59,6 +64,7 @@ STILL = Rigid(
 def make_attached(
     turning: Sequence[str],
     surface: str,
+    size: int,
     frame_at: Callable[..., Any],
     strength_at: Callable[..., Any],
     interface: Interface,
@@ -67,11 +73,13 @@ def make_attached(
 
     turning       which bodies turn: "target", "chaser", or both, in the order of their attitudes in the state
     surface       of the target, among `SURFACES` or none
+    size          of the state
     frame_at, strength_at   kernels `place` and `gradient` of the environment
 
     Checked  tests/tethered_deorbit/test_rigid.py
     """
-    wrapping = make_wrapping(SURFACES[surface]) if surface in SURFACES else Wrapping()
+    straight = surface not in SURFACES
+    wrapping = Wrapping() if straight else make_wrapping(SURFACES[surface])
     show, keep, trouble = wrapping.publish, wrapping.keep, wrapping.trouble
     way_holds, renew_way, retry_way, on_body = wrapping.holds, wrapping.renew, wrapping.retry, wrapping.on_body
     lay_out, start_way, followed = wrapping.begin, wrapping.start, wrapping.turning
@@ -81,6 +89,7 @@ def make_attached(
         role: make_rigid(role, PAIR + ATTITUDE * at, signs[role], wrappings[role], strength_at, interface)
         for at, role in enumerate(turning)
     }
+    bodies = len(turning)
     target, chaser = made.get("target", STILL), made.get("chaser", STILL)
     separation_slot = interface.references["start.separation"]
     shorter = "target_attachment_distance" if "target" not in turning else "state_no_length"
@@ -89,9 +98,9 @@ def make_attached(
     def begin(record: Any) -> int:
         """Least mass that the line moves [kg]: see `Bodies`. Returns 0 or a fault.
 
-            1/m = 1/m_r + |a_t|^2/I_t + |a_c|^2/I_c,   each I the least principal moment
+            1/m = 1/m_r + greatest of (a x n).I^-1 (a x n) over all directions n, of either body
 
-        Valid    a bound; the mass of a pull along n is 1/m_r + (a x n).I^-1 (a x n), for either body
+        Valid    the line at its attachments
         Source   impulse on a free rigid body
         Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
         """
@@ -121,24 +130,71 @@ def make_attached(
         target.reach(record, state, vector, velocity)
 
     @kernel
-    def line(record: Any, state: Array) -> tuple[float, float, float]:
-        """Separation of the centres [m], length of the line [m] and its rate [m/s]: see `Bodies`.
+    def measure(record: Any, state: Array) -> tuple[float, float, float]:
+        """Separation of the centres [m], length of the line [m] and its rate [m/s], after `stand`: see `Bodies`.
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
         r = record[0]
-        span(record, state)
         distance = norm(r.state_line[0])
         speed: float = distance_rate(r.state_line[0], r.state_line[1], distance)
         return norm(state[6:9]), distance + r[on_body] - r[shorter], speed
 
     @kernel
+    def stand(record: Any, state: Array) -> None:
+        """Where the attachments and the line are: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        target.stand(record, state)
+        chaser.stand(record, state)
+        span(record, state)
+
+    @kernel
+    def line(record: Any, state: Array) -> tuple[float, float, float]:
+        """The same, wherever the line was before.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        stand(record, state)
+        found: tuple[float, float, float] = measure(record, state)
+        return found
+
+    @kernel
+    def leave(record: Any, state: Array, elapsed: float) -> None:
+        """The state of a step as it is, in `state.seen`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        r = record[0]
+        there = r.state_seen
+        for i in range(size):
+            there[i] = state[i]
+        target.carried.leave(record, elapsed, state, there)
+        chaser.carried.leave(record, elapsed, state, there)
+        if straight and r.state_carried == 1:
+            for i in range(3):
+                r.state_line[0][i] = state[6 + i]
+                r.state_line[1][i] = state[9 + i]
+        else:
+            span(record, there)
+
+    @view
+    def seen(record: Any, state: Array, elapsed: float) -> Array:
+        """The state of a step as it is: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        leave(record, state, elapsed)
+        there: Array = record[0].state_seen
+        return there
+
+    @kernel
     def holds(record: Any, state: Array) -> bool:
-        """Whether the way of the line to a state goes over the edges that are held.
+        """Whether the way of the line goes over the edges that are held; after `stand`.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        line(record, state)
         return bool(way_holds(record))
 
     @kernel
@@ -147,16 +203,15 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        line(record, state)
+        stand(record, state)
         renew_way(record)
 
     @kernel
     def retry(record: Any, state: Array) -> bool:
-        """The same where none could be found that holds: whether now one is.
+        """The same where none could be found that holds: whether now one is; after `stand`.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        line(record, state)
         return bool(retry_way(record))
 
     @kernel
@@ -165,20 +220,22 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        line(record, state)
+        stand(record, state)
         keep(record)
+        target.set_pivot(record, state, record[0].state_line[0], record[0].state_line[1])
 
     @kernel
-    def longest(record: Any, state: Array) -> float:
-        """Longest step [s] over which the line's way can be followed: half a radian of the target and of the line.
+    def hold_at_begin(record: Any, state: Array) -> None:
+        """The same at the begin of a step, its attitudes being as they are.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        apart = norm(state[6:9])
-        turning = norm(state[PAIR + 4 : PAIR + 7])
-        if apart > 0.0:
-            turning += norm(state[9:12]) / apart
-        return followed / turning if turning > 0.0 else math.inf
+        r = record[0]
+        leave(record, state, 0.0)
+        keep(record)
+        target.set_pivot(record, r.state_seen, r.state_line[0], r.state_line[1])
+
+    hold_way = nothing if straight else hold_at_begin
 
     @kernel
     def along(record: Any, state: Array) -> tuple[float, float, float]:
@@ -186,7 +243,7 @@ def make_attached(
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
-        span(record, state)
+        stand(record, state)
         vector = record[0].state_line[0]
         return vector[0], vector[1], vector[2]
 
@@ -194,7 +251,7 @@ def make_attached(
     def second(
         record: Any, state: Array, rate: Array, separation: float, length: float, speed: float, turned: float
     ) -> tuple[float, float, float]:
-        """Second derivative of the length, and rates of the separation [m/s^2], [m/s], [m/s^2]; after `line`.
+        """Second derivative of the length, and rates of the separation [m/s^2], [m/s], [m/s^2]; after `stand`.
 
         Checked  tests/tethered_deorbit/test_rigid.py, against differences
         """
@@ -216,7 +273,7 @@ def make_attached(
 
     @kernel
     def pull(record: Any, state: Array, rate: Array, tension: float, separation: float) -> None:
-        """Add the pull of the line to the rate of the state, and its torques; after `line` of the same state.
+        """Add the pull of the line to the rate of the state, and its torques; after `stand` of the same state.
 
             rho'' -= T/m_r d/|d|
 
@@ -236,26 +293,6 @@ def make_attached(
             chaser.pull(record, state, rate, force * vector[0], force * vector[1], force * vector[2])
 
     @kernel
-    def stretch_error(record: Any, state: Array, error: Array) -> tuple[float, float]:
-        """Parts along the line of the errors of its vector and of the rate of that [m], [m/s].
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        r = record[0]
-        span(record, state)
-        vector = r.state_line[0]
-        distance = norm(vector)
-        if distance == 0.0:
-            return 0.0, 0.0
-        off, off_rate = r.state_line[2], r.state_line[3]
-        for i in range(3):
-            off[i] = error[6 + i]
-            off_rate[i] = error[9 + i]
-        target.reach_error(record, state, error, off, off_rate)
-        chaser.reach_error(record, state, error, off, off_rate)
-        return dot(off, vector) / distance, dot(off_rate, vector) / distance
-
-    @kernel
     def place(record: Any, state: Array, longest: float) -> int:
         """Attitudes at the start, in the frame of the orbit's point; fault of a line that is stretched there, or 0.
 
@@ -268,7 +305,7 @@ def make_attached(
             code = chaser.place(record, state, r.state_basis, turning_rate)
         if code != 0:
             return int(code)
-        line(record, state)
+        stand(record, state)
         start_way(record)
         code = trouble(record)
         if code != 0:
@@ -308,13 +345,98 @@ def make_attached(
         chaser.turn_back(record, time, vector)
 
     @kernel
-    def settle(state: Array, rate: Array) -> None:
+    def rest(record: Any) -> None:
+        """A step of no length.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: macro steps change nothing
+        """
+        record[0].state_carried = 0
+        target.carried.rest(record)
+        chaser.carried.rest(record)
+
+    @kernel
+    def enter(record: Any, state: Array) -> None:
+        """Into the coordinates of a step: see `carried`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        settle(state)
+        record[0].state_carried = record[0].state_taut
+        target.carried.enter(record, state)
+        chaser.carried.enter(record, state)
+
+    @kernel
+    def settle(state: Array) -> None:
         """Attitudes back to unit length.
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
-        target.settle(state, rate)
-        chaser.settle(state, rate)
+        for k in range(bodies):
+            first = PAIR + ATTITUDE * k
+            normalise(state[first : first + 4], state[first : first + 4])
+
+    @kernel
+    def leave_rate(record: Any, state: Array, rate: Array) -> None:
+        """The rate of that state, in `state.seen_rate`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        there = record[0].state_seen_rate
+        for i in range(size):
+            there[i] = rate[i]
+        target.carried.leave_rate(record, state, there)
+        chaser.carried.leave_rate(record, state, there)
+
+    @view
+    def seen_rate(record: Any, state: Array, rate: Array) -> Array:
+        """The rate of that state: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        leave_rate(record, state, rate)
+        there: Array = record[0].state_seen_rate
+        return there
+
+    @kernel
+    def enter_rate(record: Any, state: Array, there: Array, rate: Array) -> None:
+        """The rate in the coordinates of the step: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        target.carried.enter_rate(record, there, rate)
+        chaser.carried.enter_rate(record, there, rate)
+        for i in range(3):
+            rate[6 + i] = state[9 + i]
+
+    @kernel
+    def go_on(record: Any, time: float, state: Array, rate: Array) -> None:
+        """From one step to the next: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        target.carried.stay(record, time, state)
+        chaser.carried.stay(record, time, state)
+        settle(state)
+        hold_way(record, state)
+        target.carried.go_on(record, state, rate)
+        chaser.carried.go_on(record, state, rate)
+
+    @kernel
+    def longest(record: Any, state: Array) -> float:
+        """Longest step [s]: over which no body turns by more than the series of `evenly_turned` bear, and body and line
+        not by more than lets its way be followed.
+
+        Checked  tests/tethered_deorbit/test_rigid.py, test_wrapping.py
+        """
+        apart, fastest = norm(state[6:9]), 0.0
+        for k in range(bodies):
+            first = PAIR + ATTITUDE * k + 4
+            fastest = max(fastest, norm(state[first : first + 3]))
+        step = WIDEST / fastest if fastest > 0.0 else math.inf
+        turning = norm(state[PAIR + 4 : PAIR + 7])
+        if apart > 0.0:
+            turning += norm(state[9:12]) / apart
+        return min(step, followed / turning) if turning > 0.0 else step
 
     @kernel
     def squared_error(record: Any, state: Array, error: Array) -> float:
@@ -326,7 +448,7 @@ def make_attached(
 
     @kernel
     def publish(record: Any, state: Array) -> None:
-        """Outputs of both, after `line`.
+        """Outputs of both, after `stand`.
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
@@ -352,24 +474,30 @@ def make_attached(
         power = target.differentiate(record, state, rate, turning_rate, change)
         return float(power + chaser.differentiate(record, state, rate, turning_rate, change))
 
-    straight = Bodies(
-        turning=len(turning),
+    pair = Bodies(
         begin=begin,
         place=place,
         move=move,
+        stand=stand,
+        measure=measure,
         line=line,
         along=along,
         second=second,
         pull=pull,
         add_turning=add_turning,
         turn_back=turn_back,
-        settle=settle,
+        rest=rest,
+        enter=enter,
+        go_on=go_on,
+        seen=seen,
+        seen_rate=seen_rate,
+        enter_rate=enter_rate,
+        longest=longest,
         squared_error=squared_error,
-        stretch_error=stretch_error,
         publish=publish,
         energy=energy,
         differentiate=differentiate,
     )
-    if surface not in SURFACES:
-        return straight
-    return straight._replace(hold=hold, longest=longest, trouble=trouble, holds=holds, renew=renew, retry=retry)
+    if straight:
+        return pair
+    return pair._replace(hold=hold, trouble=trouble, holds=holds, renew=renew, retry=retry)

@@ -53,6 +53,7 @@ class Path(NamedTuple):
     keep: Callable[..., Any]
     sound: Callable[..., Any]
     relief: Callable[..., Any]
+    pivot: Callable[..., Any]
     publish: Callable[..., Any]
     differentiate: Callable[..., Any]
 
@@ -282,6 +283,29 @@ def make_path(polyhedron: Polyhedron) -> Path:
         return float(speed * speed * r.path_diagonal[max(0, r.path_count - 1)])
 
     @kernel
+    def pivot(record: Any, across: Array) -> None:
+        """The point, in `state.pivot`, about which the far end turns for the moment, as a straight line would have it.
+
+            x = x_k - u (h - |x_(k+1) - x_k|),   h = w^2/(w^2/|x_(k+1) - x_k| - t'^2 p),   u the direction of the line
+
+        A line that slides turns about a point behind that where it leaves the body: were it straight from there, its
+        length would have the second derivative that it has. No farther behind than it is long.
+
+        across        w      velocity of the far end across the line, body axes   [m/s]  (3,)
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: steps of a line that slides
+        """
+        r = record[0]
+        last = r.path_count
+        free, square = r.path_lengths[last], dot(across, across)
+        behind = 0.0
+        if square > 0.0 and last > 0:
+            rest = max(square / free - relief(record, across), square / (free + r.state_wrapped))
+            behind = square / rest - free
+        for i in range(3):
+            r.state_pivot[i] = r.path_points[last][i] - behind * r.path_ways[last][i]
+
+    @kernel
     def publish(record: Any) -> None:
         """Length on the body, straight distance of the attachments, and the number of edges; after `follow`.
 
@@ -313,4 +337,4 @@ def make_path(polyhedron: Polyhedron) -> Path:
                 straight = (r.path_points[r.path_count + 1][i] - r.path_points[0][i]) / size
                 r.rate_span += straight * (along[i] + across[i])
 
-    return Path(tighten, leave, insert, show, follow, keep, sound, relief, publish, differentiate)
+    return Path(tighten, leave, insert, show, follow, keep, sound, relief, pivot, publish, differentiate)

@@ -9,12 +9,12 @@ from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies import Bodies
-from fmu_src.tethered_deorbit.bodies.idle import nothing, zero
+from fmu_src.tethered_deorbit.bodies.idle import no_end, nothing, zero
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
-from orbital.kernel import kernel
-from orbital.vectors import Array, dot, norm
+from orbital.kernel import kernel, view
+from orbital.vectors import Array, norm
 
 
 @kernel
@@ -102,15 +102,22 @@ def pull(record: Any, state: Array, rate: Array, tension: float, separation: flo
             rate[9 + i] -= factor * state[6 + i]
 
 
-@kernel
-def stretch_error(record: Any, state: Array, error: Array) -> tuple[float, float]:
-    """Parts along the line of the errors of its vector and of the rate of that [m], [m/s].
+@view
+def as_it_is(record: Any, state: Array, elapsed: float) -> Array:
+    """The state of a step: for points it has no coordinates of its own.
 
-    Valid    |rho| > 0
-    Checked  tests/tethered_deorbit/test_integrator.py
+    Checked  tests/tethered_deorbit/test_macro_step.py
     """
-    length = norm(state[6:9])
-    return dot(error[6:9], state[6:9]) / length, dot(error[9:12], state[6:9]) / length
+    return state
+
+
+@view
+def rate_as_it_is(record: Any, state: Array, rate: Array) -> Array:
+    """And its rate.
+
+    Checked  tests/tethered_deorbit/test_macro_step.py
+    """
+    return rate
 
 
 def make_points(interface: Interface) -> Bodies:
@@ -132,19 +139,25 @@ def make_points(interface: Interface) -> Bodies:
         return blame(record, START_STRETCHED, separation_slot, r.start_separation) if length > longest else 0
 
     return Bodies(
-        turning=0,
         begin=begin,
         place=place,
         move=nothing,
+        stand=nothing,
+        measure=line,
         line=line,
         along=along,
         second=second,
         pull=pull,
         add_turning=nothing,
         turn_back=nothing,
-        settle=nothing,
+        rest=nothing,
+        enter=nothing,
+        go_on=nothing,
+        seen=as_it_is,
+        seen_rate=rate_as_it_is,
+        enter_rate=nothing,
+        longest=no_end,
         squared_error=zero,
-        stretch_error=stretch_error,
         publish=nothing,
         energy=zero,
         differentiate=zero,

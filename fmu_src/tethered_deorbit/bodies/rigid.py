@@ -11,6 +11,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.bodies.carried import Carried, make_carried
+from fmu_src.tethered_deorbit.bodies.idle import nothing
 from fmu_src.tethered_deorbit.bodies.shown import make_shown
 from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping
 from fmu_src.tethered_deorbit.body_rows import RATE_FRAMES
@@ -18,9 +20,17 @@ from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_ATTITUDE, BAD_INERTIA, BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import ATTITUDE
 from orbital.kernel import kernel
-from orbital.rigid import euler, extreme_moments, gradient_torque, inertia_matrix, invert_symmetric
-from orbital.rotations import from_matrix, multiply, normalise, to_matrix_of_any_length
-from orbital.vectors import Array, add, add_scaled, cross, dot, matrix_vector, norm, transposed_matrix_vector
+from orbital.rigid import (
+    euler,
+    extreme_moments,
+    gradient_torque,
+    inertia_matrix,
+    invert_symmetric,
+    point_acceleration,
+    point_velocity,
+)
+from orbital.rotations import evenly_turned, from_matrix, multiply, normalise, to_matrix_of_any_length
+from orbital.vectors import Array, add_scaled, cross, dot, matrix_vector, norm, transposed_matrix_vector
 
 INERTIAL, ORBITAL, LINE = range(len(RATE_FRAMES))
 SHARE, TAUT_SHARE = 5e-3, 0.1
@@ -37,17 +47,19 @@ class Rigid(NamedTuple):
                                                 mass [1/kg]
     arm_length(record) -> a                     of the attachment, from the centre of mass [m]
     place(record, state, basis, turning) -> fault   attitude and rate at the start, as given relative to a frame
+    stand(record, state)                        the matrix of the attitude; of what follows all but `energy` and
+                                                `squared_error` come after it
     move(record, state, rate)                   attitude and rate without the line
     reach(record, state, vector, velocity)      add what the attachment adds to the line's vector, from the chaser's
                                                 attachment to the target's [m], and to its rate [m/s]
     reach_acceleration(record, state, rate, out)   and to the rate of that, inertial [m/s^2]; after `reach`
     relief(record, state, vector, velocity) -> l''   what a line that slides over the body takes off l'' [m/s^2]; after
                                                 `reach`
+    set_pivot(record, state, vector, velocity)  of the way: see `Wrapping`; after `reach`
     show_way(record, state, vector, velocity)   rates of what is shown of its way; after `reach`
-    reach_error(record, state, error, vector, velocity)   add what errors of the attitude add to those of the vector;
-                                                after `reach`
     pull(record, state, rate, x, y, z)          add the torque of the line, a force [N] on the chaser; after `reach`
-    add_turning, turn_back, settle, squared_error, energy   as of `Bodies`
+    add_turning, turn_back, squared_error, energy   as of `Bodies`
+    carried                                     coordinates of a step
     publish(record, state)
     differentiate(record, state, rate, turning, change) -> power [W]
     """
@@ -56,19 +68,46 @@ class Rigid(NamedTuple):
     arm_length: Callable[..., Any]
     place: Callable[..., Any]
     move: Callable[..., Any]
+    stand: Callable[..., Any]
     reach: Callable[..., Any]
     reach_acceleration: Callable[..., Any]
     relief: Callable[..., Any]
+    set_pivot: Callable[..., Any]
     show_way: Callable[..., Any]
-    reach_error: Callable[..., Any]
     pull: Callable[..., Any]
     add_turning: Callable[..., Any]
     turn_back: Callable[..., Any]
-    settle: Callable[..., Any]
     squared_error: Callable[..., Any]
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]
+    carried: Carried
+
+
+@kernel
+def greatest_relief(room: Array, inverse: Array, arm: Array) -> float:
+    """The most that a body's turning adds to the inverse of a line's effective mass, whatever its direction [1/kg].
+
+        greatest eigenvalue of X^T I^-1 X,   X n = a x n
+
+    room                                                         (3 and more, 3)
+    inverse       I^-1                                           [1/(kg m2)]  (3, 3)
+    arm           a      from the centre of mass                 [m]      (3,)
+
+    Source   impulse on a free rigid body
+    Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
+    """
+    for k in range(3):
+        # column k of X, turned by the inverse, and back
+        x, y, z = (0.0, arm[2], -arm[1]) if k == 0 else ((-arm[2], 0.0, arm[0]) if k == 1 else (arm[1], -arm[0], 0.0))
+        u = inverse[0, 0] * x + inverse[0, 1] * y + inverse[0, 2] * z
+        v = inverse[1, 0] * x + inverse[1, 1] * y + inverse[1, 2] * z
+        w = inverse[2, 0] * x + inverse[2, 1] * y + inverse[2, 2] * z
+        room[0, k] = arm[2] * v - arm[1] * w
+        room[1, k] = arm[0] * w - arm[2] * u
+        room[2, k] = arm[1] * u - arm[0] * v
+    _, greatest = extreme_moments(room)
+    return float(greatest)
 
 
 def make_rigid(
@@ -91,7 +130,8 @@ def make_rigid(
     mass, share = f"{role}_mass", "state_chaser_share" if role == "target" else "state_target_share"
     moments, attachment = f"{role}_inertia", f"{role}_attachment"
     leaving, follow = wrapping.leaving or attachment, wrapping.follow
-    slide, show_rates = wrapping.relief, wrapping.differentiate
+    slide, show_rates, pivot = wrapping.relief, wrapping.differentiate, wrapping.pivot
+    carried_point = "state_pivot" if wrapping.leaving else attachment
     start_attitude, start_rate, rate_frame = (
         f"{role}_{name}" for name in ("start_attitude", "start_rate", "rate_frame")
     )
@@ -100,13 +140,14 @@ def make_rigid(
         f"state_{role}_{name}" for name in ("inertia", "inverse", "turned", "arms", "scale")
     )
     shown = make_shown(role, first)
+    turn = f"state_{role}_turn"
     middle, last = first + 4, first + ATTITUDE
 
     @kernel
     def begin(record: Any) -> tuple[float, int]:
         """Inertia and its inverse from the parameters; see `Rigid`.
 
-            1/m <= |a|^2/I_least
+            1/m <= greatest eigenvalue of X^T I^-1 X,   X n = a x n
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
@@ -121,7 +162,7 @@ def make_rigid(
         if not math.isfinite(reach):
             return 0.0, blame(record, BAD_PARAMETER, attachment_slot, reach)
         r[scale] = max(reach, math.sqrt(greatest / r[mass]))
-        return reach * reach / least, 0
+        return greatest_relief(r[arms], r[inverse], r[attachment]), 0
 
     @kernel
     def arm_length(record: Any) -> float:
@@ -171,7 +212,7 @@ def make_rigid(
 
     @kernel
     def move(record: Any, state: Array, rate: Array) -> None:
-        """Rate of attitude and body rate without the line [1/s], [rad/s^2]; fills the matrix `turned` too.
+        """Rate of attitude and body rate without the line [1/s], [rad/s^2]; after `stand`.
 
             q' = q (0, w)/2,   w' = I^-1 (3 mu/r^5 r x I r - w x I w)
 
@@ -185,7 +226,6 @@ def make_rigid(
         rate[first + 1] = a * x + c * z - d * y
         rate[first + 2] = a * y - b * z + d * x
         rate[first + 3] = a * z + b * y - c * x
-        to_matrix_of_any_length(r[turned], state[first:middle])
         torque = rate[middle:last]
         lever = sign * r[share]
         for i in range(3):
@@ -196,42 +236,52 @@ def make_rigid(
         euler(torque, r[inertia], r[inverse], state[middle:last], torque)
 
     @kernel
+    def stand(record: Any, state: Array) -> None:
+        """The matrix `turned` of this attitude.
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        to_matrix_of_any_length(record[0][turned], state[first:middle])
+
+    @kernel
+    def seek(record: Any, vector: Array) -> None:
+        """The way of the line round the body to the other's end, from that of its vector which is the other's [m].
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        r = record[0]
+        room = r[arms][2]
+        transposed_matrix_vector(room, r[turned], vector)
+        for i in range(3):
+            room[i] *= -sign
+        follow(record, room)
+
+    seek_way = seek if wrapping.leaving else nothing
+
+    @kernel
     def reach(record: Any, state: Array, vector: Array, velocity: Array) -> None:
-        """Add where the line leaves the body, and its rate, from the centre of mass: see `Rigid`.
+        """Add where the line leaves the body, and its rate, from the centre of mass; after `stand`: see `Rigid`.
 
             b = A a,   b' = A (w x a),   a the attachment, or where a line that wraps round the body leaves it
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
         r = record[0]
-        to_matrix_of_any_length(r[turned], state[first:middle])
-        room = r[arms][2]
-        transposed_matrix_vector(room, r[turned], vector)
-        for i in range(3):
-            room[i] *= -sign
-        follow(record, room)
+        seek_way(record, vector)
         matrix_vector(r[arms][0], r[turned], r[leaving])
-        cross(r[arms][1], state[middle:last], r[leaving])
-        matrix_vector(r[arms][1], r[turned], r[arms][1])
+        point_velocity(r[arms][1], r[turned], state[middle:last], r[leaving])
         add_scaled(vector, vector, sign, r[arms][0])
         add_scaled(velocity, velocity, sign, r[arms][1])
 
     @kernel
     def reach_acceleration(record: Any, state: Array, rate: Array, out: Array) -> None:
-        """Add the second derivative of the attachment, inertial [m/s^2].
-
-            b'' = A (w' x a + w x (w x a))
+        """Add the second derivative of the attachment, inertial [m/s^2]; after `reach`.
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
         r = record[0]
-        whole, part = r[arms][2], r[arms][3]
-        cross(whole, state[middle:last], r[leaving])
-        cross(whole, state[middle:last], whole)
-        cross(part, rate[middle:last], r[leaving])
-        add(whole, whole, part)
-        matrix_vector(whole, r[turned], whole)
-        add_scaled(out, out, sign, whole)
+        point_acceleration(r[arms][2], r[turned], state[middle:last], rate[middle:last], r[leaving])
+        add_scaled(out, out, sign, r[arms][2])
 
     @kernel
     def pull(record: Any, state: Array, rate: Array, x: float, y: float, z: float) -> None:
@@ -272,39 +322,14 @@ def make_rigid(
         rate[first + 3] += z * a + x * c - y * b
 
     @kernel
-    def turn_back(record: Any, time: float, vector: Array) -> None:
-        """Attitude, or its rate, along axes at rest, given along axes that have turned for a time [s]; in place.
+    def turn_back(record: Any, time: float, state: Array) -> None:
+        """Attitude along axes at rest, given along axes that have turned for a time [s]; in place.
 
-            q = (cos(h), w t sin(h)/|w t|) q,   h = |w t|/2, by their series
-
-        Valid    |w t| < 0.3
         Checked  tests/tethered_deorbit/test_rigid.py: axes change nothing
         """
-        turning = record[0].state_turning
-        x, y, z = 0.5 * time * turning[0], 0.5 * time * turning[1], 0.5 * time * turning[2]
-        s = x * x + y * y + z * z
-        if s == 0.0:
-            return
-        cosine = 1.0 - 0.5 * s * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0))))
-        sine = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0)))
-        x, y, z = sine * x, sine * y, sine * z
-        a, b, c, d = vector[first], vector[first + 1], vector[first + 2], vector[first + 3]
-        vector[first] = cosine * a - x * b - y * c - z * d
-        vector[first + 1] = cosine * b + x * a + y * d - z * c
-        vector[first + 2] = cosine * c + y * a + z * b - x * d
-        vector[first + 3] = cosine * d + z * a + x * c - y * b
-
-    @kernel
-    def settle(state: Array, rate: Array) -> None:
-        """Attitude back to unit length, and its rate by the same factor.
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        q = state[first:middle]
-        factor = 1.0 / math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-        for i in range(first, middle):
-            state[i] *= factor
-            rate[i] *= factor
+        r = record[0]
+        evenly_turned(r[turn], r.state_turning, time)
+        multiply(state[first:middle], r[turn], state[first:middle])
 
     @kernel
     def squared_error(record: Any, state: Array, error: Array) -> float:
@@ -356,6 +381,15 @@ def make_rigid(
         return float(slide(record, record[0][arms][3]))
 
     @kernel
+    def set_pivot(record: Any, state: Array, vector: Array, velocity: Array) -> None:
+        """The point about which the line turns; after `reach`.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: steps of a line that slides
+        """
+        parts(record, state, vector, velocity)
+        pivot(record, record[0][arms][3])
+
+    @kernel
     def show_way(record: Any, state: Array, vector: Array, velocity: Array) -> None:
         """Rates of what is shown of the way; after `reach`.
 
@@ -365,46 +399,23 @@ def make_rigid(
         parts(record, state, vector, velocity)
         show_rates(record, r[arms][2], r[arms][3])
 
-    @kernel
-    def reach_error(record: Any, state: Array, error: Array, vector: Array, velocity: Array) -> None:
-        """Add the errors of the attachment and of its rate that those of attitude and rate make: see `Rigid`.
-
-            e_b = t x b,   e_b' = t x b' + A (e_w x a),   t = 2 vec(e_q q*)/|q|^2
-
-        Checked  tests/tethered_deorbit/test_rigid.py: the error of the stretch
-        """
-        r = record[0]
-        w, x, y, z = state[first], state[first + 1], state[first + 2], state[first + 3]
-        e, f, g, h = error[first], error[first + 1], error[first + 2], error[first + 3]
-        factor = 2.0 / (w * w + x * x + y * y + z * z)
-        tilt, part = r[arms][2], r[arms][3]
-        tilt[0] = factor * (w * f - e * x - (g * z - h * y))
-        tilt[1] = factor * (w * g - e * y - (h * x - f * z))
-        tilt[2] = factor * (w * h - e * z - (f * y - g * x))
-        cross(part, tilt, r[arms][0])
-        add_scaled(vector, vector, sign, part)
-        cross(part, tilt, r[arms][1])
-        add_scaled(velocity, velocity, sign, part)
-        cross(part, error[middle:last], r[leaving])
-        matrix_vector(part, r[turned], part)
-        add_scaled(velocity, velocity, sign, part)
-
     return Rigid(
         begin=begin,
         arm_length=arm_length,
         place=place,
         move=move,
+        stand=stand,
         reach=reach,
         reach_acceleration=reach_acceleration,
         relief=relief,
+        set_pivot=set_pivot,
         show_way=show_way,
-        reach_error=reach_error,
         pull=pull,
         add_turning=add_turning,
         turn_back=turn_back,
-        settle=settle,
         squared_error=squared_error,
         publish=shown.publish,
         energy=shown.energy,
         differentiate=shown.differentiate,
+        carried=make_carried(role, first, sign, carried_point),
     )

@@ -58,6 +58,7 @@ class Wrapping(NamedTuple):
     trouble(record) -> fault
     relief(record, across) -> l''    what the line's sliding takes off the second derivative of its length [m/s^2], for
                                      a velocity across it of the far end, body axes [m/s] (3,)
+    pivot(record, across)            the point about which the far end turns, in `state.pivot`
     publish(record)                  outputs of the way
     differentiate(record, along, across)   and their rates, for the parts of the velocity along the line and across it
     leaving, on_body                 rows of the point where the line leaves the body, "" the attachment, and of its
@@ -74,6 +75,7 @@ class Wrapping(NamedTuple):
     keep: Callable[..., Any] = nothing
     trouble: Callable[..., Any] = no_fault
     relief: Callable[..., Any] = zero
+    pivot: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
     leaving: str = ""
@@ -371,6 +373,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
         keep=keep,
         trouble=trouble,
         relief=path.relief,
+        pivot=path.pivot,
         publish=path.publish,
         differentiate=path.differentiate,
         leaving="state_departure",

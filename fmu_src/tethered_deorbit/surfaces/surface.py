@@ -50,6 +50,7 @@ class Surface(NamedTuple):
             vector("state.middle", "m", "of the body's shape", "state"),
             state("state.extent", "m", "size of the body"),
             vector("state.departure", "m", "where the line leaves the body, body axes", "state"),
+            vector("state.pivot", "m", "about which the line's far end turns, body axes", "state"),
             state("state.wrapped", "m", "length of the line on the body"),
             state("state.way_fault", "1", "fault of a way that could not be followed", kind="Integer"),
             state("held.stuck", "1", "they are held although they do not hold", kind="Integer"),
