@@ -211,6 +211,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return 0
 
     @kernel
+    def line_energy(record: Any, length: float) -> float:
+        """Energy stored in the line [J] at the end of the step.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: a taut line slips
+        """
+        r = record[0]
+        return float(reel.energy(record, length, r.state_since + r.state_step)) if r.state_taut else 0.0
+
+    @kernel
     def change_line(record: Any, work: Array) -> None:
         """The step ended where the line changes between slack and taut, or comes over other edges: let it.
 
@@ -218,10 +227,13 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         """
         r = record[0]
         end = work[end_state:here_state]
-        _, _, speed = trajectory.state_at(record, work, r.state_end, end)
+        _, length, speed = trajectory.state_at(record, work, r.state_end, end)
         if r.state_event == EDGES:
+            stored = line_energy(record, length)
             bodies.renew(record, end)
             inputs.judge_line(record, end)
+            _, length, _ = bodies.line(record, end)
+            bodies.book(record, stored - line_energy(record, length))
         elif r.state_taut:
             r.state_taut = 0
         else:

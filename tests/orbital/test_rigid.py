@@ -5,10 +5,19 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 from scipy.special import ellipj, ellipk
 
 from orbital.constants import EARTH_MU
-from orbital.rigid import euler, extreme_moments, gradient_torque, inertia_matrix, invert_symmetric
+from orbital.rigid import (
+    euler,
+    extreme_moments,
+    gradient_torque,
+    inertia_matrix,
+    invert_symmetric,
+    point_acceleration,
+    point_velocity,
+)
 
 MOMENTS = np.array([300.0, 500.0, 650.0, 20.0, -35.0, 12.0])
 
@@ -82,3 +91,22 @@ def test_torque_turns_about_its_axis() -> None:
     out, torque = np.zeros(3), np.array([1.0, -2.0, 0.5])
     euler(out, full, inverse, np.zeros(3), torque)
     assert full @ out == pytest.approx(torque, rel=1e-13)
+
+
+def test_a_point_of_a_turning_body() -> None:
+    """Velocity and acceleration of a point against differences of its place, of a body that turns ever faster."""
+    axis, rate, change, point = np.array([0.6, 0.0, -0.8]), 0.3, 0.05, np.array([1.5, -0.4, 0.9])
+    start = Rotation.from_euler("xyz", (0.3, -1.0, 0.7))
+
+    def place(time: float) -> np.ndarray:
+        turned = start * Rotation.from_rotvec((rate * time + 0.5 * change * time**2) * axis)
+        return np.asarray(turned.apply(point))
+
+    step, velocity, acceleration = 1e-2, np.zeros(3), np.zeros(3)
+    at = [place(k * step) for k in (-2, -1, 0, 1, 2)]
+    point_velocity(velocity, start.as_matrix(), rate * axis, point)
+    point_acceleration(acceleration, start.as_matrix(), rate * axis, change * axis, point)
+    assert velocity == pytest.approx((at[0] - 8.0 * at[1] + 8.0 * at[3] - at[4]) / (12.0 * step), abs=1e-10)
+    second = (-at[0] + 16.0 * at[1] - 30.0 * at[2] + 16.0 * at[3] - at[4]) / (12.0 * step**2)
+    assert acceleration == pytest.approx(second, abs=1e-9)
+    assert np.linalg.norm(acceleration) > 0.1

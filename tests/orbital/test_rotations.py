@@ -33,6 +33,14 @@ def test_exponential_map_against_scipy_and_back(run, vector):
     assert angle == pytest.approx(np.linalg.norm(vector), rel=1e-15, abs=1e-150)
 
 
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 0.01, 0.3, 1.0, -1.0])
+def test_an_even_turn_against_scipy(run, angle):
+    """To rounding, up to a radian."""
+    axis, time, q = np.array([2 / 3, -1 / 3, 2 / 3]), 2.5, np.empty(4)
+    run(rotations.evenly_turned)(q, angle / time * axis, time)
+    np.testing.assert_allclose(q, Rotation.from_rotvec(angle * axis).as_quat(scalar_first=True), rtol=0, atol=3e-16)
+
+
 @pytest.mark.parametrize("length", [1.0, 0.3, 1e3, -2.0])
 def test_matrix_of_a_quaternion_of_any_length(run, length):
     """Each of the nine elements is that of the direction alone."""

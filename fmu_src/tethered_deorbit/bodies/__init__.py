@@ -51,7 +51,8 @@ class Bodies(NamedTuple):
     trouble(record) -> fault                    of a line that could not be followed
     holds(record, state)                        whether the line's way over edges of the body is still the one that was
     renew(record, state)                        take the one that is
-    retry(record, state)                        the same where none could be found that holds: whether now one is
+    retry(record, state)                        where none could be found that holds: whether now one could be
+    book(record, energy)                        what the line has lost by a change of its way [J]
     """
 
     begin: Callable[..., Any]
@@ -81,6 +82,7 @@ class Bodies(NamedTuple):
     holds: Callable[..., Any] = always
     renew: Callable[..., Any] = nothing
     retry: Callable[..., Any] = never
+    book: Callable[..., Any] = nothing
 
 
 KINDS = {"target": ("point", "rigid", *SURFACES), "chaser": ("point", "rigid")}

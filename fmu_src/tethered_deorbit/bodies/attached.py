@@ -208,7 +208,7 @@ def make_attached(
 
     @kernel
     def retry(record: Any, state: Array) -> bool:
-        """The same where none could be found that holds: whether now one is; after `stand`.
+        """Whether a way that holds could be found now, where there was none; after `stand`.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
@@ -500,4 +500,4 @@ def make_attached(
     )
     if straight:
         return pair
-    return pair._replace(hold=hold, trouble=trouble, holds=holds, renew=renew, retry=retry)
+    return pair._replace(hold=hold, trouble=trouble, holds=holds, renew=renew, retry=retry, book=wrapping.book)

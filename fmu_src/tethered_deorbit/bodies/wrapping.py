@@ -53,9 +53,10 @@ class Wrapping(NamedTuple):
     start(record)                    the shortest way, to be followed from then on
     holds(record) -> bool            whether the edges hold for the way last followed
     renew(record)                    the edges that do, to be held from then on; fault: `state.way_fault`
-    retry(record) -> bool            the same where none that hold had been found: whether they are now
+    retry(record) -> bool            where none that hold had been found: whether they could be now
     keep(record)                     the way last followed is where the next is sought from
     trouble(record) -> fault
+    book(record, energy)             what the line has lost by a change of its way [J]
     relief(record, across) -> l''    what the line's sliding takes off the second derivative of its length [m/s^2], for
                                      a velocity across it of the far end, body axes [m/s] (3,)
     pivot(record, across)            the point about which the far end turns, in `state.pivot`
@@ -74,6 +75,7 @@ class Wrapping(NamedTuple):
     retry: Callable[..., Any] = never
     keep: Callable[..., Any] = nothing
     trouble: Callable[..., Any] = no_fault
+    book: Callable[..., Any] = nothing
     relief: Callable[..., Any] = zero
     pivot: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
@@ -103,6 +105,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
         lay_out(record)
         r.held_count = 0
         r.state_way_fault = 0
+        r.tether_slip_loss = 0.0
 
     @kernel
     def trouble(record: Any) -> int:
@@ -341,7 +344,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
 
     @kernel
     def retry(record: Any) -> bool:
-        """Renew edges that are held although they do not hold, if that can be done; else they are held on.
+        """Whether edges that are held although they do not hold could be renewed now; they are held on.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
@@ -353,15 +356,23 @@ def make_wrapping(surface: Surface) -> Wrapping:
             r.kept_edges[k] = r.held_edges[k]
             r.kept_along[k] = r.held_along[k]
         renew(record)
-        if r.held_stuck == 0:
-            return True
+        found = bool(r.held_stuck == 0)
+        r.held_stuck = 1
         r.held_count = count
         for k in range(count):
             r.held_edges[k] = r.kept_edges[k]
             r.held_along[k] = r.kept_along[k]
         r.state_way_fault = 0
         follow_path(record)
-        return False
+        return found
+
+    @kernel
+    def book(record: Any, energy: float) -> None:
+        """Add what the line has lost by changing its way [J].
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: a taut line slips
+        """
+        record[0].tether_slip_loss += energy
 
     return Wrapping(
         follow=follow,
@@ -372,6 +383,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
         retry=retry,
         keep=keep,
         trouble=trouble,
+        book=book,
         relief=path.relief,
         pivot=path.pivot,
         publish=path.publish,

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Variable
-from fmu_src.rows import count, output, rate, state, vector
+from fmu_src.rows import count, output, peak, rate, state, vector
 
 CORNER_EDGES = 8
 """How many edges may meet at a corner beside those by which a line comes to it."""
@@ -42,6 +42,8 @@ class Surface(NamedTuple):
             output("tether.span", "m", "straight distance of the two attachments", 10.0, "rate.span"),
             output("tether.wrapped", "m", "of the line's length on the target's surface", 10.0, "rate.wrapped"),
             count("tether.bends", "edges of the target over which the line runs"),
+            peak("tether.slip_loss", "J", "energy that the taut line has lost by slipping off corners, since the start",
+                 1.0),
             rate("span", "m/s"),
             rate("wrapped", "m/s"),
             state("state.faces[#][#]", "1", "normal and height of each face", shape=(self.faces, 4)),
