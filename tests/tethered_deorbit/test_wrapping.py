@@ -11,7 +11,12 @@ from scipy.integrate import solve_ivp
 
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
+from tests.plain import PlainInstance, plain
 from tests.validation import Validated, closed_form, other_code
+
+__all__ = ["plain"]
+
+uncompiled = pytest.mark.usefixtures("plain")
 
 BOX = {"reel": "locked", "environment": "none", "target": "box", "thrust": "along_track"}
 CYLINDER = {"reel": "locked", "environment": "none", "target": "cylinder", "thrust": "along_track"}
@@ -332,7 +337,7 @@ def test_momentum_and_energy_through_wrapped_tugs(terms: dict[str, str]) -> None
 def test_rates_of_a_wrapped_line() -> None:
     """Against differences of fourth order: the line's own, and those of what it shows."""
     i = pair(BOX, TUMBLING, tether__rest_length=1000.0)
-    seen_bends = set()
+    seen_bends, slides = set(), 0.0
     for _ in range(30):
         i.step(3.0)
         before = int(i["tether.bends"])
@@ -351,7 +356,64 @@ def test_rates_of_a_wrapped_line() -> None:
         differences = (v[0] - 8.0 * v[1] + 8.0 * v[3] - v[4]) / (12.0 * step)
         assert [rates[name] for name in names] == pytest.approx(differences, rel=1e-6, abs=1e-9)
         seen_bends.add(before)
+        slides = max(slides, abs(rates["tether.wrapped"]))
     assert seen_bends >= {0, 1, 2}
+    assert slides > 1e-3
+
+
+def wrapped_and_taut(zeta: float) -> PlainInstance:
+    """A box that the line comes round from its far face, over two edges, stretched by half a millimetre."""
+    values = {
+        "start.condition": HANDED_OVER,
+        "start_relative_position": [0.0, 12.0, 0.0],
+        "target_size": SIZE.tolist(),
+        "target_attachment": [0.3, 0.5 * SIZE[1], 0.2],
+        "target_inertia": [1671.0, 924.0, 1788.0, 30.0, -20.0, 10.0],
+        "thrust.level": 0.0,
+        "tether.damping_ratio": zeta,
+    }
+    slack = PlainInstance(MODEL, BOX, values | {"tether.rest_length": 100.0})
+    assert slack["tether.bends"] == 2
+    return PlainInstance(MODEL, BOX, values | {"tether.rest_length": slack["tether.length"] - 5e-4})
+
+
+@uncompiled
+def test_a_wrapped_line_is_hauled_in() -> None:
+    """Its tension is that of its whole length, k (l - l0) + c (l' - l0'), k and c as l0 makes them on the way."""
+    zeta, pace = 0.3, -2e-3
+    i = wrapped_and_taut(zeta)
+    first, area = i["tether.rest_length"], 0.25 * math.pi * i["tether.diameter"] ** 2
+    for k in range(10):
+        i.set_rates({"reel.length_offset": pace})
+        i.step(0.05)
+        rest = first + pace * 0.05 * (k + 1)
+        stiffness = 60e9 * area / rest
+        dashpot = 2.0 * zeta * math.sqrt(stiffness * REDUCED)
+        expected = stiffness * (i["tether.length"] - rest) + dashpot * (i["tether.length_rate"] - pace)
+        assert i["tether.tension"] == pytest.approx(expected, rel=1e-9)
+        assert i["tether.taut"]
+        assert i["tether.bends"] == 2
+        assert abs(i["tether.length_rate"]) > 1e-5
+
+
+@uncompiled
+def test_hauling_in_a_wrapped_line_pays_its_energy() -> None:
+    """The work of the reel, (T + T^2/(2 EA)) (-l0'), by Simpson's rule."""
+    pace, step = -2e-3, 0.01
+    i = wrapped_and_taut(0.0)
+    strength = 60e9 * 0.25 * math.pi * i["tether.diameter"] ** 2
+    energy, power = [i["energy.relative"]], []
+    for k in range(21):
+        pull = i["tether.tension"]
+        power.append(-pace * (pull + pull * pull / (2.0 * strength)))
+        if k < 20:
+            i.set_rates({"reel.length_offset": pace})
+            i.step(step)
+            energy.append(i["energy.relative"])
+    assert i["tether.bends"] == 2
+    work = step / 3.0 * (power[0] + power[-1] + 4.0 * sum(power[1:-1:2]) + 2.0 * sum(power[2:-1:2]))
+    assert work > 1e-4
+    assert energy[-1] - energy[0] == pytest.approx(work, rel=1e-6)
 
 
 def test_macro_steps_and_a_stop_in_between_change_nothing() -> None:
