@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.catalogue import MODELS
-from fmu_src.instance import Instance
+from fmu_src.instance import Instance, ModelFault
 from fmu_src.packaging import builds
 from tests.conftest import FREE
 from tests.packaging.driven import Driven
@@ -93,3 +93,37 @@ def test_a_term_left_out_costs_nothing(benchmark):
     benchmark.extra_info["all terms idle over bare net"] = ratios[2]
     benchmark.pedantic(lambda: flight(FREE, MESH), rounds=1)
     print({name: round(value, 3) for name, value in benchmark.extra_info.items()})
+
+
+TUMBLING = {
+    "target_inertia": (6666.7, 2666.7, 6666.7, 0.0, 0.0, 0.0),
+    "target_attachment": (0.0, -1.0, 0.0),
+}
+
+
+@pytest.mark.parametrize(("body", "rate"), [("rigid", 2.0), ("rigid", 5.0), ("box", 5.0)])
+def test_a_target_that_tumbles_beside_a_point(benchmark, body, rate):
+    """A day of Table 2's tow in macro steps of 60 s, the target turning at so many deg/s, over that of a point."""
+
+    def day(target):
+        i = Instance(MODELS["tethered_deorbit"], REMOVAL | {"target": target}, TABLE_2)
+        if target != "point":
+            for field, value in TUMBLING.items():
+                i.array(field)[:] = value
+            i.array("target_start_rate")[:] = 0.0, 0.0, rate * 0.017453292519943295
+        if target == "box":
+            i.array("target_size")[:] = 4.0, 2.0, 4.0
+        i.initialise()
+        began = time.process_time()
+        try:
+            for _ in range(1440):
+                i.step(60.0)
+        except ModelFault as end:
+            print(end)
+        return (time.process_time() - began) / i.time, i["solver.steps"] / i.time
+
+    point = min(day("point") for _ in range(3))
+    other = benchmark.pedantic(lambda: min(day(body) for _ in range(3)), rounds=1)
+    benchmark.extra_info["ratio"] = other[0] / point[0]
+    print(f"{body} at {rate} deg/s: {other[0] / point[0]:.1f} times the CPU time of a point, "
+          f"{other[1] / point[1]:.2f} times its steps")  # fmt: skip

@@ -463,6 +463,30 @@ def test_a_line_slips_off_a_corner() -> None:
     assert slips >= 1
 
 
+@uncompiled
+def test_a_taut_line_slips_off_a_corner() -> None:
+    """Shorter at once, it loses what it has stored: what is booked closes the balance of energy."""
+    values = {
+        "start.condition": HANDED_OVER,
+        "start_relative_position": [-0.7, 6.6, -4.5],
+        "start_relative_velocity": [0.0, 1.0, 0.0],
+        "target_size": SIZE.tolist(),
+        "target_attachment": [0.5 * SIZE[0], -0.47, 0.05],
+        "target_inertia": [1671.0, 924.0, 1788.0, 30.0, -20.0, 10.0],
+        "thrust.level": 0.0,
+        "tether.damping_ratio": 0.0,
+    }
+    slack = PlainInstance(MODEL, BOX, values | {"tether.rest_length": 100.0})
+    i = PlainInstance(MODEL, BOX, values | {"tether.rest_length": slack["tether.length"] - 1e-3})
+    energy, lost = i["energy.relative"], 0.0
+    for _ in range(8):
+        i.step(0.04)
+        assert i["tether.slip_loss"] >= lost
+        lost = i["tether.slip_loss"]
+        assert i["energy.relative"] + lost == pytest.approx(energy, abs=1e-9)
+    assert lost > 1e-2
+
+
 @pytest.mark.parametrize("count", [4, pytest.param(100, marks=pytest.mark.evidence)])
 def test_tows_of_any_tumbling_body_run_to_an_end(count: int) -> None:
     """Sizes, attachments, spins and thrusts at random: a tow ends after its time or where the bodies meet."""
