@@ -20,7 +20,7 @@ from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.extremes import Extreme
 from fmu_src.implied import Implied
-from fmu_src.interface import Group, Interface, Model, Term, Value, Variable
+from fmu_src.interface import Group, Interface, Model, Term, Undesigned, Value, Variable
 from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture import stress as net_capture_stress
 from fmu_src.net_capture import trade as net_capture_trade
@@ -95,8 +95,9 @@ class Refusal:
 
 
 def settable(interface: Interface) -> Iterator[Variable]:
-    """The rows a scene may set."""
-    return (v for v in interface.variables if v.causality in SETTABLE)
+    """The rows a scene may set, those among them that only the scene knows."""
+    yield from (v for v in interface.variables if v.causality in SETTABLE)
+    yield from interface.asked
 
 
 def scene_name(row: Variable) -> str:
@@ -106,7 +107,7 @@ def scene_name(row: Variable) -> str:
 
 def term_rows(group: Group, term: str) -> tuple[Variable, ...]:
     """The rows a term brings; none for a name that is no term."""
-    return group.terms[term].variables if term in group.terms else ()
+    return (*group.terms[term].variables, *group.terms[term].asked) if term in group.terms else ()
 
 
 def all_rows(model: Model) -> Iterator[Variable]:
@@ -128,9 +129,35 @@ def defaults(interface: Interface) -> dict[str, float]:
     """Start value of every parameter and input by FMI name, SI."""
     return {
         name: float(start)
-        for v in settable(interface)
+        for v in interface.variables
+        if v.causality in SETTABLE
         for name, start in zip(v.element_names(), v.starts(), strict=True)
     }
+
+
+def asked_names(model: str, terms: Mapping[str, str]) -> set[str]:
+    """Names of what only a scene knows of a model of ours with these terms: no FMU has them."""
+    return {name for v in CATALOGUE[model].interface(terms).asked for name in v.element_names()}
+
+
+def designed(
+    model: str, values: Mapping[str, float], asked: Mapping[str, float], terms: Mapping[str, str]
+) -> dict[str, float] | Refusal:
+    """Parameters that follow from what a scene asks of a model of ours, SI by FMI name; or why none do.
+
+    values        every parameter and input by FMI name, SI
+    asked         every row that only the scene knows
+    """
+    found: dict[str, float] = {}
+    groups = CATALOGUE[model].groups
+    try:
+        for group, name in terms.items():
+            design = groups[group].terms[name].design
+            if design is not None:
+                found |= design(values, asked, terms)
+    except Undesigned as error:
+        return Refusal(error.name, error.given, error.expected)
+    return found
 
 
 def known_variables(name: str) -> dict[str, tuple[Variable, Value]]:

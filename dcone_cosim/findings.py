@@ -8,7 +8,14 @@ from dataclasses import dataclass
 SAMPLE = "~"
 """Before a figure that is one sample of many."""
 
-SHOWN_IN = {"%": 1e-2, "mm/s": 1e-3, "km": 1e3, "m/day": 1.0 / 86400.0, "deg/s": math.pi / 180.0}
+SHOWN_IN = {
+    "%": 1e-2,
+    "mm/s": 1e-3,
+    "km": 1e3,
+    "m/day": 1.0 / 86400.0,
+    "deg/s": math.pi / 180.0,
+    "deg": math.pi / 180.0,
+}
 """Units that a person reads more easily, and how much of the SI unit each is."""
 
 

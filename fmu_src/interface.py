@@ -46,6 +46,7 @@ class Variable:
                  the same shape; zero for what changes by jumps, as a Boolean does). An interface shows only those of
                  its own inputs
     at_start     of an output: inputs that its value at the start depends on, beside those of `partials`
+    fills        a scene may give fewer elements: the last one is repeated
     """
 
     name: str
@@ -65,6 +66,7 @@ class Variable:
     rate: str = ""
     partials: tuple[tuple[str, str], ...] = ()
     at_start: tuple[str, ...] = ()
+    fills: bool = False
 
     def __post_init__(self) -> None:
         if self.name.count(INDEX) != len(self.shape):
@@ -177,6 +179,8 @@ class Term:
     checks   what the model asks of it before any build or run
     refuses  `refuses(scene)`: why it can not work with a scene's values, as the model it is a part of asks for it
     extremes cases at the ends of its range, on which schemes are tried
+    asked    rows that a scene may say and no FMU has: from them `design` finds values of parameters
+    design   `design(values, asked, terms)`: those values, SI by FMI name; `Undesigned` where there are none
     """
 
     summary: str
@@ -191,6 +195,21 @@ class Term:
     checks: Any = None
     refuses: Callable[[Any], Iterable[Any]] | None = None
     extremes: tuple[Extreme, ...] = ()
+    asked: tuple[Variable, ...] = ()
+    design: Callable[[Mapping[str, float], Mapping[str, float], Mapping[str, str]], dict[str, float]] | None = None
+
+
+class Undesigned(Exception):
+    """No value of a parameter does what is asked.
+
+    name       of the row at fault
+    given      its value, as a person reads it
+    expected   what would do
+    """
+
+    def __init__(self, name: str, given: str, expected: str) -> None:
+        super().__init__(f"{name} = {given}: {expected}")
+        self.name, self.given, self.expected = name, given, expected
 
 
 @dataclass(frozen=True)
@@ -353,6 +372,11 @@ class Interface:
         key = tables.identity(tables.block(self.tables, numbers))
         rows = tuple(replace(v, start=key) if v.name == "tables" else v for v in self.variables)
         return replace(self, variables=rows, given=numbers)
+
+    @cached_property
+    def asked(self) -> tuple[Variable, ...]:
+        """Rows of its terms that a scene may say and no FMU has."""
+        return tuple(v for group, term in self.terms.items() for v in self.model.groups[group].terms[term].asked)
 
     def demand_tables(self) -> None:
         """ValueError if it has tables, and was not given them."""

@@ -21,8 +21,8 @@ from dcone_cosim.scene.data import ComponentScene, Scene
 
 WORDS = frozenset({"name", "title", "text", "source", "places", "notes", "cautions"})
 """Fields of a scene that change no number."""
-PLACES = frozenset({"isolate", "choices", "defaults"})
-"""The same of a component; its defaults are told with its parameters."""
+PLACES = frozenset({"isolate", "choices", "defaults", "asked", "designed"})
+"""The same of a component; its defaults, and what is designed, are told with its parameters."""
 
 
 @dataclass(frozen=True)

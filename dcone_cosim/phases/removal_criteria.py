@@ -34,6 +34,8 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
         yield from _longer(evidence)
         yield from _snaps(evidence)
         yield from _jacobi(evidence)
+    elif evidence.has("reel.paid_out", "tether.length", "tether.tension_peak"):
+        yield from _longer_than_wound(evidence)
 
 
 def force(evidence: Evidence) -> float:
@@ -82,6 +84,17 @@ def _longer(evidence: Evidence) -> Iterator[Criterion]:
     allowed = float(columns["tether.tension_peak"].max()) / stiffness
     beyond = float(columns["tether.length"].max()) - rest - allowed
     share = max(beyond, 0.0) / (allowed + 1e-12 * rest)
+    yield Criterion("longer", "stretch beyond peak tension over stiffness", share, "1", 1e-3, ACCURATE)
+
+
+def _longer_than_wound(evidence: Evidence) -> Iterator[Criterion]:
+    """The same of a line that is wound: beyond what is wound out at that instant."""
+    columns, values = evidence.columns, evidence.values
+    longest = float(columns["reel.paid_out"].max())
+    stiffness = line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], longest)
+    allowed = float(columns["tether.tension_peak"].max()) / stiffness
+    beyond = float((columns["tether.length"] - columns["reel.paid_out"]).max()) - allowed
+    share = max(beyond, 0.0) / (allowed + 1e-12 * longest)
     yield Criterion("longer", "stretch beyond peak tension over stiffness", share, "1", 1e-3, ACCURATE)
 
 

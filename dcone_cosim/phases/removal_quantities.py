@@ -9,7 +9,7 @@ import numpy as np
 from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import PhaseResult
 
-NAMES = ("tug_times", "tug_peaks", "largest_tug", "mean_tension", "semi_major_axis", "radius", "separation")
+NAMES = ("tug_times", "tug_peaks", "largest_tug", "mean_tension", "semi_major_axis", "radius", "separation", "paid_out")
 TUGS = 5
 """Tugs from the first on that are compared."""
 LEAST = 1.0
@@ -47,3 +47,6 @@ def quantities(result: PhaseResult, instants: Sequence[float]) -> Iterator[Quant
     if "separation" in recorder:
         told, size = at(recorder, "separation", instants), float(np.max(recorder["separation"]))
         yield Quantity("separation", "separation over time", told.tolist(), "m", size, "its largest", False)
+    if "reel.paid_out" in recorder:
+        told, size = at(recorder, "reel.paid_out", instants), float(np.max(recorder["reel.paid_out"]))
+        yield Quantity("paid_out", "line paid out over time", told.tolist(), "m", size, "its largest", False)

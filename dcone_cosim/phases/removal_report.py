@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dcone_cosim import build
 from dcone_cosim.findings import Finding
 from dcone_cosim.phases import passive
 from dcone_cosim.phases.end import of_end
@@ -69,6 +70,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_approach(phase, result)
     yield from _of_lowering(phase, result)
     yield from _of_safety(run, phase, result)
+    yield from _of_reel(run, phase, last)
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
@@ -128,6 +130,30 @@ def unsafe(run: RunResult, phase: str, result: PhaseResult, reach: float | None)
                 f"their centres come within {found.distance:.3g} m, {found.after:.6g} s after {found.time:.6g} s; they "
                 f"are taken to touch at {needs:.3g} m"
             )
+
+
+def _of_reel(run: RunResult, phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
+    """What a reel has done, and what its loop is: rest, gains, poles and margins."""
+    for name, label, unit in (
+        ("reel.paid_out", "line wound out at the end", "m"),
+        ("reel.work", "work of the reel's motor", "J"),
+        ("reel.heat", "heat of the brake", "J"),
+        ("tether.heat", "heat of the line's dashpot", "J"),
+    ):
+        if name in last:
+            yield Finding(phase, name, label, last[name], unit)
+    if "reel.limited" in last:
+        yield Finding(phase, "reel.limited", "commands cut by a limit of the reel", int(last["reel.limited"]))
+    if "reel.calmed" in last:
+        calmed: float | str = last["reel.calmed"] or "not within the phase"
+        yield Finding(phase, "reel.calmed", "target calm since", calmed, "s")
+    main = next(one.main for one in run.scene.phases if one.name == phase)
+    if main.fmu is None and phase in run.parameters:
+        values = {**main.defaults, **run.inputs.get(phase, {}), **run.parameters[phase]}
+        for row in build.implied(main.model, values, main.terms):
+            if row.key.startswith("reel."):
+                shown_in = "deg" if row.unit == "rad" else ""
+                yield Finding(phase, row.key, row.label, row.value, row.unit, shown_in=shown_in)
 
 
 NEAR = 1e-4

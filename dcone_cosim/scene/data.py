@@ -91,6 +91,8 @@ class ComponentScene:
     tolerance    that the FMU's own solver is told; None for that of its default experiment
     texts        FMI name: value of each String that the scene gives
     tables       of a model of ours, by name
+    asked        of a model of ours: what only the scene knows, and parameters are designed by, as `defaults`
+    designed     parameters that are
     """
 
     name: str
@@ -106,6 +108,8 @@ class ComponentScene:
     texts: Mapping[str, str] = field(default_factory=dict)
     tables: Mapping[str, TableFile] = field(default_factory=dict)
     unnamed: tuple[str, ...] = ()
+    asked: Mapping[str, float] = field(default_factory=dict)
+    designed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

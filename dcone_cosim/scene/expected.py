@@ -42,6 +42,7 @@ class Expected:
 
     unit       FMI unit of the SI value, "1" for a pure number
     size       0 for a scalar, otherwise the number of elements of a list; `ANY` for a list of whatever length
+    fills      a shorter list will do: its last element is repeated
     choices    names of an Integer's values
     example    a value as a scene would write it
     minimum    least permitted SI value; `open_minimum` excludes the bound itself
@@ -63,15 +64,18 @@ class Expected:
     display_unit: str = ""
     relative: bool = False
     share: bool = False
+    fills: bool = False
 
     def read(self, value: object) -> float | list[float]:
         """SI value, or text, or `Unexpected`."""
         if not self.size:
             return self._scalar(value)
-        if not isinstance(value, list) or self.size not in (ANY, len(value)):
-            count = "" if self.size == ANY else f" of {self.size}"
+        shorter = isinstance(value, list) and self.fills and 0 < len(value) < self.size
+        if not isinstance(value, list) or not (shorter or self.size in (ANY, len(value))):
+            count = "" if self.size == ANY else f" of {'at most ' if self.fills else ''}{self.size}"
             raise Unexpected(f"expected a list{count}, each {self._wanted()}")
-        return self.read_each(value)
+        found = self.read_each(value)
+        return found + found[-1:] * (self.size - len(found)) if shorter else found
 
     def read_each(self, values: Sequence[object]) -> list[float]:
         """SI value of every element, or `Unexpected` that says which one does not fit."""

@@ -48,7 +48,7 @@ from dcone_cosim.scenes.keys import (
     read_value,
     table_in,
 )
-from dcone_cosim.scenes.relations import about_steps, about_values, phases_to_run
+from dcone_cosim.scenes.relations import about_steps, about_values, designed, pairs, phases_to_run
 
 
 @dataclass
@@ -60,20 +60,25 @@ class _Component:
     parameters: dict[str, float] = field(default_factory=dict)
 
     def scene(self) -> ComponentScene:
+        defaults = self.part.defaults()
+        ours = self.part.model if self.part.fmu is None else None
+        only_here = build.asked_names(ours.name, self.part.terms) if ours is not None else set()
+        asked = {name: self.parameters.get(name, defaults[name]) for name in defaults if name in only_here}
         return ComponentScene(
             self.part.name,
-            self.part.model.name if self.part.model is not None and self.part.fmu is None else "",
+            ours.name if ours is not None else "",
             dict(self.part.terms) if self.part.fmu is None else {},
             self.part.fmu,
             isolation(self.options),
             self.options.get("timeout", ComponentScene.timeout),
-            self.parameters,
-            self.part.defaults(),
-            self.part.choices(),
+            {name: value for name, value in self.parameters.items() if name not in only_here},
+            {name: value for name, value in defaults.items() if name not in only_here},
+            {name: names for name, names in self.part.choices().items() if name not in only_here},
             self.options.get("solver_tolerance"),
             self.part.texts,
             self.part.tables,
             tuple(sorted(self.part.unnamed)),
+            asked,
         )
 
 
@@ -132,6 +137,8 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
             name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes, (), accuracy
         )
         mistakes = [*about_steps(scene, document), *about_values(scene, document)]
+        if not mistakes:
+            scene, mistakes = designed(scene, document)
         for before, own in pairs(scene):
             mistakes += kind_of(own.name).value_faults(before, own, document)
         if not mistakes:
@@ -148,11 +155,6 @@ def _accuracy(document: dict[str, Any], mistakes: list[Mistake]) -> Accuracy | N
     if "accuracy" not in found:
         return None
     return Accuracy(found["accuracy"], tuple(found.get("quantities", ())), int(found.get("runs", 1)))
-
-
-def pairs(scene: Scene) -> Iterator[tuple[PhaseScene | None, PhaseScene]]:
-    """Each phase with the one before it, None for the first."""
-    return zip((None, *scene.phases), scene.phases, strict=False)
 
 
 def _orbit(document: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:

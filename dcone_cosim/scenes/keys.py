@@ -156,6 +156,7 @@ def expected_of(row: build.Variable) -> Expected:
         row.open_minimum,
         row.refusal,
         row.display_unit,
+        fills=row.fills,
     )
 
 

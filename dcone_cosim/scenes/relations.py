@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.contract import NEVER
 from dcone_cosim.phases import kind_of, kinds
-from dcone_cosim.scene.data import SHARED, Scene
+from dcone_cosim.scene.data import SHARED, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import Mistake, shown, unknown
 from dcone_cosim.scene.toml_lines import Path, given_at
 from dcone_cosim.scenes.keys import MOST_STEPS
@@ -81,3 +82,34 @@ def about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
             section, _, key = refusal.variable.partition(".")
             path = (section, key) if section == SHARED else (phase.name, section, key.partition("[")[0])
             yield Mistake(path, given_at(document, path), refusal.expected, refusal.given)
+
+
+def pairs(scene: Scene) -> Iterator[tuple[PhaseScene | None, PhaseScene]]:
+    """Each phase with the one before it, None for the first."""
+    return zip((None, *scene.phases), scene.phases, strict=False)
+
+
+def designed(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistake]]:
+    """The scene with the parameters that follow from what it asks; mistakes where none do, or it says them too."""
+    found: list[Mistake] = []
+    for before, phase in pairs(scene):
+        main = phase.main
+        if not main.asked:
+            continue
+        taken = kind_of(phase.name).values_taken(before) if before is not None else {}
+        answer = build.designed(main.model, {**main.defaults, **main.parameters, **taken}, main.asked, main.terms)
+        if isinstance(answer, build.Refusal):
+            path: Path = (phase.name, *answer.variable.split("."))
+            found.append(Mistake(path, given_at(document, path), answer.expected, answer.given))
+            continue
+        for name in answer:
+            if name in main.parameters:
+                path = (phase.name, *name.split("."))
+                found.append(
+                    Mistake(
+                        path, given_at(document, path), "follows from what is asked of the gains; leave one of them out"
+                    )
+                )
+        parameters = {**main.parameters, **answer}
+        scene = scene.with_phase(replace(phase, main=replace(main, parameters=parameters, designed=tuple(answer))))
+    return scene, found

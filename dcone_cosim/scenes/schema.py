@@ -83,7 +83,7 @@ def _value(expected: Expected, description: str, starts: tuple[float, ...] = ())
     if expected.size:
         found = {"type": "array", "items": single}
         if expected.size != ANY:
-            found |= {"minItems": expected.size, "maxItems": expected.size}
+            found |= {"minItems": 1 if expected.fills else expected.size, "maxItems": expected.size}
     found["description"] = "; ".join(part for part in (description, expected.bounds()) if part)
     if starts:
         found["default"] = tomllib.loads(f"x = {expected.written(starts)}")["x"]

@@ -5,7 +5,10 @@ from __future__ import annotations
 
 from fmu_src.interface import Variable
 from fmu_src.rows import choice, output, parameter, rate, state, vector
+from fmu_src.tethered_deorbit.layout import state_layout
 
+LARGEST = state_layout(2, wheels=True, spends=True, moved=2, gathered=2).size
+"""Components of the largest state."""
 RATE_FRAMES = ("inertial", "orbital", "line")
 """What a body rate that a scene gives is relative to."""
 
@@ -19,8 +22,8 @@ ATTACHED = (
     state(
         "state.carried", "1", "whether the step holds the line's vector in place of that of the centres", kind="Integer"
     ),
-    state("state.seen[#]", "1", "of a step, as it is: see `layout`", shape=(31,)),
-    state("state.seen_rate[#]", "1", "and its rate", shape=(31,)),
+    state("state.seen[#]", "1", "of a step, as it is: see `layout`", shape=(LARGEST,)),
+    state("state.seen_rate[#]", "1", "and its rate", shape=(LARGEST,)),
     state("state.no_length", "m", "zero: the line ends where it is made fast"),
 )
 """Of a pair of which a body turns."""

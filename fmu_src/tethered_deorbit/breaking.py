@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fmu_src.tethered_deorbit.acting import Acting, together
@@ -13,9 +13,14 @@ from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
 from orbital.vectors import Array
 
+REACHED = 1.0 - 1.0e-6
+"""Share of the strength from which on it is exceeded, to the accuracy with which that instant is located."""
 
-def breakable(reel: Reel, terms: Mapping[str, str]) -> Reel:
+
+def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) -> Reel:
     """The law of a line that breaks, if the scene says so; else the law as it is.
+
+    line          kernel of `Bodies`
 
     The instant is found within the step, also where only a peak exceeds the strength. A broken line has no onset and is
     never taut, whatever the inputs.
@@ -54,7 +59,12 @@ def breakable(reel: Reel, terms: Mapping[str, str]) -> Reel:
         Checked  tests/tethered_deorbit/test_ends.py
         """
         r = record[0]
-        if r.state_broken or not by_state:
+        if r.state_broken or not (by_state and r.state_taut):
+            return 0
+        # it may be another part that is concerned
+        reel.see(record, state)
+        _, length, speed = line(record, state)
+        if not reel.tension(record, length, speed, 0.0) >= REACHED * r.break_strength:
             return 0
         if not r.break_flies_on:
             return blame(record, BROKE, 0, r.break_strength)
@@ -88,4 +98,4 @@ def breakable(reel: Reel, terms: Mapping[str, str]) -> Reel:
         return 0.0 if record[0].state_broken else float(reel.onset_rate(record, length, rate, acceleration, since))
 
     breaking = Acting(begin=begin, limit=limit, act=act)
-    return reel._replace(taut=taut, onset=onset, onset_rate=onset_rate, acting=together((reel.acting, breaking)))
+    return reel._replace(taut=taut, onset=onset, onset_rate=onset_rate, acting=together((breaking, reel.acting)))

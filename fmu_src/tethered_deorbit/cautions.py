@@ -6,6 +6,8 @@ import math
 from collections.abc import Collection, Iterator, Mapping
 
 from fmu_src.cautions import Caution, Seen, fibre_of, heavily_damped, low, strained
+from fmu_src.tethered_deorbit.asked import LINEAR_LAWS
+from fmu_src.tethered_deorbit.reel_rows import FOLLOWING_LAWS
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
 PROPELLANT = 0.02
@@ -14,6 +16,9 @@ peak are then wrong by about as much, more than any other error of this model.""
 
 MEANT = "ends.raised_perigee"
 """Who gives this wants the orbit raised."""
+QUARTER = 0.25 * math.pi
+STABLE_SAMPLE = 2.0
+"""Longest sample of a control of the tension, in radians of the line's vibration: see `winding.RESPONSE`."""
 
 Values = Mapping[str, float]
 
@@ -24,6 +29,7 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
         axis = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]
         for sentence in low(axis * (1.0 - values["orbit.eccentricity"]) - EARTH_EQUATORIAL_RADIUS):
             yield Caution("orbit.altitude", f"the perigee at {sentence}" if values["orbit.eccentricity"] else sentence)
+    yield from _unstable(values, terms)
     yield from heavily_damped("tether.damping_ratio", values.get("tether.damping_ratio"), "the line's going taut")
     if "thrust" not in terms:
         return
@@ -64,6 +70,31 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
         yield from strained(
             "tether.tension_peak", "the line", peak.largest, axial_stiffness(values), fibre.strain, fibre.name
         )
+
+
+def _unstable(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
+    """A reel whose loop does not die out, and a winch that samples too seldom for its line."""
+    if terms.get("reel") in LINEAR_LAWS:
+        from fmu_src.tethered_deorbit import design  # and with it scipy
+
+        loop = design.loop_of(values, terms)
+        if loop is not None and not loop.slowest() < 0.0:
+            rest = "along the track" if abs(loop.plant.angle) > QUARTER else "near the vertical"
+            yield Caution(
+                design.GAIN_NAMES[terms["reel"]][0],
+                f"with these gains the pair leaves its rest {rest}: a pole of the loop lies at {loop.slowest():.3g} /s",
+            )
+    if terms.get("reel") in FOLLOWING_LAWS:
+        mass = values["chaser.mass"] * values["target.mass"] / (values["chaser.mass"] + values["target.mass"])
+        section = math.pi * values["tether.diameter"] ** 2 / 4.0
+        frequency = math.sqrt(values["tether.youngs_modulus"] * section / values["tether.rest_length"] / mass)
+        turned = frequency * values["reel.sample_time"]
+        if turned > STABLE_SAMPLE:
+            yield Caution(
+                "reel.sample_time",
+                f"{values['reel.sample_time']:g} s are {turned:.3g} radians of the pair's vibration on its line; the "
+                f"control of the tension is stable up to {STABLE_SAMPLE:g}",
+            )
 
 
 def _force(values: Values) -> float:

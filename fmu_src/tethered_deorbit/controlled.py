@@ -65,7 +65,7 @@ def make_linear(interface: Interface) -> Reel:
         apart = length + r.state_beyond
         r.state_feed_forward = equilibrium_tension(r.state_mean_motion, apart, r.state_reduced_mass)
         r.state_frequency = max(
-            natural_frequency(r.state_stiffness, r.state_effective_mass), r.state_damping / r.state_effective_mass
+            natural_frequency(abs(r.state_stiffness), r.state_effective_mass), r.state_damping / r.state_effective_mass
         )
         r.state_frequency = max(r.state_frequency, r.state_pace)
         r.state_taut_tolerance = r.solver_tolerance_separation

@@ -41,6 +41,8 @@ def make_differentiate(
         bodies.stand(record, state)
         inertial(record, state, rate, 0.0, 0.0)
         acceleration, apart, _ = bodies.second(record, state, rate, separation, length, speed, 0.0)
+        reel.see(record, state)
+        reel.see_change(record, state, rate, 0.0)
         r.rate_length_rate = acceleration
         r.rate_separation = apart
         r.rate_tension = 0.0
@@ -57,6 +59,7 @@ def make_differentiate(
                 r.partial_tension = by_tension
             r.partial_energy = by_energy
             line = reel.energy_rate(record, length, speed, 0.0)
+        reel.differentiate(record, length, speed, acceleration)
         center, velocity = state[0:3], state[3:6]
         for i in range(3):
             r.rate_center_velocity[i] = rate[3 + i]

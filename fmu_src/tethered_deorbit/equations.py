@@ -42,11 +42,15 @@ def make_equations(
         thrust.add(record, state, rate, since)
         aocs.add(record, state, rate, elapsed)
         rate[impulse] = 0.0
+        reel.see(record, state)
         if record[0].state_taut:
             separation, length, speed = bodies.measure(record, state)
             tension = reel.tension(record, length, speed, since)
             bodies.pull(record, state, rate, tension, separation)
             rate[impulse] = tension
+            reel.drive(record, state, rate, length, speed, tension)
+        else:
+            reel.drive(record, state, rate, 0.0, 0.0, 0.0)
 
     @kernel
     def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:

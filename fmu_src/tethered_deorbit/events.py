@@ -55,7 +55,7 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
     """
     begin_state, end_state, here_state, slope_state = places.begin, places.end, places.here, places.slope
     low_error, high_error, stages, dense_begin = places.low, places.high, places.stages, places.dense
-    seen = places.size - 7
+    first, seen = reel.first, places.moving - reel.first
     work_end = places.total
     state_seen, rate_seen = bodies.seen, bodies.seen_rate
 
@@ -73,6 +73,8 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
         slopes = rate_seen(record, there, rate)
         change, apart, slope = bodies.second(record, there, slopes, separation, length, speed, 1.0)
         since = record[0].state_since + elapsed
+        reel.see(record, there)
+        reel.see_change(record, there, slopes, 1.0)
         tension = reel.tension(record, length, speed, since)
         tension_rate = reel.tension_rate(record, length, speed, change, since)
         if record[0].state_taut:
@@ -109,9 +111,9 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
         dense = work[dense_begin:work_end]
         here = work[here_state:slope_state]
         slope = work[slope_state:low_error]
-        scheme.dense_value(work[begin_state:end_state], dense, fraction, 6, seen, here[6 : 6 + seen])
+        scheme.dense_value(work[begin_state:end_state], dense, fraction, first, seen, here[first : first + seen])
         step = record[0].state_step
-        scheme.dense_rate(dense, fraction, step, 6, seen, slope[6 : 6 + seen])
+        scheme.dense_rate(dense, fraction, step, first, seen, slope[first : first + seen])
         return signals(record, here, slope, fraction * step)
 
     @kernel

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.implied import Implied, formula
+from fmu_src.tethered_deorbit.asked import LINEAR_LAWS
 from orbital import oscillators, references
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.plain import mean_motion
@@ -25,8 +26,8 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
     reduced = reduced_mass(values["chaser.mass"], values["target.mass"])
     yield Implied("pair.reduced_mass", "reduced mass of the pair", reduced, "kg")
     length, stiffness = 0.0, 0.0
-    if terms["reel"] == "locked":
-        length = values["tether.rest_length"] + values["reel.length_offset"]
+    if "tether.youngs_modulus" in values:
+        length = values["tether.rest_length"] + (values["reel.length_offset"] if terms["reel"] == "locked" else 0.0)
         stiffness = line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], length)
         extensional = axial_stiffness(values)
         yield Implied("line.area", "section of the line", extensional / values["tether.youngs_modulus"], "m2")
@@ -34,7 +35,7 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
         yield Implied("line.stiffness", "stiffness of the line", stiffness, "N/m")
         damping = dashpot(values["tether.damping_ratio"], stiffness, reduced)
         yield Implied("line.dashpot", "dashpot of the line", damping, "N.s/m")
-    elif terms["reel"] == "linear":
+    elif terms["reel"] in ("linear", "regulator"):
         length, stiffness = values["reel.length"] + values["reel.length_offset"], values["reel.proportional_gain"]
     if stiffness > 0.0:
         period = 2.0 * math.pi / natural_frequency(stiffness, reduced)
@@ -48,3 +49,7 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
         yield Implied("tide.tension", "tension at rest under the tide, 3 n^2 m_r l", tide, "N")
         critical = references.critical_thrust(rate, length, values["chaser.mass"])
         yield Implied("vbar.critical_thrust", "least thrust of a stable tow on V-bar, 3 n^2 l m_c", critical, "N")
+    if terms["reel"] in LINEAR_LAWS:
+        from fmu_src.tethered_deorbit import design  # and with it scipy
+
+        yield from design.rows(values, terms)

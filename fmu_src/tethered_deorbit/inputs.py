@@ -11,7 +11,7 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.extremes import Extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
-from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.law import Reel, unseen
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.outputs import begin_tug
 from fmu_src.tethered_deorbit.thrust import Thrust
@@ -26,12 +26,14 @@ class Inputs(NamedTuple):
     judge_line(record, state) -> rate              decide afresh whether the line is taut
     take(record, work, duration) -> fault          as a macro step begins [s]
     leave(record, work, duration) -> fault         as one ends in which inputs have moved
+    turn(record, work)                             the line has gone taut or slack at the end of the step
     act(record, work, target, by_state) -> fault   at the end of the step, where a part acts, until the macro step's end
     """
 
     judge_line: Callable[..., Any]
     take: Callable[..., Any]
     leave: Callable[..., Any]
+    turn: Callable[..., Any]
     act: Callable[..., Any]
 
 
@@ -55,6 +57,19 @@ def make_inputs(
 
     end_state, here_state, slope_state, size = places.end, places.here, places.slope, places.size
 
+    turns = reel.turn is not unseen
+
+    @kernel
+    def turn(record: Any, work: Array) -> None:
+        """Have the law book that the line, in the state stored as END, has just gone taut or slack.
+
+        Checked  tests/tethered_deorbit/test_winch.py: the book of energy
+        """
+        end = work[end_state:here_state]
+        reel.see(record, end)
+        _, length, _ = bodies.line(record, end)
+        reel.turn(record, end, length)
+
     @kernel
     def judge_line(record: Any, state: Array) -> float:
         """Decide afresh whether the line is taut, from the law alone; returns its rate of lengthening [m/s].
@@ -63,6 +78,7 @@ def make_inputs(
         """
         r = record[0]
         _, length, speed = bodies.line(record, state)
+        reel.see(record, state)
         r.state_taut = 1 if reel.taut(record, length, speed) else 0
         return float(speed)
 
@@ -121,6 +137,8 @@ def make_inputs(
         if code != 0:
             return code
         speed = judge_line(record, work[end_state:here_state])
+        if turns and r.state_taut != was_taut:
+            turn(record, work)
         # The first step after a change of the line is a short one.
         trajectory.restart(record, work, r.state_published)
         if r.state_taut and not was_taut:
@@ -178,10 +196,12 @@ def make_inputs(
         if code != 0:
             return fail(record, code, now)
         speed = judge_line(record, end)
+        if turns and r.state_taut != was_taut:
+            turn(record, work)
         trajectory.restart(record, work, now)
         r.state_since = 0.0
         if r.state_taut and not was_taut:
             begin_tug(record, now, speed)
         return 0
 
-    return Inputs(judge_line, take, leave, act)
+    return Inputs(judge_line, take, leave, turn, act)

@@ -26,6 +26,7 @@ from fmu_src.rows import (
 from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, PLUME
+from fmu_src.tethered_deorbit.reel_rows import REELS
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 
 CONDITIONS = ("same_orbit", "vbar", "equal_velocity", "handed_over")
@@ -34,17 +35,13 @@ LEADERS = ("target", "chaser")
 TUGS = 16
 """Length of the ring of latest tugs: twelve may fall in one minute."""
 
-REEL_STIFFNESS, REEL_DAMPING = 4.155e-3, 2.366
-"""Default gains [N/m], [N s/m]: 5.7829 m_r n^2 and 3.4193 m_r n, the gains on length and rate of the quadratic
-regulator about the equilibrium (unit weights, lengths in l0, times in 1/n) for Table 2's pair at 800 km. The length is
-held only while k_p > 3 n^2 m_r, here 2.2e-3 N/m: farther out the tide pulls harder."""
-
 NOT_FINITE, STEP_NOT_MET, TOO_MANY_EVENTS, TIME_GAP, GROUND = range(1, 6)
 BAD_ORBIT, BAD_CHORD, START_STRETCHED, NO_LENGTH, NO_LINE, BAD_PARAMETER, NO_ORBIT = range(11, 18)
 BAD_INERTIA, BAD_ATTITUDE, TOO_MANY_TURNS, BODIES_MET = 18, 19, 20, 21
 CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE, ENDS_AT_START, NO_ARCS, NO_ATTITUDE = range(
     22, 31
 )
+NO_VERTICAL, BAD_SCHEDULE = 31, 32
 
 FAULTS = (
     Fault(NOT_FINITE, "error", "the state is no longer finite; look at the parameters and inputs last set"),
@@ -89,6 +86,8 @@ FAULTS = (
     Fault(NO_ARCS, "error", "burn.when = arcs needs an orbit, and there is none; take timed"),
     Fault(NO_ATTITUDE, "error", "aocs needs a chaser that turns; name chaser.body = rigid"),
     Fault(TOO_MANY_TURNS, "error", "the line has wrapped round the target over more edges than can be followed"),
+    Fault(NO_VERTICAL, "error", "gains on the angle need a local vertical, and there is no orbit", True),
+    Fault(BAD_SCHEDULE, "error", "times of a schedule must increase", True),
 )
 
 
@@ -141,7 +140,8 @@ SOLVER = (
 
 OUTPUTS = (
     output("tether.tension", "N", "in the line, zero when slack", 1.0, "rate.tension",
-           partials=(("reel.length_offset", "partial.tension"), ("reel.tension", "partial.tension"))),
+           partials=(("reel.length_offset", "partial.tension"), ("reel.tension", "partial.tension"),
+                     ("reel.brake_offset", "partial.tension"))),
     peak("tether.tension_peak", "N", "largest over the last macro step, also between its ends", 1.0,
          at_start=COMMANDS),
     peak("tether.tension_least", "N", "least over the last macro step, also between its ends", 1.0, at_start=COMMANDS),
@@ -251,40 +251,6 @@ STATE = (
     state("state.basis[#][#]", "1", "room for a rotation", shape=(3, 3)),
     state("state.vector[#][#]", "1", "room for vectors", shape=(4, 3)),
 )
-
-LENGTH_OFFSET = moving_input(
-    "reel.length_offset", "m", "added to the line's length; zero leaves it as the parameters say", -1e6, 1e6, 1.0
-)
-COMMAND = moving_input(
-    "reel.tension", "N", "tension the reel is to give; zero or less leaves the line slack", -1e6, 1e6, 1.0
-)
-
-REELS = Group(
-    {
-        "locked": Term(
-          "an elastic line between two fixed ends: T = k (l - l0) + c dl/dt while stretched and pulling",
-          (
-                positive("tether.rest_length", "m", "unloaded length", 12.0, 1e6),
-                positive("tether.diameter", "m", "of the load-bearing section", 1e-3, 1.0, display_unit="mm"),
-                positive("tether.youngs_modulus", "Pa", "of the line", 60e9, 1e14, display_unit="GPa"),
-                parameter("tether.damping_ratio", "1", "c / (2 sqrt(k m_r)), m_r the pair's reduced mass",
-                          0.05, 0.0, 10.0),
-                *LENGTH_OFFSET,
-            ),
-            extremes=stress.LOCKED,
-        ),
-        "linear": Term(
-            "a reel that controls tension: T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt)",
-            (
-                positive("reel.length", "m", "commanded length l_c", 12.0, 1e6),
-                parameter("reel.proportional_gain", "N/m", "k_p; default of Table 2's pair", REEL_STIFFNESS, 0.0, 1e6),
-                parameter("reel.derivative_gain", "N.s/m", "k_d; default of Table 2's pair", REEL_DAMPING, 0.0, 1e5),
-                *LENGTH_OFFSET,
-            ),
-        ),
-        "commanded": Term("a reel that gives the tension it is told: T = max(0, command)", COMMAND),
-    }
-)  # fmt: skip
 
 THRUST = (
     parameter("thrust.level", "N", "along the named direction; negative against it", -0.01, -1e4, 1e4),

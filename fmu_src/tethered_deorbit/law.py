@@ -12,6 +12,12 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
+from orbital.kernel import kernel
+
+
+@kernel
+def unseen(*arguments: Any) -> None:
+    """What a law that looks at the line alone sees of the rest of the state, or has of its own: nothing."""
 
 
 class Reel(NamedTuple):
@@ -31,6 +37,17 @@ class Reel(NamedTuple):
     partials(record, length, rate) -> (by tension, by energy)   derivatives by the command of a taut line, at since = 0
     start_limit(record)                                     longest line with which a pair may start
     acting                                                  what the reel does by itself
+    see(record, state)                                      before any of these that depend on the line: take from the
+                                                            state what they need beside it; its axes may turn
+    first                                                   of the components of the state that it sees
+    see_change(record, state, rate, turned)                 and from its rate, before those of a time derivative;
+                                                            `turned` is 1 where its axes turn with the step, else 0
+    drive(record, state, rate, length, speed, tension)      rates of its own components, `reel.components`; without a
+                                                            pull the tension is zero
+    turn(record, state, length)                             the line has just gone taut or slack: book what it then has
+                                                            or no longer has, in the state; `state.taut` is anew
+    publish(record, state, length, speed)                   outputs of its own
+    differentiate(record, length, speed, acceleration)      and their rates, at since = 0
     """
 
     asked: Callable[..., Any]
@@ -46,3 +63,10 @@ class Reel(NamedTuple):
     partials: Callable[..., Any]
     start_limit: Callable[..., Any]
     acting: Acting = IDLE
+    see: Callable[..., Any] = unseen
+    first: int = 6
+    see_change: Callable[..., Any] = unseen
+    drive: Callable[..., Any] = unseen
+    turn: Callable[..., Any] = unseen
+    publish: Callable[..., Any] = unseen
+    differentiate: Callable[..., Any] = unseen

@@ -7,7 +7,9 @@ every body that turns, and what they gather:
     then, for each body that turns, q attitude (4) [-], body to inertial axes, and w its rate (3) [rad/s], body axes
     then, with attitude control, h momentum of the wheels (3) [N m s], body axes
     then, with an engine or burns, the propellant used [kg]
-    last J  impulse of the line [N s]: dJ/dt is the tension that the equations have in them
+    then what the law of the line moves
+    then J  impulse of the line [N s]: dJ/dt is the tension that the equations have in them
+    last    what the law of the line gathers
 """
 
 from __future__ import annotations
@@ -26,39 +28,44 @@ ATTITUDE = 7
 class StateLayout(NamedTuple):
     """Components of the state.
 
-    moving      how many the equations depend on: all but the last
+    moving      how many the equations depend on: all before J
     wheels      place of h, or what comes after it where there is none
-    spent       place of the propellant, or that of J where none is kept
-    impulse     place of J
+    spent       place of the propellant, or of what comes after it where none is kept
+    reel        place of what the law of the line moves
+    impulse     place of J; behind it what that law gathers
     size        how many there are
     """
 
     moving: int
     wheels: int
     spent: int
+    reel: int
     impulse: int
     size: int
 
 
-def state_layout(turning: int, wheels: bool = False, spends: bool = False) -> StateLayout:
-    """The components of a pair of which so many bodies turn, 0 to 2, with wheels or not, and that keeps what its
-    thruster spends or not."""
+def state_layout(
+    turning: int, wheels: bool = False, spends: bool = False, moved: int = 0, gathered: int = 0
+) -> StateLayout:
+    """The components of a pair of which so many bodies turn, 0 to 2, with wheels or not, that keeps what its thruster
+    spends or not, on a line whose law has so many of its own."""
     own = PAIR + ATTITUDE * turning
     spent = own + 3 * wheels
-    moving = spent + spends
-    return StateLayout(moving, own, spent, moving, moving + 1)
+    reel = spent + spends
+    return StateLayout(reel + moved, own, spent, reel, reel + moved, reel + moved + 1 + gathered)
 
 
-def layout_of(terms: Mapping[str, str]) -> StateLayout:
-    """The components of a pair with these terms."""
+def layout_of(terms: Mapping[str, str], moved: int, gathered: int) -> StateLayout:
+    """The components of a pair with these terms, on a line whose law has so many of its own."""
     turning = sum(terms[role] != "point" for role in ("target", "chaser"))
-    return state_layout(turning, "aocs" in terms, "burn" in terms or "engine" in terms)
+    return state_layout(turning, "aocs" in terms, "burn" in terms or "engine" in terms, moved, gathered)
 
 
 class Places(NamedTuple):
     """Where things lie in the work memory.
 
     size        components of a state
+    moving      how many of them the equations depend on
     begin       state at the begin of the current step
     end         state at its end
     here        state at the point last asked of the dense output
@@ -71,6 +78,7 @@ class Places(NamedTuple):
     """
 
     size: int
+    moving: int
     begin: int
     end: int
     here: int
@@ -88,4 +96,6 @@ def places_of(state: StateLayout, scheme: AdaptiveScheme) -> Places:
     begin, end, here, slope, low, high, stages = (row * state.size for row in range(7))
     dense = stages + scheme.stages
     total = dense + scheme.dense
-    return Places(state.size, begin, end, here, slope, low, high, stages, stages + scheme.last, dense, total)
+    return Places(
+        state.size, state.moving, begin, end, here, slope, low, high, stages, stages + scheme.last, dense, total
+    )

@@ -7,6 +7,7 @@ from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.command import make_command, make_shortest
+from fmu_src.tethered_deorbit.elastic import make_elastic
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
@@ -22,9 +23,6 @@ def make_locked(interface: Interface) -> Reel:
 
     The dashpot works on the rate of stretch, so a rest length that moves is felt at once. Stiffness and dashpot follow
     the rest length on its way: after a ramp the line is the one that the new offset makes.
-
-    Taut begins when min(l - l0, T) rises through zero. While it is stretching that is l - l0; else it is T, here as a
-    length, T/k. Slack begins when T falls through zero, which it does before l - l0.
 
     Valid    small strains; massless line
     Source   D-CoNe paper, eq. 1 and 3; the clamp at zero and the moving rest length are ours
@@ -68,8 +66,8 @@ def make_locked(interface: Interface) -> Reel:
         return 0
 
     @kernel
-    def line(record: Any, since: float) -> tuple[float, float, float]:
-        """Rest length [m], stiffness [N/m] and dashpot [N s/m] on the way.
+    def line(record: Any, since: float) -> tuple[float, float, float, float, float]:
+        """Rest length [m], its two rates, stiffness [N/m] and dashpot [N s/m] on the way.
 
             l0 = l0(0) + l0' t,   k = k(0) l0(0)/l0,   c = c(0) sqrt(l0(0)/l0)
 
@@ -85,103 +83,9 @@ def make_locked(interface: Interface) -> Reel:
             ratio = r.state_length / length
             stiffness *= ratio
             damping *= math.sqrt(ratio)
-        return length, stiffness, damping
+        return length, r.state_command_rate, 0.0, stiffness, damping
 
-    @kernel
-    def tension(record: Any, length: float, rate: float, since: float) -> float:
-        """Tension before the clamp [N].
-
-            T = k (l - l0) + c (l' - l0')
-
-        Source   D-CoNe paper, eq. 1 and 3
-        Checked  tests/tethered_deorbit/test_snap.py, test_ramps.py
-        """
-        rest, stiffness, damping = line(record, since)
-        force: float = stiffness * (length - rest) + damping * (rate - record[0].state_command_rate)
-        return force
-
-    @kernel
-    def tension_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
-        """Its time derivative [N/s].
-
-            T' = k (l' - l0') + c l'' - l0'/l0 (k (l - l0) + c (l' - l0')/2)
-
-        Source   derivative of `tension`, with those of k and c
-        Checked  tests/tethered_deorbit/test_derivatives.py, against differences
-        """
-        moving = record[0].state_command_rate
-        rest, stiffness, damping = line(record, since)
-        slope: float = stiffness * (rate - moving) + damping * acceleration
-        if moving != 0.0:
-            # k goes as 1/l0 and c as its root
-            slope -= moving / rest * (stiffness * (length - rest) + 0.5 * damping * (rate - moving))
-        return slope
-
-    @kernel
-    def onset(record: Any, length: float, rate: float, since: float) -> float:
-        """Signal [m] that rises through zero when a slack line goes taut.
-
-            l - l0,   and while it shortens   l - l0 + c (l' - l0')/k
-
-        Checked  tests/tethered_deorbit/test_tugs.py, against an independent integration
-        """
-        rest, stiffness, damping = line(record, since)
-        stretch: float = length - rest
-        stretching = rate - record[0].state_command_rate
-        if stretching < 0.0:
-            stretch += damping * stretching / stiffness
-        return stretch
-
-    @kernel
-    def onset_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
-        """Its time derivative [m/s].
-
-        Source   derivative of `onset`, with those of k and c
-        Checked  tests/tethered_deorbit/test_tugs.py, against an independent integration
-        """
-        moving = record[0].state_command_rate
-        rest, stiffness, damping = line(record, since)
-        stretching: float = rate - moving
-        if stretching < 0.0:
-            slope: float = stretching + damping * acceleration / stiffness
-            if moving != 0.0:
-                slope += 0.5 * moving / rest * damping * stretching / stiffness
-            return slope
-        return stretching
-
-    @kernel
-    def taut(record: Any, length: float, rate: float) -> bool:
-        """Whether a line met in this state pulls: stretched, and its dashpot does not push harder.
-
-        Checked  tests/tethered_deorbit/test_start.py: taut at the start; test_macro_step.py: a changed length
-        """
-        return bool(onset(record, length, rate, 0.0) > 0.0 and tension(record, length, rate, 0.0) > 0.0)
-
-    @kernel
-    def energy(record: Any, length: float, since: float) -> float:
-        """Elastic energy of the stretched line [J].
-
-            k (l - l0)^2 / 2
-
-        Checked  tests/tethered_deorbit/test_snap.py, test_attachment.py: a swing keeps its energy
-        """
-        rest, stiffness, _ = line(record, since)
-        stored: float = 0.5 * stiffness * (length - rest) * (length - rest)
-        return stored
-
-    @kernel
-    def energy_rate(record: Any, length: float, rate: float, since: float) -> float:
-        """Its time derivative [W].
-
-            k d (l' - l0') - k l0'/(2 l0) d^2,   d = l - l0
-
-        Checked  tests/tethered_deorbit/test_derivatives.py, against differences
-        """
-        moving = record[0].state_command_rate
-        rest, stiffness, _ = line(record, since)
-        stretch = length - rest
-        power: float = stiffness * stretch * (rate - moving) - 0.5 * stiffness * moving / rest * stretch * stretch
-        return power
+    elastic = make_elastic(line)
 
     @kernel
     def partials(record: Any, length: float, rate: float) -> tuple[float, float]:
@@ -192,7 +96,7 @@ def make_locked(interface: Interface) -> Reel:
         Checked  tests/tethered_deorbit/test_derivatives.py, against differences
         """
         r = record[0]
-        rest, stiffness, damping = line(record, 0.0)
+        rest, _, _, stiffness, damping = line(record, 0.0)
         stretch = length - rest
         by_tension = -stiffness - (stiffness * stretch + 0.5 * damping * (rate - r.state_command_rate)) / rest
         by_energy = -stiffness * stretch - 0.5 * stiffness * stretch * stretch / rest
@@ -211,13 +115,7 @@ def make_locked(interface: Interface) -> Reel:
         asked=asked,
         leave=leave,
         prepare=prepare,
-        taut=taut,
-        tension=tension,
-        tension_rate=tension_rate,
-        onset=onset,
-        onset_rate=onset_rate,
-        energy=energy,
-        energy_rate=energy_rate,
+        **elastic._asdict(),
         partials=partials,
         start_limit=start_limit,
     )

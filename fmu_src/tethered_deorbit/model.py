@@ -21,10 +21,13 @@ from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
-from fmu_src.tethered_deorbit.layout import layout_of, places_of
+from fmu_src.tethered_deorbit.law import unseen
+from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
-from fmu_src.tethered_deorbit.reel import LAWS, make_reel
+from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
+from fmu_src.tethered_deorbit.reel_rows import INPUTS, LIMITED_OF_REELS
 from fmu_src.tethered_deorbit.schemes import SCHEMES
+from fmu_src.tethered_deorbit.sights import Sights
 from fmu_src.tethered_deorbit.start import make_start
 from fmu_src.tethered_deorbit.thrust import DIRECTIONS, make_thrust
 from fmu_src.tethered_deorbit.trajectory import ACTS, EDGES, LINE, make_squared_error, make_trajectory
@@ -55,6 +58,7 @@ LIMITED = (
     "tether.damping_ratio",
     "reel.proportional_gain",
     "reel.derivative_gain",
+    *LIMITED_OF_REELS,
     "thrust.level",
     "thrust.specific_impulse",
     "burn.start",
@@ -83,7 +87,7 @@ LIMITED = (
 """Parameters whose limits the kernel minds too; out of theirs, others end in a fault of their own."""
 
 IMPLEMENTED = {
-    "reel": tuple(LAWS),
+    "reel": (*LAWS, *WINCHES),
     "thrust": DIRECTIONS,
     "environment": FIELDS,
     "solver": tuple(SCHEMES),
@@ -109,11 +113,13 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     terms = interface.terms
     check_implemented(MODEL, IMPLEMENTED, terms)
     environment = make_environment(terms["environment"], interface)
-    reel = breakable(make_reel(terms["reel"], interface), terms)
-    command_slot = interface.references["reel.tension" if terms["reel"] == "commanded" else "reel.length_offset"]
+    command_slot = next(interface.references[name] for name in INPUTS if name in interface.references)
     limits = make_limits(interface, *LIMITED)
-    bodies = make_bodies(terms, environment.place, environment.gradient, interface)
-    layout = layout_of(terms)
+    layout = layout_of(terms, *components(terms["reel"]))
+    bodies = make_bodies(terms, environment.place, environment.gradient, layout.size, interface)
+    spin = PAIR + ATTITUDE - 3 if terms["target"] != "point" else -1
+    sights = Sights(layout.reel, spin, bodies.line, environment.frame)
+    reel = breakable(make_reel(terms["reel"], interface, sights), terms, bodies.line)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
@@ -125,13 +131,13 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     events = make_events(reel, bodies, scheme, places)
     extremes = make_extremes(events, places)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
-    acts = acting is not IDLE
+    acts, turns = acting is not IDLE, reel.turn is not unseen
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)
     publish = make_publish(reel, environment, bodies, layout)
     differentiate = make_differentiate(inertial, reel, thrust, environment, bodies)
-    size, spent, impulse, work_size = layout.size, layout.spent, layout.impulse, places.total
+    size, spent, work_size = layout.size, layout.spent, places.total
     end_state, here_state, slope_state, low_error = places.end, places.here, places.slope, places.low
 
     @kernel
@@ -182,8 +188,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         code = aocs.begin(record, end)
         if code != 0:
             return fail(record, code, 0.0)
-        end[spent] = 0.0
-        end[impulse] = 0.0
+        for i in range(spent, size):
+            end[i] = 0.0
         thrust.weigh(record, end)
         if not finite(end):
             return fail(record, blame(record, NOT_FINITE, 0, 0.0), 0.0)
@@ -228,6 +234,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r = record[0]
         end = work[end_state:here_state]
         _, length, speed = trajectory.state_at(record, work, r.state_end, end)
+        was_taut = r.state_taut
         if r.state_event == EDGES:
             stored = line_energy(record, length)
             bodies.renew(record, end)
@@ -239,6 +246,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         else:
             r.state_taut = 1
             begin_tug(record, r.state_end, speed)
+        if turns and r.state_taut != was_taut:
+            inputs.turn(record, work)
         trajectory.restart(record, work, r.state_end)
 
     @kernel

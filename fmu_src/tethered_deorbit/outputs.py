@@ -99,6 +99,7 @@ def make_publish(reel: Reel, environment: Environment, bodies: Bodies, layout: S
         r.tether_length_rate = rate
         r.tether_impulse = state[impulse]
         r.tether_taut = r.state_taut
+        reel.see(record, state)
         r.tether_tension = max(0.0, reel.tension(record, length, rate, since)) if r.state_taut else 0.0
         for i in range(3):
             r.center_position[i] = state[i]
@@ -116,5 +117,6 @@ def make_publish(reel: Reel, environment: Environment, bodies: Bodies, layout: S
         r.energy_relative += bodies.energy(record, state, turning)
         if r.state_taut:
             r.energy_relative += reel.energy(record, length, since)
+        reel.publish(record, state, length, rate)
 
     return publish

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
+from fmu_src.tethered_deorbit.reel_refusals import of_reel
 
 Refusal = tuple[str, str, str]
 """FMI name, its value as text, what was expected."""
@@ -34,6 +35,7 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         yield "engine.propellant", f"{values['engine.propellant']:g} kg", text
     if "burn" in terms:
         yield from _of_burns(terms, values)
+    yield from of_reel(values, terms)
 
 
 def _of_burns(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:

@@ -70,6 +70,53 @@ LOCKED = (
 )  # fmt: skip
 """Of the elastic line between fixed ends."""
 
+WINCH = (
+    *(
+        Extreme(f"a sample each {step:g} s", "from a motor's own controller to one looked at once an hour", "longer",
+                {"reel.sample_time": step}, duration=duration, chief=step == 0.01)
+        for step, duration in ((0.01, 300.0), (1.0, HOUR), (3600.0, DAY))
+    ),
+    Extreme("a motor that hardly moves", "a nanometre per second", "longer",
+            {"reel.rate_limit": 1e-9, "reel.acceleration_limit": 1e-9}),
+    Extreme("a motor that hardly pulls", "it stalls at every tug", "longer",
+            {"reel.force_limit": 1e-3, "reel.power_limit": 1e-6}, chief=True),
+    Extreme("no room to wind", "the drum holds just what is wound out", "longer",
+            {"reel.length_least": _length, "reel.length_most": _length}),
+    Extreme("a line of 1 MPa on a winch", "soft as rubber", "longer", {"tether.youngs_modulus": 1e6}),
+    *(
+        Extreme(f"a winch's line with damping ratio {ratio:g}", "dashpots from none to ten times critical", "longer",
+                {"tether.damping_ratio": ratio}, duration=2.0 * HOUR)
+        for ratio in (0.0, 1.0, 10.0)
+    ),
+)  # fmt: skip
+"""Of a winch."""
+
+BRAKE = (
+    *(
+        Extreme(f"friction of {force:g} N", "from a free drum to one that never slips", "longer",
+                {"reel.brake_force": force}, chief=force == 1e-6)
+        for force in (1e-6, 1e-2, 1e6)
+    ),
+    *(
+        Extreme(f"a braked line with damping ratio {ratio:g}", "it leaps above the friction as it goes taut", "longer",
+                {"tether.damping_ratio": ratio, "reel.brake_force": 1.0})
+        for ratio in (0.0, 10.0)
+    ),
+    Extreme("no line left on the drum", "it is held from the first", "longer", {"reel.length_most": _length}),
+)  # fmt: skip
+"""Of a line that slips."""
+
+REGULATOR = (
+    Extreme("gains a thousand times larger", "a reel that is stiff and damped hard", "impulse",
+            {"reel.proportional_gain": 4.0, "reel.derivative_gain": 2000.0, "reel.angle_gain": -25.0,
+             "reel.angle_rate_gain": 1800.0}),
+    Extreme("gains that let the pair go", "below 3 n^2 m_r the tide pulls harder than the reel", "impulse",
+            {"reel.proportional_gain": 1e-4, "reel.derivative_gain": 0.0}, duration=2.0 * HOUR, chief=True),
+    Extreme("a reel by the angle alone", "slack as often as taut", "impulse",
+            {"reel.angle_gain": 1.0, "reel.angle_rate_gain": 0.0}, duration=2.0 * HOUR),
+)  # fmt: skip
+"""Of a law of the whole state."""
+
 THRUST = tuple(
     Extreme(f"thrust of {-level:g} N", "from a trickle of ions to a main engine", "orbit", {"thrust.level": level},
             duration=duration, chief=level == -1e4)

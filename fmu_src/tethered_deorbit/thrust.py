@@ -125,7 +125,7 @@ def make_thrust(
     engine = make_engine(terms, layout, interface)
     plume = make_plume(terms, interface)
     offset_slot = interface.references["thrust.offset"]
-    spent, shaped, keeps = layout.spent, burn is not STEADY or engine.real, layout.spent < layout.impulse
+    spent, shaped, keeps = layout.spent, burn is not STEADY or engine.real, layout.spent < layout.reel
     beams, turns = "plume" in terms, terms["chaser"] != "point"
     q_at = PAIR + (ATTITUDE if terms["target"] != "point" else 0)
     mass = "state_chaser_mass" if engine.real else "chaser_mass"

@@ -102,7 +102,7 @@ def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
         Checked  tests/tethered_deorbit/test_turning.py
         """
         r = record[0]
-        damping = r.state_damping / (2.0 * r.state_effective_mass * r.state_frequency)
+        damping = abs(r.state_damping) / (2.0 * r.state_effective_mass * r.state_frequency)
         longest: float = reach(damping) / r.state_frequency
         return longest
 
@@ -145,7 +145,7 @@ def make_trajectory(
     longest_taut_step = make_longest_taut_step(scheme.reach)
     acts = acting is not IDLE
     watches = acts or bodies.holds is not always
-    moving, seen = size - 1, bodies.seen
+    moving, seen = places.moving, bodies.seen
 
     @kernel
     def restart(record: Any, work: Array, time: float) -> None:

@@ -197,3 +197,17 @@ def test_under_thrust_the_integral_of_the_relative_motion_is_kept() -> None:
 )  # fmt: skip
 def test_a_line_number_or_the_value_given_is_no_bound(message: str, kind: str) -> None:
     assert refusal(message).kind == kind
+
+
+def test_a_wound_line_is_no_longer_than_it_is_stretched() -> None:
+    """Beyond what is wound out by T/k and no more; the same line with one millimetre beyond that is found."""
+    values = {"tether.youngs_modulus": 60e9, "tether.diameter": 1e-3, "tether.rest_length": 12.0}
+    stiffness = line_stiffness(60e9, 1e-3, 14.0)
+    wound, peak = np.array([12.0, 13.0, 14.0]), np.array([0.0, 1.0, 2.0])
+    columns = {"time": np.arange(3.0), "reel.paid_out": wound, "tether.tension_peak": peak}
+    for beyond, limit in ((0.0, 1e-9), (1e-3, math.inf)):
+        columns["tether.length"] = wound + peak / stiffness + beyond * (peak > 1.0)
+        evidence = Evidence(columns, values, {"reel": "schedule"}, 3.0)
+        (found,) = [one for one in of_removal(evidence) if one.key == "longer"]
+        assert found.value <= limit
+        assert (found.value > found.stable) == (beyond > 0.0)

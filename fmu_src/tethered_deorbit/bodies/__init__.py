@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies.idle import always, never, no_fault, nothing
-from fmu_src.tethered_deorbit.layout import layout_of
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 
 
@@ -89,16 +88,21 @@ KINDS = {"target": ("point", "rigid", *SURFACES), "chaser": ("point", "rigid")}
 
 
 def make_bodies(
-    terms: Mapping[str, str], frame_at: Callable[..., Any], strength_at: Callable[..., Any], interface: Interface
+    terms: Mapping[str, str],
+    frame_at: Callable[..., Any],
+    strength_at: Callable[..., Any],
+    size: int,
+    interface: Interface,
 ) -> Bodies:
     """The kernels for a record of this interface.
 
     terms         of `interface`: those of "target" and "chaser" are among `KINDS`
     frame_at, strength_at   kernels `place` and `gradient` of the environment
+    size          of the state
     """
     from fmu_src.tethered_deorbit.bodies import attached, points
 
     turning = tuple(role for role in ("target", "chaser") if terms[role] != "point")
     if not turning:
         return points.make_points(interface)
-    return attached.make_attached(turning, terms["target"], layout_of(terms).size, frame_at, strength_at, interface)
+    return attached.make_attached(turning, terms["target"], size, frame_at, strength_at, interface)
