@@ -24,7 +24,7 @@ from fmu_src.rows import (
     vector,
 )
 from fmu_src.tethered_deorbit import stress
-from fmu_src.tethered_deorbit.body_rows import ATTACHED, BOX, CYLINDER, POINT_TARGET, THRUSTER, rigid_body
+from fmu_src.tethered_deorbit.body_rows import ATTACHED, BOX, CYLINDER, POINT_TARGET, THRUSTER, WAYS, rigid_body
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, PLUME
 
 CONDITIONS = ("same_orbit", "vbar", "equal_velocity", "handed_over")
@@ -87,7 +87,12 @@ FAULTS = (
     Fault(ENDS_AT_START, "error", "the run would end as it begins: what ends it is met at the start", True),
     Fault(NO_ARCS, "error", "burn.when = arcs needs an orbit, and there is none; take timed"),
     Fault(NO_ATTITUDE, "error", "aocs needs a chaser that turns; name chaser.body = rigid"),
-    Fault(TOO_MANY_TURNS, "error", "the line has wrapped round the target over more edges than can be followed"),
+    Fault(
+        TOO_MANY_TURNS,
+        "error",
+        "the line has wrapped round the target over more edges than are followed: "
+        + ", ".join(f"{most} of a {shape}" for shape, most in WAYS.items()),
+    ),
 )
 
 
