@@ -18,8 +18,8 @@ turning of the frame takes of it, 1 - cos(phi) < phi^2/2, where it is as slow as
 TUGS = 5
 """Tugs from the first on that are compared."""
 FAST = math.pi / math.sqrt(2.0 * SNAP)
-"""Radians of a line's motion in a radian of the orbit from which on its snaps are quick enough for the closed form: one
-lasts half a period, pi/omega, in which the frame turns by phi = pi n/omega."""
+"""Radians of a line's motion in a radian of the orbit, or of a body that turns, from which on its snaps are quick
+enough for the closed form: one lasts half a period, pi/omega, in which the frame turns by phi = pi n/omega."""
 SLOW = 1e-3
 """Thrust over weight up to which an orbit falls as a spiral does, and share by which the axis may change while the
 orbit counts as one circle."""
@@ -114,8 +114,8 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
     across = _across(evidence)
     steady = reduced * (3.0 * rate**2 * _rest(evidence) + 2.0 * rate * across + across**2 / _rest(evidence))
     steady += abs(force(evidence)) * target / (chaser + target)
-    if math.sqrt(stiffness / reduced) < FAST * rate:
-        return  # so long a snap is part of the orbit's motion
+    if math.sqrt(stiffness / reduced) < FAST * max(rate, _spin(evidence)):
+        return  # so long a snap is part of the motion of orbit and bodies
     points = evidence.terms.get("target", "point") == evidence.terms.get("chaser", "point") == "point"
     begin = evidence.columns["time"][0]
     # the newest may still grow, and one at the start has no speed of its own
@@ -132,6 +132,16 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
         worst, compared = max(worst, off), compared + 1
     if compared:
         yield Criterion("snap", "peaks of the first tugs from the closed form", worst, "1", SNAP, SNAP)
+
+
+def _spin(evidence: Evidence) -> float:
+    """Rate of the body that turns fastest at the start [rad/s]; 0 of points."""
+    rates = [
+        math.hypot(*(evidence.values[f"{role}.start_rate[{axis}]"] for axis in (1, 2, 3)))
+        for role in ("target", "chaser")
+        if f"{role}.start_rate[1]" in evidence.values
+    ]
+    return max(rates, default=0.0)
 
 
 def _across(evidence: Evidence) -> float:

@@ -61,7 +61,7 @@ FAULTS = (
     Fault(
         START_STRETCHED,
         "error",
-        "start.separation exceeds the line and its attachments: a locked line would start stretched",
+        "start.separation may exceed the line and its attachments by zero at most: a locked line would start stretched",
         True,
     ),
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),
@@ -77,7 +77,11 @@ FAULTS = (
         True,
     ),
     Fault(BAD_ATTITUDE, "error", "the attitude at the start must be a quaternion of unit length, or zero", True),
-    Fault(BODIES_MET, "end", "the bodies have met: the chaser's end of the line has come into the target"),
+    Fault(
+        BODIES_MET,
+        "end",
+        "the bodies have met: the chaser's end of the line has come to a distance of zero from the target, or into it",
+    ),
     Fault(CAME_DOWN, "end", "the pair has come down to ends.altitude"),
     Fault(PERIGEE_LOW, "end", "the perigee has come down to ends.perigee"),
     Fault(PERIGEE_RAISED, "end", "the perigee has risen to ends.raised_perigee"),

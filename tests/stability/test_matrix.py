@@ -36,7 +36,7 @@ def unexplained(result: dict[str, Any]) -> list[str]:
     return found
 
 
-@pytest.fixture(params=["table1-capture", "table2-deorbit", "tumbling-target"])
+@pytest.fixture(params=["table1-capture", "table2-deorbit"])
 def stored(request: pytest.FixtureRequest) -> dict[str, Any]:
     result: dict[str, Any] = json.loads((RESULTS / f"{request.param}.json").read_text(encoding="utf-8"))
     assert result["command"] == f"{COMMAND} {request.param}"
