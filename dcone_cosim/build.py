@@ -256,9 +256,14 @@ def instead(model: str, terms: Mapping[str, str]) -> Mapping[str, str]:
     return TRADES[model].instead(terms) if model in TRADES else {}
 
 
-def within(model: str, terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
+def reference(model: str, terms: Mapping[str, str]) -> Mapping[str, str]:
+    """Terms of a model of ours with which a reference is computed, by group, where they are others."""
+    return TRADES[model].reference(terms) if model in TRADES else {}
+
+
+def within(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
     """Criteria that hold less closely with these terms of a model of ours: what counts as accurate and as stable."""
-    return TRADES[model].within(terms) if model in TRADES else {}
+    return TRADES[model].within(values, terms) if model in TRADES else {}
 
 
 def refinements(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:

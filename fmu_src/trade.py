@@ -9,7 +9,8 @@ A model that has such settings has a module `trade` with
     whole(terms)                 whether everything that is shown with these terms is meant, energies too
     instead(terms)               criteria of a phase that mean nothing with these terms, each with the one that is asked
                                  in its place, "" for none
-    within(terms)                criteria that hold less closely with these terms than with others: shares up to which a
+    reference(terms)             groups and terms of them with which a reference is computed in place of these
+    within(values, terms)        criteria that hold less closely with these terms than with others: shares up to which a
                                  run counts as accurate and as stable
 
 values are all parameters and inputs by FMI name, SI.

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from dcone_cosim import build
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HAND_OVER, NEVER, OUTCOMES
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import CAPTURE_FAILED
@@ -22,6 +23,8 @@ from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scene.mistakes import Mistake
 
+OPENING = "shot.opening"
+"""Key of how far bullets fly until they alone would have spread the net."""
 NEEDED = ("target", "closing")
 """Tables of a scene without which no capture can ever be reported."""
 NEEDED_FOR = {"settled": "settling", "tether_taut": "tether"}
@@ -138,6 +141,17 @@ class Capture(Phase):
 
     def criteria(self, evidence: Evidence) -> Iterator[Criterion]:
         return capture_criteria.criteria(evidence)
+
+    def laden(self, phase: PhaseScene) -> tuple[Mapping[str, float], float] | None:
+        """Flat from the start: folded, most threads sleep, and a beginning tells nothing of what an open net costs."""
+        values = {**phase.main.defaults, **phase.main.parameters}
+        sides = build.mouth_sides(values, phase.main.terms)
+        if not sides:
+            return None
+        rows = build.implied("net_capture", values, phase.main.terms)
+        way = next((row.value for row in rows if row.key == OPENING), math.inf)
+        speed = values["bullets.speed"] * math.cos(values["bullets.angle"])
+        return {"net.fold_side": (1.0 - 1e-9) * min(sides)}, way / speed if speed > 0.0 else math.inf
 
     def rounding(self, phase: PhaseScene) -> float | None:
         return capture_criteria.BOOKED.get(phase.main.terms.get("precision", "double"))

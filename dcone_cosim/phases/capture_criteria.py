@@ -14,7 +14,8 @@ from dcone_cosim.quantities import Array
 ACCURATE, STABLE = 0.01, 0.05
 """Shares of the energy that came in by which the book may be off."""
 ROUNDING = {"double": (1e-9, 1e-7), "single": (1e-4, 1e-2)}
-"""Shares of momentum by which it may change, accurate and stable, by the bits of a number."""
+"""Shares of momentum by which it may change, accurate and stable, by the bits of a number: a velocity is rounded once a
+substep, by 2^-53 or 2^-24 of it at most, so that 160,000 substeps of one sign come to a hundredth with 24 bits."""
 ON_GRID = 1.1e-3
 """Share of a substep by which a communication point may miss the grid and still be taken for on it, and a little."""
 BOOKED = {"double": 2e-6}
@@ -90,6 +91,13 @@ def _book(evidence: Evidence) -> Iterator[Criterion]:
         yield Criterion("energy_rises", "energy of the flying net above what it was", risen, "1", ACCURATE, STABLE)
 
 
+def spacing(evidence: Evidence) -> Array:
+    """Distance [m] of neighbouring numbers of 24 bits at the farthest coordinate of a bullet, at each instant."""
+    names = [f"bullet[{bullet}].position[{axis}]" for bullet in BULLETS for axis in (1, 2, 3)]
+    farthest = np.max([np.abs(evidence.columns[name]) for name in names], axis=0)
+    return np.asarray(np.spacing(farthest.astype(np.float32)), dtype=float)
+
+
 def _momentum(evidence: Evidence) -> Iterator[Criterion]:
     """Of all bodies, in a frame that does not turn: as it was, whatever net, target, winches and reel do."""
     if evidence.terms.get("gravity") != "none" or not evidence.has("momentum", "angular_momentum", CATCH + ".mass"):
@@ -116,6 +124,9 @@ def _flight(evidence: Evidence) -> Iterator[Criterion]:
     """Until something touches the net its centre of mass flies straight on, at the speed that the bullets gave it.
 
     r = r0 + (v0 + P/M a) t,   a the shot's axis, P the momentum of the bullets, M the mass of the catch
+
+    With 24 bits a way is rounded once a substep and once more as it is shown, by half the distance of neighbouring
+    numbers at most, whatever the signs; what a kick moves a bullet by is far less than such a number.
     """
     values, columns = evidence.values, evidence.columns
     if evidence.terms.get("gravity") != "none" or not evidence.has("catch.position", "catch.mass"):
@@ -134,6 +145,9 @@ def _flight(evidence: Evidence) -> Iterator[Criterion]:
     way = np.linalg.norm(place - start - velocity * time[:, None] - (place[0] - start), axis=1)[free]
     flown = max(float(np.linalg.norm(velocity)) * float(time[free][-1]), 1e-9)
     accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
+    if evidence.terms.get("precision") == "single" and evidence.has("solver.substep", "bullet[1].position"):
+        substeps = float(time[free][-1]) / float(np.min(columns["solver.substep"]))
+        stable = 0.5 * float(spacing(evidence)[free].max()) * (substeps + 1.0) / flown
     off = max(0.0, float(way.max()) - ON_GRID * _substep(evidence) * float(np.linalg.norm(velocity))) / flown
     yield Criterion("flight", "way of the catch from a straight line", off, "1", accurate, stable)
 

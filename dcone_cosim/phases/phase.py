@@ -245,6 +245,11 @@ class Phase:
         """What must hold of it however stiff or extreme it is."""
         yield finite(evidence)
 
+    def laden(self, phase: PhaseScene) -> tuple[Mapping[str, float], float] | None:
+        """Parameters with which it begins in the state in which a step costs most, and when it comes to that by itself
+        [s]; None where all steps cost much the same."""
+        return None
+
     def rounding(self, phase: PhaseScene) -> float | None:
         """Share of the energy below which an error of its book may be rounding [1]; None where all of it may be."""
         return 2e-6

@@ -12,12 +12,14 @@ from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.oscillators import damped_snap_peak, line_stiffness, reduced_mass
 
 ACCURATE, STABLE = 0.01, 0.05
-SNAP, SNAP_STABLE = 0.005, 0.03
-"""Shares by which a snap may miss its closed form, beside what the forces that act meanwhile may add to it."""
+SNAP = 0.005
+"""Share by which a snap may miss its closed form, beside what the forces that act meanwhile may add to it: what the
+turning of the frame takes of it, 1 - cos(phi) < phi^2/2, where it is as slow as FAST allows."""
 TUGS = 5
 """Tugs from the first on that are compared."""
-FAST = 100.0
-"""Radians of a line's motion in a radian of the orbit from which on its snaps are quick enough for the closed form."""
+FAST = math.pi / math.sqrt(2.0 * SNAP)
+"""Radians of a line's motion in a radian of the orbit, or of a body that turns, from which on its snaps are quick
+enough for the closed form: one lasts half a period, pi/omega, in which the frame turns by phi = pi n/omega."""
 SLOW = 1e-3
 """Thrust over weight up to which an orbit falls as a spiral does, and share by which the axis may change while the
 orbit counts as one circle."""
@@ -99,25 +101,34 @@ def _longer_than_wound(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def _snaps(evidence: Evidence) -> Iterator[Criterion]:
-    """The first tugs that are over, against the closed form of a snap, with what steady forces add at most.
+    """The first tugs that are over, against the closed form of a snap, with what other forces add at most.
 
-        |T - T_snap| <= 2 P,   P = 3 n^2 m_r l (1 + e)^3 + F m_t/M
+        |T - T_snap| <= 2 P,   P = m_r (3 (1 + e) mu/r_p^3 l + 2 n_p w + w^2/l) + F m_t/M
+
+    r_p, n_p   least radius of the orbit, its rate there         [m], [rad/s]
+    w          speed of the bodies across the line, at most      [m/s]
+
+    The motion is linear while the line is taut, so the tension is that of the snap and that of a force P put on a line
+    at rest, m x'' = P - T, which starts at 0 and stays between 0 and 2 P at any damping ratio.
 
     A body that turns gives way: off its centre the line moves less mass, and the snap is no harder than on points,
 
         T <= max(v sqrt(k m_r), c v) + 2 P
 
-    Source   `orbital.oscillators.damped_snap_peak`; a preload adds at most 2 P (`snap_peak`)
+    Source   `orbital.oscillators.damped_snap_peak`; tide 2 mu/r^3 and n^2 along the line, Coriolis, centrifugal
+    Checked  tests/stability/test_judge.py
     """
     values = evidence.values
     chaser, target, reduced = _masses(evidence)
     stiffness, zeta = _stiffness(evidence), values["tether.damping_ratio"]
     axis, eccentricity = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], values["orbit.eccentricity"]
     perigee = axis * (1.0 - eccentricity)
-    steady = 3.0 * EARTH_MU / perigee**3 * (1.0 + eccentricity) * reduced * _rest(evidence)
+    rate = math.sqrt((1.0 + eccentricity) * EARTH_MU / perigee**3)
+    across = _across(evidence)
+    steady = reduced * (3.0 * rate**2 * _rest(evidence) + 2.0 * rate * across + across**2 / _rest(evidence))
     steady += abs(force(evidence)) * target / (chaser + target)
-    if math.sqrt(stiffness / reduced) < FAST * math.sqrt(EARTH_MU / perigee**3):
-        return  # so long a snap is part of the orbit's motion
+    if math.sqrt(stiffness / reduced) < FAST * max(rate, _spin(evidence)):
+        return  # so long a snap is part of the motion of orbit and bodies
     points = evidence.terms.get("target", "point") == evidence.terms.get("chaser", "point") == "point"
     begin = evidence.columns["time"][0]
     # the newest may still grow, and one at the start has no speed of its own
@@ -133,7 +144,26 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
         off = max(0.0, miss - 2.0 * steady) / max(expected, 2.0 * steady)
         worst, compared = max(worst, off), compared + 1
     if compared:
-        yield Criterion("snap", "peaks of the first tugs from the closed form", worst, "1", SNAP, SNAP_STABLE)
+        yield Criterion("snap", "peaks of the first tugs from the closed form", worst, "1", SNAP, SNAP)
+
+
+def _spin(evidence: Evidence) -> float:
+    """Rate of the body that turns fastest at the start [rad/s]; 0 of points."""
+    rates = [
+        math.hypot(*(evidence.values[f"{role}.start_rate[{axis}]"] for axis in (1, 2, 3)))
+        for role in ("target", "chaser")
+        if f"{role}.start_rate[1]" in evidence.values
+    ]
+    return max(rates, default=0.0)
+
+
+def _across(evidence: Evidence) -> float:
+    """Largest speed of the bodies across the line between them [m/s]; 0 where it is not told."""
+    if not evidence.has("relative.position", "relative.velocity"):
+        return 0.0
+    place, velocity = evidence.vector("relative.position"), evidence.vector("relative.velocity")
+    lengths = np.maximum(np.linalg.norm(place, axis=1), 1e-300)
+    return float((np.linalg.norm(np.cross(place, velocity), axis=1) / lengths).max())
 
 
 def _orbit(evidence: Evidence) -> Iterator[Criterion]:

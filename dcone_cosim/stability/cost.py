@@ -1,4 +1,8 @@
-"""What a case would take: it is begun, stepped for a tenth of a second, and reckoned on from there."""
+"""What a case would take: it is begun, stepped for a tenth of a second, and reckoned on from there.
+
+A phase that grows dearer on its way says in what state it costs most (`Phase.laden`): it is begun in that too, and the
+price of a step is drawn from the one to the other.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from dcone_cosim.cases.pace import spoken
+from dcone_cosim.phases import kind_of
 from dcone_cosim.results import PhaseResult
 from dcone_cosim.scene.data import Scene
 
@@ -15,10 +20,7 @@ ENOUGH = 0.1
 SHORTEST = 1e-4
 """The first try, in macro steps; each further one is so many times as long."""
 LONGER = 8.0
-STEPS, THREADS = "solver.steps", "net.threads"
-AWAKE = 2e-9
-"""What a thread takes in a substep once the net is open [s]: folded, most of them sleep, and a beginning tells nothing
-of that (2.0 ns with 9,312 to 18,624 threads, measured by this command)."""
+STEPS = "solver.steps"
 
 
 @dataclass(frozen=True)
@@ -39,32 +41,63 @@ class Cost:
         return f"about {spoken(self.cpu)} ({self.steps:.2g} steps of {1e6 * self.cpu / self.steps:.2g} us)"
 
 
+@dataclass(frozen=True)
+class Rate:
+    """What a second of a phase takes as it begins.
+
+    cpu      over the phase's own time [1]
+    steps    per second [1/s]
+    ended    what it took in all where it ended by itself [s]
+    """
+
+    cpu: float
+    steps: float
+    ended: float | None = None
+
+
 def estimate(scene: Scene, run: Callable[[Scene], PhaseResult | None]) -> Cost | None:
     """What the one phase of a scene would take, from short beginnings of it; None where these tell nothing.
 
     run    a phase run to its end, or None if it comes to none
     """
     (phase,) = scene.phases
+    begin = _rate(scene, run)
+    if begin is None:
+        return None
+    if begin.ended is not None:
+        return Cost(begin.ended)
+    steps = math.ceil(begin.steps * phase.duration)
+    laden = kind_of(phase.name).laden(phase) if phase.main.fmu is None else None
+    if laden is None:
+        return Cost(begin.cpu * phase.duration, steps)
+    changed, reached = laden
+    main = replace(phase.main, parameters={**phase.main.parameters, **changed})
+    full = _rate(replace(scene, phases=(replace(phase, main=main),)), run)
+    dearest = begin.cpu if full is None or full.ended is not None else max(full.cpu, begin.cpu)
+    return Cost(begin.cpu * phase.duration + (dearest - begin.cpu) * _grown(phase.duration, reached), steps)
+
+
+def _grown(duration: float, reached: float) -> float:
+    """How long [s] at the highest price comes to as much as all of it does while the price grows evenly until then."""
+    if duration <= reached:
+        return 0.5 * duration * duration / reached
+    return duration - 0.5 * reached
+
+
+def _rate(scene: Scene, run: Callable[[Scene], PhaseResult | None]) -> Rate | None:
+    (phase,) = scene.phases
     reach = min(SHORTEST * phase.macro_step, 0.5 * phase.duration)
-    before: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    before = (0.0, 0.0, 0.0)
     while True:
         short = replace(phase, duration=reach, macro_step=min(phase.macro_step, reach))
         result = run(replace(scene, phases=(short,)))
         if result is None or result.error is not None or not len(result.recorder):
             return None
         if result.ended_by:
-            return Cost(result.cpu)
-        last = result.recorder.last()
-        steps = last.get(STEPS, 0.0)
+            return Rate(0.0, 0.0, result.cpu)
+        steps = result.recorder.last().get(STEPS, 0.0)
         if result.cpu >= ENOUGH or LONGER * reach >= phase.duration:
-            found = _reckoned(before, (reach, result.cpu, steps), phase.duration)
-            return Cost(max(found.cpu, AWAKE * found.steps * last.get(THREADS, 0.0)), found.steps)
+            # at the rate of the latest part, or of all of it if that is dearer
+            later = reach - before[0]
+            return Rate(max(result.cpu / reach, (result.cpu - before[1]) / later), (steps - before[2]) / later)
         before, reach = (reach, result.cpu, steps), LONGER * reach
-
-
-def _reckoned(before: tuple[float, float, float], now: tuple[float, float, float], duration: float) -> Cost:
-    """At the rate of the latest part, or of all of it if that is dearer."""
-    reach, cpu, steps = now
-    rate = max(cpu / reach, (cpu - before[1]) / (reach - before[0]))
-    per_time = (steps - before[2]) / (reach - before[0])
-    return Cost(max(cpu, rate * duration), math.ceil(per_time * duration))

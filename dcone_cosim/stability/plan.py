@@ -301,4 +301,9 @@ class _Maker:
         rungs = build.rungs(main.model, values, main.terms)
         finest = rungs[-1].values if rungs else {}
         quartered = {name: FINER_STEP * values[name] for name in finest if name in extreme.values}
-        return changes_of(own, {**finest, **quartered}, DIGITS)
+        groups = build.CATALOGUE[main.model].groups
+        others = tuple(
+            f'{self._phase}.{groups[name].table or name}.{groups[name].selector}="{term}"'
+            for name, term in build.reference(main.model, main.terms).items()
+        )
+        return (*others, *changes_of(own, {**finest, **quartered}, DIGITS))

@@ -20,6 +20,7 @@ from dcone_cosim.phases import kind_of
 from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import Scene
+from dcone_cosim.stability import judge
 from dcone_cosim.stability.cost import Cost, estimate
 from dcone_cosim.stability.judge import (
     FAILED,
@@ -28,6 +29,7 @@ from dcone_cosim.stability.judge import (
     Verdict,
     agreement,
     falls,
+    names_bound,
     refusal,
     sameness,
     suited,
@@ -128,14 +130,16 @@ def judge_cell(cell: Cell) -> tuple[Verdict, Cost | None, float]:
     if here.phase is None:
         return _without(here.row, cell), cost, 0.0
     spent = here.phase.cpu
-    if here.phase.error is not None:
-        return Verdict(FAILED, f"stopped at {here.phase.end:.6g} s: {here.phase.error}"), cost, spent
     criteria = list(kind_of(_name(cell)).criteria(evidence_of(here.result, cell.scene.phases[0])))  # type: ignore[arg-type]
+    if here.phase.error is not None:
+        return _stopped(cell, here.phase, criteria), cost, spent
     for one, more in _compared(cell, here, criteria, spent):
         criteria.append(one)
         spent += more
     main = cell.scene.phases[0].main
-    criteria = suited(criteria, build.instead(main.model, main.terms), build.within(main.model, main.terms))
+    values = {**main.defaults, **main.parameters}
+    wider = build.within(main.model, values, main.terms) if main.fmu is None else {}
+    criteria = suited(criteria, build.instead(main.model, main.terms), wider)
     return verdict(criteria, cell.asked), cost, spent
 
 
@@ -149,6 +153,17 @@ def _without(row: Row, cell: Cell) -> Verdict:
     if row.status == REFUSED:
         return refusal(_reason(lines), cell.asked)
     return Verdict(FAILED, lines[-1] if row.status == FAULT and lines else " ".join(lines) or row.status)
+
+
+def _stopped(cell: Cell, phase: PhaseResult, criteria: Sequence[Criterion]) -> Verdict:
+    """Of a run that an FMU stopped: refused where the FMU is ours, names its bound, and all was well until then."""
+    lines = [line.strip() for line in str(phase.error).splitlines() if line.strip()]
+    told = _reason(lines)
+    broken = [one.label for one in criteria if not one.value <= one.stable]
+    if cell.scene.phases[0].main.fmu is None and len(lines) > 1 and names_bound(told) and not broken:
+        return Verdict(judge.REFUSED, told, criteria)
+    before = f", after {' and '.join(broken)} was broken" if broken else ""
+    return Verdict(FAILED, f"stopped at {phase.end:.6g} s{before}: {phase.error}", criteria)
 
 
 def _reason(lines: Sequence[str]) -> str:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from types import MappingProxyType
-from typing import NamedTuple
+from collections.abc import Iterator
 
 from fmu_src.interface import Term
 from fmu_src.net_capture.refusal import Refusal, Scene
@@ -46,28 +44,10 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
         yield Refusal("solver.precision", "single", expected)
 
 
-class Kept(NamedTuple):
-    """What is kept in so many bits.
-
-    within    as for a scheme, see `schemes.Needs`
-    """
-
-    within: Mapping[str, tuple[float, float]] = MappingProxyType({})
-
-
-ROUNDED = {
-    "energy_gained": (0.01, 0.1),
-    "energy_lost": (0.01, 0.1),
-    "flight": (1e-4, 0.5 / STEPS_BETWEEN),
-}
-"""The energy book leaves 2 to 8 % over, the more the smaller the substep, since work is done along ways that are
-rounded; half of one number in STEPS_BETWEEN is what a way may lose."""
-
 PRECISION = {
-    "double": Term("of 53 bits, for positions and velocities of the nodes", checks=Kept()),
+    "double": Term("of 53 bits, for positions and velocities of the nodes"),
     "single": Term(
         "of 24 bits, for positions and velocities of the nodes: faster, for campaigns",
         refuses=refuses,
-        checks=Kept(ROUNDED),
     ),
 }

@@ -11,6 +11,9 @@ from fmu_src.trade import Rung
 
 NUMERICS = ("solver", "precision")
 BESIDE = ("substeps",)
+ROUNDED = {"energy_gained": "agrees", "energy_lost": "agrees", "energy_rises": "agrees"}
+"""Work that is done along rounded ways is booked to nothing, the more the smaller the substep; no bound that is worth
+telling follows from the bits alone, and whether it matters a run of 53 bits tells."""
 PIECES = (2,)
 """Into how many times more pieces threads are cut."""
 
@@ -31,15 +34,27 @@ def whole(terms: Mapping[str, str]) -> bool:
 
 
 def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
-    """Criteria that mean nothing with the scheme, and those that are asked in their place, see `schemes.Needs`."""
-    found: Mapping[str, str] = _needs(terms).instead
+    """Criteria that mean nothing with the scheme, or in so few bits, and those that are asked in their place, see
+    `schemes.Needs`."""
+    found: Mapping[str, str] = {**ROUNDED, **_needs(terms).instead} if _is_single(terms) else _needs(terms).instead
     return found
 
 
-def within(terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
-    """Criteria that hold less closely with the scheme, see `schemes.Needs`, or in so few bits."""
-    kept = GROUPS["precision"].terms[terms.get("precision", "double")].checks
-    return {**kept.within, **_needs(terms).within}
+def reference(terms: Mapping[str, str]) -> Mapping[str, str]:
+    """With 24 bits a run is compared with one of 53: more substeps are only more rounding."""
+    return {"precision": "double"} if _is_single(terms) else {}
+
+
+def _is_single(terms: Mapping[str, str]) -> bool:
+    return terms.get("precision") == "single"
+
+
+def within(values: Mapping[str, float], terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
+    """Criteria that hold less closely with the scheme, see `schemes.Needs`."""
+    bound, enough = substeps(values, terms)
+    ratio = values["solver.step_ratio"]
+    found: Mapping[str, tuple[float, float]] = _needs(terms).within(values, ratio * bound if ratio > 0.0 else enough)
+    return found
 
 
 def refinements(values: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, list[Rung]]:

@@ -59,7 +59,7 @@ FAULTS = (
     Fault(
         START_STRETCHED,
         "error",
-        "start.separation exceeds the line and its attachments: a locked line would start stretched",
+        "start.separation may exceed the line and its attachments by zero at most: a locked line would start stretched",
         True,
     ),
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),
@@ -75,7 +75,11 @@ FAULTS = (
         True,
     ),
     Fault(BAD_ATTITUDE, "error", "the attitude at the start must be a quaternion of unit length, or zero", True),
-    Fault(BODIES_MET, "end", "the bodies have met: the chaser's end of the line has come into the target"),
+    Fault(
+        BODIES_MET,
+        "end",
+        "the bodies have met: the chaser's end of the line has come to a distance of zero from the target, or into it",
+    ),
     Fault(CAME_DOWN, "end", "the pair has come down to ends.altitude"),
     Fault(PERIGEE_LOW, "end", "the perigee has come down to ends.perigee"),
     Fault(PERIGEE_RAISED, "end", "the perigee has risen to ends.raised_perigee"),
@@ -85,7 +89,12 @@ FAULTS = (
     Fault(ENDS_AT_START, "error", "the run would end as it begins: what ends it is met at the start", True),
     Fault(NO_ARCS, "error", "burn.when = arcs needs an orbit, and there is none; take timed"),
     Fault(NO_ATTITUDE, "error", "aocs needs a chaser that turns; name chaser.body = rigid"),
-    Fault(TOO_MANY_TURNS, "error", "the line has wrapped round the target over more edges than can be followed"),
+    Fault(
+        TOO_MANY_TURNS,
+        "error",
+        "the line has wrapped round the target over more edges than are followed: "
+        + ", ".join(f"{surface.ways} of a {name}" for name, surface in SURFACES.items()),
+    ),
     Fault(NO_VERTICAL, "error", "gains on the angle need a local vertical, and there is no orbit", True),
     Fault(BAD_SCHEDULE, "error", "times of a schedule must increase", True),
 )

@@ -32,7 +32,12 @@ def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
     return {}
 
 
-def within(terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
+def reference(terms: Mapping[str, str]) -> Mapping[str, str]:
+    """All compute in 53 bits."""
+    return {}
+
+
+def within(values: Mapping[str, float], terms: Mapping[str, str]) -> Mapping[str, tuple[float, float]]:
     """All criteria hold alike with all schemes."""
     return {}
 

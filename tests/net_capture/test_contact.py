@@ -127,19 +127,28 @@ def test_a_lost_reaction_would_break_the_momentum(shoot):
     assert taken > 1e-3 * 4.6
 
 
-def test_bounces_that_take_nothing_give_nothing(shoot):
-    """Nodes that threads hold to the surface bounce on it thousands of times: at restitution 1 none of it may come to
-    more than rounding and the substep make of it. Thrown back from where they were when they set out for the surface,
-    they had been given 6.7 % of the energy by the end."""
-    net = shoot({"net.mesh": 3.0, "contact.restitution": 1.0, "closing.time": 11.2} | TUMBLE, CAPTURE)
-    before = net.array("angular_momentum").copy()
-    net.step(17.0)
+@pytest.mark.parametrize("restitution", [0.3, 1.0])
+def test_bounces_give_nothing(shoot, restitution):
+    """Nodes that threads hold to the surface bounce on it thousands of times. What all of them take is a sum of
+    (1 - e^2) m v_n^2 / 2: it does not fall, and at restitution 1 it is nothing. Thrown back at the instant they reached
+    the surface, at a speed of half a substep earlier or later, they were given 0.3 J here, and 6 J of 40 J by a mesh of
+    1 m."""
+    net = shoot({"net.mesh": 3.0, "contact.restitution": restitution, "closing.time": 11.2} | TUMBLE, CAPTURE)
+    before, taken = net.array("angular_momentum").copy(), [0.0]
+    while net.time < 17.0 - 1e-9:
+        net.step(0.01)
+        taken.append(net["contact.loss"])
     entered = 9.0 + net["closing.work"]
     assert net["contact.impulse"] > 1.0
     # 20 m from the target's centre, with 4.6 N s
     assert net.array("angular_momentum") == pytest.approx(before, abs=1e-9 * 92.0)
-    assert abs(net["contact.loss"]) < 0.01 * entered
-    assert abs(net["energy.remainder"]) < 0.02 * entered
+    # but for what brings nodes back that the tumbling target has run into, at 1 cm/s
+    assert np.max(np.maximum.accumulate(taken) - taken) < 1e-5 * entered
+    if restitution == 1.0:
+        assert np.abs(taken).max() < 1e-6 * entered
+    else:
+        assert taken[-1] > 0.05 * entered
+    assert abs(net["energy.remainder"]) < 0.01 * entered
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5])

@@ -41,7 +41,7 @@ def told(one: Matrix) -> dict[str, Any]:
 def main(scene: str, folder: str = "") -> None:
     with tempfile.TemporaryDirectory() as made:
         out = Path(folder) if folder else Path(made) / "matrix"
-        done = commands.stability(scene, out, Lines(), commands.SHIPPED[scene], budget=TIME)
+        done = commands.stability(scene, out, Lines(), commands.SHIPPED.get(scene, ()), budget=TIME)
     result = {
         "command": f"{COMMAND} {scene}",
         "dcone-cosim": version("dcone-cosim"),

@@ -138,6 +138,19 @@ def test_a_snap_is_held_against_its_closed_form_from_both_sides() -> None:
     assert red(tow(0.95 * peak)) == {"snap"}
 
 
+def test_a_snap_on_a_body_that_turns_is_judged_where_it_is_quick() -> None:
+    """The line's own motion has 2.4 rad/s: with 0.05 rad/s twice the hardest peak is red, with 1 not told."""
+    hardest = 0.01 * math.sqrt(line_stiffness(60e9, 1e-3, 12.0) * reduced_mass(2000.0, 1000.0))
+    for spin, told in ((0.05, True), (1.0, False)):
+        rates = {f"target.start_rate[{axis}]": spin if axis == 3 else 0.0 for axis in (1, 2, 3)}
+        plain = tow(2.0 * hardest)
+        turning = Evidence(
+            plain.columns, {**plain.values, **rates}, {"reel": "locked", "target": "box"}, 120.0, plain.tugs
+        )
+        assert ("snap" in {one.key for one in of_removal(turning)}) is told
+        assert ("snap" in red(turning)) is told
+
+
 def test_a_line_neither_pushes_nor_is_longer_than_its_tension_makes_it() -> None:
     stiffness = line_stiffness(60e9, 1e-3, 12.0)
     peak = damped_snap_peak(0.01, stiffness, reduced_mass(2000.0, 1000.0), 0.05)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Variable
 from fmu_src.net_capture.formulas import accurate_step, longest_step
 from fmu_src.rows import parameter, peak
+
+
+def as_closely(values: Mapping[str, float], step: float) -> Mapping[str, tuple[float, float]]:
+    """Nothing holds less closely."""
+    return {}
 
 
 class Needs(NamedTuple):
@@ -31,8 +36,8 @@ class Needs(NamedTuple):
     falls                     how the remainder of the energy book falls with the step
     instead                   criteria of a capture that mean nothing with it, each with the one by which a case that is
                               about it is judged first in its place; "" for none: there is no such case
-    within                    criteria that hold less closely with it than with others: shares up to which a run counts
-                              as accurate and as stable
+    within(values, step)      criteria that hold less closely with it than with others, in a scene of these values at a
+                              substep [s]: shares up to which a run counts as accurate and as stable, each derived
     """
 
     make_rouse: Any
@@ -47,7 +52,7 @@ class Needs(NamedTuple):
     follows: bool = True
     falls: str = "with the square of solver.step_ratio"
     instead: Mapping[str, str] = MappingProxyType({})
-    within: Mapping[str, tuple[float, float]] = MappingProxyType({})
+    within: Callable[[Mapping[str, float], float], Mapping[str, tuple[float, float]]] = as_closely
 
 
 UNBOUNDED: Mapping[str, str] = MappingProxyType({"bound": ""})
