@@ -6,31 +6,13 @@ part does depends on the motion and the instance's own clock, never on communica
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from functools import reduce
 from typing import Any, NamedTuple
 
+from fmu_src.tethered_deorbit.idle import always, no_end, no_fault
 from orbital.kernel import kernel
 from orbital.vectors import Array
-
-
-@kernel
-def never(*arguments: Any) -> float:
-    """Nothing is due, and no step too long [s]."""
-    return math.inf
-
-
-@kernel
-def always(*arguments: Any) -> bool:
-    """Whatever the state."""
-    return True
-
-
-@kernel
-def no_fault(*arguments: Any) -> int:
-    """Nothing to do."""
-    return 0
 
 
 class Acting(NamedTuple):
@@ -49,9 +31,9 @@ class Acting(NamedTuple):
     """
 
     begin: Callable[..., Any] = no_fault
-    due: Callable[..., Any] = never
-    limit: Callable[..., Any] = never
-    longest: Callable[..., Any] = never
+    due: Callable[..., Any] = no_end
+    limit: Callable[..., Any] = no_end
+    longest: Callable[..., Any] = no_end
     holds: Callable[..., Any] = always
     act: Callable[..., Any] = no_fault
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.idle import no_fault, nothing
 from fmu_src.tethered_deorbit.interface import NO_ATTITUDE
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, StateLayout
 from orbital.kernel import kernel
@@ -17,17 +18,6 @@ ORBITAL, LINE = range(2)
 LEAST_TAPER, MOST_TAPER = 0.02, 0.5
 """Shares of the greatest momentum over which the wheels give way as they come to it: a smooth end, not a jump. In
 between, as much as the greatest torque adds in 1/w_c, so that they do not give way faster than the loop is."""
-
-
-@kernel
-def nothing(*arguments: Any) -> None:
-    """Nobody controls it."""
-
-
-@kernel
-def no_fault(*arguments: Any) -> int:
-    """Nothing is wrong."""
-    return 0
 
 
 class Aocs(NamedTuple):

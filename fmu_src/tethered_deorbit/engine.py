@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
-from fmu_src.tethered_deorbit.acting import IDLE, Acting, no_fault
+from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.idle import no_fault, nothing
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import StateLayout
 from orbital.constants import STANDARD_GRAVITY
@@ -18,23 +19,11 @@ from orbital.vectors import Array
 
 @kernel
 def unlimited(record: Any, force: float) -> float:
-    """The force that is asked for [N]."""
+    """The force that is asked for [N].
+
+    Checked  tests/tethered_deorbit/test_burn.py
+    """
     return force
-
-
-@kernel
-def as_it_was(record: Any, state: Array) -> None:
-    """No mass is lost."""
-
-
-@kernel
-def lose_nothing(record: Any, state: Array, rate: Array, sign: float) -> None:
-    """Nor does the centre of mass shift for it."""
-
-
-@kernel
-def show_nothing(record: Any, force: float, change: float) -> None:
-    """There is nothing to be seen."""
 
 
 class Engine(NamedTuple):
@@ -52,9 +41,9 @@ class Engine(NamedTuple):
     real: bool = False
     check: Callable[..., Any] = no_fault
     limited: Callable[..., Any] = unlimited
-    weigh: Callable[..., Any] = as_it_was
-    lose: Callable[..., Any] = lose_nothing
-    publish: Callable[..., Any] = show_nothing
+    weigh: Callable[..., Any] = nothing
+    lose: Callable[..., Any] = nothing
+    publish: Callable[..., Any] = nothing
     acting: Acting = IDLE
 
 
@@ -84,7 +73,10 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
 
     @kernel
     def exhaust_speed(record: Any) -> float:
-        """Isp g0 [m/s]."""
+        """Isp g0 [m/s].
+
+        Checked  tests/tethered_deorbit/test_engine.py: the rocket equation
+        """
         speed: float = record[0].thrust_specific_impulse * STANDARD_GRAVITY
         return speed
 

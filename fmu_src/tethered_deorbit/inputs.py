@@ -10,8 +10,9 @@ from fmu_src.tethered_deorbit.acting import Acting
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.extremes import Extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
+from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
-from fmu_src.tethered_deorbit.law import Reel, unseen
+from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.outputs import begin_tug
 from fmu_src.tethered_deorbit.thrust import Thrust
@@ -57,7 +58,7 @@ def make_inputs(
 
     end_state, here_state, slope_state, size = places.end, places.here, places.slope, places.size
 
-    turns = reel.turn is not unseen
+    turns = reel.turn is not nothing
 
     @kernel
     def turn(record: Any, work: Array) -> None:

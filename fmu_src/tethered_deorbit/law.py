@@ -12,12 +12,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
-from orbital.kernel import kernel
-
-
-@kernel
-def unseen(*arguments: Any) -> None:
-    """What a law that looks at the line alone sees of the rest of the state, or has of its own: nothing."""
+from fmu_src.tethered_deorbit.idle import nothing
 
 
 class Reel(NamedTuple):
@@ -63,10 +58,10 @@ class Reel(NamedTuple):
     partials: Callable[..., Any]
     start_limit: Callable[..., Any]
     acting: Acting = IDLE
-    see: Callable[..., Any] = unseen
+    see: Callable[..., Any] = nothing
     first: int = 6
-    see_change: Callable[..., Any] = unseen
-    drive: Callable[..., Any] = unseen
-    turn: Callable[..., Any] = unseen
-    publish: Callable[..., Any] = unseen
-    differentiate: Callable[..., Any] = unseen
+    see_change: Callable[..., Any] = nothing
+    drive: Callable[..., Any] = nothing
+    turn: Callable[..., Any] = nothing
+    publish: Callable[..., Any] = nothing
+    differentiate: Callable[..., Any] = nothing

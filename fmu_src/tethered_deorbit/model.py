@@ -19,9 +19,9 @@ from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
+from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
-from fmu_src.tethered_deorbit.law import unseen
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
@@ -131,7 +131,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     events = make_events(reel, bodies, scheme, places)
     extremes = make_extremes(events, places)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
-    acts, turns = acting is not IDLE, reel.turn is not unseen
+    acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)

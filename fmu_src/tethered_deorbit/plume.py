@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.idle import nothing
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
@@ -14,11 +15,6 @@ INSIDE = 0.95
 """Share of the beam within its half-angle."""
 SPREAD = math.sqrt(-2.0 * math.log(1.0 - INSIDE))
 """Half-angle's radius over the standard deviation of a beam that is normal in both directions across."""
-
-
-@kernel
-def nothing(*arguments: Any) -> None:
-    """There is no beam to follow."""
 
 
 class Plume(NamedTuple):

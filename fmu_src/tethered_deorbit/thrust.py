@@ -11,6 +11,7 @@ from fmu_src.tethered_deorbit.acting import IDLE, Acting, together
 from fmu_src.tethered_deorbit.burn import STEADY, make_burn
 from fmu_src.tethered_deorbit.engine import make_engine
 from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.idle import no_fault, nothing
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, StateLayout
 from fmu_src.tethered_deorbit.plume import make_plume
@@ -21,20 +22,9 @@ from orbital.vectors import Array, cross, matrix_vector
 
 
 @kernel
-def nothing(*arguments: Any) -> None:
-    """Does nothing, whatever it is given."""
-
-
-@kernel
 def no_force(record: Any) -> tuple[float, float]:
     """A force of zero that does not move."""
     return 0.0, 0.0
-
-
-@kernel
-def no_fault(record: Any) -> int:
-    """Nothing is wrong."""
-    return 0
 
 
 class Thrust(NamedTuple):

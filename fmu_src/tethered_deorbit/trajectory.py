@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.bodies import Bodies
-from fmu_src.tethered_deorbit.bodies.idle import always
 from fmu_src.tethered_deorbit.events import CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, Events, Signals
 from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.idle import always
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.turning import add_turning, set_turning, turn_back

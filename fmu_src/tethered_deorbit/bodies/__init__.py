@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
-from fmu_src.tethered_deorbit.bodies.idle import always, never, no_fault, nothing
+from fmu_src.tethered_deorbit.idle import always, never, no_fault, nothing
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 
 

@@ -14,10 +14,10 @@ from typing import Any
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.bodies.carried import Carried
-from fmu_src.tethered_deorbit.bodies.idle import no_fault, nothing, zero
 from fmu_src.tethered_deorbit.bodies.rigid import Rigid, make_rigid
 from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping, make_wrapping
 from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.idle import no_fault, nothing, zero
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR

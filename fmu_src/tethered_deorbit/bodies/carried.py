@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmu_src.tethered_deorbit.bodies.idle import nothing
+from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.layout import ATTITUDE
 from orbital.kernel import kernel
 from orbital.rigid import point_acceleration, point_velocity

@@ -9,8 +9,8 @@ from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies import Bodies
-from fmu_src.tethered_deorbit.bodies.idle import no_end, nothing, zero
 from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.idle import no_end, nothing, zero
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
 from orbital.kernel import kernel, view

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies.carried import Carried, make_carried
-from fmu_src.tethered_deorbit.bodies.idle import nothing
 from fmu_src.tethered_deorbit.bodies.shown import make_shown
 from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping
 from fmu_src.tethered_deorbit.body_rows import RATE_FRAMES
 from fmu_src.tethered_deorbit.faults import blame
+from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.interface import BAD_ATTITUDE, BAD_INERTIA, BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import ATTITUDE
 from orbital.kernel import kernel

@@ -16,7 +16,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.bodies.corners import make_corners
-from fmu_src.tethered_deorbit.bodies.idle import always, never, no_fault, nothing, zero
 from fmu_src.tethered_deorbit.bodies.path import make_path
 from fmu_src.tethered_deorbit.bodies.polyhedron import (
     NONE,
@@ -28,6 +27,7 @@ from fmu_src.tethered_deorbit.bodies.polyhedron import (
     on_both,
     other_side,
 )
+from fmu_src.tethered_deorbit.idle import always, never, no_fault, nothing, zero
 from fmu_src.tethered_deorbit.interface import BODIES_MET, TOO_MANY_TURNS
 from fmu_src.tethered_deorbit.surfaces.surface import Surface
 from orbital.kernel import kernel

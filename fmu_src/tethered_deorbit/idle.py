@@ -1,4 +1,4 @@
-"""Kernels that do nothing: of points, of bodies that do not turn, and of lines that go straight."""
+"""Kernels that do nothing: of parts that a scene lacks, of points, and of lines that go straight."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def zero(*arguments: Any) -> float:
 
 @kernel
 def no_end(*arguments: Any) -> float:
-    """Over any step [s].
+    """Never due, under no limit, over any step [s], [N].
 
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
@@ -30,13 +30,13 @@ def no_end(*arguments: Any) -> float:
 
 @kernel
 def always(*arguments: Any) -> bool:
-    """A straight line goes straight."""
+    """What is asked holds, whatever the state."""
     return True
 
 
 @kernel
 def never(*arguments: Any) -> bool:
-    """And needs no other way."""
+    """And nothing else is needed."""
     return False
 
 
