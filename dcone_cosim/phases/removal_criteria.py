@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from dcone_cosim.criteria import Criterion, Evidence, finite, rise
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from dcone_cosim.fmu.steppable import Row
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU, STANDARD_GRAVITY
 from orbital.oscillators import damped_snap_peak, line_stiffness, reduced_mass
 
 ACCURATE, STABLE = 0.01, 0.05
@@ -45,6 +46,30 @@ def force(evidence: Evidence) -> float:
     if "thrust" not in evidence.terms:
         return 0.0
     return evidence.values["thrust.level"] + evidence.values["thrust.offset"]
+
+
+def changes(evidence: Evidence) -> bool:
+    """Whether thrust or masses are others than the scene's level and masses say, on the way."""
+    return bool({"burn", "engine", "plume"} & evidence.terms.keys())
+
+
+def pushed(evidence: Evidence) -> Row:
+    """Change of the velocity of the pair's centre of mass by thrust along its direction, over every step [m/s]: what of
+    its impulse does not meet the target, over the mass that is left.
+
+    The impulse is that of the propellant used: a pulse between two rows counts as well.
+    """
+    columns, (chaser, target, _) = evidence.columns, _masses(evidence)
+    thrust = force(evidence)
+    if not changes(evidence):
+        return np.asarray(thrust / (chaser + target) * np.diff(columns["time"]))
+    used = columns["chaser.propellant"]
+    impulse = math.copysign(evidence.values["thrust.specific_impulse"] * STANDARD_GRAVITY, thrust) * np.diff(used)
+    if "plume" in evidence.terms and evidence.values["plume.pushes"]:
+        share = columns["plume.share"]
+        impulse = impulse * (1.0 - 0.5 * (share[1:] + share[:-1]))
+    lost = 0.5 * (used[1:] + used[:-1]) if "engine" in evidence.terms else 0.0
+    return np.asarray(impulse / (chaser + target - lost))
 
 
 def _masses(evidence: Evidence) -> tuple[float, float, float]:
@@ -170,7 +195,8 @@ def _orbit(evidence: Evidence) -> Iterator[Criterion]:
     """Without thrust the orbit keeps its energy; with one, it changes by its work, and falls as a spiral does.
 
         a = (1/sqrt(a0) - F t/(sqrt(mu) M))^-2,   exactly as long as F a^2/(mu M) is small and the orbit circular
-        dE = F int V.u dt                         on any other, u along-track or along the velocity
+        d(E/M) = int F/M V.u dt                   on any other, and where F or M change on the way; u along-track or
+                                                  along the velocity, E/M = -mu/(2a)
 
     Source   Gauss's equation for the semi-major axis, e = 0; work of a force
     """
@@ -190,7 +216,7 @@ def _orbit(evidence: Evidence) -> Iterator[Criterion]:
     small = abs(thrust) * float(axis.max()) ** 2 / (EARTH_MU * total)
     # an osculating axis swings by 2 F a^2/(mu M) of itself beside falling, and by what the pair's own motion moves it
     swing = (4.0 * small + bend + 1e-11) * axis[0]
-    if values["orbit.eccentricity"] == 0.0 and small < SLOW:
+    if values["orbit.eccentricity"] == 0.0 and small < SLOW and not changes(evidence):
         spiral = (1.0 / math.sqrt(axis[0]) - thrust * time / (math.sqrt(EARTH_MU) * total)) ** -2
         fallen = max(abs(float(spiral[-1] - axis[0])), 1e-300)
         off = max(0.0, float(np.abs(axis - spiral).max()) - swing) / fallen
@@ -200,9 +226,9 @@ def _orbit(evidence: Evidence) -> Iterator[Criterion]:
     along = np.linalg.norm(velocity, axis=1)
     if evidence.terms["thrust"] == "along_track":
         along = np.linalg.norm(np.cross(place, velocity), axis=1) / np.linalg.norm(place, axis=1)
-    done = np.concatenate([[0.0], np.cumsum(0.5 * thrust * (along[1:] + along[:-1]) * np.diff(time))])
-    energy = -0.5 * EARTH_MU * total / axis
-    off = float(np.abs(energy - energy[0] - done).max()) - 0.5 * EARTH_MU * total * (bend + 1e-11) / float(axis.min())
+    done = np.concatenate([[0.0], np.cumsum(0.5 * (along[1:] + along[:-1]) * pushed(evidence))])
+    energy = -0.5 * EARTH_MU / axis
+    off = float(np.abs(energy - energy[0] - done).max()) - 0.5 * EARTH_MU * (bend + 1e-11) / float(axis.min())
     share = max(0.0, off) / max(float(np.abs(done).max()), 1e-300)
     yield Criterion("orbit", "energy of the orbit from the work of the thrust", share, "1", ACCURATE, STABLE)
 
@@ -217,7 +243,7 @@ def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
     Source   work of F on the relative motion, whose acceleration by it is -F/m_c
     """
     columns, values = evidence.columns, evidence.values
-    if values["orbit.eccentricity"] > 0.0 or not evidence.has(
+    if changes(evidence) or values["orbit.eccentricity"] > 0.0 or not evidence.has(
         "energy.relative", "relative.position", "separation", "center.semi_major_axis"
     ):
         return
