@@ -135,6 +135,13 @@ def defaults(interface: Interface) -> dict[str, float]:
     }
 
 
+def asked_variables(name: str) -> dict[str, tuple[Variable, Value]]:
+    """Row and start value of all that only scenes of the model of that name know, with whatever terms, by name."""
+    groups = CATALOGUE[name].groups.values()
+    rows = (v for group in groups for term in group.terms if term in group.terms for v in group.terms[term].asked)
+    return {e: (v, s) for v in rows for e, s in zip(v.element_names(), v.starts(), strict=True)}
+
+
 def asked_names(model: str, terms: Mapping[str, str]) -> set[str]:
     """Names of what only a scene knows of a model of ours with these terms: no FMU has them."""
     return {name for v in CATALOGUE[model].interface(terms).asked for name in v.element_names()}

@@ -11,7 +11,7 @@ from dcone_cosim.units import written
 
 def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]], digits: int = 6) -> tuple[str, ...]:
     """Values as settings: SI, by FMI name, or of a whole vector by its name without indices."""
-    known = build.known_variables(phase.main.model)
+    known = build.known_variables(phase.main.model) | build.asked_variables(phase.main.model)
     found = []
     for name, value in values.items():
         key = name if name.startswith(f"{SHARED}.") else f"{phase.name}.{name}"

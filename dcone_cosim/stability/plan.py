@@ -243,7 +243,7 @@ class _Maker:
         changes, without = [*self._settings, *scheme.changes], list(scheme.without)
         main = own.main
         if main.fmu is None:
-            values = {**main.defaults, **main.parameters}
+            values = {**main.defaults, **main.parameters, **main.asked}
             given = extreme.given(values)
             if any(name not in values and f"{name}[1]" not in values for name in given):
                 return None, (), ()

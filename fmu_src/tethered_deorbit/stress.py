@@ -106,14 +106,17 @@ BRAKE = (
 )  # fmt: skip
 """Of a line that slips."""
 
+AS_TOLD = {"reel.gains": 0}
+"""Gains as they are told, also where the scene has them designed."""
+
 REGULATOR = (
     Extreme("gains a thousand times larger", "a reel that is stiff and damped hard", "impulse",
-            {"reel.proportional_gain": 4.0, "reel.derivative_gain": 2000.0, "reel.angle_gain": -25.0,
+            {**AS_TOLD, "reel.proportional_gain": 4.0, "reel.derivative_gain": 2000.0, "reel.angle_gain": -25.0,
              "reel.angle_rate_gain": 1800.0}),
     Extreme("gains that let the pair go", "below 3 n^2 m_r the tide pulls harder than the reel", "impulse",
-            {"reel.proportional_gain": 1e-4, "reel.derivative_gain": 0.0}, duration=2.0 * HOUR, chief=True),
+            {**AS_TOLD, "reel.proportional_gain": 1e-4, "reel.derivative_gain": 0.0}, duration=2.0 * HOUR, chief=True),
     Extreme("a reel by the angle alone", "slack as often as taut", "impulse",
-            {"reel.angle_gain": 1.0, "reel.angle_rate_gain": 0.0}, duration=2.0 * HOUR),
+            {**AS_TOLD, "reel.angle_gain": 1.0, "reel.angle_rate_gain": 0.0}, duration=2.0 * HOUR),
 )  # fmt: skip
 """Of a law of the whole state."""
 
