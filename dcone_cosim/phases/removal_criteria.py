@@ -243,8 +243,10 @@ def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
     Source   work of F on the relative motion, whose acceleration by it is -F/m_c
     """
     columns, values = evidence.columns, evidence.values
-    if changes(evidence) or values["orbit.eccentricity"] > 0.0 or not evidence.has(
-        "energy.relative", "relative.position", "separation", "center.semi_major_axis"
+    if (
+        changes(evidence)
+        or values["orbit.eccentricity"] > 0.0
+        or not evidence.has("energy.relative", "relative.position", "separation", "center.semi_major_axis")
     ):
         return
     axis = columns["center.semi_major_axis"]
