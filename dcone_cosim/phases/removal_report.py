@@ -106,6 +106,11 @@ def room(values: Mapping[str, float], reach: float | None) -> float:
     if {"target.cylinder_radius", "target.cylinder_length"} <= values.keys():
         size = [2.0 * values["target.cylinder_radius"], values["target.cylinder_length"]]
     known = math.hypot(*size) / 2.0 if size else reach
+    corners = [
+        math.hypot(*(values[f"target.corner_{axis}[{i}]"] for axis in "xyz"))
+        for i in range(1, sum(name.startswith("target.corner_x") for name in values) + 1)
+    ]
+    known = max(corners, default=known)
     return chaser + (known or values.get("ends.target_extent") or UNKNOWN_EXTENT)
 
 

@@ -23,6 +23,8 @@ from orbital.kernel import kernel
 from orbital.rotations import rotate_inverse
 from orbital.vectors import Array, cross, dot, norm
 
+FLAT = 1e-12
+"""Share of a body's size within which a point lies in a face."""
 CLOSEST_LOOK = 0.02
 """Share of the room the bodies take by which they may come nearer in a step, where they nearly meet: less than that of
 a pass is not seen."""
@@ -82,7 +84,50 @@ def cylinder_gap(record: Any, state: Array) -> float:
     return math.sqrt(out * out + along * along)
 
 
-GAPS = {"box": box_gap, "cylinder": cylinder_gap}
+@kernel
+def hull_gap(record: Any, state: Array) -> float:
+    """Distance [m] from the chaser's centre of mass to a convex hull, zero inside.
+
+    The nearest point lies in a face, where the chaser is above that face, or on an edge.
+
+    Checked  tests/tethered_deorbit/test_hulls.py
+    """
+    r = record[0]
+    chaser_place(record, state)
+    place, foot = r.state_vector[0], r.state_vector[1]
+    for i in range(3):
+        place[i] += r.target_center[i]
+    nearest, inside = math.inf, True
+    for f in range(r.state_faces.shape[0]):
+        above = dot(r.state_faces[f][0:3], place) - r.state_faces[f][3]
+        if not above > 0.0:
+            continue
+        inside = False
+        for i in range(3):
+            foot[i] = place[i] - above * r.state_faces[f][i]
+        in_face = True
+        for g in range(r.state_faces.shape[0]):
+            beyond = dot(r.state_faces[g][0:3], foot) - r.state_faces[g][3]
+            in_face = in_face and beyond <= FLAT * r.state_extent
+        if in_face:
+            nearest = min(nearest, above)
+    if inside:
+        return 0.0
+    for e in range(r.state_edges.shape[0]):
+        edge = r.state_edges[e]
+        along = 0.0
+        for i in range(3):
+            along += (place[i] - edge[i]) * edge[3 + i]
+        along = min(edge[6], max(0.0, along))
+        square = 0.0
+        for i in range(3):
+            off = place[i] - edge[i] - along * edge[3 + i]
+            square += off * off
+        nearest = min(nearest, math.sqrt(square))
+    return nearest
+
+
+GAPS = {"box": box_gap, "cylinder": cylinder_gap, "hull": hull_gap}
 """Distance to a target with a surface, by its kind; to others, that to a sphere."""
 
 

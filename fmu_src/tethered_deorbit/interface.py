@@ -28,6 +28,7 @@ from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER,
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, PLUME
 from fmu_src.tethered_deorbit.reel_rows import REELS
 from fmu_src.tethered_deorbit.surfaces import SURFACES
+from fmu_src.tethered_deorbit.surfaces.surface import NO_BODY
 
 CONDITIONS = ("same_orbit", "vbar", "equal_velocity", "handed_over")
 SAME_ORBIT, VBAR, EQUAL_VELOCITY, HANDED_OVER = range(4)
@@ -95,6 +96,7 @@ FAULTS = (
         "the line has wrapped round the target over more edges than are followed: "
         + ", ".join(f"{surface.ways} of a {name}" for name, surface in SURFACES.items()),
     ),
+    Fault(NO_BODY, "error", "the corners of the target span no body: they lie in a plane, or are one"),
     Fault(NO_VERTICAL, "error", "gains on the angle need a local vertical, and there is no orbit", True),
     Fault(BAD_SCHEDULE, "error", "times of a schedule must increase", True),
 )
@@ -340,7 +342,7 @@ TARGETS = Group(
         ),
         **{
             name: Term(
-                f"a rigid body with the surface of a {name}, round which the line wraps",
+                f"{surface.called}, round which the line wraps",
                 (*rigid_body("target", (0.0, -1.0, 0.0)), *_TURNING, *surface.variables()),
                 extremes=stress.TURNING,
             )

@@ -105,7 +105,9 @@ def make_attached(
         Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
         """
         r = record[0]
-        lay_out(record)
+        fault = lay_out(record)
+        if fault != 0:
+            return blame(record, fault, 0, 0.0)
         of_target, fault = target.begin(record)
         if fault != 0:
             return int(fault)

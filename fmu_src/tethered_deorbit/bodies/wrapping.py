@@ -49,7 +49,7 @@ class Wrapping(NamedTuple):
     follow(record, point)            the way over the edges that are held, to where it ends at the other body, in axes
                                      of this one [m] (3,): fills `state.departure` and `state.wrapped`, the length on
                                      the body [m], and what all others ask
-    begin(record)                    faces and edges from the parameters; no edge is held
+    begin(record) -> fault           faces and edges from the parameters; no edge is held
     start(record)                    the shortest way, to be followed from then on
     holds(record) -> bool            whether the edges hold for the way last followed
     renew(record)                    the edges that do, to be held from then on; fault: `state.way_fault`
@@ -68,7 +68,7 @@ class Wrapping(NamedTuple):
     """
 
     follow: Callable[..., Any] = nothing
-    begin: Callable[..., Any] = nothing
+    begin: Callable[..., Any] = no_fault
     start: Callable[..., Any] = nothing
     holds: Callable[..., Any] = always
     renew: Callable[..., Any] = nothing
@@ -96,16 +96,16 @@ def make_wrapping(surface: Surface) -> Wrapping:
     run_at_corner, slip = make_corners(path, surface)
 
     @kernel
-    def begin(record: Any) -> None:
-        """Faces and edges from the parameters; the line runs over none yet.
+    def begin(record: Any) -> int:
+        """Faces and edges from the parameters; the line runs over none yet. Returns 0 or a fault.
 
         Checked  tests/tethered_deorbit/test_macro_step.py: nothing is left of an earlier run
         """
         r = record[0]
-        lay_out(record)
         r.held_count = 0
         r.state_way_fault = 0
         r.tether_slip_loss = 0.0
+        return int(lay_out(record))
 
     @kernel
     def trouble(record: Any) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fmu_src.tethered_deorbit.surfaces.box import BOX
 from fmu_src.tethered_deorbit.surfaces.cylinder import CYLINDER
+from fmu_src.tethered_deorbit.surfaces.hull import HULL
 from fmu_src.tethered_deorbit.surfaces.surface import Surface
 
-SURFACES: dict[str, Surface] = {surface.name: surface for surface in (BOX, CYLINDER)}
+SURFACES: dict[str, Surface] = {surface.name: surface for surface in (BOX, CYLINDER, HULL)}

@@ -11,7 +11,7 @@ from orbital.vectors import norm
 
 
 @kernel
-def lay_out(record: Any) -> None:
+def lay_out(record: Any) -> int:
     """Write the faces and edges of a box with edges along the body axes, and how large it is.
 
     Checked  tests/tethered_deorbit/test_wrapping.py
@@ -39,10 +39,12 @@ def lay_out(record: Any) -> None:
             sides[0] = 2 * b + on_b
             sides[1] = 2 * c + on_c
     r.state_extent = norm(r.target_size)
+    return 0
 
 
 BOX = Surface(
     name="box",
+    called="a rigid body with the surface of a box",
     faces=6,
     edges=12,
     ways=64,

@@ -14,7 +14,7 @@ SIDES = 24
 
 
 @kernel
-def lay_out(record: Any) -> None:
+def lay_out(record: Any) -> int:
     """Write the faces and edges of a prism about the third body axis that is as far round as the cylinder.
 
         radius of its corners = r (pi/n)/sin(pi/n)
@@ -63,10 +63,12 @@ def lay_out(record: Any) -> None:
     r.state_extent = math.sqrt(
         4.0 * r.target_cylinder_radius * r.target_cylinder_radius + r.target_cylinder_length * r.target_cylinder_length
     )
+    return 0
 
 
 CYLINDER = Surface(
     name="cylinder",
+    called="a rigid body with the surface of a cylinder",
     faces=SIDES + 2,
     edges=3 * SIDES,
     ways=6 * SIDES,

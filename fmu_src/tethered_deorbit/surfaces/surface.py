@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 from fmu_src.interface import Variable
 from fmu_src.rows import count, output, peak, rate, state, vector
 
+NO_BODY = 33
+"""Fault of a shape that is no body."""
 CORNER_EDGES = 8
 """How many edges may meet at a corner beside those by which a line comes to it."""
 
@@ -19,19 +21,22 @@ CORNER_EDGES = 8
 class Surface(NamedTuple):
     """A kind of body.
 
-    name        of the term, which is also what it is called: "a rigid body with the surface of a ..."
+    name        of the term
+    called      what it is
     faces, edges  how many it has
     ways        over how many edges the line may run
     rows        its parameters
-    lay_out(record)   kernel that writes faces, edges, the two faces of each edge, the middle and the size from them
+    lay_out(record) -> fault   kernel that writes faces, edges, the two faces of each edge, the middle and the size from
+                them
     """
 
     name: str
+    called: str
     faces: int
     edges: int
     ways: int
     rows: tuple[Variable, ...]
-    lay_out: Callable[[Any], None]
+    lay_out: Callable[[Any], int]
 
     def variables(self) -> tuple[Variable, ...]:
         """Its parameters, and what every surface has."""
