@@ -134,7 +134,7 @@ def test_a_key_without_effect_among_others() -> None:
         ("removal.tether.rest_lenght=12 m,13 m", "did you mean 'rest_length'?"),
         (f"{KEY}=12 m,13", "a bare number has no unit; expected a length"),
         (f"{KEY}=12 kg,13 kg", "is a mass; expected a length"),
-        ("removal.reel.law=locked,loose", "expected locked, linear, commanded"),
+        ("removal.reel.law=locked,loose", "expected locked, linear, regulator, commanded"),
         (f"{KEY}=8 m,12 m", "must be at most tether.rest_length"),
     ],
 )
