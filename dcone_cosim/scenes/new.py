@@ -88,12 +88,17 @@ def _model(phase: str) -> build.Model:
 
 
 def _terms(model: build.Model, tables: Mapping[str, Any]) -> dict[str, str]:
-    named = {name: tables.get(group.table or name, {}) for name, group in model.groups.items()}
-    return {
-        name: term_named(named[name][group.selector]) if group.selector in named[name] else group.default
-        for name, group in model.groups.items()
-        if group.selector in named[name] or group.default
-    }
+    """By group: the term that a scene names, the default, or the only one there is of a table that the scene has."""
+    found = {}
+    for name, group in model.groups.items():
+        table = tables.get(group.table or name)
+        if table is not None and group.selector in table:
+            found[name] = term_named(table[group.selector])
+        elif group.default:
+            found[name] = group.default
+        elif table is not None and isinstance(group.terms, dict) and len(group.terms) == 1:
+            found[name] = next(iter(group.terms))
+    return found
 
 
 def _phase(phase: str, tables: Mapping[str, Any], skip: Sequence[str]) -> Iterator[str]:

@@ -150,10 +150,7 @@ ENGINES = Group(
         ),
         "chemical": Term(
             "any thrust; the masses fall",
-            (
-                *_ENGINE,
-                positive("thrust.specific_impulse", "s", "for the propellant used", 300.0, 1e6),
-            ),
+            _ENGINE,
             needs=("thrust",),
             extremes=stress.ENGINES,
         ),
