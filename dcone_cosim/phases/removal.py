@@ -95,7 +95,8 @@ class Tow(Phase):
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """What becomes of the pair if it stops on the way."""
-        if math.isfinite(stage.phase.options.safety_every) and result.error is None:
+        options = stage.phase.options
+        if options is not None and math.isfinite(options.safety_every) and result.error is None:
             result.passive = passive.examine(stage, result)
 
     def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:

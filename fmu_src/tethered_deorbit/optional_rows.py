@@ -20,10 +20,9 @@ from fmu_src.rows import (
     vector,
 )
 from fmu_src.tethered_deorbit import stress
-from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
-NOWHERE, EVERYWHERE = -EARTH_EQUATORIAL_RADIUS, 1e12
-"""Altitudes that no orbit reaches, from below and from above [m]."""
+NOWHERE, EVERYWHERE = -6378e3, 1e12
+"""Altitudes that no orbit reaches: 137 m from the Earth's centre, and out of every reach [m]."""
 REENTRY = 120e3
 """Altitude at which a re-entry is taken to begin, by convention [m]."""
 

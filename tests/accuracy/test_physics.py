@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dcone_cosim.accuracy import physics
-from dcone_cosim.accuracy.physics import Found, Variant, variants_of
+from dcone_cosim.accuracy.physics import Effect, Found, Variant, variants_of
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
@@ -19,17 +19,24 @@ def tow() -> Found:
     return found
 
 
+def _effects(tow: Found) -> tuple[Effect, Effect]:
+    """As it is, and without thrust."""
+    here, without = tow.effects[:2]
+    assert (here.label, without.label) == ("as it is", "without thrust")
+    return here, without
+
+
 def test_thrust_lowers_the_orbit_and_nothing_else_does(tow: Found) -> None:
     """Without it the semi-major axis keeps all of the change that it has with it, but for the pair's own motion."""
-    here, without = tow.effects
-    assert (here.label, without.label) == ("as it is", "without thrust")
+    here, without = _effects(tow)
+    assert [effect.label for effect in tow.effects[2:]] == ["with burn: timed", "with engine: electric"]
     assert here.change == 0.0
     assert without.quantity
     assert without.change > 0.9
 
 
 def test_what_is_left_out_is_not_there(tow: Found) -> None:
-    here, without = tow.effects
+    here, without = _effects(tow)
     assert without.bytes < here.bytes - 1000
     # its two parameters, the input and its output of propellant
     assert here.variables - without.variables == 4

@@ -16,7 +16,7 @@ from fmu_src.reel_control.interface import (
     NOT_FINITE,
     STIFFNESS,
 )
-from fmu_src.tethered_deorbit import interface as removal
+from fmu_src.tethered_deorbit.reel_rows import REEL_DAMPING, REEL_STIFFNESS
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.references import equilibrium_tension
 from tests.validation import Validated, closed_form, other_code
@@ -144,7 +144,7 @@ def test_default_gains_are_the_regulators(validated: Validated) -> None:
     validated(riccati, "reel: default gain on the length", STIFFNESS, -gains[0] * scale * RATE, "N/m", rel=2e-4)
     validated(riccati, "reel: default gain on its rate", DAMPING, -gains[1] * scale, "N s/m", rel=2e-4)
     assert pytest.approx(-regulator(0.0)[0] * scale * RATE, rel=2e-4) != STIFFNESS
-    assert (STIFFNESS, DAMPING) == (removal.REEL_STIFFNESS, removal.REEL_DAMPING)
+    assert (STIFFNESS, DAMPING) == (REEL_STIFFNESS, REEL_DAMPING)
     assert pytest.approx(equilibrium_tension(RATE, 12.0, REDUCED), rel=1e-12) == FEED_FORWARD
 
 

@@ -14,20 +14,32 @@ from fmu_src.tethered_deorbit.interface import (
     BAD_INERTIA,
     BAD_ORBIT,
     BAD_PARAMETER,
+    BAD_SCHEDULE,
     BODIES_MET,
+    BROKE,
+    CAME_CLOSE,
+    CAME_DOWN,
+    ENDS_AT_START,
     GROUND,
     HANDED_OVER,
     MODEL,
+    NO_ARCS,
+    NO_ATTITUDE,
+    NO_BODY,
     NO_LENGTH,
     NO_LINE,
     NO_ORBIT,
+    NO_VERTICAL,
     NOT_FINITE,
+    PERIGEE_LOW,
+    PERIGEE_RAISED,
     START_STRETCHED,
     STEP_NOT_MET,
     TIME_GAP,
     TOO_MANY_EVENTS,
     TOO_MANY_TURNS,
     VBAR,
+    WRAPPED_UP,
 )
 
 TERMS = {"reel": "locked", "thrust": "along_track"}
@@ -117,6 +129,14 @@ ELSEWHERE = {
     BAD_ATTITUDE: "test_rigid.py",
     TOO_MANY_TURNS: "test_wrapping.py",
     BODIES_MET: "test_wrapping.py",
+    **dict.fromkeys(
+        (CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE, ENDS_AT_START), "test_ends.py"
+    ),
+    NO_ARCS: "test_burn.py",
+    NO_ATTITUDE: "test_aocs.py",
+    NO_VERTICAL: "test_regulator.py",
+    BAD_SCHEDULE: "test_winding.py",
+    NO_BODY: "test_hulls.py",
 }
 
 
