@@ -1,6 +1,7 @@
 """Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
-from collections.abc import Callable, Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     validation.keep_validating(config, items)
     place = {name: k for k, name in enumerate(DEAREST)}
     items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
+
+
+@pytest.fixture(autouse=True)
+def begins_and_ends_at_the_root(pytestconfig: pytest.Config) -> Iterator[None]:
+    """Whatever a test or a library leaves the working directory at: fmpy stays beside a binary that does not load, and
+    builds of later tests find no module of `tests` from there."""
+    os.chdir(pytestconfig.rootpath)
+    yield
+    os.chdir(pytestconfig.rootpath)
 
 
 @pytest.fixture(scope="session", autouse=True)
