@@ -20,6 +20,7 @@ from dcone_cosim.fmu.component import Steppable, Terminated
 from dcone_cosim.phases.phase import Stage
 from dcone_cosim.results import PhaseResult
 from orbital.constants import EARTH_MU
+from orbital.kepler import propagate
 
 Vectors = npt.NDArray[np.float64]
 LOOKS = 720
@@ -32,7 +33,11 @@ NEEDED = tuple(
 BODIES = tuple(
     f"{body}.{what}{each}" for body in ("chaser", "target") for what in ("position", "velocity") for each in EACH
 )
-KEY = "passive"
+INSTANT, PIECE = "passive instant", "passive piece"
+"""Keys under which states are kept."""
+SHORT_OF, LOCATED = 1e-9, 1e-6
+"""Share of a piece that is left before an FMU's own end, so that its outputs there can be read; and of the room within
+which two bodies count as met there."""
 
 
 @dataclass(frozen=True)
@@ -71,17 +76,17 @@ class Instant:
 
 
 def examine(stage: Stage, result: PhaseResult) -> list[Instant]:
-    """The same tow once more, with both tried every `safety_every` until it ended.
+    """The same tow once more, with both tried every `safety_every` until it ended; `FmuError` if it cannot be had.
 
     The states of the FMU are kept and restored, so that the tow itself is the one that was run.
     """
     phase, options = stage.phase, stage.phase.options
     found: list[Instant] = []
     reasons: list[str] = []
+    record = stage.run.handovers.get(phase.name)
+    start = phase.start if record is None else record.start
     component = stage.instantiate(phase.name, f"{phase.name} passive")
     try:
-        record = stage.run.handovers.get(phase.name)
-        start = 0.0 if record is None else record.start
         component.set(stage.run.given[phase.name])
         component.enter_initialisation(start, start + phase.duration + options.safety_horizon)
         component.exit_initialisation()
@@ -122,32 +127,37 @@ def _tried(component: Steppable, start: float, time: float, options: PassiveOpti
         cut = _freely({name: states[name] for name in BODIES}, options.safety_horizon, orbits)
     stopped = None
     if {THRUST, OFFSET} <= component.variables.keys():
-        component.save(KEY)
+        component.save(INSTANT)
         try:
             stopped = _without_thrust(component, start + time, options.safety_horizon)
         except FmuError as error:
             reasons.append(str(error))
         finally:
-            component.restore(KEY)
-            component.release(KEY)
+            component.restore(INSTANT)
+            component.release(INSTANT)
     return Instant(time, separation, stopped, cut)
 
 
 def _without_thrust(component: Steppable, begin: float, horizon: float) -> Nearest:
     """How near they come on the line, the thrust being zero from an instant on [s]."""
     component.set({OFFSET: -component.get((THRUST,))[THRUST]})
-    piece = horizon / LOOKS
+    piece, times = horizon / LOOKS, [0.0]
     rows = [component.get(NEEDED)]
-    try:
-        for i in range(LOOKS):
+    for i in range(LOOKS):
+        component.save(PIECE)
+        length = piece
+        try:
             component.step(begin + i * piece, piece)
-            rows.append(component.get(NEEDED))
-    except Terminated as end:
-        # the FMU ends where they meet, or where the orbit does: as near as they were seen
-        rows.append(rows[-1])
-        times = [*(np.arange(len(rows) - 1) * piece), end.time - begin]
-    else:
-        times = list(np.arange(len(rows)) * piece)
+        except Terminated as end:
+            # where the bodies meet, or the orbit ends: up to there
+            length = (1.0 - SHORT_OF) * (end.time - (begin + i * piece))
+            component.restore(PIECE)
+            component.step(begin + i * piece, length)
+        rows.append(component.get(NEEDED))
+        times.append(i * piece + length)
+        if length < piece:
+            break
+    component.release(PIECE)
     position = np.array([[row[f"relative.position{each}"] for each in EACH] for row in rows])
     velocity = np.array([[row[f"relative.velocity{each}"] for each in EACH] for row in rows])
     return nearest(np.array(times), position, velocity)
@@ -171,39 +181,15 @@ def _freely(states: Mapping[str, float], horizon: float, orbits: bool) -> Neares
 
 
 def conic(position: Vectors, velocity: Vectors, times: Vectors) -> tuple[Vectors, Vectors]:
-    """Positions (n, 3) [m] and velocities [m/s] on an ellipse about the Earth at times after a state (n,) [s].
+    """Positions (n, 3) [m] and velocities [m/s] about the Earth at times after a state (n,) [s].
 
-        n t = x + s (1 - cos x)/sqrt(a) - (1 - r/a) sin x,   x = E - E0,   s = r . v/sqrt(mu)
-        f = 1 - a/r (1 - cos x),   g = t - (x - sin x)/n
-
-    Valid    a > 0
-    Source   Battin (1999), section 4.4: Kepler's equation in the difference of the eccentric anomalies;
-             solved as in Conway, Celestial Mechanics 39 (1986) 199
-    Checked  tests/cosim/test_passive.py, against `orbital.kepler`
+    Source   `orbital.kepler.propagate`
+    Checked  tests/cosim/test_passive.py
     """
-    r, s = float(np.linalg.norm(position)), float(position @ velocity) / math.sqrt(EARTH_MU)
-    axis = 1.0 / (2.0 / r - float(velocity @ velocity) / EARTH_MU)
-    root = math.sqrt(axis)
-    rate = math.sqrt(EARTH_MU / axis**3)
-    mean = rate * times
-    x = mean.copy()
-    for _ in range(50):
-        value = x + s / root * (1.0 - np.cos(x)) - (1.0 - r / axis) * np.sin(x) - mean
-        slope = 1.0 + s / root * np.sin(x) - (1.0 - r / axis) * np.cos(x)
-        bend = s / root * np.cos(x) + (1.0 - r / axis) * np.sin(x)
-        # Laguerre's method, of degree 5: it comes from anywhere
-        under = np.sqrt(np.abs(16.0 * slope * slope - 20.0 * value * bend))
-        change = 5.0 * value / (slope + np.copysign(under, slope))
-        x -= change
-        if float(np.max(np.abs(change))) < 1e-15 * (1.0 + float(np.max(mean))):
-            break
-    f = 1.0 - axis / r * (1.0 - np.cos(x))
-    g = times - (x - np.sin(x)) / rate
-    there = f[:, None] * position + g[:, None] * velocity
-    radius = np.linalg.norm(there, axis=1)
-    f_rate = -math.sqrt(EARTH_MU * axis) / (radius * r) * np.sin(x)
-    g_rate = 1.0 - axis / radius * (1.0 - np.cos(x))
-    return there, f_rate[:, None] * position + g_rate[:, None] * velocity
+    places, speeds = np.empty((len(times), 3)), np.empty((len(times), 3))
+    for i, time in enumerate(times):
+        propagate(places[i], speeds[i], position, velocity, float(time), EARTH_MU)
+    return places, speeds
 
 
 def nearest(times: Vectors, position: Vectors, velocity: Vectors) -> Nearest:
@@ -250,7 +236,7 @@ class Worst:
 def worst(instants: Sequence[Instant], room: float) -> Iterator[Worst]:
     """The worst of what was tried, with the thrust stopped and with the line cut.
 
-    room    that the two bodies take from their centres on, together [m]
+    room    that the two bodies take from their centres on, with what is to be kept clear [m]
     """
     for what, told in (("stopped", "the thrust stops"), ("cut", "the line is cut")):
         tried: list[tuple[Nearest, float]] = [
@@ -258,5 +244,5 @@ def worst(instants: Sequence[Instant], room: float) -> Iterator[Worst]:
         ]
         if tried:
             near, time = min(tried, key=lambda pair: pair[0].distance)
-            meets = sum(other.distance < room for other, _ in tried)
+            meets = sum(other.distance < room * (1.0 + LOCATED) for other, _ in tried)
             yield Worst(what, told, near.distance, time, near.after, meets, len(tried))

@@ -96,8 +96,14 @@ class Tow(Phase):
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """What becomes of the pair if it stops on the way."""
         options = stage.phase.options
-        if options is not None and math.isfinite(options.safety_every) and result.error is None:
+        if options is None or not math.isfinite(options.safety_every) or result.error is not None:
+            return
+        try:
             result.passive = passive.examine(stage, result)
+        except Interrupted as error:
+            stage.run.stop(error)
+        except FmuError as error:
+            stage.progress.say(f"passive safety is left out: {error}")
 
     def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         return removal_report.findings(run, self.name, result)

@@ -96,7 +96,8 @@ def _of_approach(phase: str, result: PhaseResult) -> Iterator[Finding]:
 
 
 def room(values: Mapping[str, float], reach: float | None) -> float:
-    """How near the centres may come before the bodies touch, by what is known of their size [m].
+    """How near the centres may come before the bodies touch, or are nearer than the scene wants them, by what is known
+    of their size [m].
 
     values   parameters of the tow, SI
     reach    of the target from its centre [m], None where the hand-over does not tell
@@ -111,7 +112,8 @@ def room(values: Mapping[str, float], reach: float | None) -> float:
         for i in range(1, sum(name.startswith("target.corner_x") for name in values) + 1)
     ]
     known = max(corners, default=known)
-    return chaser + (known or values.get("ends.target_extent") or UNKNOWN_EXTENT)
+    target = known or values.get("ends.target_extent") or UNKNOWN_EXTENT
+    return chaser + target + values.get("ends.clearance", 0.0)
 
 
 def _of_safety(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Finding]:

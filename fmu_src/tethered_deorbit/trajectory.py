@@ -286,7 +286,9 @@ def make_trajectory(
                 low = middle
             else:
                 high, event = middle, there
-        least = min(LEAST_BETWEEN_EDGES, SHORTEST_BETWEEN_EDGES / r.state_frequency)
+        least = 0.0
+        if event == EDGES:
+            least = min(LEAST_BETWEEN_EDGES, SHORTEST_BETWEEN_EDGES / r.state_frequency)
         attempt(record, work, max(high * r.state_step, min(r.state_step, least)))
         r.state_event = event
 

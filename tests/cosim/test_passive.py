@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dcone_cosim.errors import Interrupted
+from dcone_cosim.phases import passive
 from dcone_cosim.phases.passive import Instant, Nearest, conic, nearest, worst
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kepler import propagate
@@ -94,6 +96,7 @@ def test_a_chaser_that_flies_at_its_target(dcone: Dcone, tmp_path: Path) -> None
         apart = 12.0 - 0.5 * acceleration * values["time"] ** 2
         expected = 12.0 if speed == 0.0 else 0.0
         assert values["separation"] == pytest.approx(apart, abs=1e-9)
+        # with the thrust on they would meet from the first instant as well
         for what in ("stopped", "cut"):
             assert values[f"{what}.least_distance"] == pytest.approx(expected, abs=1e-6)
         # on its line it comes back, and is as near once more
@@ -126,3 +129,33 @@ def test_a_tow_on_its_orbit_that_lets_go(dcone: Dcone, tmp_path: Path) -> None:
         across = z * c + w / n * s
         least = float(np.sqrt(radial**2 + along**2 + across**2).min())
         assert values["cut.least_distance"] == pytest.approx(least, rel=2e-3)
+
+
+def test_an_interrupt_keeps_the_tow(dcone: Dcone, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has been simulated is written, whatever becomes of the look at its safety."""
+
+    def stop(*_: object) -> None:
+        raise Interrupted("asked to end")
+
+    (tmp_path / "pair.toml").write_text(FIELD_FREE)
+    monkeypatch.setattr(passive.interrupts, "check", lambda name, time: stop() if time == 0.0 and looking else None)
+    looking: list[int] = []
+    examine = passive.examine
+    monkeypatch.setattr(passive, "examine", lambda *given: looking.append(1) or examine(*given))
+    code, _, err = dcone("run", "pair.toml", "-o", "out")
+    assert code == Interrupted.exit_code, err
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["status"] == "interrupted"
+    assert (tmp_path / "out" / "removal.parquet").is_file()
+
+
+def test_bodies_that_the_fmu_sees_meet_are_told(dcone: Dcone, tmp_path: Path) -> None:
+    """An FMU that ends where they come within the clearance shows them up to there: 1 + 1 + 0.5 m."""
+    ends = '[removal.ends]\nchaser_extent = "1 m"\ntarget_extent = "1 m"\nclearance = "0.5 m"\n'
+    (tmp_path / "pair.toml").write_text(FIELD_FREE + ends)
+    code, _, err = dcone("run", "pair.toml", "-o", "out")
+    assert code == 0, err
+    import pyarrow.parquet
+
+    table = pyarrow.parquet.read_table(tmp_path / "out" / "removal_passive_safety.parquet").to_pandas()
+    assert table["stopped.least_distance"][1:].to_list() == pytest.approx([2.5] * (len(table) - 1), rel=1e-6)
+    assert f"the thrust stops at {len(table) - 1} of {len(table)} instants" in err

@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.phases.removal_criteria import criteria as of_removal
+from dcone_cosim.phases.removal_criteria import pushed
 from dcone_cosim.quantities import Quantity
 from dcone_cosim.stability.cost import Cost
 from dcone_cosim.stability.judge import (
@@ -193,6 +194,26 @@ def test_under_thrust_the_integral_of_the_relative_motion_is_kept() -> None:
     assert red(adrift(0.0, 0.0)) == set()
     for told in (0.02, 0.0):
         assert red(adrift(-0.02, told)) & {"jacobi", "jacobi_falls"}
+
+
+def test_what_a_thruster_gives_of_which_some_meets_the_target() -> None:
+    """By the momentum of what was burnt at 300 s, half of it against the target at the end, of a pair that is
+    10 kg and then 20 kg lighter; without an engine the masses stay, without a push all of it counts."""
+    columns = {
+        "time": np.array([0.0, 1.0, 2.0]),
+        "chaser.propellant": np.array([0.0, 10.0, 20.0]),
+        "plume.share": np.array([0.0, 0.0, 0.5]),
+    }
+    exhaust = 300.0 * 9.80665
+    values = {**MASSES, "thrust.level": -1.0, "thrust.offset": 0.0, "thrust.specific_impulse": 300.0}
+    for terms, pushes, expected in (
+        ({"engine": "chemical", "plume": "beam"}, 1.0, [-10.0 * exhaust / 2995.0, -7.5 * exhaust / 2985.0]),
+        ({"engine": "chemical", "plume": "beam"}, 0.0, [-10.0 * exhaust / 2995.0, -10.0 * exhaust / 2985.0]),
+        ({"burn": "timed"}, 1.0, [-10.0 * exhaust / 3000.0, -10.0 * exhaust / 3000.0]),
+        ({}, 1.0, [-1.0 / 3000.0, -1.0 / 3000.0]),
+    ):
+        evidence = Evidence(columns, {**values, "plume.pushes": pushes}, {"thrust": "along_track", **terms}, 2.0)
+        assert pushed(evidence).tolist() == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

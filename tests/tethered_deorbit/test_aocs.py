@@ -159,6 +159,21 @@ def test_a_thruster_off_the_centre() -> None:
     assert free["chaser.rate[3]"] == pytest.approx(0.02 / MOMENTS[2] * 10.0, rel=1e-6)
 
 
+def test_what_is_held_in_space_does_not_turn_with_the_line() -> None:
+    """A pair that whirls on a taut line, in steps whose axes turn with it: the chaser stands still, its wheels idle."""
+    i = chaser(
+        {**FREE, "reel": "locked"},
+        start_relative_position=(0.0, 12.0, 0.0),
+        start_relative_velocity=(0.06, 0.0, 0.0),
+        chaser_attachment=(0.0, 0.0, 0.0),
+    )
+    i.step(40.0)
+    assert i["tether.taut"]
+    assert i.record[0].state_turning[2] != 0.0
+    assert i["aocs.deviation"] < 1e-12
+    assert np.linalg.norm(i.array("aocs_momentum")) < 1e-9
+
+
 def test_a_point_has_no_attitude_to_control() -> None:
     with pytest.raises(ModelFault, match="needs a chaser that turns"):
         PlainInstance(

@@ -196,6 +196,31 @@ def test_arcs(about: str, first: float, share: float, tension: float) -> None:
     assert 5 * sum(on for _, on in seen) == pytest.approx(share, abs=10.0)
 
 
+def test_arcs_while_a_line_is_taut() -> None:
+    """A pair that hangs on a soft line: the axes of its steps turn with it, and the arcs stay where they are."""
+    i = PlainInstance(
+        MODEL,
+        {"reel": "locked", "thrust": "along_track", "burn": "arcs"},
+        {
+            "start.condition": HANDED_OVER,
+            "start_relative_position": (12.03, 0.0, 0.0),
+            "tether.rest_length": 12.0,
+            "tether.youngs_modulus": 1.2e7,
+            "orbit.true_anomaly": 0.5 * math.pi,
+            "thrust.level": 1e-6,
+            "burn.half_width": math.radians(20.0),
+        },
+    )
+    turned = 0.0
+    for _ in range(12):
+        i.step(TURN / 12.0)
+        turned = max(turned, abs(i.record[0].state_turning[2]) * i.record[0].state_step)
+    assert i["tether.taut"]
+    assert turned > 0.0
+    flow = 1e-6 / (3000.0 * STANDARD_GRAVITY)
+    assert i["chaser.propellant"] == pytest.approx(flow * TURN * 40.0 / 360.0, rel=1e-5)
+
+
 def test_arcs_do_not_depend_on_macro_steps() -> None:
     whole, pieces = on_arcs(), on_arcs()
     whole.step(TURN)

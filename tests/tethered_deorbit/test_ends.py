@@ -127,6 +127,27 @@ def test_bodies_that_come_close_end_the_run(speed: float, aside: float) -> None:
     assert i.record[0].fault_time == pytest.approx(expected, rel=1e-8)
 
 
+def test_the_end_is_exact_in_the_shortest_of_steps() -> None:
+    """The macro step before ends half a millisecond before the bodies meet, and a changed thrust begins anew there."""
+    terms = {"reel": "commanded", "environment": "none", "ends": "watched", "thrust": "along_track"}
+    i = PlainInstance(
+        MODEL,
+        terms,
+        {
+            "start.condition": HANDED_OVER,
+            "start_relative_position": (0.0, 100.0, 0.0),
+            "start_relative_velocity": (0.0, -1.0, 0.0),
+            "ends.target_extent": 1.0,
+            "thrust.level": 0.0,
+        },
+    )
+    i.step(99.0 - 5e-4)
+    i["thrust.offset"] = 1e-9
+    with ends_by(CAME_CLOSE):
+        i.step(1.0)
+    assert i.record[0].fault_time == pytest.approx(99.0, abs=1e-9)
+
+
 def test_bodies_that_pass_go_on() -> None:
     i = meeting(1.0, 3.51)
     i.step(200.0)

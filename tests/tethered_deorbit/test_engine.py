@@ -120,6 +120,24 @@ def test_power_limits_the_thrust() -> None:
     assert i["engine.power"] == pytest.approx(0.01 * 3000.0 * STANDARD_GRAVITY / 1.2, rel=1e-14)
 
 
+def test_rates_of_what_an_engine_shows() -> None:
+    """Against differences, while the thrust asked for moves, forward and back."""
+    values = {"engine.power_limit": 1e7, "thrust.specific_impulse": 3000.0}
+    for level in (2.0, -2.0):
+        i = free("electric", **{**values, "thrust.level": level})
+        i.set_rates({"thrust.offset": 0.1})
+        i.step(10.0)
+        i.differentiate()
+        names = ("engine.power", "engine.propellant_left", "thrust.force")
+        before, slopes = [i[name] for name in names], [i.rate(name) for name in names]
+        i.set_rates({"thrust.offset": 0.1})
+        i.step(1e-2)
+        for name, value, slope in zip(names, before, slopes, strict=True):
+            assert (i[name] - value) / 1e-2 == pytest.approx(slope, rel=1e-2), name
+        assert slopes[0] * level > 0.0
+        assert slopes[1] < 0.0
+
+
 def test_a_tank_is_part_of_the_chaser() -> None:
     with pytest.raises(ModelFault, match="out of its bounds"):
         free("chemical", **{"engine.propellant": CHASER})
