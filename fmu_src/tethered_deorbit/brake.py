@@ -7,7 +7,7 @@ from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.acting import Acting
-from fmu_src.tethered_deorbit.elastic import make_elastic
+from fmu_src.tethered_deorbit.elastic import make_elastic, unstretched
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
@@ -216,15 +216,6 @@ def make_brake(interface: Interface, sights: Sights) -> Reel:
                     ) / length
 
     @kernel
-    def start_limit(record: Any) -> float:
-        """Longest line with which a pair may start [m]: what is wound out then.
-
-        Checked  tests/tethered_deorbit/test_brake.py: it begins just taut
-        """
-        longest: float = record[0].tether_rest_length
-        return longest
-
-    @kernel
     def begin(record: Any, state: Array) -> int:
         """Nothing has slipped; returns 0 or a fault.
 
@@ -310,7 +301,7 @@ def make_brake(interface: Interface, sights: Sights) -> Reel:
         prepare=prepare,
         **(elastic._asdict() | {"tension": tension, "tension_rate": tension_rate}),
         partials=partials,
-        start_limit=start_limit,
+        start_limit=unstretched,
         acting=Acting(begin=begin, limit=limit, longest=longest, holds=holds, act=act),
         see=see,
         see_change=see_change,

@@ -20,6 +20,16 @@ class Elastic(NamedTuple):
     energy_rate: Callable[..., Any]
 
 
+@kernel
+def unstretched(record: Any) -> float:
+    """Longest line with which a pair may start [m]: it may not start stretched.
+
+    Checked  tests/tethered_deorbit/test_robust.py, test_attachment.py: what starts stretched is refused; test_winch.py
+    """
+    limit: float = record[0].tether_rest_length
+    return limit
+
+
 def make_elastic(line: Callable[..., Any]) -> Elastic:
     """The kernels of a line with these properties.
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.command import make_command, make_shortest
-from fmu_src.tethered_deorbit.elastic import make_elastic
+from fmu_src.tethered_deorbit.elastic import make_elastic, unstretched
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
@@ -102,20 +102,11 @@ def make_locked(interface: Interface) -> Reel:
         by_energy = -stiffness * stretch - 0.5 * stiffness * stretch * stretch / rest
         return by_tension, by_energy
 
-    @kernel
-    def start_limit(record: Any) -> float:
-        """Longest line with which a pair may start [m]: it may not start stretched.
-
-        Checked  tests/tethered_deorbit/test_robust.py, test_attachment.py: what starts stretched is refused
-        """
-        limit: float = record[0].tether_rest_length
-        return limit
-
     return Reel(
         asked=asked,
         leave=leave,
         prepare=prepare,
         **elastic._asdict(),
         partials=partials,
-        start_limit=start_limit,
+        start_limit=unstretched,
     )

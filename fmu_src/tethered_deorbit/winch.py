@@ -16,7 +16,7 @@ from typing import Any
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.acting import Acting
 from fmu_src.tethered_deorbit.command import make_command
-from fmu_src.tethered_deorbit.elastic import make_elastic
+from fmu_src.tethered_deorbit.elastic import make_elastic, unstretched
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
@@ -142,15 +142,6 @@ def make_winch(
             slope += elastic_share(record, length) * strain_rate
             r.rate_reel_power = -slope * r.state_winding - drawn(record, length, tension) * r.state_winding_rate
             r.rate_tether_heat = heat_of(record, speed)
-
-    @kernel
-    def start_limit(record: Any) -> float:
-        """Longest line with which a pair may start [m]: what is wound out then.
-
-        Checked  tests/tethered_deorbit/test_winch.py: refusals
-        """
-        limit: float = record[0].tether_rest_length
-        return limit
 
     @kernel
     def begin(record: Any, state: Array) -> int:
@@ -282,7 +273,7 @@ def make_winch(
         prepare=prepare,
         **elastic._asdict(),
         partials=never_moves,
-        start_limit=start_limit,
+        start_limit=unstretched,
         acting=Acting(begin=begin, due=due, limit=limit, act=act),
         see=see,
         drive=drive,

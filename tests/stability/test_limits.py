@@ -25,21 +25,10 @@ from dcone_cosim.stability.plan import AS_IT_IS, _Maker
 from dcone_cosim.stability.work import _stopped
 from orbital.oscillators import damped_snap_peak
 from tests.conftest import FREE
+from tests.stability import COARSE_NET
 
 SHOT = {
-    "net.side": 24.0,
-    "net.mesh": 3.0,
-    "net.mass": 0.33,
-    "net.density": 1440.0,
-    "net.youngs_modulus": 70e9,
-    "net.damping_ratio": 0.106,
-    "net.segments": 1,
-    "net.fold_side": 0.5,
-    "chaser.mass": 2000.0,
-    "bullets.mass": 0.5,
-    "bullets.speed": 3.0,
-    "bullets.angle": 0.7,
-    "vertex.mass": 0.15,
+    **COARSE_NET,
     "solver.step_ratio": 0.0,
     **{f"chaser.start_position[{axis}]": (0.0, -20.0, 0.0)[axis - 1] for axis in (1, 2, 3)},
     **{f"chaser.start_velocity[{axis}]": 0.0 for axis in (1, 2, 3)},

@@ -17,6 +17,7 @@ from fmu_src.instance import Instance
 from fmu_src.net_capture.planes import P, U
 from tests.conftest import FREE
 from tests.net_capture.memory import planes
+from tests.stability import COARSE_NET
 
 NET = {"net.mesh": 3.0, "chaser.start_position[2]": -20.0}
 END, LOOK = 6.0, 0.05
@@ -116,21 +117,7 @@ def held_apart(share: float, scheme: str = "leapfrog") -> set[str]:
             columns[f"bullet[{bullet}].position[{axis}]"][1] = place
     columns |= {"time": np.array([0.0, 1.0]), "energy.kinetic": np.array([9.0, 0.0])}
     columns |= {"energy.remainder": np.array([0.0, 9.0])}
-    values = {
-        "net.side": side,
-        "net.mesh": 3.0,
-        "net.mass": 0.33,
-        "net.density": 1440.0,
-        "net.youngs_modulus": 70e9,
-        "net.damping_ratio": 0.106,
-        "net.segments": 1,
-        "net.fold_side": 0.5,
-        "chaser.mass": 2000.0,
-        "bullets.mass": 0.5,
-        "bullets.speed": 3.0,
-        "bullets.angle": 0.7,
-        "vertex.mass": 0.15,
-    }
+    values = {**COARSE_NET, "net.side": side}
     terms = {**FREE, "solver": scheme}
     found = suited(criteria(Evidence(columns, values, terms, 1.0)), build.instead("net_capture", terms), {})
     return {one.key for one in found if not one.value <= one.stable}
