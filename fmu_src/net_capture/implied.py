@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.interface import GROUPS, NETS
+from fmu_src.net_capture.nets import Hanging
 from fmu_src.net_capture.shot import opening_distance
 from fmu_src.net_capture.substeps import COUNT
 from fmu_src.net_capture.substeps import substeps as of_parts
@@ -33,14 +34,15 @@ def thread_mass(values: Values, terms: Mapping[str, str]) -> float:
     return values["net.density"] * thread_section(values, terms) * values["net.mesh"]
 
 
-def edge_mass(values: Values, terms: Mapping[str, str]) -> float:
-    """Mass [kg] of a knot on the net's edge: half of the three pieces of thread that meet there."""
-    return 1.5 * thread_mass(values, terms) / values["net.segments"]
+def hanging(values: Values, terms: Mapping[str, str]) -> Hanging:
+    """Masses [kg] of the pieces of thread that hang on a knot inside the net, on its edge, and at a bullet."""
+    line = values["net.density"] * thread_section(values, terms) / values["net.segments"]
+    return Hanging(*(line * length for length in NETS[terms["net"]].checks.hanging(values)))
 
 
 def cord_mass(values: Values, terms: Mapping[str, str]) -> float:
     """Mass [kg] that a cord between two bullets moves as it lengthens."""
-    return formula(formulas.cord_mass)(values["bullets.mass"], edge_mass(values, terms), int(values["closing.rings"]))
+    return formula(formulas.cord_mass)(values["bullets.mass"], hanging(values, terms).edge, int(values["closing.rings"]))
 
 
 def open_loop(values: Values, terms: Mapping[str, str]) -> float:
@@ -88,27 +90,27 @@ def _of_thread(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
 
 
 def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
-    """Half of each piece of thread that ends at a node; a knot inside the net has four, on its edge three, two in a
-    corner."""
-    piece = thread_mass(values, terms) / values["net.segments"]
-    yield Implied("knot.mass", "mass of a knot inside the net", 2.0 * piece, "kg")
-    yield Implied("edge.mass", "mass of a knot on its edge", edge_mass(values, terms), "kg")
-    yield Implied("corner.mass", "mass of a corner, with its bullet", piece + values["bullets.mass"], "kg")
+    """Half of each piece of thread that ends at a node."""
+    inside, edge, corner = hanging(values, terms)
+    yield Implied("knot.mass", "mass of a knot inside the net", inside, "kg")
+    yield Implied("edge.mass", "mass of a knot on its edge", edge, "kg")
+    yield Implied("corner.mass", "mass of a corner, with its bullet", corner + values["bullets.mass"], "kg")
     if values["net.segments"] > 1:
+        piece = thread_mass(values, terms) / values["net.segments"]
         yield Implied("thread_node.mass", "mass of a node within a thread", piece, "kg")
     yield Implied("catch.mass", "net, bullets and vertex together", catch_mass(values), "kg")
 
 
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the corners, which alone leave at the bullets' speed; relative to the chaser before the shot."""
-    corners = 4.0 * (thread_mass(values, terms) / values["net.segments"] + values["bullets.mass"])
+    corners = 4.0 * (hanging(values, terms).corner + values["bullets.mass"])
     speed, angle = values["bullets.speed"], values["bullets.angle"]
     momentum = corners * speed * math.cos(angle)
     yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")
     yield Implied("shot.energy", "energy of the shot", 0.5 * corners * speed * speed, "J")
     yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")
-    sides = NETS[terms["net"]].checks.sides(values)
-    opening = opening_distance(max(sides.values()), values["net.fold_side"], speed, angle)
+    net = NETS[terms["net"]].checks
+    opening = opening_distance(net.radius(values), net.folded(values), speed, angle)
     if math.isfinite(opening):
         yield Implied("shot.opening", "bullets alone would have spread the net after", opening, "m")
 

@@ -12,7 +12,6 @@ from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
 from fmu_src.net_capture.gravity import gravities
 from fmu_src.net_capture.nets import LARGEST_MESH, nets
-from fmu_src.net_capture.nets.grid import nodes_of
 from fmu_src.net_capture.outcome import OUTCOMES
 from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.precision import PRECISION
@@ -221,7 +220,7 @@ class NodeTerms(Mapping[str, Term]):
 
 def capacity_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
     """The capacity that a net's mesh asks for, "1" where there is no such net."""
-    return str(min(nodes_of(parameters, NETS[terms["net"]].checks.sides(parameters)), MOST_NODES))
+    return str(min(NETS[terms["net"]].checks.nodes(parameters), MOST_NODES))
 
 
 NETS, TARGETS, CONTACTS, CLOSINGS = nets(), shapes(), contacts(), closings()

@@ -145,19 +145,19 @@ def make_shot(composition: Any) -> Shot:
     return Shot(load, jitter, shoot)
 
 
-def opening_distance(side: float, fold_side: float, speed: float, angle: float) -> float:
-    """Distance [m] flown by the bullets when, unhindered, they have spread to the corners of the flat net.
+def opening_distance(radius: float, folded: float, speed: float, angle: float) -> float:
+    """Distance [m] flown by the bullets when, unhindered, they have spread to their places in the open mouth.
 
-        z = (a - a0) / (sqrt(2) tan(alpha))
+        z = (R - R0) / tan(alpha)
 
-    side       a      of the flat net                  [m]
-    fold_side  a0     of the folded net                [m]
-    speed      V0     of the bullets                   [m/s]
-    angle      alpha  from the shot axis               [rad]
+    radius   R      of the bullets in the open mouth   [m]
+    folded   R0     in the folded net                  [m]
+    speed    V0     of the bullets                     [m/s]
+    angle    alpha  from the shot axis                 [rad]
 
     Valid    a lower bound of where the mouth is largest: the net holds the bullets back
     """
-    return (side - fold_side) / (math.sqrt(2.0) * math.tan(angle)) if speed > 0.0 and angle > 0.0 else math.inf
+    return (radius - folded) / math.tan(angle) if speed > 0.0 and angle > 0.0 else math.inf
 
 
 def refuses_place(scene: Scene) -> Iterator[Refusal]:
@@ -172,10 +172,10 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
     """Whether the net gets to the target, in time, open, and wide enough."""
     values, duration = scene.values, scene.duration
     chaser, axis = scene.vector("chaser.start_position"), scene.vector("shot.axis")
-    shape, sides = scene.parts["target"].checks, scene.parts["net"].checks.sides(values)
+    shape, net = scene.parts["target"].checks, scene.parts["net"].checks
+    sides, open_radius = net.sides(values), net.radius(values)
     distance = math.hypot(*chaser)
     here = f"is {distance:.4g} m from the target"
-    side, fold = max(sides.values()), float(values["net.fold_side"])
     speed, angle = float(values["bullets.speed"]), float(values["bullets.angle"])
     radius, girth = shape.radius(values), shape.girth(values)
     near = distance - radius
@@ -204,7 +204,7 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
                 f"come within {forward * duration + radius:.4g} m, or raise duration or bullets.speed"
             )
             yield Refusal(place, shown, expected)
-        limit = FALLEN_BACK * opening_distance(side, fold, speed, angle)
+        limit = FALLEN_BACK * opening_distance(open_radius, net.folded(values), speed, angle)
         if near > limit:
             expected = f"{here}; must be at most {limit + radius:.4g} m: farther out the net has fallen back"
             yield Refusal(place, shown, f"{expected} on itself")
@@ -212,7 +212,7 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
     if length > 0.0 and distance > 0.0:
         along = -sum(a * c for a, c in zip(axis, chaser, strict=True)) / length
         beside = math.sqrt(max(distance * distance - along * along, 0.0))
-        widest = 0.5 * side + radius
+        widest = open_radius + radius
         if along <= 0.0:
             expected = f"points away from the target, which lies along {text([0.0 - c / distance for c in chaser])}"
             yield Refusal("shot.axis", text(axis), expected)

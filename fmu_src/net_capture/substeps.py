@@ -19,11 +19,11 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
     parts    terms of the model by group, those of COUNT among them as far as the scene has them
     """
     pieces = values["net.segments"]
-    section = formula(formulas.thread_area)(
-        values["net.mass"], values["net.density"], parts["net"].checks.total(values)
-    )
-    stiffness = formula(formulas.axial_stiffness)(values["net.youngs_modulus"], section, values["net.mesh"])
-    thread = values["net.density"] * section * values["net.mesh"]
+    net = parts["net"].checks
+    length = net.shortest(values)
+    section = formula(formulas.thread_area)(values["net.mass"], values["net.density"], net.total(values))
+    stiffness = formula(formulas.axial_stiffness)(values["net.youngs_modulus"], section, length)
+    thread = values["net.density"] * section * length
     dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, 2.0 * thread)
     cord = cord_dashpot = 0.0
     rings = 0

@@ -273,8 +273,7 @@ def make(composition: Any) -> Closing:
 
 def refuses(scene: Scene) -> Iterator[Refusal]:
     """More rings than the shortest side of the mouth has knots."""
-    sides, mesh = scene.parts["net"].checks.sides(scene.values), scene.values["net.mesh"]
-    most = round(min(sides.values()) / mesh) - 1
+    most = scene.parts["net"].checks.knots(scene.values)
     if scene.values["closing.rings"] > most >= 1:
         expected = f"must be at most {most}: a side of this net has so many knots between its bullets"
         yield Refusal("closing.rings", f"{int(scene.values['closing.rings'])}", expected)

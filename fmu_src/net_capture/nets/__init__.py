@@ -6,7 +6,10 @@ A net's kernels, `make(composition) -> Net`, write it down as a graph (see `plan
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
+
+Values = Mapping[str, float]
 
 LARGEST_MESH = 400
 """Meshes times segments along one side: an instance then takes 30 MB."""
@@ -26,6 +29,43 @@ class Net(NamedTuple):
     count: Any
     lay_out: Any
     thread: Any
+
+
+class Hanging(NamedTuple):
+    """Length of thread [m] whose mass hangs on a knot inside the net, on its edge, and where a bullet is made fast: half
+    of every thread that ends there, the largest of each."""
+
+    inside: float
+    edge: float
+    corner: float
+
+
+class Checks(NamedTuple):
+    """What a net says before any build or run, of values by FMI name.
+
+    radius(values)     of the bullets from the shot's axis in the net as meant                       [m]
+    folded(values)     the same in the net folded flat                                               [m]
+    sides(values)      of the rim from each bullet to the next, by the name of the variable that is to blame for it;
+                       one alone: all are equal                                                      [m]
+    knots(values)      of the rim between two bullets, where there are fewest                        [1]
+    total(values)      length of all threads                                                         [m]
+    shortest(values)   length of a thread of which a net of square meshes is as stiff for its mass as this one where it
+                       is stiffest: the square root of the least sum of l over sum of 1/l at a knot  [m]
+    hanging(values)    what hangs on its knots
+    nodes(values)      with the inner nodes of all threads; 1 where there is no such net             [1]
+    drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
+                       count them
+    """
+
+    radius: Callable[[Values], float]
+    folded: Callable[[Values], float]
+    sides: Callable[[Values], dict[str, float]]
+    knots: Callable[[Values], int]
+    total: Callable[[Values], float]
+    shortest: Callable[[Values], float]
+    hanging: Callable[[Values], Hanging]
+    nodes: Callable[[Values], int]
+    drawing: Callable[[Values], tuple[list[list[int]], list[int]]]
 
 
 def nets() -> dict[str, Any]:

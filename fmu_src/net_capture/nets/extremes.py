@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 
 from fmu_src.extremes import Extreme, Given, Values, times
+from fmu_src.net_capture.nets import Checks
 
 Total = Callable[[Values], float]
 Sides = Callable[[Values], Mapping[str, float]]
@@ -19,9 +20,9 @@ OPENING = {"target": None, "contact": None, "closing": None}
 """A net that meets nothing."""
 
 
-def extremes(sides: Sides, total: Total) -> tuple[Extreme, ...]:
-    """Those of a net whose mouth and threads are this long [m], by a scene's values."""
-    return (*_stiffness(), *_damping(), *_meshes(sides), *_masses(total), *_folds(sides))
+def extremes(checks: Checks) -> tuple[Extreme, ...]:
+    """Those of a net, by what it says of a scene's values."""
+    return (*_stiffness(), *_damping(), *_meshes(checks.sides), *_masses(checks.total), *_folds(checks.sides))
 
 
 def _stiffness() -> Iterator[Extreme]:

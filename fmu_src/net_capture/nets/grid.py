@@ -13,68 +13,58 @@ next, and ends where the rest length changes.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from fmu_src.interface import fault
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.nets import LARGEST_MESH, Net
-from fmu_src.net_capture.planes import (
-    DAMPING,
-    FACE_WORDS,
-    FIRST,
-    LANES,
-    LENGTH,
-    LONGEST_ROW,
-    MASS,
-    SHOWN,
-    STIFFNESS,
-    STRIP_NUMBERS,
-    STRIP_WORDS,
-    THREAD_MASS,
-    A,
-    B,
+from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Hanging, Net, Values
+from fmu_src.net_capture.nets.weave import (
+    FOLD_TOO_LARGE,
+    TOO_FINE,
+    add_strip,
+    first_lanes,
+    make_lay_masses,
+    make_thread,
 )
+from fmu_src.net_capture.planes import FACE_WORDS, LONGEST_ROW, SHOWN
 from fmu_src.net_capture.refusal import Refusal, Scene
-from fmu_src.rows import at_least_zero, parameter, positive
 from orbital.kernel import kernel
 
 WHOLE = 1e-6
 """Share of a mesh by which a side may miss a whole number of them."""
 
 NO_WHOLE_MESHES = "no_whole_meshes"
-TOO_FINE = fault("too_fine", "net.segments", "the net has too many meshes times segments per side")
-FOLD_TOO_LARGE = fault("fold_too_large", "net.fold_side", "net.fold_side must be smaller than the sides of the net")
 
-THREAD = (
-    positive("net.mesh", "m", "knot spacing: a design choice; the net keeps its mass", 1.0),
-    parameter("net.segments", "1", "pieces each thread is cut into: a numerical choice", 1, 1, 64, kind="Integer"),
-    positive("net.mass", "kg", "mass of all threads", 0.33),
-    positive("net.youngs_modulus", "Pa", "of the thread", 70e9, display_unit="GPa"),
-    positive("net.density", "kg/m3", "of the thread", 1440.0),
-    at_least_zero("net.damping_ratio", "1", "xi in d = 2 xi sqrt(k m) of a thread and an inner node", 0.106),
-    positive("net.fold_side", "m", "side of the flat square the net is folded into", 0.5),
-)
-"""Rows that every net of a grid has."""
+Sides = Callable[[Values], dict[str, float]]
 
 
-class Checks(NamedTuple):
-    """What a net of a grid says before any build or run, of values by FMI name.
+def checks(sides: Sides, total: Callable[[Values], float]) -> Checks:
+    """What a net of a grid says, of its sides by the name of their variable, along the rows first; one name if equal."""
+    return Checks(
+        lambda values: 0.5 * math.hypot(*_both(sides(values))),
+        lambda values: math.sqrt(0.5) * values["net.fold_side"],
+        sides,
+        lambda values: round(min(sides(values).values()) / values["net.mesh"]) - 1,
+        total,
+        lambda values: values["net.mesh"],
+        lambda values: Hanging(2.0 * values["net.mesh"], 1.5 * values["net.mesh"], values["net.mesh"]),
+        lambda values: nodes_of(values, sides(values)),
+        lambda values: _drawing(sides(values), values["net.mesh"]),
+    )
 
-    sides(values)      lengths of the mouth by the name of their variable, along the rows first [m]; one name if equal
-    total(values)      length of all threads [m]
-    """
 
-    sides: Callable[[Mapping[str, float]], dict[str, float]]
-    total: Callable[[Mapping[str, float]], float]
+def _both(sides: dict[str, float]) -> list[float]:
+    """Along the rows and across them [m]."""
+    return (list(sides.values()) * 2)[:2]
 
-    def drawing(self, values: Mapping[str, float]) -> tuple[list[list[int]], list[int]]:
-        """The threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs count them."""
-        columns, rows = (round(side / values["net.mesh"]) + 1 for side in (list(self.sides(values).values()) * 2)[:2])
-        along = [[i * columns + j for j in range(columns)] for i in range(rows)]
-        across = [[i * columns + j for i in range(rows)] for j in range(columns)]
-        rim = [*along[0], *across[-1][1:], *along[-1][-2::-1], *across[0][-2::-1]]
-        return [*along, *across], rim
+
+def _drawing(sides: dict[str, float], mesh: float) -> tuple[list[list[int]], list[int]]:
+    columns, rows = (round(side / mesh) + 1 for side in _both(sides))
+    along = [[i * columns + j for j in range(columns)] for i in range(rows)]
+    across = [[i * columns + j for i in range(rows)] for j in range(columns)]
+    rim = [*along[0], *across[-1][1:], *along[-1][-2::-1], *across[0][-2::-1]]
+    return [*along, *across], rim
 
 
 class Grid(NamedTuple):
@@ -107,6 +97,7 @@ def make_grid(composition: Any, grid: Grid) -> Net:
     rim, corners, apex, faces = memory.rim, memory.corners, memory.apex, memory.faces
     sides, total, length, depth = grid.sides, grid.total, grid.length, grid.depth
     across_fault, along_fault = (composition.code(f"{NO_WHOLE_MESHES}_{name}") for name in grid.blames)
+    lay_masses = make_lay_masses(memory)
     too_fine, fold_too_large = composition.code(TOO_FINE.name), composition.code(FOLD_TOO_LARGE.name)
 
     @kernel
@@ -222,34 +213,12 @@ def make_grid(composition: Any, grid: Grid) -> Net:
                             and length(p, i, j + lanes, direction) == unloaded
                         ):
                             lanes += 1
-                        if write:
-                            table[STRIP_WORDS * found + A] = a
-                            table[STRIP_WORDS * found + B] = b
-                            table[STRIP_WORDS * found + LANES] = -1 if lanes == LONGEST_ROW else (1 << lanes) - 1
-                            table[STRIP_WORDS * found + FIRST] = thread
-                            numbers[STRIP_NUMBERS * found + LENGTH] = unloaded / pieces
-                            stiffness = formulas.axial_stiffness(p.net_youngs_modulus, area, unloaded)
-                            mass = p.net_density * area * unloaded
-                            dashpot = formulas.thread_dashpot(p.net_damping_ratio, stiffness, 2.0 * mass)
-                            numbers[STRIP_NUMBERS * found + STIFFNESS] = stiffness * pieces
-                            numbers[STRIP_NUMBERS * found + DAMPING] = dashpot * pieces
-                            numbers[STRIP_NUMBERS * found + THREAD_MASS] = mass / pieces
+                        held = first_lanes(lanes)
+                        add_strip(p, table, numbers, found, thread, a, b, held, unloaded, area, write)
                         found += 1
                         thread += lanes
                         j += lanes
         return found
-
-    @kernel
-    def thread(p):
-        """Stiffness [N/m] and dashpot [N s/m] of a piece of thread, mass of a node between two of them [kg].
-
-        Checked  tests/net_capture/test_nets.py
-        """
-        area = formulas.thread_area(p.net_mass, p.net_density, total(p))
-        mass = 2.0 * p.net_density * area * p.net_mesh
-        stiffness = formulas.axial_stiffness(p.net_youngs_modulus, area, p.net_mesh)
-        dashpot = formulas.thread_dashpot(p.net_damping_ratio, stiffness, mass)
-        return stiffness * p.net_segments, dashpot * p.net_segments, mass / p.net_segments
 
     @kernel
     def lay_out(p, work):
@@ -274,22 +243,6 @@ def make_grid(composition: Any, grid: Grid) -> Net:
                 faces(p, work)[face + 3] = line_node(p, i + 1, j)
                 face += FACE_WORDS
         place(p, work)
-
-    @kernel
-    def lay_masses(p, work):
-        """Half of every thread to each of its nodes [kg].
-
-        Checked  tests/net_capture/test_nets.py
-        """
-        mass = node_plane(p, work, MASS)
-        table = strips(p, work)
-        numbers = properties(p, work)
-        for q in range(p.strips):
-            half = 0.5 * numbers[STRIP_NUMBERS * q + THREAD_MASS]
-            for lane in range(LONGEST_ROW):
-                if (table[STRIP_WORDS * q + LANES] >> lane) & 1:
-                    mass[table[STRIP_WORDS * q + A] + lane] += half
-                    mass[table[STRIP_WORDS * q + B] + lane] += half
 
     @kernel
     def lay_rim(p, work):
@@ -345,7 +298,16 @@ def make_grid(composition: Any, grid: Grid) -> Net:
                         node = line_node(p, line_of(p, i, 1, s), j)
                         put(p, work, node, i + share, j, here + share * (there - here))
 
-    return Net(count, lay_out, thread)
+    return Net(count, lay_out, make_thread(total, mesh))
+
+
+@kernel
+def mesh(p):
+    """No knot has shorter threads than one of square meshes [m].
+
+    Checked  tests/net_capture/test_nets.py
+    """
+    return p.net_mesh
 
 
 @kernel
@@ -401,10 +363,10 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
         yield Refusal("nodes.capacity", scene.terms["nodes"], f"must be at least {nodes}, the nodes of this net")
 
 
-def nodes_of(parameters: Mapping[str, float], sides: Mapping[str, float]) -> int:
+def nodes_of(parameters: Values, sides: dict[str, float]) -> int:
     """Nodes of a grid with these sides [m]; 1 where there is no such net."""
     mesh, segments = float(parameters["net.mesh"]), int(parameters["net.segments"])
-    counts = [meshes(side, mesh) for side in (list(sides.values()) * 2)[:2]]
+    counts = [meshes(side, mesh) for side in _both(sides)]
     if any(count is None or count > LARGEST_MESH for count in counts):
         return 1
     columns, rows = (count or 0 for count in counts)

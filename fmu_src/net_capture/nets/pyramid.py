@@ -15,16 +15,8 @@ import math
 from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture.nets.extremes import extremes
-from fmu_src.net_capture.nets.grid import (
-    FOLD_TOO_LARGE,
-    THREAD,
-    TOO_FINE,
-    Checks,
-    Grid,
-    make_grid,
-    refuses,
-    whole_meshes,
-)
+from fmu_src.net_capture.nets.grid import Grid, checks, make_grid, refuses, whole_meshes
+from fmu_src.net_capture.nets.weave import FOLD_TOO_LARGE, THREAD, TOO_FINE
 from fmu_src.rows import positive
 from orbital.kernel import kernel
 
@@ -92,7 +84,7 @@ def depth(p, i, j):
     return p.net_depth * (1.0 - max(abs(i - half), abs(j - half)) / half)
 
 
-CHECKS = Checks(
+CHECKS = checks(
     lambda values: {SIDE: values[SIDE]},
     lambda values: formula(pyramid_length)(
         values[SIDE], formula(slope)(values[SIDE], values["net.depth"]), values["net.mesh"]
@@ -110,5 +102,5 @@ PART = Term(
     make=lambda composition: make_grid(composition, Grid(sides, (SIDE, SIDE), total, length, depth)),
     checks=CHECKS,
     refuses=refuses,
-    extremes=extremes(*CHECKS),
+    extremes=extremes(CHECKS),
 )

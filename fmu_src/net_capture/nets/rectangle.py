@@ -6,18 +6,8 @@ from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.nets.extremes import extremes
-from fmu_src.net_capture.nets.grid import (
-    FOLD_TOO_LARGE,
-    THREAD,
-    TOO_FINE,
-    Checks,
-    Grid,
-    flat_length,
-    make_grid,
-    no_depth,
-    refuses,
-    whole_meshes,
-)
+from fmu_src.net_capture.nets.grid import Grid, checks, flat_length, make_grid, no_depth, refuses, whole_meshes
+from fmu_src.net_capture.nets.weave import FOLD_TOO_LARGE, THREAD, TOO_FINE
 from fmu_src.rows import positive
 from orbital.kernel import kernel
 
@@ -42,7 +32,7 @@ def total(p):
     return formulas.grid_length(p.net_width, p.net_height, p.net_mesh)
 
 
-CHECKS = Checks(
+CHECKS = checks(
     lambda values: {WIDTH: values[WIDTH], HEIGHT: values[HEIGHT]},
     lambda values: formula(formulas.grid_length)(values[WIDTH], values[HEIGHT], values["net.mesh"]),
 )
@@ -58,5 +48,5 @@ PART = Term(
     make=lambda composition: make_grid(composition, Grid(sides, (WIDTH, HEIGHT), total, flat_length, no_depth)),
     checks=CHECKS,
     refuses=refuses,
-    extremes=extremes(*CHECKS),
+    extremes=extremes(CHECKS),
 )
