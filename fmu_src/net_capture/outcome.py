@@ -71,7 +71,7 @@ def make_judge(composition: Any, quality: Any) -> Any:
                         p.outcome = fail(p)
                 if p.outcome == FLYING and p.trigger_time >= 0.0 and time > p.trigger_time + p.closing_timeout:
                     p.outcome = NOT_CLOSED
-            elif beyond(p, work, p.target_place) > max(p.mouth_side[0], p.mouth_side[1]):
+            elif beyond(p, work, p.target_place) > max(p.mouth_width[0], p.mouth_width[1]):
                 p.outcome = fail(p)
         if has_tether:
             if p.outcome == FLYING and towards_chaser(p, work) >= p.tether_length:

@@ -17,7 +17,7 @@ from fmu_src.net_capture.planes import MASS, SHOWN
 from fmu_src.net_capture.shot import make_shot
 from orbital.kernel import kernel
 from tests.conftest import FREE
-from tests.net_capture.memory import graph_of, planes_of
+from tests.net_capture.laid import Layer
 from tests.validation import closed_form
 
 MESH = 2.0
@@ -91,60 +91,16 @@ def parameters(shape, columns, rows, segments):
     return sides | {"net.mesh": MESH, "net.segments": segments}
 
 
-class Laid:
-    """A net laid out by its kernels alone, before it is folded."""
-
-    def __init__(self, kernels, shape, values):
-        terms, count, lay_out, load = kernels[shape]
-        record = MODEL.interface(terms).make_record()
-        for name, value in values.items():
-            record[name.replace(".", "_")] = value
-        assert count(record, np.zeros(0)) == 0
-        p = self.p = record[0]
-        own = 12 * int(p["strips"] + p["node_slots"])
-        self.work = np.zeros(40 * int(p["node_slots"]) + 12 * int(p["strips"]) + 8 * int(p["net_nodes"]) + own)
-        lay_out(record, self.work)
-        self.planes = planes_of(p, self.work, terms)
-        self.mass = self.planes[MASS].copy()
-        load(record, self.work)
-        self.graph = graph_of(p, self.work, terms)
-        self.slots = np.flatnonzero(self.mass > 0.0)
-        self.number = np.full(int(p["node_slots"]), -1)
-        self.number[self.slots] = np.arange(len(self.slots))
-        self.places = self.planes[SHOWN : SHOWN + 3].T[self.slots]
-
-
 @pytest.fixture(scope="module")
 def kernels():
-    """By shape: the terms, and its kernels for a record and work memory."""
-
-    def make(shape):
-        terms = MODEL.interface(FREE | {"net": shape}).terms
-        parts = Composition(MODEL, terms)
-        net, shot = parts.net, make_shot(parts)
-        count_of, lay, load_on = net.count, net.lay_out, shot.load
-
-        @kernel
-        def count(record, work):
-            return count_of(record[0], work)
-
-        @kernel
-        def lay_out(record, work):
-            lay(record[0], work)
-
-        @kernel
-        def load(record, work):
-            load_on(record[0], work)
-
-        return terms, count, lay_out, load
-
-    return {shape: make(shape) for shape in ("square", "rectangle", "pyramid")}
+    """By shape: what lays a net out."""
+    return {shape: Layer(shape) for shape in ("square", "rectangle", "pyramid")}
 
 
 @pytest.fixture(params=CASES, ids=lambda case: "-".join(map(str, case)), scope="module")
 def pair(request, kernels):
     """A case, the net drawn by hand, and the net of the kernels."""
-    return request.param, draw(*request.param), Laid(kernels, request.param[0], parameters(*request.param))
+    return request.param, draw(*request.param), kernels[request.param[0]].lay(parameters(*request.param))
 
 
 def test_nodes_stand_in_the_order_of_the_outputs(pair):
@@ -391,12 +347,8 @@ def test_what_makes_no_net_is_refused_before_and_by_the_kernel(shape, change, to
     ],
 )
 def test_what_just_makes_one_is_not(shape, values, kernels):
-    _, count, *_ = kernels[shape]
-    record = MODEL.interface(terms_of(shape)).make_record()
-    for name, value in ({"net.mesh": MESH} | values).items():
-        record[name.replace(".", "_")] = value
     assert refusals(terms_of(shape), all_values(shape, {"net.mesh": MESH} | values)) == []
-    assert count(record, np.zeros(0)) == 0
+    assert kernels[shape].count({"net.mesh": MESH} | values) == 0
 
 
 def all_values(shape, values):

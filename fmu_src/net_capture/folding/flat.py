@@ -21,8 +21,8 @@ def make(composition: Any) -> Folding:
         Checked  tests/net_capture/test_nets.py
         """
         for i in range(p.node_slots):
-            along = p.net_fold_side / p.mouth_side[0] * node_plane(p, work, SHOWN)[i]
-            across = p.net_fold_side / p.mouth_side[1] * node_plane(p, work, SHOWN + 1)[i]
+            along = p.net_fold_side / p.mouth_width[0] * node_plane(p, work, SHOWN)[i]
+            across = p.net_fold_side / p.mouth_width[1] * node_plane(p, work, SHOWN + 1)[i]
             for axis in range(3):
                 at = p.muzzle[axis] + along * p.axes[axis] + across * p.axes[3 + axis]
                 node_plane(p, work, X + axis)[i] = at

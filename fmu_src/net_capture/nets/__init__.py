@@ -32,8 +32,8 @@ class Net(NamedTuple):
 
 
 class Hanging(NamedTuple):
-    """Length of thread [m] whose mass hangs on a knot inside the net, on its edge, and where a bullet is made fast: half
-    of every thread that ends there, the largest of each."""
+    """Length of thread [m] whose mass hangs on a knot inside the net, on its edge, and where a bullet is made fast:
+    half of every thread that ends there, the largest of each."""
 
     inside: float
     edge: float
@@ -70,6 +70,12 @@ class Checks(NamedTuple):
 
 def nets() -> dict[str, Any]:
     """Every net's term, by name."""
-    from fmu_src.net_capture.nets import pyramid, rectangle, square
+    from fmu_src.net_capture.nets import cone, pyramid, radial, rectangle, square
 
-    return {"square": square.PART, "rectangle": rectangle.PART, "pyramid": pyramid.PART}
+    return {
+        "square": square.PART,
+        "rectangle": rectangle.PART,
+        "pyramid": pyramid.PART,
+        "cone": cone.PART,
+        "radial": radial.PART,
+    }

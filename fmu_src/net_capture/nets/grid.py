@@ -40,7 +40,8 @@ Sides = Callable[[Values], dict[str, float]]
 
 
 def checks(sides: Sides, total: Callable[[Values], float]) -> Checks:
-    """What a net of a grid says, of its sides by the name of their variable, along the rows first; one name if equal."""
+    """What a net of a grid says: of its sides by the name of their variable, along the rows first, one name if equal;
+    and of the length of all its threads [m]."""
     return Checks(
         lambda values: 0.5 * math.hypot(*_both(sides(values))),
         lambda values: math.sqrt(0.5) * values["net.fold_side"],
@@ -147,6 +148,8 @@ def make_grid(composition: Any, grid: Grid) -> Net:
         p.mouth_flat_area = along * across
         for i in range(4):
             p.mouth_side[i] = along if i % 2 == 0 else across
+        p.mouth_width[0] = along
+        p.mouth_width[1] = across
         p.strips = lay_strips(p, strips(p, work), properties(p, work), False)
         return 0
 

@@ -1,0 +1,79 @@
+"""A net laid out by its kernels alone, before it is folded."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from fmu_src.net_capture.composition import Composition
+from fmu_src.net_capture.interface import MODEL
+from fmu_src.net_capture.planes import MASS, SHOWN
+from fmu_src.net_capture.shot import make_shot
+from orbital.kernel import kernel
+from tests.conftest import FREE
+from tests.net_capture.memory import graph_of, planes_of
+
+
+class Layer:
+    """What lays nets of one shape out: its kernels, for a record and work memory."""
+
+    def __init__(self, shape: str) -> None:
+        self.terms = MODEL.interface(FREE | {"net": shape}).terms
+        parts = Composition(MODEL, self.terms)
+        net, shot = parts.net, make_shot(parts)
+        count_of, lay, load_on, thread_of = net.count, net.lay_out, shot.load, net.thread
+
+        @kernel
+        def count(record, work):
+            return count_of(record[0], work)
+
+        @kernel
+        def lay_out(record, work):
+            lay(record[0], work)
+
+        @kernel
+        def load(record, work):
+            load_on(record[0], work)
+
+        @kernel
+        def thread(record):
+            return thread_of(record[0])
+
+        self._count, self.lay_out, self.load, self.thread = count, lay_out, load, thread
+
+    def record(self, values: Mapping[str, float]):
+        record = MODEL.interface(self.terms).make_record()
+        for name, value in values.items():
+            record[name.replace(".", "_")] = value
+        return record
+
+    def count(self, values: Mapping[str, float]) -> int:
+        return self._count(self.record(values), np.zeros(0))
+
+    def lay(self, values: Mapping[str, float]) -> "Laid":
+        record = self.record(values)
+        assert self._count(record, np.zeros(0)) == 0
+        return Laid(self, record)
+
+
+class Laid:
+    """One such net.
+
+    mass      of the net alone, by slot; `planes` have bullets and vertex too
+    slots     those that hold a node       number    of the node in a slot, -1: none
+    places    of all nodes, as the net is meant
+    """
+
+    def __init__(self, layer, record):
+        p = self.p = record[0]
+        own = 12 * int(p["strips"] + p["node_slots"])
+        self.work = np.zeros(40 * int(p["node_slots"]) + 12 * int(p["strips"]) + 8 * int(p["net_nodes"]) + own)
+        layer.lay_out(record, self.work)
+        self.thread = layer.thread(record)
+        self.planes = planes_of(p, self.work, layer.terms)
+        self.mass = self.planes[MASS].copy()
+        layer.load(record, self.work)
+        self.graph = graph_of(p, self.work, layer.terms)
+        self.slots = np.flatnonzero(self.mass > 0.0)
+        self.number = np.full(int(p["node_slots"]), -1)
+        self.number[self.slots] = np.arange(len(self.slots))
+        self.places = self.planes[SHOWN : SHOWN + 3].T[self.slots]
