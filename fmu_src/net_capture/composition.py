@@ -8,7 +8,9 @@ from typing import Any
 
 from fmu_src import tables
 from fmu_src.interface import Model, Term
+from fmu_src.net_capture.graph import make_graph
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
+from fmu_src.net_capture.rigging import riggings
 from orbital.kernel import kernel
 
 
@@ -34,7 +36,7 @@ class Composition:
     memory       kernels that find what lies in the work memory
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, folding, target, contact, closing, tether, pulls, pace, scheme
+    gravity, net, rigging, graph, folding, target, contact, closing, tether, pulls, pace, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -54,6 +56,8 @@ class Composition:
         self.gravity = self._make("gravity")
         self.rouse, self.meeting = needs.make_rouse(self), traits.make_meeting(self)
         self.net, self.folding = self._make("net"), self._make("folding")
+        self.rigging = [self._make(group) for group in riggings() if group in terms]
+        self.graph = make_graph(self)
         self.target = self._make("target")
         self.contact = self._make("contact")
         self.closing, self.tether = self._make("closing"), self._make("tether")

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.interface import GROUPS, NETS
+from fmu_src.net_capture.interface import GROUPS, NETS, RIGGINGS, rigged_of
 from fmu_src.net_capture.nets import Hanging
 from fmu_src.net_capture.shot import opening_distance
 from fmu_src.net_capture.substeps import COUNT
@@ -54,9 +54,28 @@ def open_loop(values: Values, terms: Mapping[str, str]) -> float:
     return float((side + values["closing.lock_length"]) / (values["closing.rings"] + 1))
 
 
+def bullet_thread(values: Values, terms: Mapping[str, str]) -> float:
+    """Mass [kg] of the thread that hangs on a bullet: of the net's corner, or of its lead."""
+    led = [part.checks.corner for part in rigged_of(terms).values() if part.checks.corner is not None]
+    return led[0](values, NETS[terms["net"]].checks) if led else hanging(values, terms).corner
+
+
 def catch_mass(values: Values) -> float:
-    """Mass [kg] of net, bullets and vertex."""
-    return values["net.mass"] + 4.0 * values["bullets.mass"] + values["vertex.mass"]
+    """Mass [kg] of net, what is rigged to it, bullets and vertex."""
+    rigged = sum(rigged_masses(values).values())
+    return values["net.mass"] + rigged + 4.0 * values["bullets.mass"] + values["vertex.mass"]
+
+
+def rigged_masses(values: Values) -> dict[str, float]:
+    """Mass [kg] of each thing that these values rig to the net, by the name of its group."""
+    there = {n: part for n, part in RIGGINGS.items() if any(v.name in values for v in part.variables)}
+    nets = [
+        part for part in NETS.values() if all(v.name in values for v in part.variables if v.causality == "parameter")
+    ]
+    if not there or not nets:
+        return {}
+    net = max(nets, key=lambda part: len(part.variables)).checks
+    return {name: part.checks.mass(values, net) for name, part in there.items()}
 
 
 def substeps(values: Values, terms: Mapping[str, str]) -> tuple[float, float]:
@@ -96,7 +115,18 @@ def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     inside, edge, corner = hanging(values, terms)
     yield Implied("knot.mass", "mass of a knot inside the net", inside, "kg")
     yield Implied("edge.mass", "mass of a knot on its edge", edge, "kg")
-    yield Implied("corner.mass", "mass of a corner, with its bullet", corner + values["bullets.mass"], "kg")
+    if "leads" in terms:
+        yield Implied("corner.mass", "thread on a corner of the net, without its lead", corner, "kg")
+        yield Implied(
+            "bullet.mass",
+            "a bullet with half a piece of its lead",
+            bullet_thread(values, terms) + values["bullets.mass"],
+            "kg",
+        )
+    else:
+        yield Implied("corner.mass", "mass of a corner, with its bullet", corner + values["bullets.mass"], "kg")
+    for name, mass in rigged_masses(values).items():
+        yield Implied(f"{name}.mass", f"mass of all that [{name}] brings", mass, "kg")
     if values["net.segments"] > 1:
         piece = thread_mass(values, terms) / values["net.segments"]
         yield Implied("thread_node.mass", "mass of a node within a thread", piece, "kg")
@@ -105,7 +135,7 @@ def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
 
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the corners, which alone leave at the bullets' speed; relative to the chaser before the shot."""
-    corners = 4.0 * (hanging(values, terms).corner + values["bullets.mass"])
+    corners = 4.0 * (bullet_thread(values, terms) + values["bullets.mass"])
     speed, angle = values["bullets.speed"], values["bullets.angle"]
     momentum = corners * speed * math.cos(angle)
     yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")

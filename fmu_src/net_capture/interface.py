@@ -16,6 +16,7 @@ from fmu_src.net_capture.outcome import OUTCOMES
 from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.precision import PRECISION
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.rigging import riggings
 from fmu_src.net_capture.schemes import schemes
 from fmu_src.net_capture.shapes import shapes
 from fmu_src.net_capture.stepping import STEP_TOO_SMALL
@@ -143,6 +144,9 @@ BASE = (
     count("net.threads", "threads of the net, after cutting into segments"),
     # what the kernels keep
     count("net.corners", "corners of the mouth", "state"),
+    count("net.strips", "rows of parallel threads of the net itself", "state"),
+    count("knot_slots", "slots up to the last of the net's knots", "state"),
+    state("rim_mesh", "m", "least distance of two knots of the rim, as meant"),
     count("net.faces", "faces between the threads", "state"),
     count("rim_nodes", "nodes of the mouth's rim", "state"),
     count("apex_nodes", "nodes that share the vertex", "state"),
@@ -221,13 +225,26 @@ class NodeTerms(Mapping[str, Term]):
 
 def capacity_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
     """The capacity that a net's mesh asks for, "1" where there is no such net."""
-    return str(min(NETS[terms["net"]].checks.nodes(parameters), MOST_NODES))
+    rigged = sum(part.checks.nodes(parameters) for part in rigged_of(terms).values())
+    return str(min(NETS[terms["net"]].checks.nodes(parameters) + rigged, MOST_NODES))
 
 
-NETS, TARGETS, CONTACTS, CLOSINGS = nets(), shapes(), contacts(), closings()
+def rigged_of(terms: Mapping[str, str]) -> dict[str, Term]:
+    """What is rigged to a net with these terms, by the name of its group."""
+    return {name: part for name, part in RIGGINGS.items() if name in terms}
+
+
+def _rigged(part: Term) -> Group:
+    """A group of one term, which the scene need not name where it has the table."""
+    return Group({RIGGED: part}, selector="kind", optional=True, follows=lambda terms, values: RIGGED)
+
+
+RIGGED = "plain"
+NETS, RIGGINGS, TARGETS, CONTACTS, CLOSINGS = nets(), riggings(), shapes(), contacts(), closings()
 
 GROUPS = {
     "net": Group(NETS, selector="shape"),
+    **{name: _rigged(part) for name, part in RIGGINGS.items()},
     "folding": Group(foldings(), selector="pattern", default="flat"),
     "gravity": Group(gravities()),
     "solver": Group(schemes(), selector="scheme", default="leapfrog"),

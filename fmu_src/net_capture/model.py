@@ -49,7 +49,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     planes, per_double = parts.planes, parts.per_double
     node_plane, properties = parts.memory.node_plane, parts.memory.properties
 
-    net, folding, gravity, scheme = parts.net, parts.folding, parts.gravity, parts.scheme
+    graph, folding, gravity, scheme = parts.graph, parts.folding, parts.gravity, parts.scheme
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
     shot, measures = make_shot(parts), quality.make_quality(parts)
     choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
@@ -66,7 +66,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
         Checked  tests/net_capture/test_free_flight.py
         """
-        fault = net.count(p, work)
+        fault = graph.count(p, work)
         if fault != 0:
             return fault
         if has_nodes:
@@ -252,7 +252,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 return fault
         if has_contact:
             limit_way(p)
-        net.lay_out(p, work)
+        graph.lay_out(p, work)
         complete_strips(p, properties(p, work))
         shot.load(p, work)
         folding.fold(p, work)

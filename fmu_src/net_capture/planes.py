@@ -8,9 +8,9 @@ Threads stand in *strips*: one joins the nodes a + j and b + j, for each bit j t
 loop runs over slices with unit stride and a net of any shape is data. A strip has one rest length, stiffness, damping
 and mass of a thread, and each of its ends lies in one row; a thread unlike all others is a strip of one lane.
 
-Beside them the graph says which nodes make the mouth's rim, in order, which of these are corners with a bullet, which
-hold the vertex, and which are the four corners of each face (the last twice for a triangle): all that asks for the
-mouth, the hull or a picture looks there, and knows no shape.
+Beside them the graph says which nodes make the mouth's rim, in order, which of these are its corners, which nodes are
+bullets, which hold the vertex, and which are the four corners of each face (the last twice for a triangle): all that
+asks for the mouth, the hull or a picture looks there, and knows no shape.
 """
 
 from __future__ import annotations
@@ -49,7 +49,8 @@ class Memory(NamedTuple):
     strips(p, work)                strip table, STRIP_WORDS whole numbers each
     properties(p, work)            their properties, STRIP_NUMBERS numbers each
     rim(p, work)                   nodes of the rim in order, `rim_nodes` of them
-    corners(p, work)               numbers of the rim's nodes with bullets, in order
+    corners(p, work)               numbers of the rim's nodes that are corners of the mouth, in order
+    bullets(p, work)               nodes that are bullets, one for each corner
     apex(p, work)                  nodes that share the vertex
     faces(p, work)                 nodes of every face, FACE_WORDS each
     own(p, work)                   the scheme's own, `scheme_words` whole numbers
@@ -61,6 +62,7 @@ class Memory(NamedTuple):
     properties: Any
     rim: Any
     corners: Any
+    bullets: Any
     apex: Any
     faces: Any
     own: Any
@@ -147,12 +149,20 @@ def make_memory(precision: str, planes: int) -> Memory:
         return whole(work)[corners_at(p) : corners_at(p) + p.net_corners]
 
     @view
+    def bullets(p, work):
+        """Nodes that are bullets, one for each corner.
+
+        Checked  tests/net_capture/test_nets.py
+        """
+        return whole(work)[corners_at(p) + p.net_corners : corners_at(p) + 2 * p.net_corners]
+
+    @view
     def apex(p, work):
         """Nodes that share the vertex.
 
         Checked  tests/net_capture/test_nets.py
         """
-        return whole(work)[corners_at(p) + p.net_corners : corners_at(p) + p.net_corners + p.apex_nodes]
+        return whole(work)[corners_at(p) + 2 * p.net_corners : corners_at(p) + 2 * p.net_corners + p.apex_nodes]
 
     @kernel
     def faces_at(p):
@@ -160,7 +170,7 @@ def make_memory(precision: str, planes: int) -> Memory:
 
         Checked  tests/net_capture/test_nets.py
         """
-        return corners_at(p) + p.net_corners + p.apex_nodes
+        return corners_at(p) + 2 * p.net_corners + p.apex_nodes
 
     @view
     def faces(p, work):
@@ -178,7 +188,7 @@ def make_memory(precision: str, planes: int) -> Memory:
         """
         return whole(work)[faces_at(p) + FACE_WORDS * p.net_faces : p.work_size]
 
-    return Memory(node_plane, strips, properties, rim, corners, apex, faces, own, reals)
+    return Memory(node_plane, strips, properties, rim, corners, bullets, apex, faces, own, reals)
 
 
 @kernel
@@ -187,7 +197,7 @@ def work_size(p, planes, per_double, own_words):
 
     Checked  tests/net_capture/test_nets.py
     """
-    graph = (STRIP_WORDS + STRIP_NUMBERS) * p.strips + p.rim_nodes + p.net_corners + p.apex_nodes
+    graph = (STRIP_WORDS + STRIP_NUMBERS) * p.strips + p.rim_nodes + 2 * p.net_corners + p.apex_nodes
     return planes * p.node_slots // per_double + graph + FACE_WORDS * p.net_faces + own_words
 
 

@@ -16,13 +16,13 @@ class Quality(NamedTuple):
     """Kernels of the measures.
 
     start_mouth(p)                     nothing measured yet
-    mouth_area(p, work)                area of the polygon of the bullets, on the plane normal to the shot [m2]
+    mouth_area(p, work)                area of the polygon of the mouth's corners, on the plane normal to the shot [m2]
     watch_mouth(p, work, now, span)    follow the opening: largest area and when, first time above 80 %, time above
     measure_mouth(p, work)             present area and depth
     measure_net(p, work)               mass properties, kinetic energy and momenta of net, bullets and vertex
     show_points(p, work)               bullets and vertex
     carry(p, work, ahead)              the positions shown by a time on, less than a substep [s]
-    beyond(p, work, place)             how far the rearmost bullet is beyond a point, along the shot [m]
+    beyond(p, work, place)             how far the rearmost corner is beyond a point, along the shot [m]
     """
 
     start_mouth: Any
@@ -76,10 +76,11 @@ def make_quality(composition: Any) -> Quality:
     """Kernels of the measures of the composition's net."""
     memory = composition.memory
     node_plane, rim, corners, apex = memory.node_plane, memory.rim, memory.corners, memory.apex
+    bullets = memory.bullets
 
     @kernel
-    def bullet(p, work, corner):
-        """Node that carries a bullet.
+    def corner_node(p, work, corner):
+        """Node of a corner of the mouth.
 
         Checked  tests/net_capture/test_quality.py
         """
@@ -87,11 +88,11 @@ def make_quality(composition: Any) -> Quality:
 
     @kernel
     def across(p, work, corner, axis):
-        """Coordinate of a bullet along one of the shot's axes, from the frame's origin [m].
+        """Coordinate of a corner of the mouth along one of the shot's axes, from the frame's origin [m].
 
         Checked  tests/net_capture/test_quality.py
         """
-        node = bullet(p, work, corner)
+        node = corner_node(p, work, corner)
         at = 0.0
         for i in range(3):
             at += node_plane(p, work, SHOWN + i)[node] * p.axes[3 * axis + i]
@@ -110,12 +111,12 @@ def make_quality(composition: Any) -> Quality:
         return 0.5 * abs(twice)
 
     @kernel
-    def bullet_depth(p, work, corner):
-        """How far a bullet is from the muzzle along the shot [m].
+    def corner_depth(p, work, corner):
+        """How far a corner of the mouth is from the muzzle along the shot [m].
 
         Checked  tests/net_capture/test_quality.py
         """
-        node = bullet(p, work, corner)
+        node = corner_node(p, work, corner)
         depth = 0.0
         for axis in range(3):
             depth += (node_plane(p, work, SHOWN + axis)[node] - p.muzzle[axis]) * p.axes[6 + axis]
@@ -123,7 +124,7 @@ def make_quality(composition: Any) -> Quality:
 
     @kernel
     def beyond(p, work, place):
-        """How far the rearmost bullet is beyond a point, along the shot [m].
+        """How far the rearmost corner of the mouth is beyond a point, along the shot [m].
 
         Checked  tests/net_capture/test_quality.py
         """
@@ -132,7 +133,7 @@ def make_quality(composition: Any) -> Quality:
             at += (place[axis] - p.muzzle[axis]) * p.axes[6 + axis]
         least = math.inf
         for corner in range(p.net_corners):
-            least = min(least, bullet_depth(p, work, corner))
+            least = min(least, corner_depth(p, work, corner))
         return least - at
 
     @kernel
@@ -160,7 +161,7 @@ def make_quality(composition: Any) -> Quality:
         p.mouth_area_ratio = p.mouth_area / p.mouth_flat_area
         depth = 0.0
         for corner in range(p.net_corners):
-            depth += bullet_depth(p, work, corner) / p.net_corners
+            depth += corner_depth(p, work, corner) / p.net_corners
         p.mouth_depth = depth
 
     @kernel
@@ -231,7 +232,7 @@ def make_quality(composition: Any) -> Quality:
         Checked  tests/net_capture/test_quality.py
         """
         for corner in range(p.net_corners):
-            node = bullet(p, work, corner)
+            node = bullets(p, work)[corner]
             for axis in range(3):
                 p.bullet_position[corner, axis] = node_plane(p, work, SHOWN + axis)[node]
                 p.bullet_velocity[corner, axis] = node_plane(p, work, SHOWN_RATE + axis)[node]

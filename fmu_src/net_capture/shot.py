@@ -84,7 +84,7 @@ def aim(p):
 def make_shot(composition: Any) -> Shot:
     """Kernels of the shot of the composition's net."""
     memory = composition.memory
-    node_plane, rim, corners, apex = memory.node_plane, memory.rim, memory.corners, memory.apex
+    node_plane, bullets, apex = memory.node_plane, memory.bullets, memory.apex
 
     @kernel
     def load(p, work):
@@ -95,7 +95,7 @@ def make_shot(composition: Any) -> Shot:
         mass = node_plane(p, work, MASS)
         inverse = node_plane(p, work, INVERSE_MASS)
         for corner in range(p.net_corners):
-            mass[rim(p, work)[corners(p, work)[corner]]] += p.bullets_mass
+            mass[bullets(p, work)[corner]] += p.bullets_mass
         for i in range(p.apex_nodes):
             mass[apex(p, work)[i]] += p.vertex_mass / p.apex_nodes
         for i in range(p.node_slots):
@@ -122,7 +122,7 @@ def make_shot(composition: Any) -> Shot:
 
     @kernel
     def shoot(p, work):
-        """Every node moves with the chaser, and a bullet away from it, along the diagonal to its corner.
+        """Every node moves with the chaser, and a bullet away from it, along the diagonal to its place in the open net.
 
         Checked  tests/net_capture/test_free_flight.py
         """
@@ -134,7 +134,7 @@ def make_shot(composition: Any) -> Shot:
         forward = p.bullets_speed * math.cos(p.bullets_angle)
         outward = p.bullets_speed * math.sin(p.bullets_angle)
         for corner in range(p.net_corners):
-            node = rim(p, work)[corners(p, work)[corner]]
+            node = bullets(p, work)[corner]
             along = 1.0 * node_plane(p, work, SHOWN)[node]
             across = 1.0 * node_plane(p, work, SHOWN + 1)[node]
             diagonal = math.sqrt(along * along + across * across)

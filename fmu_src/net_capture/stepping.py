@@ -32,7 +32,8 @@ def make_choose_substep(composition: Any) -> Any:
     Checked  tests/net_capture/test_step.py, tests/net_capture/test_formulas.py
     """
     has_closing = "closing" in composition.terms
-    thread, needs = composition.net.thread, composition.needs
+    thread, needs, rates = composition.net.thread, composition.needs, composition.graph.rates
+    has_rig, longest, accurate = rates is not None, needs.longest_step, needs.accurate_step
     substep_limits = formulas.make_substep_limits(needs.longest_step, needs.accurate_step)
     step_too_small = composition.code(STEP_TOO_SMALL.name)
 
@@ -52,6 +53,11 @@ def make_choose_substep(composition: Any) -> Any:
             cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
             dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.cord_mass)
         bound, step = substep_limits(stiffness, damping, node, cord, dashpot, p.bullets_mass, rings)
+        if has_rig:
+            stiff, damped = rates(p, stiffness, damping, node)
+            if stiff > 0.0:
+                bound = min(bound, longest(stiff, damped))
+                step = min(step, accurate(stiff, damped))
         if p.solver_step_ratio > 0.0:
             step = p.solver_step_ratio * bound
         p.solver_stability_bound = bound

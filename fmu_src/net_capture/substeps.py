@@ -7,9 +7,10 @@ from typing import Any
 
 from fmu_src.implied import formula
 from fmu_src.net_capture import formulas
+from fmu_src.net_capture.rigging import riggings
 
 Values = Mapping[str, float]
-COUNT = ("net", "solver", "closing")
+COUNT = ("net", *riggings(), "solver", "closing")
 """Groups on which a substep hangs."""
 
 
@@ -33,14 +34,18 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
         cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, moved)
     needs = parts["solver"].checks
-    limits = formulas.make_substep_limits(formula(needs.longest_step), formula(needs.accurate_step))
+    longest, accurate = formula(needs.longest_step), formula(needs.accurate_step)
+    limits = formulas.make_substep_limits(longest, accurate)
+    of_net = (pieces * stiffness, pieces * dashpot, 2.0 * thread / pieces)
     found: tuple[float, float] = formula(limits)(
-        pieces * stiffness,
-        pieces * dashpot,
-        2.0 * thread / pieces,
+        *of_net,
         cord,
         cord_dashpot,
         values["bullets.mass"],
         rings,
     )
+    rigged = [parts[name].checks.rates(values, net, *of_net) for name in riggings() if name in parts]
+    stiff, damped = (max(rates) for rates in zip((0.0, 0.0), *rigged, strict=True))
+    if stiff > 0.0:
+        found = min(found[0], longest(stiff, damped)), min(found[1], accurate(stiff, damped))
     return found

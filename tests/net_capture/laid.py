@@ -8,6 +8,7 @@ from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.planes import MASS, SHOWN
 from fmu_src.net_capture.shot import make_shot
+from fmu_src.net_capture.stepping import make_choose_substep
 from orbital.kernel import kernel
 from tests.conftest import FREE
 from tests.net_capture.memory import graph_of, planes_of
@@ -16,11 +17,11 @@ from tests.net_capture.memory import graph_of, planes_of
 class Layer:
     """What lays nets of one shape out: its kernels, for a record and work memory."""
 
-    def __init__(self, shape: str) -> None:
-        self.terms = MODEL.interface(FREE | {"net": shape}).terms
+    def __init__(self, shape: str, **rigged: str) -> None:
+        self.terms = MODEL.interface(FREE | {"net": shape} | rigged).terms
         parts = Composition(MODEL, self.terms)
-        net, shot = parts.net, make_shot(parts)
-        count_of, lay, load_on, thread_of = net.count, net.lay_out, shot.load, net.thread
+        graph, shot = parts.graph, make_shot(parts)
+        count_of, lay, load_on, thread_of = graph.count, graph.lay_out, shot.load, parts.net.thread
 
         @kernel
         def count(record, work):
@@ -38,7 +39,14 @@ class Layer:
         def thread(record):
             return thread_of(record[0])
 
-        self._count, self.lay_out, self.load, self.thread = count, lay_out, load, thread
+        choose = make_choose_substep(parts)
+
+        @kernel
+        def bound(record):
+            fault = choose(record[0])
+            return record[0].solver_stability_bound if fault == 0 else -1.0
+
+        self._count, self.lay_out, self.load, self.thread, self.bound = count, lay_out, load, thread, bound
 
     def record(self, values: Mapping[str, float]):
         record = MODEL.interface(self.terms).make_record()
@@ -61,6 +69,7 @@ class Laid:
     mass      of the net alone, by slot; `planes` have bullets and vertex too
     slots     those that hold a node       number    of the node in a slot, -1: none
     places    of all nodes, as the net is meant
+    bound     guaranteed stability bound of the explicit step [s]
     """
 
     def __init__(self, layer, record):
@@ -68,7 +77,7 @@ class Laid:
         own = 12 * int(p["strips"] + p["node_slots"])
         self.work = np.zeros(40 * int(p["node_slots"]) + 12 * int(p["strips"]) + 8 * int(p["net_nodes"]) + own)
         layer.lay_out(record, self.work)
-        self.thread = layer.thread(record)
+        self.thread, self.bound = layer.thread(record), layer.bound(record)
         self.planes = planes_of(p, self.work, layer.terms)
         self.mass = self.planes[MASS].copy()
         layer.load(record, self.work)

@@ -51,11 +51,11 @@ class Bench:
         self.parts = Composition(MODEL, interface.terms)
         self.record = interface.make_record().view(np.recarray)
         self.p = self.record[0]
-        assert self.parts.net.count(self.p, np.zeros(0)) == 0
+        assert self.parts.graph.count(self.p, np.zeros(0)) == 0
         own = self.parts.scheme.own_words(self.p) + self.parts.traits.masks * self.p.strips
         self.work = np.zeros(work_size(self.p, self.parts.planes, self.parts.per_double, own))
         self.p.work_size = self.work.size
-        self.parts.net.lay_out(self.p, self.work)
+        self.parts.graph.lay_out(self.p, self.work)
 
 
 class Graph(NamedTuple):
@@ -64,7 +64,7 @@ class Graph(NamedTuple):
     ends         of every thread (n, 2), in the order of their numbers
     length, stiffness, damping, mass   of every thread (n,)
     strips       how many threads each strip has
-    rim, corners, apex                 nodes of the rim, the rim's numbers of the bullets, the nodes of the vertex
+    rim, corners, bullets, apex        nodes of the rim, its numbers of the corners, the bullets, nodes of the vertex
     faces        (n, 4)
     rest         what follows: words of the scheme
     """
@@ -77,6 +77,7 @@ class Graph(NamedTuple):
     strips: np.ndarray
     rim: np.ndarray
     corners: np.ndarray
+    bullets: np.ndarray
     apex: np.ndarray
     faces: np.ndarray
     rest: np.ndarray
@@ -90,8 +91,8 @@ def graph_of(p, work, terms):
     """The graph in a record's work memory, strips taken apart into threads."""
     at = planes_of(p, work, terms).nbytes // 8
     parts = []
-    counts = ("strips", "strips", "rim_nodes", "net_corners", "apex_nodes", "net_faces")
-    widths = (STRIP_WORDS, STRIP_NUMBERS, 1, 1, 1, FACE_WORDS)
+    counts = ("strips", "strips", "rim_nodes", "net_corners", "net_corners", "apex_nodes", "net_faces")
+    widths = (STRIP_WORDS, STRIP_NUMBERS, 1, 1, 1, 1, FACE_WORDS)
     for name, width in zip(counts, widths, strict=True):
         parts.append(work[at : at + width * int(p[name])].reshape(-1, width))
         at += parts[-1].size
@@ -104,9 +105,9 @@ def graph_of(p, work, terms):
         lengths.append(len(here))
         first.append(number)
     assert first == [0, *np.cumsum(lengths)[:-1]]
-    pieces = (part.ravel() for part in words[2:5])
+    pieces = (part.ravel() for part in words[2:6])
     return Graph(
-        np.array(ends), *np.array(numbers).T[:SQUARED], np.array(lengths), *pieces, words[5], work[at:].view(np.int64)
+        np.array(ends), *np.array(numbers).T[:SQUARED], np.array(lengths), *pieces, words[6], work[at:].view(np.int64)
     )
 
 

@@ -10,12 +10,9 @@ import pytest
 
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.nets.pyramid import pyramid_length
-from fmu_src.net_capture.planes import MASS, SHOWN
-from fmu_src.net_capture.shot import make_shot
-from orbital.kernel import kernel
+from fmu_src.net_capture.planes import MASS
 from tests.conftest import FREE
 from tests.net_capture.laid import Layer
 from tests.validation import closed_form

@@ -96,7 +96,7 @@ def pair(request, layers):
 
 
 def test_nodes_and_threads_are_those_drawn(pair):
-    _, values, (places, threads, _), laid = pair
+    _, _, (places, threads, _), laid = pair
     assert laid.p["net_nodes"] == len(laid.slots) == len(places)
     np.testing.assert_allclose(laid.places, places, rtol=0.0, atol=1e-12)
     ends = laid.number[laid.graph.ends]
@@ -111,7 +111,7 @@ def test_nodes_and_threads_are_those_drawn(pair):
 
 
 def test_what_it_says_before_it_is_laid_out(pair):
-    name, values, (places, threads, knots), laid = pair
+    name, values, (places, threads, knots), _ = pair
     said, every = MODEL.groups["net"].terms[shape_of(name)].checks, all_values(shape_of(name), values)
     lengths = [np.linalg.norm(places[a] - places[b]) for a, b in threads]
     assert said.total(every) == pytest.approx(sum(lengths), rel=1e-12)
@@ -159,7 +159,7 @@ def test_what_hangs_on_its_knots_and_how_stiff_it_is(pair):
 
 
 def test_faces_rim_and_vertex(pair):
-    name, values, (places, _, knots), laid = pair
+    _, values, (places, _, knots), laid = pair
     rim = laid.number[laid.graph.rim].tolist()
     assert rim == [knots[0][j] for j in sorted(knots[0])]
     corners = places[laid.number[laid.graph.rim[laid.graph.corners]]]

@@ -19,15 +19,16 @@ class Net(NamedTuple):
     """Kernels of a net.
 
     count(p, work) -> fault  how many of everything there are, and the size of the mouth, into the record
-    lay_out(p, work)         write the graph, the masses of its threads, and every node's place in the net as it is
-                             meant to open, into the planes of what is shown: along the mouth's two axes and along
-                             the shot [m]
+    lay_out(p, work)         write strips, corners, apex and faces, and every node's place in the net as it is meant to
+                             open, into the planes of what is shown: along the mouth's two axes and along the shot [m]
+    rim_node(p, n)           the n-th node of the rim
     thread(p)                stiffness [N/m], dashpot [N s/m] of the stiffest piece of thread, and mass of a node
                              between two threads like it [kg]: what the bound of the substep is reckoned from
     """
 
     count: Any
     lay_out: Any
+    rim_node: Any
     thread: Any
 
 

@@ -24,7 +24,6 @@ from fmu_src.net_capture.nets.weave import (
     TOO_FINE,
     add_strip,
     first_lanes,
-    make_lay_masses,
     make_thread,
 )
 from fmu_src.net_capture.planes import FACE_WORDS, LONGEST_ROW, SHOWN
@@ -95,10 +94,9 @@ def make_grid(composition: Any, grid: Grid) -> Net:
     """Kernels of a net of that grid."""
     memory, width = composition.memory, composition.lanes.width
     node_plane, strips, properties = memory.node_plane, memory.strips, memory.properties
-    rim, corners, apex, faces = memory.rim, memory.corners, memory.apex, memory.faces
+    corners, apex, faces = memory.corners, memory.apex, memory.faces
     sides, total, length, depth = grid.sides, grid.total, grid.length, grid.depth
     across_fault, along_fault = (composition.code(f"{NO_WHOLE_MESHES}_{name}") for name in grid.blames)
-    lay_masses = make_lay_masses(memory)
     too_fine, fold_too_large = composition.code(TOO_FINE.name), composition.code(FOLD_TOO_LARGE.name)
 
     @kernel
@@ -142,6 +140,8 @@ def make_grid(composition: Any, grid: Grid) -> Net:
         lines = rows + (pieces - 1) * (rows + rows - 1)
         p.node_slots = lines * p.grid_split * p.row_pitch
         p.rim_nodes = 2 * (rows + columns) - 4
+        p.rim_mesh = p.net_mesh
+        p.knot_slots = rows * p.grid_split * p.row_pitch
         p.net_corners = 4
         p.apex_nodes = 4
         p.net_faces = (rows - 1) * (columns - 1)
@@ -225,13 +225,13 @@ def make_grid(composition: Any, grid: Grid) -> Net:
 
     @kernel
     def lay_out(p, work):
-        """Write strips, masses, rim, apex and faces, and every place in the net as meant.
+        """Write strips, corners, apex and faces, and every place in the net as meant.
 
         Checked  tests/net_capture/test_nets.py
         """
         lay_strips(p, strips(p, work), properties(p, work), True)
-        lay_masses(p, work)
-        lay_rim(p, work)
+        for i in range(4):
+            corners(p, work)[i] = (i + 1) // 2 * (p.grid_columns - 1) + i // 2 * (p.grid_rows - 1)
         last = p.grid_columns - 1
         for i in range(4):
             row = (p.grid_rows - 1 + i // 2) // 2 if p.grid_rows % 2 == 0 else p.grid_rows // 2
@@ -248,25 +248,20 @@ def make_grid(composition: Any, grid: Grid) -> Net:
         place(p, work)
 
     @kernel
-    def lay_rim(p, work):
-        """The edge of the grid, once round from knot (0, 0) along its row.
+    def rim_node(p, n):
+        """The n-th node of the grid's edge, once round from knot (0, 0) along its row.
 
         Checked  tests/net_capture/test_nets.py
         """
-        nodes = rim(p, work)
         columns = p.grid_columns - 1
         rows = p.grid_rows - 1
-        for n in range(p.rim_nodes):
-            if n < columns:
-                nodes[n] = line_node(p, 0, n)
-            elif n < columns + rows:
-                nodes[n] = line_node(p, n - columns, columns)
-            elif n < 2 * columns + rows:
-                nodes[n] = line_node(p, rows, 2 * columns + rows - n)
-            else:
-                nodes[n] = line_node(p, 2 * (columns + rows) - n, 0)
-        for i in range(4):
-            corners(p, work)[i] = (i + 1) // 2 * columns + i // 2 * rows
+        if n < columns:
+            return line_node(p, 0, n)
+        if n < columns + rows:
+            return line_node(p, n - columns, columns)
+        if n < 2 * columns + rows:
+            return line_node(p, rows, 2 * columns + rows - n)
+        return line_node(p, 2 * (columns + rows) - n, 0)
 
     @kernel
     def put(p, work, node, row, column, behind):
@@ -301,7 +296,7 @@ def make_grid(composition: Any, grid: Grid) -> Net:
                         node = line_node(p, line_of(p, i, 1, s), j)
                         put(p, work, node, i + share, j, here + share * (there - here))
 
-    return Net(count, lay_out, make_thread(total, mesh))
+    return Net(count, lay_out, rim_node, make_thread(total, mesh))
 
 
 @kernel

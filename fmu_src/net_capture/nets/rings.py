@@ -32,7 +32,7 @@ from fmu_src.net_capture.nets.ring_measures import (
     next_every,
     record_of,
 )
-from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE, add_strip, make_lay_masses, make_thread
+from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE, add_strip, make_thread
 from fmu_src.net_capture.planes import FACE_WORDS, LONGEST_ROW, SHOWN
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import parameter
@@ -64,11 +64,10 @@ def make_rings(composition: Any, profile: Profile) -> Net:
     """Kernels of a net of that profile."""
     memory, width = composition.memory, composition.lanes.width
     node_plane, strips, properties = memory.node_plane, memory.strips, memory.properties
-    rim, corners, apex, faces = memory.rim, memory.corners, memory.apex, memory.faces
+    corners, apex, faces = memory.corners, memory.apex, memory.faces
     rings, has_tip, ring = profile.rings, profile.has_tip, profile.ring
     measures = make_measures(kernel, chord, next_every, profile)
     every_of, along_of, inward_of, total = measures.every_of, measures.along_of, measures.inward_of, measures.total
-    lay_masses = make_lay_masses(memory)
     uneven, too_fine, fold_too_wide = (composition.code(f.name) for f in (UNEVEN, TOO_FINE, FOLD_TOO_WIDE))
 
     @kernel
@@ -110,6 +109,8 @@ def make_rings(composition: Any, profile: Profile) -> Net:
         lines = (p.grid_rows + tip) + (pieces - 1) * 2 * p.grid_rows
         p.node_slots = lines * p.grid_split * p.row_pitch
         p.rim_nodes = meridians
+        p.rim_mesh = chord(radius, meridians, 1)
+        p.knot_slots = (p.grid_rows + tip) * p.grid_split * p.row_pitch
         p.net_corners = BULLETS
         p.apex_nodes = 1 if tip else meridians // every_of(p, p.grid_rows - 1)
         p.net_faces = quads
@@ -196,14 +197,11 @@ def make_rings(composition: Any, profile: Profile) -> Net:
 
     @kernel
     def lay_out(p, work):
-        """Write strips, masses, rim, apex and faces, and every place in the net as meant.
+        """Write strips, corners, apex and faces, and every place in the net as meant.
 
         Checked  tests/net_capture/test_rings.py
         """
         lay_strips(p, strips(p, work), properties(p, work), True)
-        lay_masses(p, work)
-        for j in range(p.rim_nodes):
-            rim(p, work)[j] = line_node(p, 0, j)
         for i in range(BULLETS):
             corners(p, work)[i] = i * (p.rim_nodes // BULLETS)
         last = p.grid_rows - 1
@@ -211,6 +209,14 @@ def make_rings(composition: Any, profile: Profile) -> Net:
             apex(p, work)[k] = line_node(p, last + 1, 0) if has_tip(p) else line_node(p, last, k * every_of(p, last))
         lay_faces(p, work)
         place(p, work)
+
+    @kernel
+    def rim_node(p, n):
+        """The n-th node of the first ring.
+
+        Checked  tests/net_capture/test_rings.py
+        """
+        return line_node(p, 0, n)
 
     @kernel
     def lay_faces(p, work):
@@ -285,7 +291,7 @@ def make_rings(composition: Any, profile: Profile) -> Net:
                         node = line_node(p, line_of(p, i, inward, piece), j)
                         put_between(p, work, node, line_node(p, i, j), last, share)
 
-    return Net(count, lay_out, make_thread(total, measures.shortest))
+    return Net(count, lay_out, rim_node, make_thread(total, measures.shortest))
 
 
 def make_refuses(profile: Profile) -> Any:

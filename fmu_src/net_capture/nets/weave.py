@@ -12,7 +12,6 @@ from fmu_src.net_capture.planes import (
     LANES,
     LENGTH,
     LONGEST_ROW,
-    MASS,
     STIFFNESS,
     STRIP_NUMBERS,
     STRIP_WORDS,
@@ -73,29 +72,6 @@ def first_lanes(count):
     Checked  tests/net_capture/test_nets.py
     """
     return -1 if count == LONGEST_ROW else (1 << count) - 1
-
-
-def make_lay_masses(memory: Any) -> Any:
-    """Kernel `lay_masses(p, work)`: half of every thread to each of its nodes [kg]."""
-    node_plane, strips, properties = memory.node_plane, memory.strips, memory.properties
-
-    @kernel
-    def lay_masses(p, work):
-        """Half of every thread to each of its nodes [kg].
-
-        Checked  tests/net_capture/test_nets.py
-        """
-        mass = node_plane(p, work, MASS)
-        table = strips(p, work)
-        numbers = properties(p, work)
-        for q in range(p.strips):
-            half = 0.5 * numbers[STRIP_NUMBERS * q + THREAD_MASS]
-            for lane in range(LONGEST_ROW):
-                if (table[STRIP_WORDS * q + LANES] >> lane) & 1:
-                    mass[table[STRIP_WORDS * q + A] + lane] += half
-                    mass[table[STRIP_WORDS * q + B] + lane] += half
-
-    return lay_masses
 
 
 def make_thread(total: Any, shortest: Any) -> Any:

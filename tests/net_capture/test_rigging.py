@@ -1,0 +1,175 @@
+"""What is rigged to a net: nodes, strips, masses and bounds against some drawn by hand; a flight with all of it."""
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from fmu_src.instance import Instance
+from fmu_src.net_capture.implied import catch_mass, rows, substeps
+from fmu_src.net_capture.interface import MODEL
+from fmu_src.net_capture.planes import MASS, SHOWN
+from tests.conftest import FREE
+from tests.net_capture.laid import Layer
+
+RIGS = ("knots", "edge", "leads")
+SET = {
+    "knots": {"knots.mass": 2e-3, "knots.compliance": 4e-4},
+    "edge": {"edge.diameter": 2e-3, "edge.youngs_modulus": 5e9, "edge.density": 1140.0, "edge.damping_ratio": 0.2},
+    "leads": {
+        "leads.length": 3.0,
+        "leads.segments": 6,
+        "leads.diameter": 1.5e-3,
+        "leads.youngs_modulus": 3e9,
+        "leads.density": 970.0,
+        "leads.damping_ratio": 0.05,
+    },
+}
+NETS = {
+    "square": {"net.side": 8.0, "net.mesh": 1.0},
+    "rectangle": {"net.width": 70.0, "net.height": 3.0, "net.mesh": 1.0, "net.segments": 2},
+    "cone": {"net.radius": 6.0, "net.depth": 5.0, "net.top_radius": 2.0, "net.mesh": 1.0},
+}
+
+
+def terms_of(shape, *rigs):
+    return FREE | {"net": shape} | dict.fromkeys(rigs, "plain")
+
+
+def all_values(shape, values, *rigs):
+    """Every parameter by FMI name, these among them."""
+    variables = [v for v in MODEL.interface(terms_of(shape, *rigs)).variables if v.causality == "parameter"]
+    starts = {name: start for v in variables for name, start in zip(v.element_names(), v.starts(), strict=True)}
+    assert set(values) <= set(starts)
+    return starts | values
+
+
+def values_of(shape, *rigs):
+    found = dict(NETS[shape])
+    for rig in rigs:
+        found |= SET[rig]
+    return found
+
+
+class Rigged:
+    """A net with all three rigged to it, laid out; its threads are the net's, the rope's, and those of the leads."""
+
+    def __init__(self, shape):
+        self.shape, self.values = shape, values_of(shape, *RIGS)
+        self.layer = Layer(shape, **dict.fromkeys(RIGS, "plain"))
+        self.laid = self.layer.lay(self.values)
+        graph, self.rim = self.laid.graph, self.laid.graph.rim.tolist()
+        self.leads = slice(len(graph.ends) - 24, None)
+        self.rope = slice(len(graph.ends) - 24 - len(self.rim), len(graph.ends) - 24)
+        self.net = slice(0, self.rope.start)
+        self.places = self.laid.planes[SHOWN : SHOWN + 3].T
+
+
+@pytest.fixture(scope="module", params=NETS)
+def rigged(request):
+    return Rigged(request.param)
+
+
+def test_a_rope_runs_once_round_the_rim(rigged):
+    graph, rim, places = rigged.laid.graph, rigged.rim, rigged.places
+    ends = graph.ends[rigged.rope]
+    around = zip(rim, rim[1:] + rim[:1], strict=True)
+    assert Counter(frozenset(pair) for pair in ends.tolist()) == Counter(frozenset(pair) for pair in around)
+    lengths = np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1)
+    np.testing.assert_allclose(graph.length[rigged.rope], lengths, rtol=1e-12)
+    area = math.pi * 1e-6
+    np.testing.assert_allclose(graph.stiffness[rigged.rope], 5e9 * area / lengths, rtol=1e-12)
+    dashpot = 2.0 * 0.2 * np.sqrt(5e9 * area / lengths * 2.0 * 1140.0 * area * lengths)
+    np.testing.assert_allclose(graph.damping[rigged.rope], dashpot, rtol=1e-12)
+    np.testing.assert_allclose(graph.mass[rigged.rope], 1140.0 * area * lengths, rtol=1e-12)
+
+
+def test_a_strip_has_each_end_in_one_row(rigged):
+    graph = rigged.laid.graph
+    row = graph.ends // int(rigged.laid.p["row_pitch"])
+    starts = np.repeat(np.cumsum(graph.strips) - graph.strips, graph.strips)
+    np.testing.assert_array_equal(row, row[starts])
+
+
+def test_a_lead_hangs_on_every_corner(rigged):
+    graph, places = rigged.laid.graph, rigged.places
+    assert rigged.laid.p["net_nodes"] == len(rigged.laid.slots)
+    corners = graph.rim[graph.corners]
+    threads = [tuple(pair) for pair in graph.ends[rigged.leads].tolist()]
+    joined = Counter(node for pair in threads for node in pair)
+    for corner, bullet in zip(corners.tolist(), graph.bullets.tolist(), strict=True):
+        chain, at = [corner], corner
+        while at != bullet:
+            (at,) = (b for a, b in threads if a == at)
+            chain.append(at)
+        assert len(chain) == 7
+        assert joined[bullet] == joined[corner] == 1
+        away = places[chain] - places[corner]
+        outward = places[corner] * (1.0, 1.0, 0.0)
+        np.testing.assert_allclose(np.linalg.norm(away, axis=1), 0.5 * np.arange(7), atol=1e-12)
+        np.testing.assert_allclose(away[-1] / 3.0, outward / np.linalg.norm(outward), atol=1e-12)
+    area = math.pi / 4.0 * 1.5e-3**2
+    np.testing.assert_allclose(graph.length[rigged.leads], 0.5, rtol=1e-12)
+    np.testing.assert_allclose(graph.stiffness[rigged.leads], 3e9 * area / 0.5, rtol=1e-12)
+    np.testing.assert_allclose(graph.mass[rigged.leads], 970.0 * area * 0.5, rtol=1e-12)
+    loads = rigged.laid.planes[MASS] - rigged.laid.mass
+    assert loads[graph.bullets].tolist() == pytest.approx([0.5] * 4, rel=1e-12)
+
+
+def test_knots_weigh_and_give_way(rigged):
+    """Every node has half of each thread that ends there; a knot its own mass too, a node within a thread or on a lead
+    none. A thread and its knots in series have the sum of their compliances."""
+    graph, laid, values = rigged.laid.graph, rigged.laid, rigged.values
+    expected = np.zeros(len(laid.mass))
+    for end in graph.ends.T:
+        np.add.at(expected, end, 0.5 * graph.mass)
+    pieces = values.get("net.segments", 1)
+    inner = (len(laid.slots) - 24) - (pieces - 1) * (rigged.net.stop // pieces)
+    expected[laid.slots[:inner]] += 2e-3
+    np.testing.assert_allclose(laid.mass, expected, rtol=1e-11, atol=1e-18)
+    assert laid.mass.sum() == pytest.approx(0.33 + graph.mass[rigged.net.stop :].sum() + 2e-3 * inner, rel=1e-12)
+    whole = pieces * graph.length[rigged.net]
+    area = 0.33 / (1440.0 * graph.length[rigged.net].sum())
+    alone = 70e9 * area / whole
+    soft = graph.stiffness[rigged.net] / pieces
+    np.testing.assert_allclose(1.0 / soft, 1.0 / alone + 4e-4, rtol=1e-11)
+    dashpot = 2.0 * 0.106 * np.sqrt(soft * 2.0 * 1440.0 * area * whole)
+    np.testing.assert_allclose(graph.damping[rigged.net] / pieces, dashpot, rtol=1e-11)
+
+
+@pytest.mark.parametrize("change", [{}, {"leads.length": 0.3}, {"edge.diameter": 1e-4}, {"leads.segments": 1}], ids=str)
+def test_no_node_is_stiffer_than_the_step_allows(rigged, change):
+    """The bound is that of a node whose stiffness over mass is at least that of any node of the graph, undamped."""
+    values = rigged.values | {"knots.mass": 0.0, "knots.compliance": 0.0} | change
+    values |= dict.fromkeys(("net.damping_ratio", "edge.damping_ratio", "leads.damping_ratio"), 0.0)
+    laid = rigged.layer.lay(values)
+    stiff = np.zeros(len(laid.mass))
+    for end in laid.graph.ends.T:
+        np.add.at(stiff, end, laid.graph.stiffness)
+    most = (stiff[laid.slots] / laid.planes[MASS][laid.slots]).max()
+    told, _ = substeps(all_values(rigged.shape, values, *RIGS), terms_of(rigged.shape, *RIGS))
+    assert laid.bound == pytest.approx(told, rel=1e-12)
+    assert told <= 2.0 / math.sqrt(2.0 * most) * (1.0 + 1e-12)
+    assert told > 0.6 * 2.0 / math.sqrt(2.0 * most)
+
+
+def test_a_flight_keeps_what_it_keeps_and_is_what_was_said():
+    """With all three: momenta, the energy book within 1 % of the shot, the masses and the momentum that were told."""
+    values = values_of("square", *RIGS) | {"solver.jitter[3]": 1e-3, "shot.roll": 0.3}
+    net = Instance(MODEL, terms_of("square", *RIGS), values).initialise()
+    every, terms = all_values("square", values, *RIGS), terms_of("square", *RIGS)
+    told = {row.key: row.value for row in rows(every, terms)}
+    assert net["catch.mass"] == pytest.approx(catch_mass(every), rel=1e-12)
+    assert net["catch.mass"] == pytest.approx(told["catch.mass"], rel=1e-12)
+    moving = np.linalg.norm(net.array("catch_velocity")) * net["catch.mass"]
+    assert moving == pytest.approx(told["shot.momentum"], rel=1e-9)
+    assert net["energy.kinetic"] == pytest.approx(told["shot.energy"], rel=1e-9)
+    spin = net.array("angular_momentum").copy()
+    for _ in range(8):
+        net.step(0.5)
+        assert np.abs(net.array("momentum")).max() < 1e-12 * moving
+        assert np.abs(net.array("angular_momentum") - spin).max() < 1e-12 * moving * 20.0
+    assert abs(net["energy.remainder"]) < 0.01 * told["shot.energy"]
+    apart = net.array("bullet_position")
+    assert np.linalg.norm(apart[0] - apart[2]) > 8.0
