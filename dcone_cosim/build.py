@@ -299,7 +299,7 @@ def target_distance(
 def mouth_sides(values: Mapping[str, float], terms: Mapping[str, str]) -> list[float]:
     """Sides of the mouth as meant, each from a bullet to the next [m]; none for a net that is none of ours."""
     part = _part(NETS, terms.get("net"), values) if "net.mesh" in values else None
-    return [] if part is None else (list(part.checks.sides(values).values()) * 4)[:4]
+    return [] if part is None else (list(part.checks.sides(values).values()) * 8)[: part.checks.bullets]
 
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:

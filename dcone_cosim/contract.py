@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import count, takewhile
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from dcone_cosim.fmu.steppable import VariableInfo
@@ -202,3 +203,9 @@ def _words(row: Asked) -> str:
     unit = f" in {row.unit}" if row.unit != "1" else ""
     article = "an" if row.causality[0] in "aeiou" else "a"
     return f"{article} {row.causality}, {row.kind}{unit}"
+
+
+def bullets(names: Container[str]) -> list[int]:
+    """Numbers of the bullets whose positions are all among these names, from 1 on."""
+    of_each = (all(f"bullet[{bullet}].position[{i}]" in names for i in (1, 2, 3)) for bullet in count(1))
+    return [bullet for bullet, there in zip(count(1), takewhile(bool, of_each), strict=False) if there]

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dcone_cosim import build
+from dcone_cosim.contract import bullets
 from dcone_cosim.criteria import Criterion, Evidence, finite, rise
 from dcone_cosim.quantities import Array
 
@@ -24,8 +25,6 @@ are not here rounding is as large as a scheme's own error, and its order cannot 
 DEPTH, DEEPEST = 2e-3, 2e-2
 """How deep a node may lie below the target's surface [m]: that up to which it counts as on it, and ten times that."""
 CATCH, SHOT, STRENGTH = "catch", "shot.momentum", "thread.axial_stiffness"
-BULLETS = (1, 2, 3, 4)
-"""In their order round the mouth."""
 
 
 def criteria(evidence: Evidence) -> Iterator[Criterion]:
@@ -93,7 +92,7 @@ def _book(evidence: Evidence) -> Iterator[Criterion]:
 
 def spacing(evidence: Evidence) -> Array:
     """Distance [m] of neighbouring numbers of 24 bits at the farthest coordinate of a bullet, at each instant."""
-    names = [f"bullet[{bullet}].position[{axis}]" for bullet in BULLETS for axis in (1, 2, 3)]
+    names = [f"bullet[{bullet}].position[{axis}]" for bullet in bullets(evidence.columns) for axis in (1, 2, 3)]
     farthest = np.max([np.abs(evidence.columns[name]) for name in names], axis=0)
     return np.asarray(np.spacing(farthest.astype(np.float32)), dtype=float)
 
@@ -159,9 +158,9 @@ def _stretch(evidence: Evidence) -> Iterator[Criterion]:
 
     A side of many threads holds at least as much as one thread of its length that reaches from bullet to bullet.
     """
-    names = [f"bullet[{bullet}].position" for bullet in BULLETS]
+    names = [f"bullet[{bullet}].position" for bullet in bullets(evidence.columns)]
     sides = build.mouth_sides(evidence.values, evidence.terms)
-    if not sides or not evidence.has("energy.kinetic", *names):
+    if not names or len(sides) != len(names) or "leads" in evidence.terms or not evidence.has("energy.kinetic"):
         return
     rows = build.implied("net_capture", evidence.values, evidence.terms)
     strength = next(row.value for row in rows if row.key == STRENGTH)

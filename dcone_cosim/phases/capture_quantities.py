@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from dcone_cosim.contract import bullets
 from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import PhaseResult
 
 NAMES = ("mouth_area", "t80", "bullets", "impulse", "captured", "t_capture", "energy_book", "thread_peak")
 EACH = (1, 2, 3)
-BULLETS = (1, 2, 3, 4)
 
 
 def quantities(result: PhaseResult, parameters: Mapping[str, float], instants: Sequence[float]) -> Iterator[Quantity]:
@@ -27,8 +27,8 @@ def quantities(result: PhaseResult, parameters: Mapping[str, float], instants: S
         yield Quantity("mouth_area", "mouth area over time", curve.tolist(), "m2", flat, "the flat net's area")
     if last.get("mouth.t80", -1.0) >= 0.0:
         yield Quantity("t80", "mouth over 80 % from", [last["mouth.t80"]], "s")
-    names = [f"bullet[{b}].position[{i}]" for b in BULLETS for i in EACH]
-    if set(names) <= set(recorder.names):
+    names = [f"bullet[{b}].position[{i}]" for b in bullets(recorder.names) for i in EACH]
+    if names:
         places = np.concatenate([at(recorder, name, instants) for name in names])
         side = math.sqrt(flat)
         yield Quantity("bullets", "bullets' positions over time", places.tolist(), "m", side, "the net's side", False)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim.build import Drawing, Surface
+from dcone_cosim.contract import bullets
 from dcone_cosim.handoff import rotation_matrix
 from dcone_cosim.plots import style
 from dcone_cosim.plots.style import Array
@@ -92,11 +93,11 @@ def _panel(
 
 
 def _bullets(result: PhaseResult, row: int) -> Array:
-    """Bullets in the order of the mouth, (4, 3) [m]."""
+    """Bullets in the order of the mouth, (n, 3) [m]."""
     recorder = result.recorder
-    if "bullet[1].position[1]" not in recorder:
-        return np.zeros((0, 3))
-    return np.array([[recorder[f"bullet[{b}].position[{i}]"][row] for i in (1, 2, 3)] for b in (1, 2, 3, 4)])
+    numbers = bullets(recorder.names)
+    places = [[recorder[f"bullet[{b}].position[{i}]"][row] for i in (1, 2, 3)] for b in numbers]
+    return np.array(places).reshape(len(numbers), 3)
 
 
 def _thread_lines(nodes: Array, drawing: Drawing | None) -> tuple[list[Array], Array | None]:

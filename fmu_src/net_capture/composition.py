@@ -34,6 +34,7 @@ class Composition:
     terms        of the model, by group
     lanes        vectors of its precision (`fmu_src.lanes`)
     memory       kernels that find what lies in the work memory
+    bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
     gravity, net, rigging, graph, folding, target, contact, closing, tether, pulls, pace, scheme
@@ -53,6 +54,7 @@ class Composition:
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
         self.memory = make_memory(terms["precision"], self.planes)
+        self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
         self.rouse, self.meeting = needs.make_rouse(self), traits.make_meeting(self)
         self.net, self.folding = self._make("net"), self._make("folding")

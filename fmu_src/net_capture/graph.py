@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from fmu_src.interface import fault
 from fmu_src.net_capture.planes import LANES, LONGEST_ROW, MASS, STRIP_NUMBERS, STRIP_WORDS, THREAD_MASS, A, B
 from fmu_src.net_capture.rigging import Rig
 from orbital.kernel import kernel
+
+WRONG_NUMBER = fault(
+    "wrong_number", "net.mesh", "this FMU is built for another number of bullets than the net has corners"
+)
 
 
 class Graph(NamedTuple):
@@ -28,6 +33,7 @@ def make_graph(composition: Any) -> Graph:
     node_plane, strips, properties, rim = memory.node_plane, memory.strips, memory.properties, memory.rim
     corners, bullets = memory.corners, memory.bullets
     count_of, lay_net, rim_node = net.count, net.lay_out, net.rim_node
+    number, wrong_number = composition.bullets, composition.code(WRONG_NUMBER.name)
     rig = _together(composition.rigging)
     has_rig = rig is not None
     count_rig, lay_rig = (rig.count, rig.lay_out) if rig is not None else (None, None)
@@ -41,6 +47,9 @@ def make_graph(composition: Any) -> Graph:
         fault = count_of(p, work)
         if fault != 0:
             return fault
+        if p.net_corners != number:
+            p.fault_value = number
+            return wrong_number
         p.net_strips = p.strips
         if has_rig:
             fault = count_rig(p)

@@ -10,8 +10,9 @@ from fmu_src.net_capture import shot, tether
 from fmu_src.net_capture.closing import closings
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
+from fmu_src.net_capture.graph import WRONG_NUMBER
 from fmu_src.net_capture.gravity import gravities
-from fmu_src.net_capture.nets import LARGEST_MESH, nets
+from fmu_src.net_capture.nets import LARGEST_MESH, MOST_BULLETS, USUAL_BULLETS, nets
 from fmu_src.net_capture.outcome import OUTCOMES
 from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.precision import PRECISION
@@ -34,8 +35,24 @@ TOO_MANY_NODES = fault(
     "the net has more nodes than this FMU has outputs for; raise the capacity of nodes",
 )
 
+
+def bullet_rows(number: int) -> tuple[Variable, Variable]:
+    """Positions and velocities of so many bullets."""
+    return (
+        output(
+            "bullet[#].position[#]",
+            "m",
+            "bullet, orbital frame",
+            shape=(number, 3),
+            nominal=10.0,
+            rate="bullet[#].velocity[#]",
+        ),
+        output("bullet[#].velocity[#]", "m/s", "bullet, orbital frame", shape=(number, 3), nominal=1.0),
+    )
+
+
 BASE = (
-    positive("bullets.mass", "kg", "mass of each of the four bullets", 0.5),
+    positive("bullets.mass", "kg", "mass of each bullet", 0.5),
     at_least_zero("bullets.speed", "m/s", "speed at which the bullets leave", 3.0),
     angle(
         "bullets.angle",
@@ -69,15 +86,7 @@ BASE = (
         "solver.jitter", "m", "amplitude of the deterministic jitter of the folded nodes, per shot axis", "parameter"
     ),
     Variable("solver.seed", "1", "parameter", "which jitter, for ensembles of runs", 0, kind="Integer", minimum=0),
-    output(
-        "bullet[#].position[#]",
-        "m",
-        "bullet, orbital frame",
-        shape=(4, 3),
-        nominal=10.0,
-        rate="bullet[#].velocity[#]",
-    ),
-    output("bullet[#].velocity[#]", "m/s", "bullet, orbital frame", shape=(4, 3), nominal=1.0),
+    *bullet_rows(USUAL_BULLETS),
     *moving("vertex", "where the tether is made fast, orbital frame", "where the tether is made fast, orbital frame"),
     *moving("chaser", "chaser, orbital frame", "chaser with its recoil, orbital frame"),
     peak("catch.mass", "kg", "net, bullets and vertex together"),
@@ -157,7 +166,7 @@ BASE = (
     count("grid_piece", "knots in each of them", "state"),
     count("thread_peak_index", "thread that bears the largest tension of the macro step", "state"),
     state("mouth_flat_area", "m2", "of the mouth as meant"),
-    state("mouth_side[#]", "m", "of the rim as meant, from each bullet to the next", shape=(4,)),
+    state("mouth_side[#]", "m", "of the rim as meant, from each bullet to the next", shape=(MOST_BULLETS,)),
     state("mouth_width[#]", "m", "of the mouth as meant, along both its axes", shape=(2,)),
     state("flight[#]", "1", "what a free flight needs of its time", shape=(10,)),
     state("enclosure_point[#]", "m", "sample point of the target", shape=(3,)),
@@ -189,6 +198,20 @@ SETTLING = {
         make=lambda composition: None,
     )
 }
+
+
+BULLETS = {
+    str(number): Term(
+        f"{number} bullets, one at each corner of the mouth", () if number == USUAL_BULLETS else bullet_rows(number)
+    )
+    for number in range(3, MOST_BULLETS + 1)
+}
+"""How many bullets; those that nets usually have are among the variables that every net has."""
+
+
+def bullets_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
+    """As many as the shape of the net asks for."""
+    return str(NETS[terms["net"]].checks.bullets or USUAL_BULLETS)
 
 
 class NodeTerms(Mapping[str, Term]):
@@ -245,6 +268,7 @@ NETS, RIGGINGS, TARGETS, CONTACTS, CLOSINGS = nets(), riggings(), shapes(), cont
 GROUPS = {
     "net": Group(NETS, selector="shape"),
     **{name: _rigged(part) for name, part in RIGGINGS.items()},
+    "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of),
     "folding": Group(foldings(), selector="pattern", default="flat"),
     "gravity": Group(gravities()),
     "solver": Group(schemes(), selector="scheme", default="leapfrog"),
@@ -261,7 +285,7 @@ GROUPS = {
 
 def _faults() -> Iterator[Fault]:
     """Those of the loop, then those of every part in the order of the groups."""
-    yield from (NOT_FINITE, TOO_MANY_NODES, shot.NO_AXIS, STEP_TOO_SMALL)
+    yield from (NOT_FINITE, TOO_MANY_NODES, shot.NO_AXIS, STEP_TOO_SMALL, WRONG_NUMBER)
     for name, group in GROUPS.items():
         if name != "nodes":
             for part in group.terms.values():
@@ -280,6 +304,17 @@ MODEL = Model(
 )
 
 
+def _refuses_numbers(scene: Scene) -> Iterator[Refusal]:
+    """Other bullets than the shape has corners, and more nodes than there are outputs for."""
+    net = scene.parts["net"].checks
+    bullets = scene.terms.get("bullets", str(USUAL_BULLETS))
+    if net.bullets and bullets != str(net.bullets):
+        yield Refusal("bullets.number", bullets, f"must be {net.bullets}: a mouth of this shape has so many corners")
+    nodes = net.nodes(scene.values) + sum(part.checks.nodes(scene.values) for part in rigged_of(scene.terms).values())
+    if int(scene.terms.get("nodes", nodes)) < nodes:
+        yield Refusal("nodes.capacity", scene.terms["nodes"], f"must be at least {nodes}, the nodes of this net")
+
+
 def refusals(terms: Mapping[str, str], values: Mapping[str, float], duration: float = math.inf) -> list[Refusal]:
     """Why a shot can not work: empty if nothing speaks against it.
 
@@ -292,6 +327,7 @@ def refusals(terms: Mapping[str, str], values: Mapping[str, float], duration: fl
     for part in scene.parts.values():
         if part.refuses is not None:
             found += part.refuses(scene)
+    found += _refuses_numbers(scene)
     if "target" in terms:
         found += shot.refuses_place(scene)
         if not found:

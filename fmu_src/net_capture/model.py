@@ -135,7 +135,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_closing:
             elastic += closing.stored(p, work)
             p.cord_dissipated = p.cord_loss + late * p.cord_power
-            p.closed = 1 if p.mouth_locked_pairs == 4 else 0
+            p.closed = 1 if p.mouth_locked_pairs == p.net_corners else 0
         measures.measure_net(p, work)
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic

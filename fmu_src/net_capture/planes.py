@@ -35,7 +35,7 @@ LONGEST_ROW = 64
 
 A, B, LANES, FIRST, STRIP_WORDS = range(5)
 """Columns of the strips, whole numbers: node of lane 0 at either end, lanes that are threads, number of the first
-thread."""
+thread. The others of a strip are numbered by their lanes, and the next strip goes on after its last."""
 LENGTH, STIFFNESS, DAMPING, THREAD_MASS, SQUARED, PER_SQUARED, DAMPING_PER_SQUARED, STRIP_NUMBERS = range(8)
 """Columns of the strips' properties: rest length [m], stiffness [N/m], dashpot [N s/m], mass of a thread [kg]; a net
 writes these, and `complete_strips` the others: L2 [m2], 1/L2 [1/m2] and d/L2 [N s/m3]."""

@@ -103,8 +103,8 @@ def graph_of(p, work, terms):
         ends += [(a + lane, b + lane) for lane in here]
         numbers += [row] * len(here)
         lengths.append(len(here))
-        first.append(number)
-    assert first == [0, *np.cumsum(lengths)[:-1]]
+        assert number == (first[-1] if first else 0)
+        first.append(number + here[-1] + 1)
     pieces = (part.ravel() for part in words[2:6])
     return Graph(
         np.array(ends), *np.array(numbers).T[:SQUARED], np.array(lengths), *pieces, words[6], work[at:].view(np.int64)

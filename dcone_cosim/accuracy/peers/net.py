@@ -21,7 +21,7 @@ from dcone_cosim.quantities import Quantity
 from dcone_cosim.scene.data import PhaseScene
 
 Array = npt.NDArray[np.float64]
-LEAVES_OUT = ("target", "contact", "closing", "tether", "settling")
+LEAVES_OUT = ("target", "contact", "closing", "tether", "settling", "knots", "edge", "leads")
 MOST_OF_MUJOCO = 700
 """Nodes of the largest net that MuJoCo is asked for: its time goes with their number, and more."""
 

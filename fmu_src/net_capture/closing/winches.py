@@ -1,4 +1,4 @@
-"""The closing cord: four winches at the bullets draw the mouth together and never pay out.
+"""The closing cord: winches at the bullets draw the mouth together and never pay out.
 
 Each winch runs at its no-load speed less the share of the tension in its stall force:
 
@@ -24,6 +24,7 @@ from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.closing import Closing
 from fmu_src.net_capture.closing.cord import make_cord
 from fmu_src.net_capture.formulas import BREAKING_STRAIN, cord_damping, cord_stiffness
+from fmu_src.net_capture.nets import MOST_BULLETS
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import at_least_zero, choice, count, output, parameter, peak, positive, state
 from orbital.kernel import kernel
@@ -155,7 +156,7 @@ def make(composition: Any) -> Closing:
         p.cord_tension_peak = 0.0
         p.mouth_locked_pairs = 0
         p.mouth_cord_length = 0.0
-        for i in range(4):
+        for i in range(p.net_corners):
             p.cord_length[i] = max(p.mouth_side[i], p.closing_lock_length)
             p.cord_rate[i] = 0.0
             p.mouth_cord_length += p.cord_length[i]
@@ -178,7 +179,7 @@ def make(composition: Any) -> Closing:
                 return
             if wake:
                 rouse(p, work)
-            for i in range(4):
+            for i in range(p.net_corners):
                 distance, rate = along_cord(p, work, i)
                 length = p.cord_length[i]
                 tension, winding = pull_of_cord(p, distance, rate, length)
@@ -210,7 +211,7 @@ def make(composition: Any) -> Closing:
             p.trigger_time = now
         if p.closing_t_start < 0.0 and p.trigger_time >= 0.0 and now >= p.trigger_time + p.closing_delay:
             p.closing_t_start = now
-            for i in range(4):
+            for i in range(p.net_corners):
                 distance, rate = along_shown(p, work, i)
                 p.cord_length[i] = max(distance, p.closing_lock_length)
                 _, p.cord_rate[i] = pull_of_cord(p, distance, rate, p.cord_length[i])
@@ -225,7 +226,7 @@ def make(composition: Any) -> Closing:
             return
         locked = 0
         total = 0.0
-        for i in range(4):
+        for i in range(p.net_corners):
             if p.cord_length[i] > p.closing_lock_length:
                 distance, rate = along_now(p, work, i)
                 length = p.cord_length[i]
@@ -248,7 +249,7 @@ def make(composition: Any) -> Closing:
         if p.closing_t_start < 0.0:
             return 0.0
         energy = 0.0
-        for i in range(4):
+        for i in range(p.net_corners):
             distance, _ = along_shown(p, work, i)
             energy += cord_energy(p, distance, p.cord_length[i])
         return energy
@@ -261,7 +262,7 @@ def make(composition: Any) -> Closing:
         """
         if p.closing_t_start < 0.0:
             return
-        for i in range(4):
+        for i in range(p.net_corners):
             length = max(p.cord_length[i] - span * p.closing_speed, p.closing_lock_length)
             stiffness = cord_stiffness(p.closing_axial_stiffness, length)
             dashpot = cord_damping(p.closing_damping_ratio, stiffness, p.cord_mass)
@@ -342,9 +343,9 @@ PART = Term(
         output("closing.work", "J", "work done by the winches so far"),
         output("cord.dissipated", "J", "taken by the cord's dashpots so far"),
         peak("closing.t_start", "s", "when the winches started, since the shot; -1 before"),
-        state("cord_length[#]", "m", "cord out between neighbouring bullets", shape=(4,)),
-        state("cord_rate[#]", "m/s", "rate of that length", shape=(4,)),
-        state("cord_force[#]", "N", "what each winch works against per length wound", shape=(4,)),
+        state("cord_length[#]", "m", "cord out between neighbouring bullets", shape=(MOST_BULLETS,)),
+        state("cord_rate[#]", "m/s", "rate of that length", shape=(MOST_BULLETS,)),
+        state("cord_force[#]", "N", "what each winch works against per length wound", shape=(MOST_BULLETS,)),
         state("cord_mass", "kg", "that a pair's cord moves as it lengthens"),
         state("cord_power", "W", "what the cord's dashpots take now"),
         state("cord_loss", "J", "taken by the cord's dashpots up to half a substep back"),

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 Values = Mapping[str, float]
 
+USUAL_BULLETS = 4
+MOST_BULLETS = 8
 LARGEST_MESH = 400
 """Meshes times segments along one side: an instance then takes 30 MB."""
 
@@ -54,6 +56,7 @@ class Checks(NamedTuple):
                        is stiffest: the square root of the least sum of l over sum of 1/l at a knot  [m]
     hanging(values)    what hangs on its knots
     nodes(values)      with the inner nodes of all threads; 1 where there is no such net             [1]
+    bullets            how many the shape has; 0: as many as the scene says
     drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
                        count them
     """
@@ -67,11 +70,12 @@ class Checks(NamedTuple):
     hanging: Callable[[Values], Hanging]
     nodes: Callable[[Values], int]
     drawing: Callable[[Values], tuple[list[list[int]], list[int]]]
+    bullets: int = USUAL_BULLETS
 
 
 def nets() -> dict[str, Any]:
     """Every net's term, by name."""
-    from fmu_src.net_capture.nets import cone, pyramid, radial, rectangle, square
+    from fmu_src.net_capture.nets import cone, hexagon, pyramid, radial, rectangle, square
 
     return {
         "square": square.PART,
@@ -79,4 +83,5 @@ def nets() -> dict[str, Any]:
         "pyramid": pyramid.PART,
         "cone": cone.PART,
         "radial": radial.PART,
+        "hexagon": hexagon.PART,
     }

@@ -356,9 +356,6 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
             expected = f"must be a whole number of net.mesh, {mesh:g} m, and at least 2; it is {side / mesh:.6g}"
             yield Refusal(name, f"{side:g} m", expected)
             return
-    nodes = nodes_of(scene.values, sides)
-    if int(scene.terms.get("nodes", nodes)) < nodes:
-        yield Refusal("nodes.capacity", scene.terms["nodes"], f"must be at least {nodes}, the nodes of this net")
 
 
 def nodes_of(parameters: Values, sides: dict[str, float]) -> int:

@@ -26,7 +26,6 @@ from fmu_src.net_capture.nets.ring_measures import (
     BULLETS,
     Profile,
     chord,
-    make_checks,
     make_measures,
     meridians_of,
     next_every,
@@ -176,7 +175,6 @@ def make_rings(composition: Any, profile: Profile) -> Net:
                     while j < p.grid_columns:
                         a = line_node(p, line, j)
                         b = end_node(p, i, j, every, inward, piece)
-                        lanes = 1
                         bits = 1
                         reach = step
                         while (
@@ -187,11 +185,10 @@ def make_rings(composition: Any, profile: Profile) -> Net:
                             and (b + reach) // p.row_pitch == b // p.row_pitch
                         ):
                             bits |= 1 << reach
-                            lanes += 1
                             reach += step
                         add_strip(p, table, numbers, found, thread, a, b, bits, unloaded, area, write)
                         found += 1
-                        thread += lanes
+                        thread += reach - step + 1
                         j += reach
         return found
 
@@ -316,8 +313,5 @@ def make_refuses(profile: Profile) -> Any:
             )
             yield Refusal("net.mesh", f"{values['net.mesh']:g} m", expected)
             return
-        nodes = make_checks(profile).nodes(values)
-        if int(scene.terms.get("nodes", nodes)) < nodes:
-            yield Refusal("nodes.capacity", scene.terms["nodes"], f"must be at least {nodes}, the nodes of this net")
 
     return refuses
