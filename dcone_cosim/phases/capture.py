@@ -146,7 +146,7 @@ class Capture(Phase):
         """Flat from the start: folded, most threads sleep, and a beginning tells nothing of what an open net costs."""
         values = {**phase.main.defaults, **phase.main.parameters}
         sides = build.mouth_sides(values, phase.main.terms)
-        if not sides:
+        if not sides or "net.fold_side" not in values:
             return None
         rows = build.implied("net_capture", values, phase.main.terms)
         way = next((row.value for row in rows if row.key == OPENING), math.inf)

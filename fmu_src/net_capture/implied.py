@@ -142,7 +142,8 @@ def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     yield Implied("shot.energy", "energy of the shot", 0.5 * corners * speed * speed, "J")
     yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")
     net = NETS[terms["net"]].checks
-    opening = opening_distance(net.radius(values), net.folded(values), speed, angle)
+    fold = GROUPS["folding"].terms[terms.get("folding", "flat")].checks
+    opening = opening_distance(math.hypot(*net.corner(values)), fold.radius(values, net), speed, angle)
     if math.isfinite(opening):
         yield Implied("shot.opening", "bullets alone would have spread the net after", opening, "m")
 

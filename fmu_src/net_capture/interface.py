@@ -12,9 +12,10 @@ from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
 from fmu_src.net_capture.graph import WRONG_NUMBER
 from fmu_src.net_capture.gravity import gravities
-from fmu_src.net_capture.nets import LARGEST_MESH, MOST_BULLETS, USUAL_BULLETS, nets
+from fmu_src.net_capture.nets import LARGEST_MESH, USUAL_BULLETS, nets
 from fmu_src.net_capture.outcome import OUTCOMES
 from fmu_src.net_capture.pace import paces
+from fmu_src.net_capture.planes import MOST_BULLETS
 from fmu_src.net_capture.precision import PRECISION
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.rigging import riggings
@@ -322,6 +323,7 @@ def refusals(terms: Mapping[str, str], values: Mapping[str, float], duration: fl
     values       of every parameter by FMI name [SI]
     duration     of the capture phase [s]
     """
+    terms = {name: group.default for name, group in GROUPS.items() if group.default} | dict(terms)
     scene = Scene(terms, values, duration, {group: GROUPS[group].terms[term] for group, term in terms.items()})
     found: list[Refusal] = []
     for part in scene.parts.values():

@@ -67,6 +67,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         Checked  tests/net_capture/test_free_flight.py
         """
         fault = graph.count(p, work)
+        if fault == 0:
+            fault = folding.check(p)
         if fault != 0:
             return fault
         if has_nodes:

@@ -30,6 +30,7 @@ force [N], 1/m [1/kg] (zero: unused slot), m [kg]; position, velocity and veloci
 shown, three planes each."""
 NODE_PLANES = 23
 
+MOST_BULLETS = 8
 LONGEST_ROW = 64
 """Slots: a bit each of one word."""
 

@@ -173,7 +173,8 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
     values, duration = scene.values, scene.duration
     chaser, axis = scene.vector("chaser.start_position"), scene.vector("shot.axis")
     shape, net = scene.parts["target"].checks, scene.parts["net"].checks
-    sides, open_radius = net.sides(values), net.radius(values)
+    sides, open_radius = net.sides(values), math.hypot(*net.corner(values))
+    folded = scene.parts["folding"].checks.radius(values, net)
     distance = math.hypot(*chaser)
     here = f"is {distance:.4g} m from the target"
     speed, angle = float(values["bullets.speed"]), float(values["bullets.angle"])
@@ -204,7 +205,7 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
                 f"come within {forward * duration + radius:.4g} m, or raise duration or bullets.speed"
             )
             yield Refusal(place, shown, expected)
-        limit = FALLEN_BACK * opening_distance(open_radius, net.folded(values), speed, angle)
+        limit = FALLEN_BACK * opening_distance(open_radius, folded, speed, angle)
         if near > limit:
             expected = f"{here}; must be at most {limit + radius:.4g} m: farther out the net has fallen back"
             yield Refusal(place, shown, f"{expected} on itself")

@@ -6,7 +6,7 @@ import numpy as np
 
 from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL
-from fmu_src.net_capture.planes import MASS, SHOWN
+from fmu_src.net_capture.planes import MASS, SHOWN, X
 from fmu_src.net_capture.shot import make_shot
 from fmu_src.net_capture.stepping import make_choose_substep
 from orbital.kernel import kernel
@@ -39,7 +39,16 @@ class Layer:
         def thread(record):
             return thread_of(record[0])
 
-        choose = make_choose_substep(parts)
+        choose, folding = make_choose_substep(parts), parts.folding
+        check_of, fold_of = folding.check, folding.fold
+
+        @kernel
+        def check(record):
+            return check_of(record[0])
+
+        @kernel
+        def fold(record, work):
+            fold_of(record[0], work)
 
         @kernel
         def bound(record):
@@ -47,6 +56,7 @@ class Layer:
             return record[0].solver_stability_bound if fault == 0 else -1.0
 
         self._count, self.lay_out, self.load, self.thread, self.bound = count, lay_out, load, thread, bound
+        self.check, self._fold = check, fold
 
     def record(self, values: Mapping[str, float]):
         record = MODEL.interface(self.terms).make_record()
@@ -57,10 +67,20 @@ class Layer:
     def count(self, values: Mapping[str, float]) -> int:
         return self._count(self.record(values), np.zeros(0))
 
-    def lay(self, values: Mapping[str, float]) -> "Laid":
+    def counted(self, values: Mapping[str, float]):
+        """A record with the counts of its net."""
         record = self.record(values)
         assert self._count(record, np.zeros(0)) == 0
-        return Laid(self, record)
+        return record
+
+    def lay(self, values: Mapping[str, float]) -> "Laid":
+        return Laid(self, self.counted(values))
+
+    def fold(self, laid: "Laid") -> np.ndarray:
+        """Places of all slots in the canister, along the mouth's axes and the shot, from the muzzle."""
+        laid.record["axes"] = np.eye(3).ravel()
+        self._fold(laid.record, laid.work)
+        return laid.planes[X : X + 3].T.copy()
 
 
 class Laid:
@@ -73,7 +93,8 @@ class Laid:
     """
 
     def __init__(self, layer, record):
-        p = self.p = record[0]
+        self.record, p = record, record[0]
+        self.p = p
         own = 12 * int(p["strips"] + p["node_slots"])
         self.work = np.zeros(40 * int(p["node_slots"]) + 12 * int(p["strips"]) + 8 * int(p["net_nodes"]) + own)
         layer.lay_out(record, self.work)

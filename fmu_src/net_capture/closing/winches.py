@@ -24,7 +24,7 @@ from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.closing import Closing
 from fmu_src.net_capture.closing.cord import make_cord
 from fmu_src.net_capture.formulas import BREAKING_STRAIN, cord_damping, cord_stiffness
-from fmu_src.net_capture.nets import MOST_BULLETS
+from fmu_src.net_capture.planes import MOST_BULLETS
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import at_least_zero, choice, count, output, parameter, peak, positive, state
 from orbital.kernel import kernel

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 Values = Mapping[str, float]
 
 USUAL_BULLETS = 4
-MOST_BULLETS = 8
 LARGEST_MESH = 400
 """Meshes times segments along one side: an instance then takes 30 MB."""
 
@@ -46,8 +45,8 @@ class Hanging(NamedTuple):
 class Checks(NamedTuple):
     """What a net says before any build or run, of values by FMI name.
 
-    radius(values)     of the bullets from the shot's axis in the net as meant                       [m]
-    folded(values)     the same in the net folded flat                                               [m]
+    corner(values)     place of a bullet in the net as meant, along both axes of the mouth           [m]
+    widths(values)     of the mouth along both axes                                                  [m]
     sides(values)      of the rim from each bullet to the next, by the name of the variable that is to blame for it;
                        one alone: all are equal                                                      [m]
     knots(values)      of the rim between two bullets, where there are fewest                        [1]
@@ -61,8 +60,8 @@ class Checks(NamedTuple):
                        count them
     """
 
-    radius: Callable[[Values], float]
-    folded: Callable[[Values], float]
+    corner: Callable[[Values], tuple[float, float]]
+    widths: Callable[[Values], tuple[float, float]]
     sides: Callable[[Values], dict[str, float]]
     knots: Callable[[Values], int]
     total: Callable[[Values], float]

@@ -7,7 +7,7 @@ import math
 from fmu_src.interface import Term
 from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.ring_measures import Profile, make_checks
-from fmu_src.net_capture.nets.rings import FOLD_TOO_WIDE, ROWS, UNEVEN, make_refuses, make_rings
+from fmu_src.net_capture.nets.rings import ROWS, UNEVEN, make_refuses, make_rings
 from fmu_src.net_capture.nets.weave import TOO_FINE
 from fmu_src.rows import at_least_zero, choice, positive
 from orbital.kernel import kernel
@@ -64,7 +64,7 @@ PART = Term(
         choice("net.floor", "what closes the top, where that is no point", FLOORS),
         *ROWS,
     ),
-    faults=(UNEVEN, TOO_FINE, FOLD_TOO_WIDE),
+    faults=(UNEVEN, TOO_FINE),
     make=lambda composition: make_rings(composition, PROFILE),
     checks=CHECKS,
     refuses=make_refuses(PROFILE),

@@ -16,13 +16,14 @@ LIGHTEST_KNOT = 1e-9
 HEAVY_BULLET = 10.0
 ORDER_AT = 0.8
 """Share of the bound of stability at which the order is looked at, and at a quarter of it."""
-OPENING = {"target": None, "contact": None, "closing": None}
+FLAT: dict[str, str | None] = {"folding": "flat"}
+OPENING = {"target": None, "contact": None, "closing": None, **FLAT}
 """A net that meets nothing."""
 
 
 def extremes(checks: Checks) -> tuple[Extreme, ...]:
     """Those of a net, by what it says of a scene's values."""
-    return (*_stiffness(), *_damping(), *_meshes(checks.sides), *_masses(checks.total), *_folds(checks.sides))
+    return (*_stiffness(), *_damping(), *_meshes(checks.sides), *_masses(checks.total), *_folds(checks.widths))
 
 
 def _stiffness() -> Iterator[Extreme]:
@@ -92,9 +93,9 @@ def _masses(total: Total) -> Iterator[Extreme]:
                   {"net.mass": 1e-5}, needs=("contact",))  # fmt: skip
 
 
-def _folds(sides: Sides) -> Iterator[Extreme]:
+def _folds(widths: Callable[[Values], tuple[float, float]]) -> Iterator[Extreme]:
     def open_already(values: Values) -> float:
-        return (1.0 - 1e-9) * min(sides(values).values())
+        return (1.0 - 1e-9) * min(widths(values))
 
     yield Extreme("no slack", "a net that is flat at the start: every thread goes taut at once", "energy_gained",
                   {"net.fold_side": open_already}, terms=OPENING, chief=True)  # fmt: skip
@@ -109,6 +110,11 @@ def _folds(sides: Sides) -> Iterator[Extreme]:
             duration=0.02,
             chief=ratio == 0.5,
         )
-    yield Extreme("all slack", "a net folded into a point", "energy_gained", {"net.fold_side": 1e-6})
-    yield Extreme("fold as wide as the net", "no canister holds that: it is to be refused", "refused",
-                  {"net.fold_side": lambda values: math.nextafter(min(sides(values).values()), math.inf)})  # fmt: skip
+    yield Extreme("all slack", "a net folded into a point", "energy_gained", {"net.fold_side": 1e-6}, terms=FLAT)
+    yield Extreme(
+        "fold as wide as the net",
+        "no canister holds that: it is to be refused",
+        "refused",
+        {"net.fold_side": lambda values: math.nextafter(min(widths(values)), math.inf)},
+        terms=FLAT,
+    )

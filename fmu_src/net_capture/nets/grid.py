@@ -20,7 +20,6 @@ from fmu_src.interface import fault
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Hanging, Net, Values
 from fmu_src.net_capture.nets.weave import (
-    FOLD_TOO_LARGE,
     TOO_FINE,
     add_strip,
     first_lanes,
@@ -42,8 +41,8 @@ def checks(sides: Sides, total: Callable[[Values], float]) -> Checks:
     """What a net of a grid says: of its sides by the name of their variable, along the rows first, one name if equal;
     and of the length of all its threads [m]."""
     return Checks(
-        lambda values: 0.5 * math.hypot(*_both(sides(values))),
-        lambda values: math.sqrt(0.5) * values["net.fold_side"],
+        lambda values: _halves(sides(values)),
+        lambda values: _both(sides(values)),
         sides,
         lambda values: round(min(sides(values).values()) / values["net.mesh"]) - 1,
         total,
@@ -54,9 +53,15 @@ def checks(sides: Sides, total: Callable[[Values], float]) -> Checks:
     )
 
 
-def _both(sides: dict[str, float]) -> list[float]:
+def _both(sides: dict[str, float]) -> tuple[float, float]:
     """Along the rows and across them [m]."""
-    return (list(sides.values()) * 2)[:2]
+    along, across = (list(sides.values()) * 2)[:2]
+    return along, across
+
+
+def _halves(sides: dict[str, float]) -> tuple[float, float]:
+    along, across = _both(sides)
+    return 0.5 * along, 0.5 * across
 
 
 def _drawing(sides: dict[str, float], mesh: float) -> tuple[list[list[int]], list[int]]:
@@ -97,7 +102,7 @@ def make_grid(composition: Any, grid: Grid) -> Net:
     corners, apex, faces = memory.corners, memory.apex, memory.faces
     sides, total, length, depth = grid.sides, grid.total, grid.length, grid.depth
     across_fault, along_fault = (composition.code(f"{NO_WHOLE_MESHES}_{name}") for name in grid.blames)
-    too_fine, fold_too_large = composition.code(TOO_FINE.name), composition.code(FOLD_TOO_LARGE.name)
+    too_fine = composition.code(TOO_FINE.name)
 
     @kernel
     def is_whole(meshes):
@@ -126,9 +131,6 @@ def make_grid(composition: Any, grid: Grid) -> Net:
         if (max(columns, rows) - 1) * pieces > LARGEST_MESH:
             p.fault_value = (max(columns, rows) - 1) * pieces
             return too_fine
-        if p.net_fold_side >= min(along, across):
-            p.fault_value = p.net_fold_side
-            return fold_too_large
         p.grid_columns = columns
         p.grid_rows = rows
         p.grid_split = (columns + LONGEST_ROW - 1) // LONGEST_ROW
@@ -340,10 +342,6 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     """Why a net of a grid makes none with these values."""
     sides = scene.parts["net"].checks.sides(scene.values)
     mesh, segments = float(scene.values["net.mesh"]), int(scene.values["net.segments"])
-    fold = float(scene.values["net.fold_side"])
-    shortest = min(sides, key=lambda name: sides[name])
-    if fold >= sides[shortest]:
-        yield Refusal("net.fold_side", f"{fold:g} m", f"must be smaller than {shortest}, {sides[shortest]:g} m")
     cut = f", each cut into {segments} segments" if segments > 1 else ""
     for name, side in sides.items():
         if side / mesh * segments > LARGEST_MESH + 0.5:

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
-from fmu_src.interface import Term, fault
+from fmu_src.interface import Term
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Hanging, Net
 from fmu_src.net_capture.nets.extremes import extremes
@@ -31,8 +30,6 @@ CORNERS = 6
 RISE = math.sqrt(0.75)
 """From row to row, in meshes."""
 WHOLE = 1e-6
-
-FOLD_TOO_WIDE = fault("fold_too_wide", "net.fold_side", "net.fold_side must be smaller than the mouth is wide")
 
 
 @kernel
@@ -68,8 +65,7 @@ def make(composition: Any) -> Net:
     memory, width = composition.memory, composition.lanes.width
     node_plane, strips, properties = memory.node_plane, memory.strips, memory.properties
     corners, apex, faces = memory.corners, memory.apex, memory.faces
-    names = (WHOLE_RADIUS.name, TOO_FINE.name, FOLD_TOO_WIDE.name)
-    no_whole_meshes, too_fine, fold_too_wide = (composition.code(name) for name in names)
+    no_whole_meshes, too_fine = (composition.code(fault.name) for fault in (WHOLE_RADIUS, TOO_FINE))
 
     @kernel
     def count(p, work):
@@ -85,9 +81,6 @@ def make(composition: Any) -> Net:
         if 2 * n * pieces > LARGEST_MESH:
             p.fault_value = 2 * n * pieces
             return too_fine
-        if p.net_fold_side >= 2.0 * p.net_radius:
-            p.fault_value = p.net_fold_side
-            return fold_too_wide
         p.grid_columns = 2 * n + 1
         p.grid_rows = 2 * n + 1
         p.grid_split = (p.grid_columns + LONGEST_ROW - 1) // LONGEST_ROW
@@ -274,8 +267,8 @@ def make(composition: Any) -> Net:
 
 
 CHECKS = Checks(
-    radius=lambda values: values[RADIUS],
-    folded=lambda values: 0.5 * values["net.fold_side"],
+    corner=lambda values: (values[RADIUS], 0.0),
+    widths=lambda values: (2.0 * values[RADIUS], 2.0 * values[RADIUS]),
     sides=lambda values: {RADIUS: values[RADIUS]},
     knots=lambda values: meshes_of(values) - 1,
     total=lambda values: 6.0 * meshes_of(values) * (meshes_of(values) + 1) * values["net.mesh"],
@@ -291,9 +284,6 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     """Why it makes no net with these values."""
     values = scene.values
     radius, width, segments = values[RADIUS], values["net.mesh"], int(values["net.segments"])
-    if values["net.fold_side"] >= 2.0 * radius:
-        expected = f"must be smaller than the mouth is wide, {2.0 * radius:g} m"
-        yield Refusal("net.fold_side", f"{values['net.fold_side']:g} m", expected)
     if 2.0 * radius / width * segments > LARGEST_MESH + 0.5:
         held = f"{RADIUS} = {radius:g} m holds {radius / width:.4g} meshes, each cut into {segments}"
         expected = f"{held}; at most {LARGEST_MESH} pieces across"
@@ -304,15 +294,14 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
 
 
 WHOLE_RADIUS = whole_meshes(RADIUS)
-_SAID = {"net.fold_side": "diameter of the flat disc the net is folded into"}
 
 PART = Term(
     "hexagonal net: six bullets, six spokes, and rhombi along two spokes in each sector between them",
     (
         positive(RADIUS, "m", "from the middle to a corner, as long as a side; a whole number of meshes", 12.0),
-        *(replace(row, description=_SAID.get(row.name, row.description)) for row in THREAD),
+        *THREAD,
     ),
-    faults=(WHOLE_RADIUS, TOO_FINE, FOLD_TOO_WIDE),
+    faults=(WHOLE_RADIUS, TOO_FINE),
     make=make,
     checks=CHECKS,
     refuses=refuses,

@@ -16,7 +16,7 @@ from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.grid import Grid, checks, make_grid, refuses, whole_meshes
-from fmu_src.net_capture.nets.weave import FOLD_TOO_LARGE, THREAD, TOO_FINE
+from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE
 from fmu_src.rows import positive
 from orbital.kernel import kernel
 
@@ -98,7 +98,7 @@ PART = Term(
         positive("net.depth", "m", "from the mouth to the top", 12.0),
         *THREAD,
     ),
-    faults=(whole_meshes(SIDE), TOO_FINE, FOLD_TOO_LARGE),
+    faults=(whole_meshes(SIDE), TOO_FINE),
     make=lambda composition: make_grid(composition, Grid(sides, (SIDE, SIDE), total, length, depth)),
     checks=CHECKS,
     refuses=refuses,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fmu_src.interface import Term
 from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.ring_measures import Profile, make_checks
-from fmu_src.net_capture.nets.rings import FOLD_TOO_WIDE, ROWS, UNEVEN, make_refuses, make_rings
+from fmu_src.net_capture.nets.rings import ROWS, UNEVEN, make_refuses, make_rings
 from fmu_src.net_capture.nets.weave import TOO_FINE
 from fmu_src.rows import positive
 from orbital.kernel import kernel
@@ -41,7 +41,7 @@ CHECKS = make_checks(PROFILE)
 PART = Term(
     "radial net: flat and round, of rings and of meridians that meet in its middle",
     (positive("net.radius", "m", "of the mouth", 12.0), *ROWS),
-    faults=(UNEVEN, TOO_FINE, FOLD_TOO_WIDE),
+    faults=(UNEVEN, TOO_FINE),
     make=lambda composition: make_rings(composition, PROFILE),
     checks=CHECKS,
     refuses=make_refuses(PROFILE),

@@ -7,7 +7,7 @@ from fmu_src.interface import Term
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.grid import Grid, checks, flat_length, make_grid, no_depth, refuses, whole_meshes
-from fmu_src.net_capture.nets.weave import FOLD_TOO_LARGE, THREAD, TOO_FINE
+from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE
 from fmu_src.rows import positive
 from orbital.kernel import kernel
 
@@ -44,7 +44,7 @@ PART = Term(
         positive(HEIGHT, "m", "of the flat net, along the second transverse axis of the shot", 26.0),
         *THREAD,
     ),
-    faults=(whole_meshes(WIDTH), whole_meshes(HEIGHT), TOO_FINE, FOLD_TOO_LARGE),
+    faults=(whole_meshes(WIDTH), whole_meshes(HEIGHT), TOO_FINE),
     make=lambda composition: make_grid(composition, Grid(sides, (WIDTH, HEIGHT), total, flat_length, no_depth)),
     checks=CHECKS,
     refuses=refuses,

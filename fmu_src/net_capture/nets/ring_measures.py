@@ -247,8 +247,8 @@ def make_checks(profile: Profile) -> Checks:
         return [line for line in lines if len(line) > 1], [*number[0].values(), 0]
 
     return Checks(
-        radius=lambda values: values["net.radius"],
-        folded=lambda values: 0.5 * values["net.fold_side"],
+        corner=lambda values: (math.sqrt(0.5) * values["net.radius"], math.sqrt(0.5) * values["net.radius"]),
+        widths=lambda values: (2.0 * values["net.radius"], 2.0 * values["net.radius"]),
         sides=lambda values: {"net.radius": side(values)},
         knots=knots,
         total=lambda values: float(measures.total(record_of(profile, values))),

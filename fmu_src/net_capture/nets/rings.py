@@ -38,11 +38,9 @@ from fmu_src.rows import parameter
 from orbital.kernel import kernel
 
 UNEVEN = fault("uneven", "net.meridians", "net.meridians must be a multiple of four, or 0 for as many as the mesh asks")
-FOLD_TOO_WIDE = fault("fold_too_wide", "net.fold_side", "net.fold_side must be smaller than the mouth is wide")
 
 _SAID = {
     "net.mesh": "wanted between knots, along rings and inwards: a design choice; the net keeps its mass",
-    "net.fold_side": "diameter of the flat disc the net is folded into",
 }
 ROWS = (
     parameter(
@@ -67,7 +65,7 @@ def make_rings(composition: Any, profile: Profile) -> Net:
     rings, has_tip, ring = profile.rings, profile.has_tip, profile.ring
     measures = make_measures(kernel, chord, next_every, profile)
     every_of, along_of, inward_of, total = measures.every_of, measures.along_of, measures.inward_of, measures.total
-    uneven, too_fine, fold_too_wide = (composition.code(f.name) for f in (UNEVEN, TOO_FINE, FOLD_TOO_WIDE))
+    uneven, too_fine = composition.code(UNEVEN.name), composition.code(TOO_FINE.name)
 
     @kernel
     def count(p, work):
@@ -84,9 +82,6 @@ def make_rings(composition: Any, profile: Profile) -> Net:
         if max(meridians, rings(p)) * pieces > LARGEST_MESH:
             p.fault_value = max(meridians, rings(p)) * pieces
             return too_fine
-        if p.net_fold_side >= 2.0 * radius:
-            p.fault_value = p.net_fold_side
-            return fold_too_wide
         p.grid_columns = meridians
         p.grid_rows = rings(p)
         p.grid_split = (meridians + LONGEST_ROW - 1) // LONGEST_ROW
@@ -297,14 +292,11 @@ def make_refuses(profile: Profile) -> Any:
     def refuses(scene: Scene) -> Iterator[Refusal]:
         """Why it makes no net with these values."""
         values = scene.values
-        given, segments, fold = int(values["net.meridians"]), int(values["net.segments"]), values["net.fold_side"]
+        given, segments = int(values["net.meridians"]), int(values["net.segments"])
         if given % BULLETS:
             yield Refusal("net.meridians", f"{given}", "must be a multiple of four, or 0 for as many as the mesh asks")
             return
         p = record_of(profile, values)
-        width = 2.0 * values["net.radius"]
-        if fold >= width:
-            yield Refusal("net.fold_side", f"{fold:g} m", f"must be smaller than the mouth is wide, {width:g} m")
         most = max(p.grid_columns, p.grid_rows)
         if most * segments > LARGEST_MESH:
             cut = f", each cut into {segments} segments" if segments > 1 else ""

@@ -23,7 +23,6 @@ from fmu_src.rows import at_least_zero, parameter, positive
 from orbital.kernel import kernel
 
 TOO_FINE = fault("too_fine", "net.segments", "the net has too many meshes times segments per side")
-FOLD_TOO_LARGE = fault("fold_too_large", "net.fold_side", "net.fold_side must be smaller than the sides of the net")
 
 THREAD = (
     positive("net.mesh", "m", "knot spacing: a design choice; the net keeps its mass", 1.0),
@@ -32,7 +31,6 @@ THREAD = (
     positive("net.youngs_modulus", "Pa", "of the thread", 70e9, display_unit="GPa"),
     positive("net.density", "kg/m3", "of the thread", 1440.0),
     at_least_zero("net.damping_ratio", "1", "xi in d = 2 xi sqrt(k m) of a thread and an inner node", 0.106),
-    positive("net.fold_side", "m", "side of the flat square the net is folded into", 0.5),
 )
 """Rows that every net has."""
 

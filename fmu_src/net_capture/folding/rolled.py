@@ -1,0 +1,146 @@
+"""The net folded to and fro along one axis of the mouth and rolled up along the other, into a cylindrical canister.
+
+The band, as wide as the canister is deep, is wound in a spiral r = c phi about the shot axis, from a core of a quarter
+of the canister's radius outwards; of its layers each lies a little farther in than the one before:
+
+    w = zigzag(a x),   s(phi) = k y,   r = c phi - 0.9 P x / X,   P = 2 pi c
+
+with s the length of the spiral. With p = 0.9 P / X that map stretches nothing for k = 1 / sqrt(1 + p) and
+a = sqrt(1 - p - p^2), since the spiral rises by less than its length.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from fmu_src.implied import formula
+from fmu_src.interface import Term, fault
+from fmu_src.net_capture.folding import Checks, Folding, Values
+from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, fold_width, zigzag
+from fmu_src.net_capture.planes import SHOWN, X
+from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.rows import positive
+from orbital.kernel import kernel
+
+RADIUS = "canister.radius"
+CORE = 0.25
+"""Of the canister's radius."""
+FILLED = 0.9
+"""Of the distance of two turns that the layers of the band take."""
+KEPT = 1.0 - 1e-6
+NEWTON_STEPS = 50
+TOO_ROOMY = fault("too_roomy", RADIUS, "the canister is so wide for this net that it would not make a roll of layers")
+
+
+@kernel
+def pitch(radius, length):
+    """From a turn to the next [m]: P = pi (R^2 - R0^2) / L.
+
+    radius    R    of the canister, R0 that of the core    [m]
+    length    L    of the band                             [m]
+
+    Checked  tests/net_capture/test_folding.py
+    """
+    return math.pi * (1.0 - CORE * CORE) * radius * radius / length
+
+
+@kernel
+def spiral_length(turned):
+    """Length of the spiral r = phi from its middle to an angle [1]: (phi sqrt(1 + phi^2) + asinh phi) / 2.
+
+    Checked  tests/net_capture/test_folding.py
+    """
+    return 0.5 * (turned * math.sqrt(1.0 + turned * turned) + math.asinh(turned))
+
+
+@kernel
+def turned(length):
+    """The angle up to which that spiral is so long [rad], by Newton's method.
+
+    Checked  tests/net_capture/test_folding.py
+    """
+    angle = math.sqrt(2.0 * length)
+    for _ in range(NEWTON_STEPS):
+        change = (spiral_length(angle) - length) / math.sqrt(1.0 + angle * angle)
+        angle -= change
+        if abs(change) <= 1e-15 * angle:
+            break
+    return angle
+
+
+def make(composition: Any) -> Folding:
+    """Kernels for the composition's net."""
+    node_plane = composition.memory.node_plane
+    too_deep, too_roomy = composition.code(TOO_DEEP.name), composition.code(TOO_ROOMY.name)
+
+    @kernel
+    def check(p):
+        """See `Folding`.
+
+        Checked  tests/net_capture/test_folding.py
+        """
+        if p.canister_depth >= 0.5 * min(p.mouth_width[0], p.mouth_width[1]):
+            p.fault_value = p.canister_depth
+            return too_deep
+        if pitch(p.canister_radius, p.mouth_width[1]) >= CORE * p.canister_radius:
+            p.fault_value = p.canister_radius
+            return too_roomy
+        return 0
+
+    @kernel
+    def fold(p, work):
+        """Every node on the band, its first end at the core.
+
+        Checked  tests/net_capture/test_folding.py
+        """
+        step = pitch(p.canister_radius, p.mouth_width[1])
+        c = step / (2.0 * math.pi)
+        slope = FILLED * step / p.mouth_width[0]
+        folded = KEPT * math.sqrt(1.0 - slope - slope * slope)
+        wound = KEPT / math.sqrt(1.0 + slope)
+        core = spiral_length(CORE * p.canister_radius / c)
+        width = fold_width(p.canister_depth, folded * p.rim_mesh)
+        for i in range(p.node_slots):
+            x = node_plane(p, work, SHOWN)[i] + 0.5 * p.mouth_width[0]
+            y = node_plane(p, work, SHOWN + 1)[i] + 0.5 * p.mouth_width[1]
+            angle = turned(core + wound * max(y, 0.0) / c)
+            radius = c * angle - slope * x
+            w = zigzag(folded * x, width) - 0.5 * p.canister_depth
+            for axis in range(3):
+                at = p.muzzle[axis] + w * p.axes[6 + axis]
+                at += radius * (math.cos(angle) * p.axes[axis] + math.sin(angle) * p.axes[3 + axis])
+                node_plane(p, work, X + axis)[i] = at
+
+    return Folding(check, fold)
+
+
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """A canister that is none for this net."""
+    values, widths = scene.values, scene.parts["net"].checks.widths(scene.values)
+    radius = values[RADIUS]
+    if values[DEPTH] >= 0.5 * min(widths):
+        yield Refusal(DEPTH, f"{values[DEPTH]:g} m", f"must be less than half of the mouth's width, {min(widths):g} m")
+    elif formula(pitch)(radius, widths[1]) >= CORE * radius:
+        most = CORE * widths[1] / (math.pi * (1.0 - CORE * CORE))
+        expected = f"must be less than {most:.4g} m: in a wider canister {widths[1]:g} m of net make no roll of layers"
+        yield Refusal(RADIUS, f"{radius:g} m", expected)
+
+
+def volume(values: Values) -> float:
+    """Of the cylinder [m3]."""
+    return math.pi * values[RADIUS] ** 2 * values[DEPTH]
+
+
+PART = Term(
+    "folded to and fro along one axis and rolled up along the other, into a cylindrical canister",
+    (
+        positive(RADIUS, "m", "of the canister", 0.15),
+        positive(DEPTH, "m", "of the canister, along the shot", 0.3),
+    ),
+    faults=(TOO_DEEP, TOO_ROOMY),
+    make=make,
+    checks=Checks(lambda values, net: values[RADIUS], volume),
+    refuses=refuses,
+)
