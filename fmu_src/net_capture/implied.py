@@ -88,6 +88,7 @@ def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Thread, nodes, shot, cord and orbit."""
     yield from _of_thread(values, terms)
     yield from _of_nodes(values, terms)
+    yield from _of_canister(values, terms)
     yield from _of_shot(values, terms)
     if "closing" in terms:
         yield from _of_cord(values, terms)
@@ -131,6 +132,15 @@ def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
         piece = thread_mass(values, terms) / values["net.segments"]
         yield Implied("thread_node.mass", "mass of a node within a thread", piece, "kg")
     yield Implied("catch.mass", "net, bullets and vertex together", catch_mass(values), "kg")
+
+
+def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
+    """Its volume, and how much of that is thread."""
+    volume = GROUPS["folding"].terms[terms.get("folding", "flat")].checks.volume(values)
+    if volume > 0.0:
+        yield Implied("canister.volume", "volume of the canister", volume, "m3")
+        solid = values["net.mass"] / values["net.density"]
+        yield Implied("canister.filled", "share of it that the net's threads fill, were they solid", solid / volume, "1")
 
 
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
