@@ -156,6 +156,7 @@ SMALL = {
     "s": ("ms", 1e3, 0.1),
     "m/s": ("mm/s", 1e3, 0.1),
     "N": ("mN", 1e3, 0.1),
+    "kg/m": ("g/m", 1e3, 0.1),
 }
 """In which unit a small value is shown, how many of it make the SI unit, and below which SI value."""
 
