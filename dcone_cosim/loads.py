@@ -44,6 +44,7 @@ class Load:
     strength     at which it breaks; None: not known                         [Pa]
     breaks_at    load at which it breaks; None: not known                    [N]
     broke        when it broke in the model; None: it did not                [s]
+    broken       how many of its kind did                                    [1]
     may_break    whether it can break in the model
     spread       standard deviation over mean of the tension, 0 for no sample of many  [1]
     likely       fibre that it may be of, where none is named
@@ -58,6 +59,7 @@ class Load:
     strength: float | None
     breaks_at: float | None
     broke: float | None
+    broken: int
     may_break: bool
     spread: float
     likely: Material
@@ -128,7 +130,8 @@ def _load(
     may_break = line.breaks_at in values
     breaks_at = values[line.breaks_at] if may_break else _times(scene.strength, area)
     last = result.recorder.last()
-    broke = last[line.broken[1]] if line.broken is not None and last.get(line.broken[0]) else None
+    broken = int(last.get(line.broken[0], 0)) if line.broken is not None else 0
+    broke = last[line.broken[1]] if line.broken is not None and broken else None
     return Load(
         phase,
         line,
@@ -139,6 +142,7 @@ def _load(
         breaks_at / area if breaks_at is not None and area is not None else scene.strength,
         breaks_at,
         broke,
+        broken,
         may_break,
         spread,
         _likely(line, values, main),
@@ -255,7 +259,8 @@ def headlines(run: RunResult) -> list[str]:
                 "in truth it would have broken, and what follows is not to be trusted"
             )
         elif load.broke is not None:
-            found.append(f"BROKEN: {what}{of} broke at {load.broke:.6g} s, at {load.breaks_at:.4g} N")
+            more = f"; {load.broken} of them in all" if load.broken > 1 else ""
+            found.append(f"BROKEN: {what}{of} broke at {load.broke:.6g} s, at {load.breaks_at:.4g} N{more}")
     return found
 
 

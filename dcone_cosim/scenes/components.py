@@ -215,7 +215,7 @@ def read_lines(
         table = tables.get(name)
         if isinstance(table, dict):
             keys = keys_of(line, part.keys)
-            read = read_line(line, keys, table, (*part.path, name), part.defaults(), found, own, mistakes)
+            read = read_line(line, keys, table, (*part.path, name), part.defaults(), found, part.terms, own, mistakes)
             if read is not None:
                 lines[name], taken = read
                 follows |= taken

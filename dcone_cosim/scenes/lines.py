@@ -100,6 +100,7 @@ def read_line(
     path: Path,
     known: Mapping[str, float],
     given: Mapping[str, float],
+    terms: Mapping[str, str],
     own: Mapping[str, Material],
     mistakes: list[Mistake],
 ) -> tuple[LineScene, dict[str, float]] | None:
@@ -109,6 +110,7 @@ def read_line(
     table    of the scene that has them, at `path`
     known    parameters that the component has, with their start values
     given    those that the scene says
+    terms    of the component
     own      its own materials
     """
     told = {
@@ -132,7 +134,10 @@ def read_line(
         text = f"says nothing of its stiffness without a {MATERIAL} or {key} beside it"
         mistakes.append(Mistake((*path, DIAMETER), table[DIAMETER], text))
     usual = diameter if diameter is not None else line.usual
-    follows = line.follow(material, strength, usual, known)
+    follows = {} if material is None else line.follow(material, usual, known)
+    if line.breaks_at in known and strength is not None:
+        area = line.section({**known, **follows, **given}, terms, material, told.get(DIAMETER))
+        follows |= {} if area is None else {line.breaks_at: strength * area}
     apart = {name: value for name, value in follows.items() if _differs(given.get(name, value), value)}
     taken = {name: value for name, value in follows.items() if name not in given}
     return LineScene(material, strength, told.get(DIAMETER), tuple(taken), apart), taken
