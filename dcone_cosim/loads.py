@@ -184,7 +184,9 @@ def told_of(component: ComponentScene, where: str) -> list[tuple[str, str]]:
         if material is None:
             continue
         found.append((f"[{where}.{table}]", f"{material.name}, {material.form}"))
-        found += [(f"  {figure.replace('_', ' ')}", source) for figure, source in material.sources.items()]
+        for source in dict.fromkeys(material.sources.values()):
+            of = ", ".join(figure.replace("_", " ") for figure, its in material.sources.items() if its == source)
+            found.append((f"  {of}", source))
         for name, value in scene.apart.items():
             found.append((f"  {where}.{name}", f"as the scene says; the material has {value:.6g}, SI"))
         if material.damping_ratio is None:
