@@ -80,6 +80,12 @@ class Load:
     def where(self) -> str:
         return f"[{self.phase}.{self.line.table}]"
 
+    @property
+    def lacks_section(self) -> str:
+        """What to do where nothing tells its section."""
+        wanted = "a material or a diameter" if self.line.stiffness else "a diameter"
+        return f"section not known: name {wanted} in {self.where}"
+
 
 def of_phase(run: RunResult, name: str) -> list[Load]:
     """What each line of a phase bore of which its FMU tells the tension."""
@@ -220,8 +226,7 @@ def findings(run: RunResult, name: str) -> Iterator[Finding]:
         if load.scene.material is not None:
             yield Finding(name, f"{key}.material", f"{what} is of", made_of(load.scene))
         if load.stress is None:
-            text = "section not known: name a material or a diameter"
-            yield Finding(name, f"{key}.stress", f"largest stress of {what}", text)
+            yield Finding(name, f"{key}.stress", f"largest stress of {what}", load.lacks_section)
         else:
             yield Finding(
                 name, f"{key}.stress", f"largest stress of {what}", load.stress, "Pa", load.spread, shown_in="MPa"
@@ -239,10 +244,9 @@ def _of_margin(name: str, key: str, load: Load) -> Finding:
         spread = load.spread * (1.0 + margin) / abs(margin) if margin else load.spread
         return Finding(name, f"{key}.margin_of_safety", label, margin, "", spread)
     if load.breaks_at is None:
-        wants = "" if load.strength is None else ", and a diameter"
-        return Finding(
-            name, f"{key}.margin_of_safety", label, f"strength not known: name a material in {load.where}{wants}"
-        )
+        unknown = f"strength not known: name a material in {load.where}"
+        text = unknown if load.strength is None else load.lacks_section
+        return Finding(name, f"{key}.margin_of_safety", label, text)
     return Finding(name, f"{key}.margin_of_safety", label, "it bore nothing")
 
 

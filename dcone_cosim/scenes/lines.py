@@ -14,14 +14,14 @@ Checked  tests/cosim/test_materials.py
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterator, Mapping
 from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.scene.data import LineScene
 from dcone_cosim.scene.expected import TEXT, Expected, Unexpected
-from dcone_cosim.scene.mistakes import Mistake
-from dcone_cosim.scene.toml_lines import Path
+from dcone_cosim.scene.mistakes import Mistake, Places
+from dcone_cosim.scene.toml_lines import Path, dotted
 from dcone_cosim.scenes.keys import OWN_MATERIALS as OWN
 from dcone_cosim.scenes.keys import read_table, read_value, table_in
 from orbital.materials import ALSO, FORMS, MATERIALS, Material, UnknownMaterial, named
@@ -156,6 +156,19 @@ def _named(name: str, told: Mapping[str, Any], own: Mapping[str, Material]) -> M
     if FORM in told and found.form != form:
         raise Unexpected(f"is a {found.form}, and the {form} it is made of is not known; leave {FORM} out")
     return found
+
+
+def set_apart(path: Path, lines: Mapping[str, LineScene], places: Places) -> Iterator[str]:
+    """What does not follow from a material that the command line sets, since the scene says it itself.
+
+    path    of the component whose lines these are, by table
+    """
+    for table, line in lines.items():
+        by_command = any(places.override((*path, table, key)) for key in (MATERIAL, FORM))
+        if line.material is not None and by_command:
+            for name, value in line.apart.items():
+                key, of = dotted((*path, *name.split("."))), f"{line.material.name}, {line.material.form}"
+                yield f"{key} is as the scene says; {of}, has {value:.4g}, SI"
 
 
 def _differs(given: float, of_material: float) -> bool:

@@ -200,6 +200,13 @@ def test_our_scenes_name_what_their_lines_are_of(name: str) -> None:
         assert {table for table, line in phase.main.lines.items() if line.strength} == wanted
 
 
+def test_a_material_that_is_set_tells_what_does_not_follow() -> None:
+    """Whoever sets one for a run may believe that its stiffness follows; a scene as it is needs no such word."""
+    (told,) = load("table2-deorbit", ["removal.tether.material=Technora"]).notes
+    assert told == "removal.tether.youngs_modulus is as the scene says; Technora, yarn, has 7.355e+10, SI"
+    assert load("table2-deorbit").notes == ()
+
+
 def test_a_new_scene_keeps_materials() -> None:
     text = TOW + MINE + '[removal.tether]\nmaterial = "mine"\nstrength = "0.9 GPa"\n'
     again = read(new_scene(text, "made", "again.toml"))
