@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.planes import FIRST, LANES, STRIP_WORDS
 from fmu_src.net_capture.refusal import Refusal, Scene
@@ -95,4 +96,9 @@ PART = Term(
     ),
     make=make,
     refuses=refuses,
+    extremes=(
+        Extreme(
+            "threads as weak as a cobweb", "they break as they come taut", "energy_gained", {"break.strength": 1e-9}
+        ),
+    ),
 )
