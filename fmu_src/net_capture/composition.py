@@ -9,6 +9,7 @@ from typing import Any
 from fmu_src import tables
 from fmu_src.interface import Model, Term
 from fmu_src.net_capture.graph import make_graph
+from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
 from fmu_src.net_capture.rigging import riggings
 from orbital.kernel import kernel
@@ -37,7 +38,7 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, folding, target, contact, closing, tether, pulls, pace, breaking, scheme
+    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -59,7 +60,7 @@ class Composition:
         self.rouse, self.meeting = needs.make_rouse(self), traits.make_meeting(self)
         self.net, self.folding = self._make("net"), self._make("folding")
         self.rigging = [self._make(group) for group in riggings() if group in terms]
-        self.graph = make_graph(self)
+        self.graph, self.peaks = make_graph(self), make_peaks(self)
         self.target = self._make("target")
         self.contact = self._make("contact")
         self.closing, self.tether = self._make("closing"), self._make("tether")

@@ -155,6 +155,7 @@ BASE = (
     # what the kernels keep
     count("net.corners", "corners of the mouth", "state"),
     count("net.strips", "rows of parallel threads of the net itself", "state"),
+    count("thread_numbers", "the last number that a thread has", "state"),
     count("knot_slots", "slots up to the last of the net's knots", "state"),
     state("rim_mesh", "m", "least distance of two knots of the rim, as meant"),
     count("net.faces", "faces between the threads", "state"),

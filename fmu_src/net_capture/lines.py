@@ -1,4 +1,4 @@
-"""The lines of a net, as entries of the table of lines: its threads, and the cord that closes it."""
+"""The lines of a net, as entries of the table of lines: threads, closing cord, edge rope and the bullets' leads."""
 
 from __future__ import annotations
 
@@ -44,5 +44,18 @@ LINES = (
         usual=CORD_DIAMETER,
         usual_material="nylon 66",
         group="closing",
+    ),
+    *(
+        Line(
+            name,
+            label,
+            name,
+            (f"{name}.tension_max",),
+            follows={f"{name}.{figure}": figure for figure in ("youngs_modulus", "density", "damping_ratio")},
+            modulus=f"{name}.youngs_modulus",
+            diameter=f"{name}.diameter",
+            group=name,
+        )
+        for name, label in (("edge", "the edge rope"), ("leads", "a bullet's lead"))
     ),
 )

@@ -49,7 +49,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     planes, per_double = parts.planes, parts.per_double
     node_plane, properties = parts.memory.node_plane, parts.memory.properties
 
-    graph, folding, gravity, scheme = parts.graph, parts.folding, parts.gravity, parts.scheme
+    graph, folding, gravity, scheme, peaks = parts.graph, parts.folding, parts.gravity, parts.scheme, parts.peaks
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
     has_break, breaking = parts.breaking is not None, parts.breaking
     shot, measures = make_shot(parts), quality.make_quality(parts)
@@ -165,7 +165,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             tether.measure(p)
         if has_nodes:
             write_nodes(p, work)
-        quality.collect_peaks(p)
+        peaks.collect(p)
         if has_closing:
             if p.cord_tension_peak > p.cord_tension_max:
                 p.cord_tension_max = p.cord_tension_peak
@@ -239,10 +239,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         p.settled = 0
         p.closed = 0
         p.t_capture = -1.0
-        p.thread_tension_max = 0.0
-        p.thread_tension_max_index = 0
-        p.thread_tension_peak = 0.0
-        p.thread_peak_index = 0
+        peaks.start(p)
         p.thread_loss = 0.0
         fault = choose_substep(p)
         if fault != 0:
@@ -345,7 +342,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         """
         last = math.floor(reach(p, end) + ON_GRID)
         if anew and p.grid < last:
-            p.thread_tension_peak = 0.0
+            peaks.renew(p)
             if has_closing:
                 p.cord_tension_peak = 0.0
         while p.grid < last:

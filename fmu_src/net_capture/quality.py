@@ -61,17 +61,6 @@ def add_body_momenta(p, mass, place, velocity):
     p.angular_momentum[2] += mass * (place[0] * velocity[1] - place[1] * velocity[0])
 
 
-@kernel
-def collect_peaks(p):
-    """The largest thread tension since the start, and where.
-
-    Checked  tests/net_capture/test_quality.py
-    """
-    if p.thread_tension_peak > p.thread_tension_max:
-        p.thread_tension_max = p.thread_tension_peak
-        p.thread_tension_max_index = p.thread_peak_index
-
-
 def make_quality(composition: Any) -> Quality:
     """Kernels of the measures of the composition's net."""
     memory = composition.memory

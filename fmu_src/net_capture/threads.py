@@ -102,6 +102,7 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
     has_before = before >= 0
     watches = has_before and "contact" in composition.terms
     is_double = composition.terms["precision"] == "double"
+    so_far, note = composition.peaks.so_far, composition.peaks.note
     tears = has_before and composition.breaking is not None
 
     @kernel
@@ -114,9 +115,8 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
             i = np.int64(lowest(above))
             above &= above - np.uint64(1)
             tension = lane(tensions, i)
-            if tension > p.thread_tension_peak:
-                p.thread_tension_peak = tension
-                p.thread_peak_index = first + i + 1
+            if tension > so_far(p, first + 1):
+                note(p, first + i + 1, tension)
 
     @kernel
     def end_chain(reals, slots, node, fx, fy, fz):
@@ -164,7 +164,7 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
         one = splat(1.0)
         ends = splat(SERIES_ENDS)
         half_step = splat(0.5 * p.solver_substep)
-        peak = splat(p.thread_tension_peak)
+        peak = splat(so_far(p, first + 1))
         taken = zero
         chained = b == a + 1
         following = np.int64(0)
@@ -209,7 +209,7 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
             above = bits(tension > peak)
             if above != np.uint64(0):
                 note_peak(p, tension, first + np.int64(j), above)
-                peak = splat(p.thread_tension_peak)
+                peak = splat(so_far(p, first + 1))
             if tears:
                 torn = bits(tension > splat(p.break_strength)) & here
                 if torn != np.uint64(0):

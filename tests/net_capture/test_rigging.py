@@ -154,6 +154,22 @@ def test_no_node_is_stiffer_than_the_step_allows(rigged, change):
     assert told > 0.6 * 2.0 / math.sqrt(2.0 * most)
 
 
+def test_peaks_are_told_line_by_line():
+    """Bullets that fly apart on leads of 3 m stretch these first: until the net is reached nothing else bears a load."""
+    values = values_of("square", *RIGS) | {"net.fold_side": 0.01, "leads.length": 0.5, "bullets.angle": 1.2}
+    net = Instance(MODEL, terms_of("square", *RIGS), values).initialise()
+    while net["leads.tension_max"] == 0.0:
+        net.step(0.001)
+    peak = net["leads.tension_peak"]
+    assert peak == net["leads.tension_max"] > 0.0
+    assert net["thread.tension_max"] == 0.0 == net["thread.tension_max_index"]
+    assert net["edge.tension_max"] == 0.0
+    net.step(1.5)
+    net.step(0.001)
+    assert net["edge.tension_max"] > 0.0 < net["thread.tension_max"]
+    assert net["leads.tension_peak"] <= net["leads.tension_max"] >= peak
+
+
 def test_a_flight_keeps_what_it_keeps_and_is_what_was_said():
     """With all three: momenta, the energy book within 1 % of the shot, the masses and the momentum that were told."""
     values = values_of("square", *RIGS) | {"solver.jitter[3]": 1e-3, "shot.roll": 0.3}
@@ -171,5 +187,8 @@ def test_a_flight_keeps_what_it_keeps_and_is_what_was_said():
         assert np.abs(net.array("momentum")).max() < 1e-12 * moving
         assert np.abs(net.array("angular_momentum") - spin).max() < 1e-12 * moving * 20.0
     assert abs(net["energy.remainder"]) < 0.01 * told["shot.energy"]
+    # a lead alone pulls its bullet along, and is of another section than the rope
+    assert 0.0 < net["thread.tension_max"] < max(net["leads.tension_max"], net["edge.tension_max"])
+    assert net["thread.tension_max_index"] <= 144
     apart = net.array("bullet_position")
     assert np.linalg.norm(apart[0] - apart[2]) > 8.0

@@ -223,6 +223,7 @@ def make_grid(composition: Any, grid: Grid) -> Net:
                         found += 1
                         thread += lanes
                         j += lanes
+        p.thread_numbers = thread
         return found
 
     @kernel

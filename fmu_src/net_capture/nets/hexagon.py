@@ -178,6 +178,7 @@ def make(composition: Any) -> Net:
                         found += 1
                         thread += last + 1
                         j += reach
+        p.thread_numbers = thread
         return found
 
     @kernel

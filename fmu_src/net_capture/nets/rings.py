@@ -185,6 +185,7 @@ def make_rings(composition: Any, profile: Profile) -> Net:
                         found += 1
                         thread += reach - step + 1
                         j += reach
+        p.thread_numbers = thread
         return found
 
     @kernel

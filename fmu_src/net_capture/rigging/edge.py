@@ -15,7 +15,7 @@ from fmu_src.net_capture.nets.weave import first_lanes
 from fmu_src.net_capture.planes import LONGEST_ROW, SHOWN
 from fmu_src.net_capture.rigging import Checks, Rig, Values
 from fmu_src.net_capture.rigging.rope import make_add_rope, piece, piece_of, rows
-from fmu_src.rows import count
+from fmu_src.rows import count, peak
 from orbital.kernel import kernel
 
 
@@ -76,12 +76,13 @@ def make(composition: Any) -> Rig:
         Checked  tests/net_capture/test_rigging.py
         """
         p.edge_strip = p.strips
-        p.edge_thread = p.net_threads
+        p.edge_thread = p.thread_numbers
         n = 0
         while n < p.rim_nodes:
             p.strips += 1
             n += run(p, n)
         p.net_threads += p.rim_nodes
+        p.thread_numbers += p.rim_nodes
         return 0
 
     @kernel
@@ -153,10 +154,13 @@ def _mass(values: Values, net: Any) -> float:
 PART = Term(
     "rope along the mouth's rim, made fast at its knots",
     (
+        peak("edge.tension_max", "N", "largest tension of the edge rope since the start"),
+        peak("edge.tension_peak", "N", "largest tension of the edge rope over the last macro step"),
         *rows("edge", "edge rope", 1e-3),
         count("edge_strip", "its first strip", "state"),
         count("edge_thread", "number of its first piece among the threads", "state"),
     ),
+    excludes=("break",),
     make=make,
     checks=Checks(_rates, _mass),
 )

@@ -12,7 +12,7 @@ from fmu_src.net_capture.planes import SHOWN
 from fmu_src.net_capture.rigging import Checks, Rig, Values
 from fmu_src.net_capture.rigging.edge import of_edge, of_rim
 from fmu_src.net_capture.rigging.rope import make_add_rope, piece, piece_of, rows
-from fmu_src.rows import count, parameter, positive
+from fmu_src.rows import count, parameter, peak, positive
 from orbital.kernel import kernel
 
 MOST_PIECES = 64
@@ -70,7 +70,7 @@ def make(composition: Any) -> Rig:
         Checked  tests/net_capture/test_rigging.py
         """
         p.leads_strip = p.strips
-        p.leads_thread = p.net_threads
+        p.leads_thread = p.thread_numbers
         p.leads_slot = p.node_slots
         # from the corner, within each row, and from row to row
         p.strips += p.net_corners * 2 * rows_each(p)
@@ -79,6 +79,7 @@ def make(composition: Any) -> Rig:
         p.node_slots += p.net_corners * rows_each(p) * p.row_pitch
         p.net_nodes += p.net_corners * p.leads_segments
         p.net_threads += p.net_corners * p.leads_segments
+        p.thread_numbers += p.net_corners * p.leads_segments
         return 0
 
     @kernel
@@ -166,12 +167,14 @@ PART = Term(
     (
         positive("leads.length", "m", "of each lead, from the mouth's corner to the bullet", 1.0),
         parameter("leads.segments", "1", "pieces each lead is cut into", 1, 1, MOST_PIECES, kind="Integer"),
+        peak("leads.tension_max", "N", "largest tension of the leads since the start"),
+        peak("leads.tension_peak", "N", "largest tension of the leads over the last macro step"),
         *rows("leads", "leads", 1e-3),
         count("leads_strip", "their first strip", "state"),
         count("leads_thread", "number of their first piece among the threads", "state"),
         count("leads_slot", "slot of their first node", "state"),
     ),
-    excludes=("closing",),
+    excludes=("closing", "break"),
     make=make,
     checks=Checks(
         _rates,

@@ -113,7 +113,7 @@ def make(composition: Any) -> Scheme:
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
     bends, accelerate = gravity.bends, gravity.accelerate
     copy, no_force, take_over, place = make_in_step(composition)
-    held = make_held(composition, threads.taut)
+    held, kept, put_back = make_held(composition, threads.taut), composition.peaks.kept, composition.peaks.put_back
     nodes, vector, clear, gather = held.nodes, held.vector, held.clear, held.gather
     hold, dissipate = held.hold, held.dissipate
     strain, solve = make_solver(composition, held)
@@ -211,10 +211,9 @@ def make(composition: Any) -> Scheme:
         combine(p, work, P, U, FIRST, h, FIRST, 0.0)
         if gather(p, work, START, X, g) > 0:
             return -1
-        peak, index = p.thread_tension_peak, p.thread_peak_index
+        noted = kept(p)
         pull_now(p, work)
-        p.thread_tension_peak = peak
-        p.thread_peak_index = index
+        put_back(p, noted)
         hold(p, work)
         pull_nodes(p, work)
         turn_into_rates(p, work, BARE_SECOND)

@@ -120,7 +120,7 @@ def make(composition: Any) -> Scheme:
     load, splat, bits, width = lanes.load, lanes.splat, lanes.bits, lanes.width
     node_plane, strips, properties, reals_of = memory.node_plane, memory.strips, memory.properties, memory.reals
     threads = make_threads(composition, P, -1)
-    taut_lanes = threads.taut
+    taut_lanes, so_far, note = threads.taut, composition.peaks.so_far, composition.peaks.note
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
     accelerate = gravity.accelerate
     _, clear, begin, place = make_in_step(composition)
@@ -228,9 +228,8 @@ def make(composition: Any) -> Scheme:
             return -k * excess * h * rate
         impulse = h * tension
         after = rate - both * impulse
-        if tension > p.thread_tension_peak:
-            p.thread_tension_peak = tension
-            p.thread_peak_index = thread
+        if tension > so_far(p, thread):
+            note(p, thread, tension)
         first = impulse * light
         second = impulse * lighter
         reals[u] += first * nx
