@@ -140,9 +140,8 @@ def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     if volume > 0.0:
         yield Implied("canister.volume", "volume of the canister", volume, "m3")
         solid = values["net.mass"] / values["net.density"]
-        yield Implied(
-            "canister.filled", "share of it that the net's threads fill, were they solid", solid / volume, "1"
-        )
+        label = "share of it that the net's threads fill, were they solid"
+        yield Implied("canister.filled", label, solid / volume, "1")
 
 
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:

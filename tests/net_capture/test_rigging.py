@@ -155,7 +155,7 @@ def test_no_node_is_stiffer_than_the_step_allows(rigged, change):
 
 
 def test_peaks_are_told_line_by_line():
-    """Bullets that fly apart on leads of 3 m stretch these first: until the net is reached nothing else bears a load."""
+    """Bullets that fly apart on leads stretch these first: until the net is reached nothing else bears a load."""
     values = values_of("square", *RIGS) | {"net.fold_side": 0.01, "leads.length": 0.5, "bullets.angle": 1.2}
     net = Instance(MODEL, terms_of("square", *RIGS), values).initialise()
     while net["leads.tension_max"] == 0.0:
