@@ -38,7 +38,8 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, pulls, pace, breaking, scheme
+    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, volume, pulls, pace, breaking,
+    scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -64,6 +65,7 @@ class Composition:
         self.target = self._make("target")
         self.contact = self._make("contact")
         self.closing, self.tether = self._make("closing"), self._make("tether")
+        self.volume = self._make("volume")
         self.pulls = _make_pulls(self.closing, self.tether)
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
-from fmu_src.net_capture import breaking, shot, tether
+from fmu_src.net_capture import breaking, shot, tether, volume
 from fmu_src.net_capture.closing import closings
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
@@ -259,17 +259,17 @@ def rigged_of(terms: Mapping[str, str]) -> dict[str, Term]:
     return {name: part for name, part in RIGGINGS.items() if name in terms}
 
 
-def _rigged(part: Term) -> Group:
+def _plain(part: Term) -> Group:
     """A group of one term, which the scene need not name where it has the table."""
-    return Group({RIGGED: part}, selector="kind", optional=True, follows=lambda terms, values: RIGGED)
+    return Group({PLAIN: part}, selector="kind", optional=True, follows=lambda terms, values: PLAIN)
 
 
-RIGGED = "plain"
+PLAIN = "plain"
 NETS, RIGGINGS, TARGETS, CONTACTS, CLOSINGS = nets(), riggings(), shapes(), contacts(), closings()
 
 GROUPS = {
     "net": Group(NETS, selector="shape"),
-    **{name: _rigged(part) for name, part in RIGGINGS.items()},
+    **{name: _plain(part) for name, part in RIGGINGS.items()},
     "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of),
     "folding": Group(foldings(), selector="pattern", default="flat"),
     "gravity": Group(gravities()),
@@ -282,6 +282,7 @@ GROUPS = {
     "tether": Group({"slack": tether.PART}, selector="state", optional=True),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
+    "volume": _plain(volume.PART),
     "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=capacity_of),
 }
 

@@ -44,6 +44,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     parts = Composition(MODEL, terms)
     has_target, has_contact = parts.target is not None, parts.contact is not None
     has_closing, has_tether = parts.closing is not None, parts.tether is not None
+    hold, has_volume = parts.volume, parts.volume is not None
     has_nodes, is_hill = "nodes" in terms, parts.gravity.bends
     capacity = int(terms["nodes"]) if has_nodes else 0
     planes, per_double = parts.planes, parts.per_double
@@ -118,6 +119,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         measures.watch_mouth(p, work, time, MEASURE_INTERVAL)
         if not math.isfinite(p.mouth_area_max) or not math.isfinite(measures.mouth_area(p, work)):
             return not_finite
+        if has_volume:
+            hold.watch(p, work)
         if has_closing:
             touched = p.contact_first_time if has_contact else -1.0
             beyond = measures.beyond(p, work, p.target_place) if has_target else -math.inf
@@ -159,6 +162,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         measures.measure_mouth(p, work)
         if ahead > 0.0:
             measures.carry(p, work, ahead)
+        if has_volume:
+            hold.watch(p, work)
         measures.show_points(p, work)
         carry_mass(p, ahead)
         if has_tether:
@@ -274,6 +279,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_break:
             breaking.start(p)
         measures.start_mouth(p)
+        if has_volume:
+            hold.start(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         start_bodies(p, work)

@@ -19,7 +19,7 @@ class Layer:
 
     def __init__(self, shape: str, **rigged: str) -> None:
         self.terms = MODEL.interface(FREE | {"net": shape} | rigged).terms
-        parts = Composition(MODEL, self.terms)
+        parts = self.parts = Composition(MODEL, self.terms)
         graph, shot = parts.graph, make_shot(parts)
         count_of, lay, load_on, thread_of = graph.count, graph.lay_out, shot.load, parts.net.thread
 
