@@ -2,7 +2,7 @@
 
     python -m tests.net_capture.evidence.shapes
 
-flies the nets of the scenes `planar-2m`, `pyramidal-2m` and `conical-2m`, as they are folded and shot there, eight times
+flies the nets of the scenes `planar-2m`, `pyramidal-2m` and `conical-2m`, folded and shot as there, eight times
 each, and prints the table of the model's page.
 """
 
