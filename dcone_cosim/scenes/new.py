@@ -178,9 +178,10 @@ def _selection(group: build.Group, term: str, mark: str = "") -> str:
     """The key that names a term, with what it adds and what else it could be."""
     if term not in list(group.terms):
         return _line(group.selector, term, group.terms[term].summary)
-    others = [f'"{name}"' for name in group.terms if name != term]
+    shown = {name: name if name.isdecimal() else f'"{name}"' for name in group.terms}
+    others = [text for name, text in shown.items() if name != term]
     text = group.terms[term].summary + (f"; or {', '.join(others)}" if others else "")
-    return _line(group.selector, f'"{term}"', text, mark)
+    return _line(group.selector, shown[term], text, mark)
 
 
 def _left_out(above: str, name: str, group: build.Group) -> Iterator[str]:

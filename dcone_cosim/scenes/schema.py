@@ -183,7 +183,8 @@ def _selector(group: build.Group) -> Schema:
     terms = _terms(group)
     if not terms:
         return {"type": "integer", "minimum": 1, "description": next(iter(group.terms))}
-    return {"enum": [term for term, _ in terms], "description": "; ".join(f"{term}: {text}" for term, text in terms)}
+    names = [int(term) if term.isdecimal() else term for term, _ in terms]
+    return {"enum": names, "description": "; ".join(f"{term}: {text}" for term, text in terms)}
 
 
 def _own(phase: str) -> dict[str, Schema]:

@@ -56,7 +56,10 @@ def other_end(n, i, j, family):
 
 
 def make_leads_on(is_thread: Any, other_end: Any, knots_of: Any) -> Any:
-    """Function `leads_on(n, i, j, family)` of the three above, as kernels or as plain Python."""
+    """Function `leads_on(n, i, j, family)` of the three above, as kernels or as plain Python.
+
+    Checked  tests/net_capture/test_hexagon.py
+    """
 
     def leads_on(n, i, j, family):
         """Whether a thread of that family leads on from a knot.
