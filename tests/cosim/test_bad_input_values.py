@@ -74,7 +74,7 @@ def complaint(text: str) -> str:
         ("mission", 'mesh = "0.5 m"', 'mesh = "0.5 m"\nsegments = 2', ["nodes.capacity = 625", "at least 1825"]),
         ("mission", 'mesh = "0.5 m"', 'mesh = "0.7 m"', ["net.side", "whole number of net.mesh, 0.7 m"]),
         ("mission", 'mesh = "0.5 m"', 'mesh = "1 cm"', ['net.mesh = "1 cm"', "1200 meshes", "at most 400"]),
-        ("mission", 'fold_side = "0.4 m"', 'fold_side = "13 m"', ["net.fold_side", "smaller than the mouth is wide, 12 m"]),
+        ("mission", 'fold_side = "0.4 m"', 'fold_side = "13 m"', ["net.fold_side", "than the mouth is wide, 12 m"]),
         # the target
         ("mission", "[capture.contact]", "start_attitude = [1, 1, 0, 0]\n[capture.contact]", ["unit length"]),
         (
