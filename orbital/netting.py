@@ -71,7 +71,7 @@ def mesh_of_mass(
 
     Valid    a mass above that of two threads along each side; ValueError otherwise: the mesh would be no net
     Source   `net_mass`, solved for the mesh
-    Checked  tests/orbital/test_netting.py; 0.445 m for 36 m x 36 m of 6.67 kg at 20 %
+    Checked  tests/orbital/test_netting.py; 0.535 m for 36 m x 36 m of 6.67 kg at 20 %, 0.445 m without
     """
     left = mass / ((1.0 + margin) * thread_line_mass(density, diameter)) - along - across
     if not left > 0.0:

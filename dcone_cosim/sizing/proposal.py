@@ -1,0 +1,231 @@
+"""Net, bullets, tether and shot for a debris, by the paper's scalings, and the scene that tests them.
+
+The scene is `mission` made larger or smaller: lengths go with the net's side `a`, speeds with the shot's `v`, so times with
+a/v, forces with m v^2/a. Each figure says from what it follows.
+
+Checked  tests/sizing/test_proposal.py
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from dcone_cosim.sizing import budget
+from dcone_cosim.sizing.debris import Debris
+from orbital import netting, tethers
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.materials import MATERIALS
+from orbital.plain import mean_motion
+
+SIDE, SPEED, ANGLE = 12.0, 3.0, math.radians(40.0)
+"""Of `mission`: the net's side [m]; the bullets' speed [m/s] and angle [rad], of Table 1."""
+KNOWN = 3.9
+"""Greatest length up to which the paper has nets by length [m]: Table 3."""
+LARGE_LENGTH, LARGE_SIDE = 25.0, 36.0
+"""Of Table 4's debris and of its largest net, Fig. 9 [m]."""
+CHASER = 2000.0
+"""Mass of the chaser [kg], Table 2."""
+ALTITUDE = 800e3
+"""Of the orbit [m], Table 2."""
+LATER = 2.0
+"""Speed of the hardest tug over that of the first [1]: tide and thrust bring the pair back faster than it parted. 1.6 in
+`mission` over six hours; the scene shows what it is."""
+SAFETY = 2.0
+"""On the highest tension [1]: for 2 on the highest stress see section 4 of the paper's kind of practice, ECSS-E-ST-32-10C."""
+STOCK = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 4e-3, 5e-3, 6e-3, 8e-3, 10e-3, 12e-3, 16e-3, 20e-3)
+"""Diameters of line that are proposed [m]; the least is Table 2's."""
+LINE = MATERIALS["Kevlar 29"].braided()
+THREAD = MATERIALS["Kevlar 29"]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure of a proposal: SI value with its unit, shown in another, and from what it follows."""
+
+    key: str
+    name: str
+    value: float
+    unit: str
+    shown_in: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What is proposed.
+
+    side, mesh        of the net [m];  net, bullet   masses with the budget's margin, one of four bullets [kg]
+    speed, angle      of the bullets [m/s], [rad];  distance   from muzzle to the debris's centre [m]
+    line, diameter    length and diameter of the tether [m]
+    tug               at which it comes taut, by its estimate [m/s];  peak   of that tug's tension [N]
+    """
+
+    debris: Debris
+    side: float
+    mesh: float
+    net: float
+    bullet: float
+    speed: float
+    distance: float
+    line: float
+    diameter: float
+    tug: float
+    peak: float
+    side_why: str
+
+    @property
+    def pace(self) -> float:
+        """Times of its shot over those of `mission` [1]."""
+        return self.side / SIDE * SPEED / self.speed
+
+    @property
+    def cells(self) -> int:
+        return round(self.side / self.mesh)
+
+    def figures(self) -> list[Figure]:
+        """All of it with reasons."""
+        whole = f"the next whole number of {self.mesh:g} m meshes"
+        margin = f"with the budget's margin of {100 * budget.MARGIN:g} %"
+        law = "grows with the debris as the net does, so that a shot takes as long as `mission`'s"
+        need = f"FoS {SAFETY:g} on a tug of {LATER:g} x the first's speed, Kevlar 29 braid, at the fixed point; "
+        return [
+            Figure("net.side", "net, side", self.side, "m", "", f"{self.side_why}; {whole}"),
+            Figure("net.mesh", "net, mesh", self.mesh, "m", "", "the paper's, section 4"),
+            Figure("net.mass", "net, mass", self.net, "kg", "", f"1 mm of aramid, {margin}"),
+            Figure("bullets.mass", "bullets, each of four", self.bullet, "kg", "", "6:1 to the net, as in Table 1"),
+            Figure("bullets.speed", "shot, speed", self.speed, "m/s", "", f"3 m/s up to {KNOWN:g} m, Table 1; {law}"),
+            Figure("bullets.angle", "shot, angle", ANGLE, "rad", "deg", "Table 1"),
+            Figure("shot.distance", "shot, distance", self.distance, "m", "", "the net's side: it is open by then"),
+            Figure("tether.length", "tether, length", self.line, "m", "", "14/12 of the distance, as in `mission`"),
+            Figure("tether.diameter", "tether, diameter", self.diameter, "m", "mm", f"{need}next in stock from 1 mm"),
+            Figure("tug.speed", "first tug, speed", self.tug, "m/s", "mm/s", "recoil of the shot, tide and thrust left out"),
+            Figure("tug.peak", "hardest tug expected", self.peak, "N", "", f"{LATER:g} x that speed on this line, undamped"),
+        ]
+
+
+def propose(debris: Debris) -> Proposal:
+    """Net, bullets, tether and shot for a debris."""
+    wanted, why = _side(debris.length)
+    mesh = budget.MESH
+    side = mesh * math.ceil(wanted / mesh - 1e-9)
+    net = netting.net_mass(side, side, mesh, THREAD.density, budget.THREAD, budget.MARGIN)
+    bullet = budget.bullet_of(net)
+    speed = SPEED * math.sqrt(max(1.0, debris.length / KNOWN))
+    line = 14.0 / 12.0 * side
+    momentum = 4.0 * bullet * speed * math.cos(ANGLE)
+    caught = debris.mass + net + 4.0 * bullet
+    reduced = CHASER * caught / (CHASER + caught)
+    tug = momentum / CHASER + momentum / caught
+    assert LINE.strength is not None
+    section = tethers.snap_section(LATER * tug, reduced, line, LINE.youngs_modulus, LINE.strength, SAFETY)
+    needed = tethers.diameter_of(section)
+    diameter = next((size for size in STOCK if size >= needed), 1e-3 * math.ceil(1e3 * needed))
+    peak = LATER * tug * math.sqrt(LINE.axial_stiffness(diameter) / line * reduced)
+    return Proposal(debris, side, mesh, net, bullet, speed, side, line, diameter, tug, peak, why)
+
+
+def _side(length: float) -> tuple[float, str]:
+    """Side of the net for a debris of that greatest length [m], and from what it follows."""
+    if length <= KNOWN:
+        return budget.side_of(length), f"{budget.SIDE_OVER_LENGTH:g} x length, Table 3"
+    top = LARGE_SIDE / LARGE_LENGTH
+    share = min(1.0, math.log(length / KNOWN) / math.log(LARGE_LENGTH / KNOWN))
+    factor = budget.SIDE_OVER_LENGTH * (top / budget.SIDE_OVER_LENGTH) ** share
+    return factor * length, f"{factor:.3g} x length, between 3.126 of Table 3 and 36 m / 25 m of Fig. 9, in logarithms"
+
+
+def scene_text(proposal: Proposal) -> str:
+    """The scene that tests a proposal."""
+    p = proposal
+    depth, width = p.debris.size[2], p.debris.size[1]
+    scale, force = p.side / SIDE, (p.bullet / 1.27) * (p.speed / SPEED) ** 2 / (p.side / SIDE)
+    rate = mean_motion(EARTH_EQUATORIAL_RADIUS + ALTITUDE, EARTH_MU)
+    drop = 0.006 * p.pace
+    return f'''# Proposed by `dcone size --debris "{p.debris.text}"`: the scene `mission` for this debris. Its own sizing: `dcone size` with
+# this file. Change what you know better.
+title = "Proposal: {p.debris.text} of debris is netted, handed over and towed"
+phases = ["capture", "removal"]
+
+[orbit]
+altitude = "800 km"
+inclination = "98 deg"
+
+[capture]
+macro_step = "{_time(0.02 * p.pace)}"
+duration = "{_time(30.0 * p.pace)}"
+hand_over = "captured"
+
+[capture.net]
+shape = "square"
+side = "{p.side:g} m"
+mesh = "{p.mesh:g} m"
+mass = "{p.net:.4g} kg"
+youngs_modulus = "{1e-9 * THREAD.youngs_modulus:g} GPa" # Kevlar 29, yarn
+density = "{THREAD.density:g} kg/m3"
+damping_ratio = 0.106
+fold_side = "{0.4 * scale:.3g} m"
+
+[capture.gravity]
+law = "hill"
+
+[capture.bullets]
+mass = "{p.bullet:.4g} kg"
+speed = "{p.speed:.3g} m/s"
+angle = "40 deg"
+
+[capture.vertex]
+mass = "{0.15 * p.net / 0.84:.3g} kg"
+
+[capture.chaser]
+mass = "{CHASER:g} kg"
+start_position = ["0 m", "{-p.distance:g} m", "0 m"]
+
+[capture.shot]
+axis = [{-drop:.2g}, 1.0, 0.0] # a little low: on its way the Coriolis acceleration, 2 n v = {2e3 * rate * p.speed:.2g} mm/s2, lifts the net
+
+[capture.target]
+shape = "box"
+size = ["{p.debris.length:g} m", "{depth:g} m", "{width:g} m"] # its shortest side along the shot, its face to the net
+mass = "{p.debris.mass:g} kg"
+
+[capture.contact]
+law = "inelastic"
+
+[capture.closing]
+drive = "winches"
+trigger = "time"
+time = "{6.4 * p.pace:.3g} s"
+speed = "{5.0 * p.speed / SPEED:.3g} m/s"
+stall_force = "{6.0 * force:.3g} N"
+rings = 1
+
+[capture.tether]
+state = "slack"
+length = "{p.line:.4g} m"
+
+[capture.nodes]
+capacity = {(p.cells + 1) ** 2}
+
+[removal]
+macro_step = "10 s"
+duration = "6 h"
+
+[removal.reel]
+law = "locked"
+
+[removal.tether]
+rest_length = "{p.line:.4g} m"
+diameter = "{1e3 * p.diameter:g} mm"
+youngs_modulus = "{1e-9 * LINE.youngs_modulus:.4g} GPa" # Kevlar 29, braid
+damping_ratio = 0.05
+
+[removal.thrust]
+direction = "along_track"
+level = "-0.01 N"
+specific_impulse = "3000 s" # an ion engine
+'''
+
+
+def _time(value: float) -> str:
+    return f"{value:.3g} s"

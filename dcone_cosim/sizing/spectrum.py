@@ -1,0 +1,54 @@
+"""The load spectrum: tugs by size, and cycles by range and mean, counted by rainflow.
+
+Turning points are not those of the recorded rows, between which tugs fall. Each tug gives 0, its peak, 0, exactly, however
+short it is; in a macro step in which the line was taut all the time, the least and the largest tension that the FMU tells
+of it. What a damped line swings more than once within such a step is not counted; it is smaller.
+
+Source   rainflow counting, ASTM E1049-85, by the package `rainflow`
+Checked  tests/sizing/test_spectrum.py
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+CLASSES = 10
+"""Into which the tugs are sorted, up to the largest."""
+
+
+def turning_points(loads: Mapping[str, Any]) -> list[float]:
+    """Tension [N] at each turn, in their order."""
+    events: list[tuple[float, tuple[float, ...]]] = [(time, (0.0, peak, 0.0)) for time, peak, _ in loads["tugs"]]
+    events += [(time, (least, most)) for time, least, most in loads.get("taut", ())]
+    series = [value for _, values in sorted(events, key=lambda event: event[0]) for value in values]
+    return [value for i, value in enumerate(series) if i == 0 or value != series[i - 1]]
+
+
+def cycles(points: Sequence[float]) -> list[tuple[float, float, float]]:
+    """Range [N], mean [N] and count of each cycle; half a cycle counts 0.5."""
+    import rainflow
+
+    return [(size, mean, count) for size, mean, count, _, _ in rainflow.extract_cycles(points)]
+
+
+def by_size(peaks: Sequence[float], most: float) -> list[tuple[float, float, int, int]]:
+    """Classes of tugs: from [N], to [N], how many, and how many above its begin."""
+    edges = np.linspace(0.0, most, CLASSES + 1)
+    counts, _ = np.histogram(peaks, edges)
+    above = np.cumsum(counts[::-1])[::-1]
+    return [(float(a), float(b), int(n), int(m)) for a, b, n, m in zip(edges, edges[1:], counts, above, strict=False)]
+
+
+def cycle_classes(found: Sequence[tuple[float, float, float]], most: float) -> list[tuple[float, float, float, float]]:
+    """Classes of cycles: range from [N], to [N], cycles, and their mean tension [N]."""
+    edges = np.linspace(0.0, most, CLASSES + 1)
+    rows = []
+    for a, b in zip(edges, edges[1:], strict=False):
+        inside = [(mean, count) for size, mean, count in found if a < size <= b]
+        number = sum(count for _, count in inside)
+        mean = sum(mean * count for mean, count in inside) / number if number else float("nan")
+        rows.append((float(a), float(b), number, mean))
+    return rows
