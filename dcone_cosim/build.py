@@ -21,7 +21,9 @@ from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.extremes import Extreme
 from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Model, Term, Undesigned, Value, Variable
+from fmu_src.lines import Line
 from fmu_src.net_capture import cautions as net_capture_cautions
+from fmu_src.net_capture import lines as net_capture_lines
 from fmu_src.net_capture import stress as net_capture_stress
 from fmu_src.net_capture import trade as net_capture_trade
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
@@ -31,6 +33,7 @@ from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.sources import SHIM
 from fmu_src.tables import Table
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
+from fmu_src.tethered_deorbit import lines as tethered_deorbit_lines
 from fmu_src.tethered_deorbit import stress as tethered_deorbit_stress
 from fmu_src.tethered_deorbit import trade as tethered_deorbit_trade
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
@@ -44,6 +47,7 @@ __all__ = [
     "Group",
     "Implied",
     "Interface",
+    "Line",
     "Model",
     "Range",
     "Rung",
@@ -53,6 +57,9 @@ __all__ = [
 
 CAUTIONS = {NET_CAPTURE.name: net_capture_cautions, TETHERED_DEORBIT.name: tethered_deorbit_cautions}
 """What a model has to say of a run, by its name."""
+
+LINES = {NET_CAPTURE.name: net_capture_lines.LINES, TETHERED_DEORBIT.name: tethered_deorbit_lines.LINES}
+"""The lines of a model, by its name."""
 
 TRADES = {NET_CAPTURE.name: net_capture_trade, TETHERED_DEORBIT.name: tethered_deorbit_trade}
 """How a model trades accuracy for time, by its name."""
@@ -165,6 +172,11 @@ def designed(
     except Undesigned as error:
         return Refusal(error.name, error.given, error.expected)
     return found
+
+
+def lines(model: str, terms: Mapping[str, str]) -> list[Line]:
+    """The lines of a model with these terms; of an FMU from elsewhere, which names none, all that it may have."""
+    return [line for line in LINES.get(model, ()) if not terms or not line.group or line.group in terms]
 
 
 def known_variables(name: str) -> dict[str, tuple[Variable, Value]]:

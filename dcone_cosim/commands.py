@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from dcone_cosim import build, interrupts, placed
+from dcone_cosim import build, interrupts, loads, placed
 from dcone_cosim.apart import ours, phases_apart
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
@@ -75,6 +75,7 @@ def run_and_write(
             threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
             result = run_scene(scene, archives.instantiate, progress, archives.adopt)
             facts = archives.facts()
+        loads.judge(result)
         result.attained = attained
         notes += [*nothing_recorded(result), *remarks(facts)]
         if Path(name) == Path(scene.source).parent:

@@ -10,6 +10,8 @@ HANDOFF_FAILED = 4
 FMU_FAILED = 5
 INTERRUPTED = 6
 CASES_FAILED = 7
+OVERLOADED = 8
+"""The run came to its end, and a line of it bore more than it can: in truth it would have broken."""
 
 
 class DconeError(Exception):

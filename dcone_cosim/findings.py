@@ -10,6 +10,7 @@ SAMPLE = "~"
 
 SHOWN_IN = {
     "%": 1e-2,
+    "MPa": 1e6,
     "mm/s": 1e-3,
     "km": 1e3,
     "m/day": 1.0 / 86400.0,

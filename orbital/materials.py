@@ -170,6 +170,11 @@ ALSO: Mapping[str, str] = MappingProxyType(
 """Names of kinds of fibres, each with the one that is taken for it."""
 
 
+def nearest_in_stiffness(youngs_modulus: float) -> Material:
+    """The yarn of the table whose Young's modulus is nearest to this one [Pa], by their ratio."""
+    return min(MATERIALS.values(), key=lambda fibre: abs(math.log(fibre.youngs_modulus / youngs_modulus)))
+
+
 class UnknownMaterial(ValueError):
     """A name that no material has.
 

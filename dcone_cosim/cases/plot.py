@@ -107,7 +107,7 @@ def _curves(axes: Any, entries: Sequence[Entry], places: Sequence[float], second
     values = column.numbers()
     for number, line in enumerate(lines):
         chosen = [i for i, entry in enumerate(entries) if second is None or entry.varied[second].given == line]
-        chosen = [i for i in chosen if entries[i].row.succeeded]
+        chosen = [i for i in chosen if entries[i].row.complete]
         order = sorted(chosen, key=lambda i: places[i])
         colour = _colour(number, len(lines))
         label = f"{second} = {short(line)}" if second and number < MOST_LINES else None

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from dcone_cosim.errors import BAD_INPUT, FAILED_AFTER, SUCCESS
+from dcone_cosim.errors import BAD_INPUT, FAILED_AFTER, OVERLOADED, SUCCESS
 
 LOST = "lost"
 """Status of a case whose worker died: it says nothing of the case, which is run again when the work goes on."""
@@ -46,6 +46,11 @@ class Row:
     @property
     def succeeded(self) -> bool:
         return self.exit_code == SUCCESS
+
+    @property
+    def complete(self) -> bool:
+        """Whether it came to its end, so that its figures are those of all of it: also with an overloaded line."""
+        return self.exit_code in (SUCCESS, OVERLOADED)
 
     @property
     def lasting(self) -> bool:

@@ -1,7 +1,7 @@
 """What many cases come to: mean and spread of figures, shares of outcomes, each with what is known of it.
 
-Only cases that succeeded are averaged. Those that failed are counted beside, as is every figure that a case lacks or
-that is no finite number.
+Only cases that came to their end are averaged. Those that failed are counted beside, as is every figure that a case
+lacks or that is no finite number.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Summary:
     """An ensemble or a sweep as a whole.
 
     statuses   of all cases
-    figures    over the cases that succeeded
+    figures    over the cases that came to their end
     texts      figures that are texts, over the same: how many cases tell which
     """
 
@@ -115,7 +115,7 @@ def spread(values: Sequence[Any], unit: str = "1", confidence: float = CONFIDENC
 def summarise(rows: Iterable[Row]) -> Summary:
     """What the rows come to."""
     rows = list(rows)
-    good = [row for row in rows if row.succeeded]
+    good, succeeded = [row for row in rows if row.complete], sum(row.succeeded for row in rows)
     names = list(dict.fromkeys(name for row in good for name in row.figures))
     figures, texts = {}, {}
     for name in names:
@@ -129,7 +129,7 @@ def summarise(rows: Iterable[Row]) -> Summary:
     statuses = Counter(row.status for row in rows)
     return Summary(
         len(rows),
-        share(len(good), len(rows)),
+        share(succeeded, len(rows)),
         {status: share(count, len(rows)) for status, count in statuses.most_common()},
         figures,
         texts,

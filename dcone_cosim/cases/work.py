@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
+from dcone_cosim import loads
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.rows import FAULT, Row, of_summary, refused
 from dcone_cosim.errors import BAD_INPUT, FAILED_AFTER, FMU_FAILED, DconeError
@@ -32,6 +33,7 @@ Telling = Callable[[Case, RunResult, Mapping[str, float]], Row]
 
 def tell_summary(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
     """The row of a run with all figures of its summary."""
+    loads.judge(result)
     return of_summary(case.key, summary.as_dict(result), timings)
 
 

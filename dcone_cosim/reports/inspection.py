@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from dcone_cosim import build
+from dcone_cosim import build, loads
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import Component
@@ -90,11 +90,13 @@ def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: 
         place = scene.phases.index(phase)
         values |= kind_of(phase.name).values_taken(scene.phases[place - 1]) if place else {}
         about.implied += build.implied(component.model, values, component.terms)
+        about.implied += loads.implied(component, values)
     try:
         with opened(path, component) as archive:
             about.facts, more = _sizes(phase, component, archive)
     except FmuError as error:
         raise cannot_begin(scene, phase.name, error) from None
+    about.facts += loads.told_of(component, phase.name)
     about.implied += more
     return about
 
@@ -154,6 +156,7 @@ SMALL = {
     "s": ("ms", 1e3, 0.1),
     "m/s": ("mm/s", 1e3, 0.1),
     "N": ("mN", 1e3, 0.1),
+    "kg/m": ("g/m", 1e3, 0.1),
 }
 """In which unit a small value is shown, how many of it make the SI unit, and below which SI value."""
 

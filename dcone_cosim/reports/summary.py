@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from dcone_cosim import loads
 from dcone_cosim.findings import SAMPLE, Finding
 from dcone_cosim.phases import kind_of
 from dcone_cosim.reports.warnings import warnings
@@ -26,6 +27,7 @@ def findings(run: RunResult) -> list[Finding]:
         if name in run.phases:
             result = run.phases[name]
             of_phase += _with_spreads(kind.findings(run, result), kind.spreads(run, result))
+            of_phase += loads.findings(run, name)
             of_phase += _of_accuracy(name, run.attained.get(name), name in run.handovers)
             of_phase += _of_effort(name, result)
         rows += of_phase
@@ -66,6 +68,8 @@ def show(run: RunResult, console: Console) -> None:
     table.add_column(style="bold")
     table.add_column()
     table.add_column(justify="right")
+    for line in loads.headlines(run):
+        console.print(Text(line, style="bold red"), highlight=False, soft_wrap=True)
     previous = ""
     rows = findings(run)
     for row in rows:

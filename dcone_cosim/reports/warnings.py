@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from dcone_cosim import build
+from dcone_cosim import build, loads
 from dcone_cosim.phases import kind_of
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import RunResult
@@ -17,7 +17,7 @@ from dcone_cosim.results import RunResult
 
 def warnings(run: RunResult) -> list[str]:
     """All of a run, each once."""
-    found = list(run.scene.cautions)
+    found = [*loads.headlines(run), *run.scene.cautions]
     phases = {phase.name: phase.main for phase in run.scene.phases}
     for name, result in run.phases.items():
         if len(result.recorder):
@@ -28,6 +28,7 @@ def warnings(run: RunResult) -> list[str]:
                 name, kind_of(name).model, values, main.parameters, terms, partial(_range, recorder)
             )
         found += kind_of(name).warnings(run, result)
+        found += loads.warnings(run, name)
     return list(dict.fromkeys(found))
 
 

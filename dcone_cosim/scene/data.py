@@ -11,6 +11,7 @@ from typing import Any
 from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.scene.mistakes import Places
 from dcone_cosim.scene.toml_lines import Path as KeyPath
+from orbital.materials import Material
 
 SHARED = "orbit"
 """Section of a scene that goes to every component that has it."""
@@ -75,6 +76,24 @@ class TableFile:
 
 
 @dataclass(frozen=True)
+class LineScene:
+    """What a scene says a line is made of.
+
+    material    that it names, in the form that it names; None for none
+    strength    tensile stress at which it breaks, of the scene or the material; None: not known   [Pa]
+    diameter    that the model does not have; None: not told                                       [m]
+    follows     parameters of the model that follow from these
+    apart       parameters that the scene says otherwise than the material does, with what this has, SI
+    """
+
+    material: Material | None = None
+    strength: float | None = None
+    diameter: float | None = None
+    follows: tuple[str, ...] = ()
+    apart: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class ComponentScene:
     """One FMU of a phase: a model of ours to be built, or a file.
 
@@ -93,6 +112,7 @@ class ComponentScene:
     tables       of a model of ours, by name
     asked        of a model of ours: what only the scene knows, and parameters are designed by, as `defaults`
     designed     parameters that are
+    lines        by table: what the scene says a line is made of
     """
 
     name: str
@@ -110,6 +130,7 @@ class ComponentScene:
     unnamed: tuple[str, ...] = ()
     asked: Mapping[str, float] = field(default_factory=dict)
     designed: tuple[str, ...] = ()
+    lines: Mapping[str, LineScene] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.errors import InputError
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.phases.phase import Document
-from dcone_cosim.scene.data import SHARED, Accuracy, ComponentScene, HandoffOptions, PhaseScene, Scene
+from dcone_cosim.scene.data import SHARED, Accuracy, ComponentScene, HandoffOptions, LineScene, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
 from dcone_cosim.scene.toml_lines import Path
 from dcone_cosim.scenes.components import (
@@ -28,6 +28,7 @@ from dcone_cosim.scenes.components import (
     of_fmu,
     of_model,
     read_files,
+    read_lines,
     read_part,
     reserved_of,
 )
@@ -48,7 +49,9 @@ from dcone_cosim.scenes.keys import (
     read_value,
     table_in,
 )
+from dcone_cosim.scenes.lines import read_own
 from dcone_cosim.scenes.relations import about_steps, about_values, designed, pairs, phases_to_run
+from orbital.materials import Material
 
 
 @dataclass
@@ -58,6 +61,7 @@ class _Component:
     part: ReadComponent
     options: dict[str, Any] = field(default_factory=dict)
     parameters: dict[str, float] = field(default_factory=dict)
+    lines: dict[str, LineScene] = field(default_factory=dict)
 
     def scene(self) -> ComponentScene:
         defaults = self.part.defaults()
@@ -79,6 +83,7 @@ class _Component:
             self.part.tables,
             tuple(sorted(self.part.unnamed)),
             asked,
+            lines=self.lines,
         )
 
 
@@ -116,9 +121,9 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
     title = read_value(document["title"], read_title, ("title",), mistakes) if "title" in document else ""
     handoff = read_table(table_in(document, ("handoff",), mistakes), handoff_keys(), ("handoff",), mistakes)
     orbit = _orbit(document, mistakes)
-    accuracy = _accuracy(document, mistakes)
+    accuracy, materials = _accuracy(document, mistakes), read_own(document, mistakes)
     present = [phase for phase in kinds() if isinstance(document.get(phase), dict)]
-    phases = {phase: _read_phase(phase, document[phase], orbit, folder, mistakes) for phase in present}
+    phases = {phase: _read_phase(phase, document[phase], orbit, folder, materials, mistakes) for phase in present}
     chosen = phases_to_run(document, present, mistakes)
     whole = Document(document, {phase: read.main.part for phase, read in phases.items()}, chosen)
     for phase in present:
@@ -166,11 +171,16 @@ def _orbit(document: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
 
 
 def _read_phase(
-    phase: str, tables: dict[str, Any], orbit: dict[str, Any], folder: File, mistakes: list[Mistake]
+    phase: str,
+    tables: dict[str, Any],
+    orbit: dict[str, Any],
+    folder: File,
+    own: Mapping[str, Material],
+    mistakes: list[Mistake],
 ) -> _Phase:
     model, path = build.CATALOGUE[kind_of(phase).model], (phase,)
     main = _read_component(
-        ReadComponent(path, phase, model, reserved=reserved_of(phase)), tables, orbit, folder, mistakes
+        ReadComponent(path, phase, model, reserved=reserved_of(phase)), tables, orbit, folder, own, mistakes
     )
     read = _Phase(main, options=_options(phase, tables, mistakes))
     components = table_in(tables, (*path, "components"), mistakes)
@@ -183,7 +193,7 @@ def _read_phase(
             mistakes.append(Mistake(at, table, text))
         else:
             read.others.append(
-                _read_component(ReadComponent(at, name, reserved=RESERVED), table, orbit, folder, mistakes)
+                _read_component(ReadComponent(at, name, reserved=RESERVED), table, orbit, folder, own, mistakes)
             )
     parts = [main.part, *(component.part for component in read.others)]
     read.coupling = read_coupling(tables, path, parts, mistakes)
@@ -206,7 +216,12 @@ def _options(phase: str, tables: dict[str, Any], mistakes: list[Mistake]) -> dic
 
 
 def _read_component(
-    part: ReadComponent, tables: dict[str, Any], orbit: Mapping[str, Any], folder: File, mistakes: list[Mistake]
+    part: ReadComponent,
+    tables: dict[str, Any],
+    orbit: Mapping[str, Any],
+    folder: File,
+    own: Mapping[str, Material],
+    mistakes: list[Mistake],
 ) -> _Component:
     """What a component is, and what the scene says of it."""
     read = _Component(part)
@@ -228,6 +243,8 @@ def _read_component(
         return read
     read_files(part, tables, folder, mistakes)
     read.parameters = read_part(part, tables, orbit, mistakes)
+    read.lines, follows = read_lines(part, tables, read.parameters, own, mistakes)
+    read.parameters |= follows
     follow(part, read.parameters)
     return read
 

@@ -13,14 +13,16 @@ from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
-from dcone_cosim.scene.data import SHARED, TableFile
+from dcone_cosim.scene.data import SHARED, LineScene, TableFile
 from dcone_cosim.scene.expected import LARGEST_INTEGER, TEXT
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted, given_at
 from dcone_cosim.scenes.fmus import Offer
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, Key, Slot, key_of, phase_keys, read_value
+from dcone_cosim.scenes.lines import keys_of, read_line
 from dcone_cosim.scenes.tables import EXAMPLE, table_of
 from dcone_cosim.units import by_name
+from orbital.materials import Material
 
 if TYPE_CHECKING:
     from dcone_cosim.fmu.archive import Archive
@@ -43,6 +45,7 @@ class ReadComponent:
     texts        that the scene gives to Strings, by variable
     files        tables that our model reads, by name, which a scene gives as the path of a file
     tables       those that it gives
+    lines        that it has, by the table of the scene that says what they are made of
     """
 
     path: Path
@@ -60,6 +63,7 @@ class ReadComponent:
     files: dict[str, build.Table] = field(default_factory=dict)
     tables: dict[str, TableFile] = field(default_factory=dict)
     unnamed: set[str] = field(default_factory=set)
+    lines: dict[str, build.Line] = field(default_factory=dict)
 
     @property
     def groups(self) -> Mapping[str, build.Group]:
@@ -71,7 +75,12 @@ class ReadComponent:
 
     def holds(self, table: str) -> bool:
         """Whether a name is that of a table of keys."""
-        return any(name.startswith(table + ".") for name in (*self.keys, *self.files))
+        return table in self.lines or any(name.startswith(table + ".") for name in (*self.keys, *self.files))
+
+    def of_line(self, names: tuple[str, ...]) -> bool:
+        """Whether a key says what a line is made of."""
+        line = self.lines.get(names[0]) if len(names) == 2 else None
+        return line is not None and names[1] in keys_of(line, self.keys)
 
     def defaults(self) -> dict[str, float]:
         numbers = [key for key in self.keys.values() if key.expected.kind != TEXT]
@@ -134,6 +143,7 @@ def of_model(
     interface = model.interface(part.terms)
     part.keys = {build.scene_name(row): key_of(row) for row in build.settable(interface)}
     part.files = {table.name: table for table in interface.tables}
+    part.lines = {line.table: line for line in build.lines(model.name, part.terms)}
     _offer_slots(part, model)
     return part
 
@@ -161,6 +171,7 @@ def _offer_slots(part: ReadComponent, model: build.Model) -> None:
 def of_fmu(part: ReadComponent, offer: Offer) -> ReadComponent:
     """The part as what an FMU file offers."""
     part.keys, part.slots = dict(offer.keys), dict(offer.slots)
+    part.lines = {line.table: line for line in build.lines(part.model.name, {})} if part.model is not None else {}
     return part
 
 
@@ -184,6 +195,31 @@ def read_files(part: ReadComponent, tables: Mapping[str, Any], folder: File, mis
         read = read_value(given, partial(table_of, table, folder=folder, path=path), path, mistakes)
         if read is not None:
             part.tables[name] = read
+
+
+def read_lines(
+    part: ReadComponent,
+    tables: Mapping[str, Any],
+    found: Mapping[str, float],
+    own: Mapping[str, Material],
+    mistakes: list[Mistake],
+) -> tuple[dict[str, LineScene], dict[str, float]]:
+    """What the scene says its lines are made of, by table, and the parameters that follow, SI.
+
+    found    parameters that the scene says
+    own      its own materials
+    """
+    lines: dict[str, LineScene] = {}
+    follows: dict[str, float] = {}
+    for name, line in part.lines.items():
+        table = tables.get(name)
+        if isinstance(table, dict):
+            keys = keys_of(line, part.keys)
+            read = read_line(line, keys, table, (*part.path, name), part.defaults(), found, own, mistakes)
+            if read is not None:
+                lines[name], taken = read
+                follows |= taken
+    return lines, follows
 
 
 def read_part(
@@ -233,6 +269,8 @@ def _walk(
         _take(part, joined, value, path, found, mistakes)
     elif joined in part.files:
         return  # looked at by `read_files`
+    elif part.of_line(names):
+        return  # looked at by `read_lines`
     elif part.selects(names):
         _look_at_choice(part, names, value, mistakes)
     elif ours and joined in part.groups and not isinstance(value, dict):
@@ -306,9 +344,11 @@ def _unknown(part: ReadComponent, names: tuple[str, ...], value: object) -> Mist
     if home is not None:
         return Mistake(path, value, f"belongs to the term {home}, which this scene does not name")
     if len(names) == 1:
-        tables = {name.partition(".")[0] for name in (*part.keys, *part.files)} | set(part.groups) | set(part.reserved)
+        tables = {name.partition(".")[0] for name in (*part.keys, *part.files, *part.lines)}
+        tables |= set(part.groups) | set(part.reserved)
         return unknown(path, value, "unknown key", key, tables - {SHARED})
     keys = [name.partition(".")[2] for name in (*part.keys, *part.files) if name.startswith(names[0] + ".")]
+    keys += list(keys_of(part.lines[names[0]], part.keys)) if names[0] in part.lines else []
     return unknown(path, value, "unknown key", key, keys)
 
 

@@ -20,7 +20,9 @@ from dcone_cosim.units import Unit
 
 SOLVER = "solver"
 """Table at the top that says how exact the run is to be."""
-TOP = ("title", "phases", SHARED, SOLVER, "handoff")
+OWN_MATERIALS = "materials"
+"""Table at the top with a scene's own materials, a table each."""
+TOP = ("title", "phases", SHARED, SOLVER, OWN_MATERIALS, "handoff")
 """Keys at the top of a scene, beside the phases."""
 MOST_STEPS = 5_000_000
 """Macro steps of a phase: each leaves a row, and a run keeps all rows in memory."""
@@ -81,6 +83,7 @@ MEANING: Mapping[str, str] = {
     "accuracy": "how exact the run is to be: scheme, step and tolerances are chosen for it, and its error is estimated",
     "quantities": "what it is the accuracy of; those that each phase means by it if not given",
     "runs": "how many runs may be made where a single one scatters more than that; one if not given",
+    OWN_MATERIALS: "materials of your own by name, a table each: [materials.mine]",
     "macro_step": "the grid of the results: every output is recorded this often",
     "duration": "the phase ends after this at the latest",
     "hand_over": "what ends the capture and begins the next phase; none: flown to its end",

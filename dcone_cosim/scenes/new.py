@@ -20,6 +20,7 @@ from dcone_cosim.scenes.components import term_named
 from dcone_cosim.scenes.keys import (
     COUPLING_KEYS,
     MEANING,
+    OWN_MATERIALS,
     SOLVER,
     SOLVER_KEYS,
     Key,
@@ -28,6 +29,7 @@ from dcone_cosim.scenes.keys import (
     orbit_keys,
     phase_keys,
 )
+from dcone_cosim.scenes.lines import LINE_MEANING, OWN_KEYS, OWN_MEANING, keys_of
 from dcone_cosim.scenes.tables import EXAMPLE
 
 WIDTH = 120
@@ -64,6 +66,7 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
     mark = "" if given else "# "
     lines += ["", f"{mark}[{SOLVER}]"]
     lines += [_option(key, given.get(key), known) for key, known in SOLVER_KEYS.items() if known.size != ANY]
+    lines += _materials(document.get(OWN_MATERIALS, {}))
     for place, phase in enumerate(present):
         lines += ["", *_phase(phase, document[phase], skip=kind_of(phase).taken_over if place else ())]
     keys = handoff_keys(present[1:])
@@ -71,6 +74,13 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
         given = document.get("handoff", {})
         lines += ["", "[handoff]", *(_option(key, given.get(key), known) for key, known in keys.items())]
     return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def _materials(given: Mapping[str, Any]) -> Iterator[str]:
+    """The scene's own materials, or one as an example."""
+    for name, table in (given or {"mine": {}}).items():
+        yield from ("", f"{'' if given else '# '}[{OWN_MATERIALS}.{name}]")
+        yield from (_said(key, table.get(key), known, OWN_MEANING[key]) for key, known in OWN_KEYS.items())
 
 
 def _somewhere(document: Mapping[str, Any], name: str) -> bool:
@@ -143,7 +153,10 @@ def _component(
     yield from _table(tables, own)
     tables = {name: table for name, table in tables.items() if isinstance(table, dict) and name not in RESERVED}
     homes = {name: model.groups[name].table or name for name in terms}
-    for section in dict.fromkeys((*tables, *homes.values(), *(row.section for row in rows if row.key))):
+    made = {
+        line.table: keys_of(line, {build.scene_name(row) for row in rows}) for line in build.lines(model.name, terms)
+    }
+    for section in dict.fromkeys((*tables, *homes.values(), *made, *(row.section for row in rows if row.key))):
         keys = {row.key: _described(row) for row in rows if row.section == section}
         given = tables.get(section)
         yield ""
@@ -153,6 +166,8 @@ def _component(
             yield _selection(group, terms[name], "" if group.selector in (given or {}) else "# ")
         selectors = {model.groups[name].selector for name in homes if homes[name] == section}
         yield from _files(section, given or {}, interface.tables)
+        for key, expected in made.get(section, {}).items():
+            yield _said(key, (given or {}).get(key), expected, LINE_MEANING[key])
         yield from _table({key: value for key, value in (given or {}).items() if key not in selectors}, keys)
     for name, group in model.groups.items():
         if name not in terms and name not in tables:
@@ -212,7 +227,12 @@ def _default(name: str, key: Key) -> str:
 
 
 def _option(name: str, given: Any, expected: Expected) -> str:
-    text = _meaning(MEANING[name], expected)
+    return _said(name, given, expected, MEANING[name])
+
+
+def _said(name: str, given: Any, expected: Expected, meaning: str) -> str:
+    """A key with what is given, or an example of it as a comment."""
+    text = _meaning(meaning, expected)
     if given is not None:
         return _line(name, _toml(given), text)
     example = f'"{expected.choices[0]}"' if expected.choices else _toml(_parsed(expected.example or "true"))

@@ -20,6 +20,7 @@ from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,
     MEANING,
+    OWN_MATERIALS,
     REQUIRED,
     SOLVER,
     SOLVER_KEYS,
@@ -28,6 +29,8 @@ from dcone_cosim.scenes.keys import (
     orbit_keys,
     phase_keys,
 )
+from dcone_cosim.scenes.lines import LINE_MEANING, MATERIAL, NEEDED, OWN_KEYS, OWN_MEANING, keys_of
+from orbital.materials import ALSO, MATERIALS
 
 QUANTITY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s].*$"
 """A number and a unit."""
@@ -50,6 +53,7 @@ def schema() -> Schema:
         },
         SHARED: _table(orbit, "the orbit, shared by the phases"),
         **{phase: _phase(phase) for phase in kinds()},
+        OWN_MATERIALS: _materials(),
         SOLVER: _table(_options(SOLVER_KEYS), "how exact the run is to be"),
         "handoff": _table(_options(handoff_keys()), "how a capture hands over to a removal"),
     }
@@ -69,6 +73,16 @@ def _table(properties: Mapping[str, Schema], description: str) -> Schema:
         "description": description,
         "properties": dict(properties),
         "additionalProperties": False,
+    }
+
+
+def _materials() -> Schema:
+    """A scene's own materials, a table each."""
+    own = _table({key: _value(expected, OWN_MEANING[key]) for key, expected in OWN_KEYS.items()}, "a material")
+    return {
+        "type": "object",
+        "description": MEANING[OWN_MATERIALS],
+        "additionalProperties": own | {"required": list(NEEDED)},
     }
 
 
@@ -142,6 +156,11 @@ def _tables(model: build.Model) -> dict[str, Schema]:
             known = tables.setdefault(row.section, {}).setdefault(row.key, value)
             if key.description not in known["description"]:
                 known["description"] += f"; or {key.description}"  # it means something else with another term
+    for line in build.lines(model.name, {}):
+        of_line = tables.setdefault(line.table, {})
+        offered = {f"{line.table}.{key}" for key in of_line}
+        of_line |= {key: _value(expected, LINE_MEANING[key]) for key, expected in keys_of(line, offered).items()}
+        of_line[MATERIAL] |= {"anyOf": [{"enum": [*MATERIALS, *ALSO]}, {"type": "string"}]}
     for table in build.all_tables(model):
         home, _, name = table.name.partition(".")
         tables.setdefault(home, {})[name] = {"type": "string", "description": f"path of a file: {table.description}"}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping
 
-from fmu_src.cautions import ARAMID, NYLON, Caution, Seen, fibre_of, heavily_damped, low, strained
-from fmu_src.net_capture.implied import open_loop, substeps, thread_section
+from fmu_src.cautions import Caution, Seen, heavily_damped, low
+from fmu_src.net_capture.implied import open_loop, substeps
 from fmu_src.net_capture.interface import GROUPS, TARGETS
 from fmu_src.net_capture.schemes import Needs
 
@@ -60,16 +60,6 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     yield from _unbalanced(values, terms, seen)
     yield from _taken_back(seen)
     yield from _unforeseen(seen)
-    thread, cord = seen("thread.tension_max"), seen("cord.tension_max")
-    if thread is not None and "net" in terms:
-        modulus = values["net.youngs_modulus"]
-        fibre, stiffness = fibre_of(modulus), modulus * thread_section(values, terms)
-        yield from strained("thread.tension_max", "a thread", thread.largest, stiffness, fibre.strain, fibre.name)
-    if cord is not None and "closing.axial_stiffness" in values:
-        name, stiffness = "closing.axial_stiffness", values["closing.axial_stiffness"]
-        # the default is a nylon cord; of one that is given nothing is known but its stiffness
-        limit, fibre_name = (ARAMID, "para-aramid (nylon 66: 20 %)") if name in given else (NYLON, "nylon 66")
-        yield from strained("cord.tension_max", "the closing cord", cord.largest, stiffness, limit, fibre_name)
 
 
 def _needs(terms: Mapping[str, str]) -> Needs:

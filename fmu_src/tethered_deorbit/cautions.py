@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping
 
-from fmu_src.cautions import Caution, Seen, fibre_of, heavily_damped, low, strained
+from fmu_src.cautions import Caution, Seen, heavily_damped, low
 from fmu_src.tethered_deorbit.asked import LINEAR_LAWS
 from fmu_src.tethered_deorbit.reel_rows import FOLLOWING_LAWS
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
@@ -62,14 +62,6 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
         noise = (3.0 * (separation.largest / axis.least) ** 2 + 1e-9) * axis.first
         if axis.last - axis.first > noise:
             yield Caution("thrust.level", f"the orbit was raised, by {axis.last - axis.first:.3g} m")
-    peak = seen("tether.tension_peak") or seen("tether.tension")
-    if peak is not None and {"tether.youngs_modulus", "tether.diameter"} <= values.keys():
-        from fmu_src.tethered_deorbit.implied import axial_stiffness  # and with it numba, as for the net
-
-        fibre = fibre_of(values["tether.youngs_modulus"])
-        yield from strained(
-            "tether.tension_peak", "the line", peak.largest, axial_stiffness(values), fibre.strain, fibre.name
-        )
 
 
 def _unstable(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
