@@ -83,35 +83,35 @@ def diameter_of(section: float) -> float:
     return math.sqrt(4.0 * section / math.pi)
 
 
-def cut_rate(diameter: float, length: float, coefficient: float, reference: float, exponent: float) -> float:
-    """Rate at which particles cut a line [1/s].
-
-        N' = pi D L f(D/3),    f(d) = f0 (d/d0)^-q
+def cut_rate(diameter: float, length: float, flux: float) -> float:
+    """Rate at which particles cut a line [1/s]: N' = pi D L f.
 
     diameter      D      of the line                             [m]
     length        L      that is out                             [m]
-    coefficient   f0     particles larger than d0, through a surface that turns at random, per its area and time  [1/(m2 s)]
-    reference     d0                                             [m]
-    exponent      q                                              [1]
+    flux          f      of particles larger than D/3, through a surface that turns at random, per its area and time
+                                                                 [1/(m2 s)]
 
     Valid    particles much smaller than the line is long; one of a third of its diameter or more cuts it
     Source   a third of the diameter: Anselmo and Pardini, Space Debris 1 (2000), 87; Khan and Sanmartin,
              J. Spacecraft and Rockets 50 (2013), 603
     Checked  tests/orbital/test_tethers.py
     """
-    return math.pi * diameter * length * coefficient * (diameter / (3.0 * reference)) ** -exponent
+    return math.pi * diameter * length * flux
 
 
 def diameter_for_cuts(
     probability: float, time: float, length: float, coefficient: float, reference: float, exponent: float
 ) -> float:
-    """Diameter at which a line is cut within a time with this probability [m], the inverse of `cut_rate`.
+    """Diameter at which a line is cut within a time with this probability [m], for a flux that falls as a power.
 
-        1 - exp(-N' t) = p,    D = (pi L f0 (3 d0)^q t / -ln(1 - p))^(1/(q - 1))
+        1 - exp(-N' t) = p,   N' = pi D L f0 (D/(3 d0))^-q:   D = (pi L f0 (3 d0)^q t / -ln(1 - p))^(1/(q - 1))
 
     probability   p                                              [1]
     time          t                                              [s]
-    length, coefficient, reference, exponent      as for `cut_rate`
+    length        L      that is out                             [m]
+    coefficient   f0     flux of particles larger than d0        [1/(m2 s)]
+    reference     d0                                             [m]
+    exponent      q                                              [1]
 
     Valid    q > 1 and 0 < p < 1; ValueError otherwise: a thicker line would be cut as often
     Source   cuts at random, in a Poisson process

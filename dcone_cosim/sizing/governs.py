@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from dcone_cosim.sizing.flux import YEAR
 from dcone_cosim.sizing.options import Options
 from dcone_cosim.sizing.required import Required
 from orbital import tethers
@@ -32,9 +33,7 @@ class Demand:
     how: str
 
 
-def demands(
-    needed: Required, zeta: float, steady: float, length: float, time: float, options: Options
-) -> list[Demand]:
+def demands(needed: Required, zeta: float, steady: float, length: float, time: float, options: Options) -> list[Demand]:
     """Demands of every load on a line of a material, the largest first.
 
     steady     tension without tugs [N];  length   that is out [m];  time   for which [s]
@@ -42,7 +41,9 @@ def demands(
     material, factor = needed.material, options.factor_of_safety
     assert material.strength is not None
     tug = DASHPOT if zeta >= tethers.DASHPOT_GOVERNS else SNAP
-    jump = "the model's dashpot as the line goes taut, not the line" if tug == DASHPOT else "the hardest tug of all runs"
+    jump = (
+        "the model's dashpot as the line goes taut, not the line" if tug == DASHPOT else "the hardest tug of all runs"
+    )
     found = [
         Demand(tug, needed.peak, needed.diameter, f"{jump}, at the fixed point, FoS {factor:g}"),
         Demand(STEADY, steady, _bears(steady, material, factor), f"without tugs, FoS {factor:g}"),
@@ -51,8 +52,8 @@ def demands(
             "least_breaking_load" if options.least_breaking_load else "the scene asks for none: least_breaking_load",
         ),
         Demand(
-            CUT, float("nan"), cut_diameter(length, time, options),
-            f"{100 * options.cut_probability:g} % in {time / (365.25 * 86400):.3g} years over {length:g} m",
+            CUT, float("nan"), options.flux.diameter(options.cut_probability, time, length),
+            f"{100 * options.cut_probability:g} % in {time / YEAR:.3g} years over {length:g} m",
         ),
     ]  # fmt: skip
     return sorted(found, key=lambda one: -one.diameter if one.diameter == one.diameter else 0.0)
@@ -62,9 +63,3 @@ def _bears(load: float, material: Material, factor: float) -> float:
     assert material.strength is not None
     return tethers.diameter_of(tethers.load_section(load, material.strength, factor))
 
-
-def cut_diameter(length: float, time: float, options: Options) -> float:
-    """Diameter [m] at which debris cuts a line of this length in this time with the probability that is allowed."""
-    return tethers.diameter_for_cuts(
-        options.cut_probability, time, length, options.flux, options.flux_size, options.flux_exponent
-    )

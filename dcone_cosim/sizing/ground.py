@@ -53,7 +53,7 @@ class Ground:
     """The tow as it is, and with other values.
 
     alone      the scene, its phases each by itself, begun already
-    runner     runs its cases
+    runner     runs its cases; set before the first
     """
 
     def __init__(self, alone: Alone, progress: Progress) -> None:
@@ -81,7 +81,16 @@ class Ground:
         """Whether a capture hands over to it."""
         return len(self.alone.phases) > 1 and self.alone.phases[0] != PHASE
 
-    def scene_with(self, values: Values, terms: Mapping[str, str] | None = None, duration: float | None = None) -> Scene:
+    def pin(self, values: Values) -> None:
+        """Let all of its runs have these values, SI by FMI name."""
+        main = self.phase.main
+        self.phase = replace(self.phase, main=replace(main, parameters={**main.parameters, **values}))
+        self.scene = replace(self.scene, phases=(self.phase,))
+        self.values |= values
+
+    def scene_with(
+        self, values: Values, terms: Mapping[str, str] | None = None, duration: float | None = None
+    ) -> Scene:
         """The tow alone with other parameters, SI by FMI name, other terms, another duration."""
         main = self.phase.main
         main = replace(main, parameters={**main.parameters, **values}, terms={**main.terms, **(terms or {})})
@@ -135,7 +144,7 @@ def reduced(values: Values) -> float:
 def steady(values: Values) -> float:
     """The tension that thrust and tide keep in the line [N], the larger of the two.
 
-        3 n^2 m_r l   of a pair at rest near the vertical;   |F| m_t/(m_c + m_t)   of one that is pulled along its line
+    3 n^2 m_r l   of a pair at rest near the vertical;   |F| m_t/(m_c + m_t)   of one that is pulled along its line
     """
     total = values["chaser.mass"] + values["target.mass"]
     pulled = abs(values.get("thrust.level", 0.0)) * values["target.mass"] / total

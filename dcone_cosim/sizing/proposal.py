@@ -21,9 +21,8 @@ from orbital.plain import mean_motion
 SIDE, SPEED, ANGLE = 12.0, 3.0, math.radians(40.0)
 """Of `mission`: the net's side [m]; the bullets' speed [m/s] and angle [rad], of Table 1."""
 KNOWN = 3.9
-"""Greatest length up to which the paper has nets by length [m]: Table 3."""
-LARGE_LENGTH, LARGE_SIDE = 25.0, 36.0
-"""Of Table 4's debris and of its largest net, Fig. 9 [m]."""
+"""Greatest length up to which the paper has nets by length [m], Table 3; beyond, net and mesh grow together, so that the
+shot stays similar and its threads bear the same. The paper's own net for 25 m is of 36 m, and leaves part of it outside."""
 CHASER = 2000.0
 """Mass of the chaser [kg], Table 2."""
 ALTITUDE = 800e3
@@ -33,6 +32,8 @@ LATER = 2.0
 `mission` over six hours; the scene shows what it is."""
 SAFETY = 2.0
 """On the highest tension [1]: for 2 on the highest stress see section 4 of the paper's kind of practice, ECSS-E-ST-32-10C."""
+LOCK_LENGTH = 0.25
+"""Of a locked cord between two bullets [m], the model's default."""
 STOCK = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 4e-3, 5e-3, 6e-3, 8e-3, 10e-3, 12e-3, 16e-3, 20e-3)
 """Diameters of line that are proposed [m]; the least is Table 2's."""
 LINE = MATERIALS["Kevlar 29"].braided()
@@ -83,35 +84,46 @@ class Proposal:
     def cells(self) -> int:
         return round(self.side / self.mesh)
 
+    @property
+    def rings(self) -> int:
+        """On the mouth's edge between two bullets: so many that no loop lets the debris pass."""
+        girth = 2.0 * (self.debris.size[1] + self.debris.size[2])
+        return max(1, math.ceil((self.side + LOCK_LENGTH) / girth) - 1)
+
     def figures(self) -> list[Figure]:
         """All of it with reasons."""
         whole = f"the next whole number of {self.mesh:g} m meshes"
         margin = f"with the budget's margin of {100 * budget.MARGIN:g} %"
-        law = "grows with the debris as the net does, so that a shot takes as long as `mission`'s"
+        mesh = "the paper's, section 4" if self.mesh == budget.MESH else f"0.5 m x length / {KNOWN:g} m: similar to Table 3"
         need = f"FoS {SAFETY:g} on a tug of {LATER:g} x the first's speed, Kevlar 29 braid, at the fixed point; "
         return [
             Figure("net.side", "net, side", self.side, "m", "", f"{self.side_why}; {whole}"),
-            Figure("net.mesh", "net, mesh", self.mesh, "m", "", "the paper's, section 4"),
+            Figure("net.mesh", "net, mesh", self.mesh, "m", "", mesh),
             Figure("net.mass", "net, mass", self.net, "kg", "", f"1 mm of aramid, {margin}"),
             Figure("bullets.mass", "bullets, each of four", self.bullet, "kg", "", "6:1 to the net, as in Table 1"),
-            Figure("bullets.speed", "shot, speed", self.speed, "m/s", "", f"3 m/s up to {KNOWN:g} m, Table 1; {law}"),
+            Figure("bullets.speed", "shot, speed", self.speed, "m/s", "", "Table 1"),
             Figure("bullets.angle", "shot, angle", ANGLE, "rad", "deg", "Table 1"),
             Figure("shot.distance", "shot, distance", self.distance, "m", "", "the net's side: it is open by then"),
+            Figure("closing.rings", "rings between two bullets", float(self.rings), "1", "", "loops less than the girth"),
             Figure("tether.length", "tether, length", self.line, "m", "", "14/12 of the distance, as in `mission`"),
             Figure("tether.diameter", "tether, diameter", self.diameter, "m", "mm", f"{need}next in stock from 1 mm"),
-            Figure("tug.speed", "first tug, speed", self.tug, "m/s", "mm/s", "recoil of the shot, tide and thrust left out"),
-            Figure("tug.peak", "hardest tug expected", self.peak, "N", "", f"{LATER:g} x that speed on this line, undamped"),
+            Figure(
+                "tug.speed", "first tug, speed", self.tug, "m/s", "mm/s", "recoil of the shot, tide and thrust left out"
+            ),
+            Figure(
+                "tug.peak", "hardest tug expected", self.peak, "N", "", f"{LATER:g} x that speed on this line, undamped"
+            ),
         ]
 
 
 def propose(debris: Debris) -> Proposal:
     """Net, bullets, tether and shot for a debris."""
-    wanted, why = _side(debris.length)
-    mesh = budget.MESH
+    wanted, why = budget.side_of(debris.length), f"{budget.SIDE_OVER_LENGTH:g} x length, Table 3"
+    mesh = budget.MESH * max(1.0, debris.length / KNOWN)
     side = mesh * math.ceil(wanted / mesh - 1e-9)
     net = netting.net_mass(side, side, mesh, THREAD.density, budget.THREAD, budget.MARGIN)
     bullet = budget.bullet_of(net)
-    speed = SPEED * math.sqrt(max(1.0, debris.length / KNOWN))
+    speed = SPEED
     line = 14.0 / 12.0 * side
     momentum = 4.0 * bullet * speed * math.cos(ANGLE)
     caught = debris.mass + net + 4.0 * bullet
@@ -123,16 +135,6 @@ def propose(debris: Debris) -> Proposal:
     diameter = next((size for size in STOCK if size >= needed), 1e-3 * math.ceil(1e3 * needed))
     peak = LATER * tug * math.sqrt(LINE.axial_stiffness(diameter) / line * reduced)
     return Proposal(debris, side, mesh, net, bullet, speed, side, line, diameter, tug, peak, why)
-
-
-def _side(length: float) -> tuple[float, str]:
-    """Side of the net for a debris of that greatest length [m], and from what it follows."""
-    if length <= KNOWN:
-        return budget.side_of(length), f"{budget.SIDE_OVER_LENGTH:g} x length, Table 3"
-    top = LARGE_SIDE / LARGE_LENGTH
-    share = min(1.0, math.log(length / KNOWN) / math.log(LARGE_LENGTH / KNOWN))
-    factor = budget.SIDE_OVER_LENGTH * (top / budget.SIDE_OVER_LENGTH) ** share
-    return factor * length, f"{factor:.3g} x length, between 3.126 of Table 3 and 36 m / 25 m of Fig. 9, in logarithms"
 
 
 def scene_text(proposal: Proposal) -> str:
@@ -158,11 +160,10 @@ hand_over = "captured"
 
 [capture.net]
 shape = "square"
-side = "{p.side:g} m"
-mesh = "{p.mesh:g} m"
+side = "{p.side:.6g} m"
+mesh = "{p.mesh:.6g} m"
 mass = "{p.net:.4g} kg"
-youngs_modulus = "{1e-9 * THREAD.youngs_modulus:g} GPa" # Kevlar 29, yarn
-density = "{THREAD.density:g} kg/m3"
+material = "{THREAD.name}"
 damping_ratio = 0.106
 fold_side = "{0.4 * scale:.3g} m"
 
@@ -179,7 +180,7 @@ mass = "{0.15 * p.net / 0.84:.3g} kg"
 
 [capture.chaser]
 mass = "{CHASER:g} kg"
-start_position = ["0 m", "{-p.distance:g} m", "0 m"]
+start_position = ["0 m", "{-p.distance:.6g} m", "0 m"]
 
 [capture.shot]
 axis = [{-drop:.2g}, 1.0, 0.0] # a little low: on its way the Coriolis acceleration, 2 n v = {2e3 * rate * p.speed:.2g} mm/s2, lifts the net
@@ -198,7 +199,9 @@ trigger = "time"
 time = "{6.4 * p.pace:.3g} s"
 speed = "{5.0 * p.speed / SPEED:.3g} m/s"
 stall_force = "{6.0 * force:.3g} N"
-rings = 1
+rings = {p.rings}
+material = "nylon 66"
+diameter = "0.5 mm"
 
 [capture.tether]
 state = "slack"
@@ -217,7 +220,8 @@ law = "locked"
 [removal.tether]
 rest_length = "{p.line:.4g} m"
 diameter = "{1e3 * p.diameter:g} mm"
-youngs_modulus = "{1e-9 * LINE.youngs_modulus:.4g} GPa" # Kevlar 29, braid
+material = "{LINE.name}"
+form = "{LINE.form}"
 damping_ratio = 0.05
 
 [removal.thrust]

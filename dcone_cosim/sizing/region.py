@@ -152,4 +152,3 @@ def _size(ground: Ground) -> tuple[tuple[float, float, float], str]:
         if phase.name != PHASE and all(f"target.size[{i}]" in values for i in (1, 2, 3)):
             return (values["target.size[1]"], values["target.size[2]"], values["target.size[3]"]), f"{phase.name}'s"
     return TABLE_1, "that of the paper's Table 1, as the scene tells none"
-

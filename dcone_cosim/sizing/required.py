@@ -112,7 +112,9 @@ class Required:
     note: str = ""
 
 
-def in_closed_form(values: Values, tug: tuple[float, float, float], steady: float, material: Material, safety: float) -> float:
+def in_closed_form(
+    values: Values, tug: tuple[float, float, float], steady: float, material: Material, safety: float
+) -> float:
     """Diameter [m] of a line of a material that bears this tug: time [s], peak [N] and speed [m/s] on the scene's line.
 
     The mass that the tug moves follows from its peak, so that a target that turns counts with less than all of it.
@@ -125,7 +127,14 @@ def in_closed_form(values: Values, tug: tuple[float, float, float], steady: floa
     lifted = max(peak * peak - 2.0 * peak * steady, 0.0)  # k m v^2 g^2 of T = P + sqrt(P^2 + k m v^2 g^2)
     mass = lifted / (k * (share * speed) ** 2) if speed else 0.0
     section = tethers.snap_section(
-        abs(speed), mass, values["tether.rest_length"], material.youngs_modulus, material.strength, safety, steady, share
+        abs(speed),
+        mass,
+        values["tether.rest_length"],
+        material.youngs_modulus,
+        material.strength,
+        safety,
+        steady,
+        share,
     )
     return tethers.diameter_of(section)
 
@@ -183,4 +192,3 @@ def result(one: Search, closed: float, fixed: float, length: float, safety: floa
     assert load is not None
     mass = material.mass_per_metre(diameter) * length
     return Required(material, closed, diameter, one.peak, mass, load / (safety * one.peak) - 1.0, fixed, len(one.tried))
-

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Cell = float | int | str | bool | None
+ROW = "row"
+"""In the place of a unit: each row has its own, in the column `unit`."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class Head:
     def title(self) -> str:
         """Label with the unit shown."""
         unit = self.shown_in or self.unit
-        return f"{self.label} [{spoken(unit)}]" if unit not in ("", "1") else self.label
+        return f"{self.label} [{spoken(unit)}]" if unit not in ("", "1", ROW) else self.label
 
     def shown(self, value: Cell) -> str:
         """A value as a reader sees it, in four digits."""
@@ -116,8 +118,9 @@ def long_table(sections: Sequence[Section]) -> list[Column]:
     for section in sections:
         for row in section.rows:
             label = ", ".join(str(v) for h, v in zip(section.heads, row, strict=True) if not h.unit and v)
+            own = dict(zip((head.key for head in section.heads), row, strict=True)).get("unit")
             for head, value in zip(section.heads, row, strict=True):
                 if head.unit and value is not None and not isinstance(value, str):
-                    rows.append((section.key, label, head.key, float(value), head.unit))
+                    rows.append((section.key, label, head.key, float(value), str(own) if head.unit == ROW else head.unit))
     names = ("part", "row", "quantity", "value", "unit")
     return [Column(name, [row[i] for row in rows]) for i, name in enumerate(names)]

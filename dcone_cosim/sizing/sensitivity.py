@@ -43,7 +43,9 @@ def slope(shares: Sequence[float], peaks: Sequence[float]) -> tuple[float, float
     return found, float(np.sqrt(off @ off / (len(x) - 2) / (x @ x)))
 
 
-def moved(ground: Ground, uncertain: Sequence[Uncertain], steps: int) -> dict[str, list[tuple[float, Mapping[str, float]]]]:
+def moved(
+    ground: Ground, uncertain: Sequence[Uncertain], steps: int
+) -> dict[str, list[tuple[float, Mapping[str, float]]]]:
     """Of each number: shares of the scene's value, and the values then."""
     shares = np.linspace(1.0 - REACH, 1.0 + REACH, steps).tolist()
     found = {}

@@ -90,7 +90,9 @@ def _defaults(ground: Ground) -> Iterator[Uncertain]:
             ends[1] = min(ends[1], max(value, 0.999 * values["tether.rest_length"]))
         if value and ends[0] != ends[1]:
             unit = _unit(ground, name)
-            yield Uncertain(name, label, ({name: ends[0]}, {name: ends[1]}), (_say(ends[0], unit), _say(ends[1], unit)), why)
+            yield Uncertain(
+                name, label, ({name: ends[0]}, {name: ends[1]}), (_say(ends[0], unit), _say(ends[1], unit)), why
+            )
     for name, label, low, high, why in VECTORS:
         parts = [f"{name}[{i}]" for i in (1, 2, 3)]
         if all(part in values for part in parts) and any(values[part] for part in parts):
@@ -107,7 +109,12 @@ def _defaults(ground: Ground) -> Iterator[Uncertain]:
                 if here is not None and value != here:
                     now = main.choices[name][int(here)]
                     yield Uncertain(
-                        f"{name}={one}", label, ({name: here}, {name: float(value)}), (now, one), "each that there is", False
+                        f"{name}={one}",
+                        label,
+                        ({name: here}, {name: float(value)}),
+                        (now, one),
+                        "each that there is",
+                        False,
                     )
 
 

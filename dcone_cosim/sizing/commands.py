@@ -1,0 +1,201 @@
+"""`dcone size` from beginning to end: a scene's line, a debris's hardware, the paper's tables.
+
+study.json rows/                  of a scene: the result store, with which the same command goes on
+PART.csv                          each part of the report as a table, SI
+table.parquet table.csv           all numbers: part, row, quantity, value, unit
+summary.json                      the same for machines, with the sentences
+*.png report.html                 pictures; all of it as one page
+provenance.json scene.toml        what made it
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dcone_cosim import interrupts
+from dcone_cosim.cases.alone import Alone
+from dcone_cosim.cases.case import code, content, digest
+from dcone_cosim.cases.commands import TOLD
+from dcone_cosim.cases.report import write_report
+from dcone_cosim.cases.runner import Memory, Runner
+from dcone_cosim.cases.store import Store
+from dcone_cosim.cases.workers import Workers, cores
+from dcone_cosim.errors import SUCCESS, InputError
+from dcone_cosim.progress import Progress
+from dcone_cosim.run_folder import default_folder
+from dcone_cosim.scene.data import Scene
+from dcone_cosim.sizing import closed_net, page, plot, report, work
+from dcone_cosim.sizing.ground import Ground
+from dcone_cosim.sizing.options import Options, options_of
+from dcone_cosim.sizing.section import Section, long_table
+from dcone_cosim.sizing.study import Study, study
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KIND = "a sizing"
+SHOTS = ("capture.bullets.speed", 0.95, 1.05)
+"""Key of the shot that is dispersed, and by how much: momentum of the net that is handed over [1]."""
+
+
+@dataclass
+class Sizing:
+    """What a sizing came to.
+
+    said        the answer in sentences
+    sections    parts of the report, in their order
+    study       all that was found, of a scene
+    folder      where it is, None for nowhere
+    """
+
+    title: str
+    said: list[str]
+    sections: list[Section]
+    study: Study | None = None
+    folder: Path | None = None
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def exit_code(self) -> int:
+        return SUCCESS
+
+    def __getitem__(self, key: str) -> pd.DataFrame:
+        """A part as a table of pandas, SI: `sizing["required"]`; units in `attrs["units"]`."""
+        return next(one for one in self.sections if one.key == key).frame()
+
+    def keys(self) -> list[str]:
+        """Names of the parts."""
+        return [one.key for one in self.sections]
+
+    def told(self) -> dict[str, Any]:
+        """For machines."""
+        return {"title": self.title, "said": self.said, "parts": {one.key: one.told() for one in self.sections}}
+
+
+def of_scene(
+    name: str, options: Options | None, progress: Progress, settings: Sequence[str] = (), jobs: int | None = None,
+    isolate: bool | None = None,
+) -> Sizing:
+    """The sizing of a scene; nothing is written. `options` None: what the scene asks, else the defaults."""  # fmt: skip
+    alone, others = _begun(name, settings, isolate, progress)
+    ground = Ground(alone, progress)
+    with Workers(jobs or cores()) as workers:
+        memory = Memory()
+        ahead = 2 * (jobs or cores())
+        return _sized(
+            ground, others, options or options_of(alone.scene), Runner(memory, workers, ahead, work.run),
+            Runner(memory, workers, ahead, closed_net.run), progress,
+        )  # fmt: skip
+
+
+def size(
+    name: str,
+    out: Path | None,
+    progress: Progress,
+    settings: Sequence[str] = (),
+    quick: bool = False,
+    factor_of_safety: float | None = None,
+    samples: int | None = None,
+    ranges: Sequence[str] = (),
+    jobs: int | None = None,
+    isolate: bool | None = None,
+) -> Sizing:
+    """Size the hardware of a scene and write the folder. Bad input raises and leaves nothing."""
+    started = datetime.now(UTC)
+    alone = Alone(name, settings, isolate)
+    options = options_of(alone.scene, quick, factor_of_safety, samples, ranges)
+    alone, others = _begun(name, settings, isolate, progress, alone)
+    ground = Ground(alone, progress)
+    scene = alone.scene
+    folder = out if out is not None else default_folder(f"{scene.name}-size")
+    asked = repr(options)
+    told = {"kind": KIND, "scene": scene.name, "varied": [], "fmus": {}, "code": code()}
+    told["content"] = digest(content(scene), asked)
+    count = jobs or cores()
+    with interrupts.heeded(TOLD), Store(folder, told) as store:
+        interrupts.arm()
+        with Workers(count) as workers:
+            done = _sized(
+                ground, others, options, Runner(store, workers, 2 * count, work.run),
+                Runner(store, workers, 2 * count, closed_net.run), progress,
+            )  # fmt: skip
+        store.gather_if_many()
+        done.folder = folder
+        assert done.study is not None
+        command = _command(name, settings, quick, factor_of_safety, samples, ranges)
+        pictures = partial(plot.draw, done.study)
+        write(done, [scene], pictures, folder, started, command)
+    return done
+
+
+def _begun(
+    name: str, settings: Sequence[str], isolate: bool | None, progress: Progress, alone: Alone | None = None
+) -> tuple[Alone, list[tuple[str, Ground]]]:
+    """The scene begun, and as other shots hand it over."""
+    alone = alone or Alone(name, settings, isolate)
+    alone.begin(progress)
+    key, low, high = SHOTS
+    others = []
+    first = alone.scene.phases[0]
+    speed = first.setting("bullets.speed") if first.name == "capture" and len(alone.phases) > 1 else None
+    for share in (low, high) if speed is not None else ():
+        assert speed is not None
+        other = Alone(name, [*settings, f"{key}={share * speed:.9g} m/s"], isolate)
+        try:
+            other.begin(progress)
+        except InputError as error:
+            progress.say(f"a shot at {share:g} of its speed is left out: {error}")
+            continue
+        others.append((f"shot at {share:g} of its speed", Ground(other, progress)))
+    return alone, others
+
+
+def _sized(
+    ground: Ground, others: Sequence[tuple[str, Ground]], options: Options, runner: Runner, nets: Runner,
+    progress: Progress,
+) -> Sizing:  # fmt: skip
+    found = study(ground, others, options, runner, nets, progress)
+    notes = [*ground.scene.notes, *found.notes]
+    return Sizing(f"Sizing: {ground.scene.title}", report.headline(found), report.sections(found), found, None, notes)
+
+
+def write(
+    done: Sizing,
+    scenes: Sequence[Scene],
+    pictures: Callable[[Path], None],
+    folder: Path,
+    started: datetime,
+    command: str,
+) -> None:
+    """The folder of a report."""
+
+    def draw(draft: Path, about: Mapping[str, Any]) -> None:
+        import pyarrow.csv
+
+        from dcone_cosim.cases.table import as_arrow
+        from dcone_cosim.run_folder import csv_head
+
+        for section in done.sections:
+            table = as_arrow(section.columns())
+            pyarrow.csv.write_csv(table.rename_columns([csv_head(f) for f in table.schema]), draft / f"{section.key}.csv")
+        pictures(draft)
+        page.write(done, about, draft)
+
+    write_report(folder, scenes, long_table(done.sections), done.told(), draw, started, done.exit_code, command)
+
+
+def _command(
+    name: str, settings: Sequence[str], quick: bool, factor: float | None, samples: int | None, ranges: Sequence[str]
+) -> str:
+    """What makes the report again."""
+    parts = ["dcone", "size", name, *(part for setting in settings for part in ("--set", setting))]
+    parts += [part for text in ranges for part in ("--range", text)]
+    parts += [] if factor is None else ["--fos", f"{factor:g}"]
+    parts += [] if samples is None else ["--samples", str(samples)]
+    return shlex.join([*parts, *(["--quick"] if quick else [])])
