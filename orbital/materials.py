@@ -78,7 +78,7 @@ class Material:
             density=BRAID_DENSITY * self.density,
             strength=strength,
             strain_at_break=strain,
-            sources=MappingProxyType(sources),
+            sources=sources,
         )
 
 
@@ -138,7 +138,7 @@ def _fibre(
 ) -> Material:
     """A yarn all of whose figures stand in one sheet, save those of `others`. No sheet tells a damping ratio."""
     figures = ("youngs_modulus", "density", "strength", "strain_at_break")
-    sources = MappingProxyType({figure: others.get(figure, source) for figure in figures})
+    sources = {figure: others.get(figure, source) for figure in figures}  # a plain one: it goes to other processes
     return Material(name, youngs_modulus, density, strength, strain_at_break, sources=sources)
 
 

@@ -40,6 +40,8 @@ OWN_KEYS: Mapping[str, Expected] = {
     "form": Expected("1", choices=FORMS),
     "source": Expected("1", TEXT, example="data sheet"),
 }
+AS_GOOD_AS_SAME = 0.01
+"""Share by which a scene may differ from a material without a word: figures of sheets are rounded."""
 NEEDED = ("youngs_modulus", "density")
 OWN_MEANING: Mapping[str, str] = {
     "youngs_modulus": "axial, over the section of a solid round of the line's diameter",
@@ -152,4 +154,4 @@ def _named(name: str, told: Mapping[str, Any], own: Mapping[str, Material]) -> M
 
 
 def _differs(given: float, of_material: float) -> bool:
-    return not math.isclose(given, of_material, rel_tol=1e-3)
+    return not math.isclose(given, of_material, rel_tol=AS_GOOD_AS_SAME)
