@@ -27,6 +27,37 @@ def impact_share(zeta: float) -> float:
     return damped_snap_peak(1.0, 1.0, 1.0, zeta)
 
 
+def preloaded_snap_peak(speed: float, stiffness: float, mass: float, zeta: float, preload: float) -> float:
+    """Largest tension [N] when a damped line goes taut at a given speed while a steady force keeps its ends apart.
+
+        T = P + u,   u(t) = exp(-zeta w t) (u0 cos w_d t + (u0' + zeta w u0)/w_d sin w_d t),
+        u0 = c v - P,   u0' = (k - c^2/m) v + c P/m,   at the first turn of u, or at the start where it falls from there
+
+    speed         v      of separation as the line goes taut     [m/s]
+    stiffness     k                                              [N/m]
+    mass          m      reduced mass                            [kg]
+    zeta                 c / (2 sqrt(k m)), below 1              [1]
+    preload       P      steady tension                          [N]
+
+    Valid    0 <= zeta < 1, v > 0; P + sqrt(P^2 + k m v^2) without damping
+    Source   m x'' + c x' + k x = P with x = 0, x' = v at the start; T = k x + c x' obeys the same equation
+    Checked  tests/orbital/test_tethers.py
+    """
+    if not 0.0 <= zeta < 1.0:
+        raise ValueError(f"the damping ratio must lie in [0, 1), but is {zeta}")
+    w = math.sqrt(stiffness / mass)
+    root = math.sqrt((1.0 - zeta) * (1.0 + zeta))
+    damping = 2.0 * zeta * math.sqrt(stiffness * mass)
+    start = damping * speed - preload
+    slope = (stiffness - damping**2 / mass) * speed + damping * preload / mass
+    if slope <= 0.0:
+        return preload + start
+    across = (slope + zeta * w * start) / (root * w)
+    turn = math.atan2(slope, w * (zeta * across + root * start))  # where u' = 0, in w_d t
+    fall = math.exp(-zeta * turn / root)
+    return preload + fall * (start * math.cos(turn) + across * math.sin(turn))
+
+
 def snap_section(
     speed: float,
     mass: float,

@@ -5,6 +5,7 @@ A tow that a capture hands over to begins as that left it: the net is shot once 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -153,3 +154,20 @@ def steady(values: Values) -> float:
     n = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
     length = values["tether.rest_length"] + values.get("target.attachment_distance", 0.0)
     return max(pulled, 3.0 * n**2 * reduced(values) * length)
+
+
+def preload(values: Values, angle: float, rate: float) -> float:
+    """Steady force that keeps the pair apart along its line on a circular orbit [N], of thrust along the track.
+
+        P = m_r l [(phi' + n)^2 - n^2 + 3 n^2 cos^2 phi] - F m_t/(m_c + m_t) sin phi
+
+    angle    phi   of the line from the vertical, towards the track  [rad]
+    rate     phi'  in the orbital frame                              [rad/s]
+
+    Source   planar equation of the relative distance, kinematics of a line of constant length
+    """
+    total = values["chaser.mass"] + values["target.mass"]
+    pulled = -values.get("thrust.level", 0.0) * values["target.mass"] / total * math.sin(angle)
+    n = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
+    length = values["tether.rest_length"] + values.get("target.attachment_distance", 0.0)
+    return reduced(values) * length * ((rate + n) ** 2 - n**2 + 3.0 * n**2 * math.cos(angle) ** 2) + pulled

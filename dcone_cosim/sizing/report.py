@@ -175,8 +175,8 @@ def _tugs(study: Study) -> Section:
         Head("formula", "peak, closed form", "N"), Head("difference", "difference", "1", "%"),
     )  # fmt: skip
     purpose = (
-        "Whether the simulated peaks can be trusted: each hard tug beside P + sqrt(P^2 + k m_r v^2) at its own speed, with the "
-        "damped snap's share and the steady preload P."
+        "Whether the simulated peaks can be trusted: each hard tug beside the closed form of a damped snap at its "
+        "own speed, under the preload of tide and thrust at its own angle (without damping P + sqrt(P^2 + k m_r v^2))."
     )
     return Section("tugs", "Tugs beside their closed form", purpose, heads, rows)
 
@@ -235,7 +235,7 @@ def _slopes(study: Study) -> Section:
     purpose = (
         f"d ln peak / d ln x: by how many per cent the peak changes with one per cent of a value, by {study.options.steps} runs "
         f"within {100 * REACH:g} % of it, and the standard error of that slope. A pure snap has 1 for the diameter, 0.5 for E, "
-        "-0.5 for the length. Where the error is as large as the slope the bounces are near chaos: only the error is known."
+        "-0.5 for the length at the same speed; what makes the pair part faster counts beside. Where the error is as large as the slope the bounces are near chaos: only the error is known."
     )
     return Section("sensitivities", "Sensitivities", purpose, heads, rows, PICTURES["sensitivities"])
 

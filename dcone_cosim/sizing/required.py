@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 
 from dcone_cosim.sizing.ground import Ground, Values
 from orbital import tethers
-from orbital.materials import Material
+from orbital.materials import Material, section
 
 CLOSE = 0.005
 """Share to which the diameter is found [1]."""
@@ -27,7 +27,7 @@ APART = 1.25
 """Factor of the first steps outwards."""
 THINNEST, THICKEST = 1e-6, 0.2
 """Diameters that are tried [m]."""
-LINE = "tether.diameter"
+LINE, MODULUS = "tether.diameter", "tether.youngs_modulus"
 
 
 @dataclass
@@ -113,30 +113,26 @@ class Required:
 
 
 def in_closed_form(
-    values: Values, tug: tuple[float, float, float], steady: float, material: Material, safety: float
+    own: Values, sample: Values, tug: tuple[float, float, float], steady: float, material: Material, safety: float
 ) -> float:
-    """Diameter [m] of a line of a material that bears this tug: time [s], peak [N] and speed [m/s] on the scene's line.
+    """Diameter [m] of a line of a material that bears this tug: time [s], peak [N] and speed [m/s] on the line of a run.
+
+    own, sample    values of the scene, and of the run beside them; its shares of diameter and stiffness apply to the
+                   material's line too
 
     The mass that the tug moves follows from its peak, so that a target that turns counts with less than all of it.
     """
     assert material.strength is not None
-    zeta = values["tether.damping_ratio"]
-    share = tethers.impact_share(zeta)
+    values = {**own, **sample}
+    share = tethers.impact_share(values["tether.damping_ratio"])
     _, peak, speed = tug
-    k = values["tether.youngs_modulus"] * math.pi * values[LINE] ** 2 / 4.0 / values["tether.rest_length"]
-    lifted = max(peak * peak - 2.0 * peak * steady, 0.0)  # k m v^2 g^2 of T = P + sqrt(P^2 + k m v^2 g^2)
-    mass = lifted / (k * (share * speed) ** 2) if speed else 0.0
-    section = tethers.snap_section(
-        abs(speed),
-        mass,
-        values["tether.rest_length"],
-        material.youngs_modulus,
-        material.strength,
-        safety,
-        steady,
-        share,
-    )
-    return tethers.diameter_of(section)
+    length = values["tether.rest_length"]
+    k = values[MODULUS] * section(values[LINE]) / length
+    impact = max(peak * peak - 2.0 * peak * steady, 0.0)  # g^2 k m v^2 of T = P + sqrt(P^2 + g^2 k m v^2)
+    mass = impact / (k * (share * speed) ** 2) if speed else 0.0
+    softer = material.youngs_modulus * values[MODULUS] / own[MODULUS] * (values[LINE] / own[LINE]) ** 2
+    area = tethers.snap_section(abs(speed), mass, length, softer, material.strength, safety, steady, share)
+    return tethers.diameter_of(area)
 
 
 def search(
@@ -173,11 +169,11 @@ def search(
 def _values(ground: Ground, material: Material, diameter: float, sample: Values) -> dict[str, float]:
     """Values of a run with a line of a material and diameter; the sample's share of either applies to it."""
     own = ground.values
-    shares = {name: sample.get(name, own[name]) / own[name] for name in (LINE, "tether.youngs_modulus")}
+    shares = {name: sample.get(name, own[name]) / own[name] for name in (LINE, MODULUS)}
     return {
         **sample,
         LINE: diameter * shares[LINE],
-        "tether.youngs_modulus": material.youngs_modulus * shares["tether.youngs_modulus"],
+        MODULUS: material.youngs_modulus * shares[MODULUS],
     }
 
 

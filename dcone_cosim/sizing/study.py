@@ -12,19 +12,19 @@ from dcone_cosim.cases.runner import Runner
 from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.sizing import chaser, closed_net, governs, region, required, sensitivity
-from dcone_cosim.sizing.ground import Found, Ground, reduced, steady, stiffness
+from dcone_cosim.sizing.ground import Found, Ground, preload, reduced, steady, stiffness
 from dcone_cosim.sizing.options import Options
 from dcone_cosim.sizing.uncertain import Sample, Uncertain, samples, uncertain
 from orbital import tethers
 from orbital.materials import MATERIALS, Material, section
-from orbital.oscillators import damped_snap_peak, snap_duration, snap_peak
+from orbital.oscillators import snap_duration
 
 WORST = 3
 """Hardest of all runs that the required line is made for, beside the scene as it is."""
 UNBREAKABLE = 1e15
 """Strength of a line that is to show its load, not to break [N]."""
 FAR_BELOW = 0.05
-"""Share of the hardest tug below which a tug is not held against its closed form: preload and gravity count there [1]."""
+"""Share of the hardest tug below which a tug is not held against its closed form [1]."""
 
 
 @dataclass(frozen=True)
@@ -167,20 +167,18 @@ def materials(chief: Material) -> list[Material]:
 
 
 def held(ground: Ground, run: Found) -> list[Held]:
-    """Hard tugs of a target that is a point, each beside the closed form at its own speed and preload.
-
-        T = g (P + sqrt(P^2 + k m_r v^2)),   g the damped snap over the undamped one
-    """
-    values = ground.values
-    if ground.phase.main.terms.get("target") != "point" or ground.phase.main.terms.get("reel") != "locked":
+    """Hard tugs of a target that is a point, each beside the closed form at its own speed and preload."""
+    values, terms = ground.values, ground.phase.main.terms
+    zeta, angles = values["tether.damping_ratio"], run.loads["angles"]
+    plain = terms.get("target") == "point" and terms.get("reel") == "locked" and terms.get("thrust") == "along_track"
+    if not plain or zeta >= 1.0 or "orbit.altitude" not in values or values["orbit.eccentricity"] > 0.0:
         return []
-    k, m, zeta = stiffness(values), reduced(values), values["tether.damping_ratio"]
-    found = []
-    for _, peak, speed in run.tugs:
-        if peak >= FAR_BELOW * run.peak and speed > 0.0:
-            share = damped_snap_peak(speed, k, m, zeta) / snap_peak(speed, k, m)
-            found.append(Held(speed, peak, share * snap_peak(speed, k, m, steady(values))))
-    return found
+    k, m = stiffness(values), reduced(values)
+    return [
+        Held(speed, peak, tethers.preloaded_snap_peak(speed, k, m, zeta, preload(values, *angle)))
+        for (_, peak, speed), angle in zip(run.tugs, angles, strict=False)
+        if peak >= FAR_BELOW * run.peak and speed > 0.0
+    ]
 
 
 def _still(ground: Ground, run: Found) -> float:
@@ -209,9 +207,8 @@ def _needed(
         diameters = []
         for sample, run in runs:
             worst = run.worst
-            values = {**ground.values, **sample.values}
             if worst is not None:
-                diameters.append(required.in_closed_form(values, worst, still, material, safety))
+                diameters.append(required.in_closed_form(ground.values, sample.values, worst, still, material, safety))
         closed.append(max(diameters, default=math.nan))
         load = max(run.peak for _, run in runs)
         fixed.append(tethers.diameter_of(tethers.load_section(load, material.strength, safety)))

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from dcone_cosim import build
 from dcone_cosim.errors import InputError
 from dcone_cosim.sizing.ground import PHASE, Ground
-from dcone_cosim.units import spoken
+from dcone_cosim.units import Unit, by_name, spoken
 
 SEED = 13
 """Of the samples at random."""
@@ -118,15 +119,14 @@ def _defaults(ground: Ground) -> Iterator[Uncertain]:
                     )
 
 
-def _unit(ground: Ground, name: str) -> str:
-    from dcone_cosim import build
-
+def _unit(ground: Ground, name: str) -> Unit:
+    """The unit in which a person would write it."""
     rows = build.all_rows(build.CATALOGUE[ground.phase.main.model])
-    return next((row.unit for row in rows if row.name == name), "1")
+    return next((by_name(row.display_unit or row.unit) for row in rows if row.name == name), by_name("1"))
 
 
-def _say(value: float, unit: str) -> str:
-    return f"{value:.4g} {spoken(unit)}".strip()
+def _say(value: float, unit: Unit) -> str:
+    return f"{unit.from_si(value):.4g} {spoken(unit.name)}".strip()
 
 
 def _told(ground: Ground, key: str, ends: Sequence[str]) -> Uncertain:

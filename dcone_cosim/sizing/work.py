@@ -35,6 +35,7 @@ def loads_of(result: PhaseResult, history: bool) -> dict[str, Any]:
     """Loads of a tow.
 
     tugs       time [s], peak [N] and speed [m/s] of each
+    angles     of the line from the vertical at each tug, between rows [rad], and its rate [rad/s]
     peak       largest tension [N]
     taut       least and largest tension [N] of every macro step in which the line was taut all the time
     extremes   least, mean and largest of each of `COLUMNS`, over the rows
@@ -51,13 +52,26 @@ def loads_of(result: PhaseResult, history: bool) -> dict[str, Any]:
         for name in COLUMNS
         if name in recorder and len(recorder)
     }
-    found: dict[str, Any] = {"tugs": rows, "missed": missed, "peak": max(peaks, default=0.0), "extremes": extremes}
+    angles = _angles(result, [row[0] for row in rows])
+    found: dict[str, Any] = {"tugs": rows, "angles": angles, "missed": missed, "peak": max(peaks, default=0.0), "extremes": extremes}
     if history and {"tether.tension_peak", "tether.tension_least"} <= set(recorder.names):
         least, most = recorder["tether.tension_least"][1:], recorder["tether.tension_peak"][1:]
         times = recorder["time"][1:]
         taut = least > 0.0
         found["taut"] = np.column_stack([times[taut], least[taut], most[taut]]).tolist()
     return found
+
+
+def _angles(result: PhaseResult, times: list[float]) -> list[list[float]]:
+    """Angle of the line [rad] and its rate [rad/s] at times [s], by cubic splines through the rows; none where there is no
+    such output."""
+    recorder = result.recorder
+    if not times or "tether.angle" not in recorder or len(recorder) < 4:
+        return []
+    from scipy.interpolate import CubicSpline
+
+    spline = CubicSpline(recorder["time"], np.unwrap(recorder["tether.angle"]))
+    return np.column_stack([spline(times), spline(times, 1)]).tolist()
 
 
 def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
