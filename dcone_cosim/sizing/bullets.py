@@ -1,4 +1,5 @@
-"""Bullets by simulation: how wide a net opens, and for how long, with lighter and heavier ones, beside the paper's rule of 6:1.
+"""Bullets by simulation: how wide a net opens, and for how long, with lighter and heavier ones, beside the paper's rule
+of 6:1.
 
 A coarse net flies without a target. A shot is the same for any net of the same shape in its own measure (lengths in the
 side, times in side over speed), so the ratio of the masses is what counts.
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from dcone_cosim.cases.alone import Fmus
 from dcone_cosim.cases.case import Case, digest, key_of
@@ -28,12 +30,12 @@ ENOUGH = 0.9
 
 @dataclass(frozen=True)
 class Opening:
-    """One flight: bullets over net [1], largest mouth over the net's area [1], when [s], and for how long above 80 % [s]."""
+    """One flight: bullets over net [1], largest mouth over the net's area [1], when [s], and since when above 80 % [s]."""
 
     ratio: float
     opening: float
     when: float
-    above: float
+    since: float
 
 
 def flights(runner: Runner, progress: Progress, ratios: Sequence[float] = RATIOS) -> list[Opening]:
@@ -58,8 +60,8 @@ def flights(runner: Runner, progress: Progress, ratios: Sequence[float] = RATIOS
         figures = rows[case.key].figures
         largest = float(figures["capture.mouth.area_max"]) / area
         when = figures.get("capture.mouth.t_max", float("nan"))
-        above = figures.get("capture.mouth.time_above_80", 0.0)
-        found.append(Opening(ratio, largest, _number(when), _number(above)))
+        since = figures.get("capture.mouth.t80", float("nan"))
+        found.append(Opening(ratio, largest, _number(when), _number(since)))
     return found
 
 
@@ -75,8 +77,9 @@ def _number(value: object) -> float:
 
 
 def least(points: Sequence[Opening]) -> float | None:
-    """The least ratio with which the mouth reaches `ENOUGH` of the net's area, between those flown; None if none does."""
-    for before, after in zip(points, points[1:], strict=False):
+    """The least ratio with which the mouth reaches `ENOUGH` of the net's area, between those flown; None if none
+    does."""
+    for before, after in pairwise(points):
         if before.opening < ENOUGH <= after.opening:
             share = (ENOUGH - before.opening) / (after.opening - before.opening)
             return before.ratio + share * (after.ratio - before.ratio)

@@ -1,5 +1,5 @@
-"""What the tow asks of reel and chaser: rate, force and power of the line's end, torque of an offset pull, and what it takes
-to bring the pair down, with an ion engine and with a chemical one.
+"""What the tow asks of reel and chaser: rate, force and power of the line's end, torque of an offset pull, and what it
+takes to bring the pair down, with an ion engine and with a chemical one.
 
 Checked  tests/sizing/test_chaser.py
 """
@@ -76,7 +76,9 @@ def of_attitude(ground: Ground, run: Found, options: Options) -> Iterator[Asked]
     yield Asked("offset of the pull", offset, "m", whose)
     yield Asked("authority", torque, "N.m", held)
     yield Asked("steady torque", still * offset, "N.m", "largest tension of the last orbit times the offset")
-    yield Asked("share of the authority", still * offset / torque, "1", "steady torque over authority: below 1 it holds")
+    yield Asked(
+        "share of the authority", still * offset / torque, "1", "steady torque over authority: below 1 it holds"
+    )
     worst = run.worst
     if worst is not None:
         zeta = values["tether.damping_ratio"]
@@ -84,8 +86,12 @@ def of_attitude(ground: Ground, run: Found, options: Options) -> Iterator[Asked]
         back = snap_restitution(zeta) if zeta < 1.0 else 0.0
         impulse = m * abs(worst[2]) * (1.0 + back)
         lasts = snap_duration(k, m, zeta) if zeta < 1.0 else math.pi * math.sqrt(m / k)
-        yield Asked("torque of the hardest tug", worst[1] * offset, "N.m", f"its peak times the offset, for {lasts:.3g} s")
-        yield Asked("momentum it leaves", impulse * offset, "N.m.s", "m_r v (1 + e) times the offset: wheels take it up")
+        yield Asked(
+            "torque of the hardest tug", worst[1] * offset, "N.m", f"its peak times the offset, for {lasts:.3g} s"
+        )
+        yield Asked(
+            "momentum it leaves", impulse * offset, "N.m.s", "m_r v (1 + e) times the offset: wheels take it up"
+        )
         recovers = impulse * offset / torque
         yield Asked("time to take that up", recovers, "s", "that momentum over the authority")
     if "orbit.altitude" in values:

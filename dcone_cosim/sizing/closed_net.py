@@ -1,10 +1,13 @@
-"""From the tug to the threads: the closed net, caught round its target, is pulled at its vertex as a tug of the tow does.
+"""From the tug to the threads: the closed net, caught round its target, is pulled at its vertex as a tug of the tow
+does.
 
-The capture FMU goes on after its capture with the tow's load as its input `tether.vertex_tension`: first a light pull that
-draws the net together, then a pulse of the tug's height, one half-wave of the line's own period. Told is what threads and
-target bear, and whether the net stays on. Each run starts a micrometre elsewhere: a net is chaotic, and one is a sample.
+The capture FMU goes on after its capture with the tow's load as its input `tether.vertex_tension`: first a light pull
+that draws the net together, then a pulse of the tug's height, one half-wave of the line's own period. Told is what
+threads and target bear, and whether the net stays on. Each run starts a micrometre elsewhere: a net is chaotic, and one
+is a sample.
 
-The load is given, not that of two bodies on a line: the chaser is pulled by it, but the line's own stretch is not computed.
+The load is given, not that of two bodies on a line: the chaser is pulled by it, but the line's own stretch is not
+computed.
 
 Checked  tests/sizing/test_closed_net.py
 """
@@ -83,7 +86,12 @@ def cases(alone: Alone, tug: float, lasts: float, count: int, progress: Progress
     for number in range(count):
         scene = alone.scene_of(PHASE, ensemble.jitter(base, number), to_its_end=True)
         main = scene.phases[0].main
-        if main.fmu is not None or "tether" not in main.terms or "contact" not in main.terms or "closing" not in main.terms:
+        if (
+            main.fmu is not None
+            or "tether" not in main.terms
+            or "contact" not in main.terms
+            or "closing" not in main.terms
+        ):
             return []
         for height in (0.0, tug):
             key = digest(key_of(scene, fmus.of(scene), number), "pulled", height, tug, lasts)
@@ -167,4 +175,3 @@ def borne(cases: Sequence[Pull], rows: Mapping[str, Row]) -> Iterator[Borne]:
         yield Borne(
             case.tug, told["drawn"], told["thread"], told["contact"], told["held"], OUTCOMES[int(told["outcome"])]
         )
-

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import interrupts
@@ -23,23 +24,30 @@ from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.case import code, content, digest
 from dcone_cosim.cases.commands import TOLD
 from dcone_cosim.cases.report import write_report
-from dcone_cosim.cases.runner import Memory, Runner
+from dcone_cosim.cases.runner import Memory, Rows, Runner
 from dcone_cosim.cases.store import Store
 from dcone_cosim.cases.workers import Workers, cores
+from dcone_cosim.commands import write_new
 from dcone_cosim.errors import SUCCESS, InputError
+from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.run_folder import default_folder
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.sizing import closed_net, page, plot, report, work
+from dcone_cosim.scenes.reading import parse
+from dcone_cosim.sizing import bullets, closed_net, page, paper, plot, report, section, work
+from dcone_cosim.sizing.debris import read
 from dcone_cosim.sizing.ground import Ground
 from dcone_cosim.sizing.options import Options, options_of
+from dcone_cosim.sizing.proposal import propose, scene_text
 from dcone_cosim.sizing.section import Section, long_table
 from dcone_cosim.sizing.study import Study, study
+from dcone_cosim.units import by_name, spoken
 
 if TYPE_CHECKING:
     import pandas as pd
 
 KIND = "a sizing"
+PAPER = "The mass budgets of Benvenuto and Lavagna, rebuilt"
 SHOTS = ("capture.bullets.speed", 0.95, 1.05)
 """Key of the shot that is dispersed, and by how much: momentum of the net that is handed over [1]."""
 
@@ -79,11 +87,25 @@ class Sizing:
 
 
 def of_scene(
-    name: str, options: Options | None, progress: Progress, settings: Sequence[str] = (), jobs: int | None = None,
+    scene: str | Scene,
+    options: Options | None = None,
+    progress: Progress | None = None,
+    settings: Sequence[str] = (),
+    jobs: int | None = None,
     isolate: bool | None = None,
 ) -> Sizing:
-    """The sizing of a scene; nothing is written. `options` None: what the scene asks, else the defaults."""  # fmt: skip
-    alone, others = _begun(name, settings, isolate, progress)
+    """The sizing of a scene, or of one by its name or path; nothing is written.
+
+    options    None: what the scene asks, else the defaults; see `options_of`
+    progress   None: silent
+    """
+    if isinstance(scene, Scene):
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / f"{scene.name}.toml"
+            path.write_text(scene.text, encoding="utf-8")
+            return of_scene(str(path), options, progress, settings, jobs, isolate)
+    progress = progress or Progress()
+    alone, others = _begun(scene, settings, isolate, progress)
     ground = Ground(alone, progress)
     with Workers(jobs or cores()) as workers:
         memory = Memory()
@@ -181,9 +203,9 @@ def write(
         from dcone_cosim.cases.table import as_arrow
         from dcone_cosim.run_folder import csv_head
 
-        for section in done.sections:
-            table = as_arrow(section.columns())
-            pyarrow.csv.write_csv(table.rename_columns([csv_head(f) for f in table.schema]), draft / f"{section.key}.csv")
+        for part in done.sections:
+            table = as_arrow(part.columns())
+            pyarrow.csv.write_csv(table.rename_columns([csv_head(f) for f in table.schema]), draft / f"{part.key}.csv")
         pictures(draft)
         page.write(done, about, draft)
 
@@ -199,3 +221,59 @@ def _command(
     parts += [] if factor is None else ["--fos", f"{factor:g}"]
     parts += [] if samples is None else ["--samples", str(samples)]
     return shlex.join([*parts, *(["--quick"] if quick else [])])
+
+
+def of_paper(
+    out: Path | None, progress: Progress, quick: bool = False, jobs: int | None = None, isolate: bool | None = None
+) -> Sizing:
+    """The paper's tables and Fig. 9; written to a folder where one is named. `quick` leaves out the flights."""
+    started = datetime.now(UTC)
+    scene = load(bullets.SCENE, bullets.COARSE).isolating(isolate)
+    if out is None:
+        openings = [] if quick else _flights(Memory(), progress, jobs)
+        return Sizing(PAPER, paper.said(openings), paper.sections(openings))
+    told = {"kind": KIND, "scene": PAPER, "varied": [], "content": digest(quick), "fmus": {}, "code": code()}
+    with interrupts.heeded(TOLD), Store(out, told) as store:
+        interrupts.arm()
+        openings = [] if quick else _flights(store, progress, jobs)
+        done = Sizing(PAPER, paper.said(openings), paper.sections(openings), folder=out)
+
+        def pictures(draft: Path) -> None:
+            plot.net_masses(draft / paper.FIG_9)
+            if openings:
+                plot.openings(openings, draft / paper.OPENINGS)
+
+        write(done, [scene], pictures, out, started, "dcone size --paper" + (" --quick" if quick else ""))
+    return done
+
+
+def _flights(rows: Rows, progress: Progress, jobs: int | None) -> list[bullets.Opening]:
+    count = jobs or cores()
+    with Workers(count) as workers:
+        return bullets.flights(Runner(rows, workers, 2 * count), progress)
+
+
+def of_debris(text: str, out: Path | None) -> Sizing:
+    """What is proposed for a debris; the scene that tests it is written to a file where one is named."""
+    proposal = propose(read(text))
+    heads = (section.text("what", "what"), section.Head("value", "value", section.ROW), section.text("unit", "unit"),
+             section.text("why", "from"))  # fmt: skip
+    rows = [
+        (one.name, by_name(one.shown_in or one.unit).from_si(one.value), spoken(one.shown_in or one.unit), one.why)
+        for one in proposal.figures()
+    ]
+    purpose = (
+        "Net, bullets, tether and shot by the paper's scalings; the scene tests them, and `dcone size` sizes its line."
+    )
+    part = Section("proposal", "Proposal", purpose, heads, rows)
+    done = Sizing(f"Proposal for {proposal.debris.text}", [], [part])
+    if out is None:
+        done.notes.append("-o FILE.toml writes the scene that tests it")
+        return done
+    if out.suffix != ".toml":
+        raise InputError(f"-o {out}: expected the scene to write, a file that ends in .toml")
+    content = scene_text(proposal)
+    parse(content, out.stem, str(out))
+    write_new(out, content)
+    done.folder = out
+    return done

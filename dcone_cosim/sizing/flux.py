@@ -17,8 +17,10 @@ YEAR = 365.25 * 86400.0
 CUTS = 3.0
 """Diameter of a line over that of the least particle that cuts it [1]."""
 SOURCE = (
-    "1.05e-5 (d/cm)^-2.5 per m2 and year, the small particles of Kessler, Reynolds and Anz-Meador, NASA TM 100471 (1989), "
-    "without its factors for altitude, inclination and year, each within 3 of one in low orbit; where this load governs, "
+    "1.05e-5 (d/cm)^-2.5 per m2 and year, the small particles of Kessler, Reynolds and Anz-Meador, NASA TM 100471 "
+    "(1989), "
+    "without its factors for altitude, inclination and year, each within 3 of one in low orbit; where this load "
+    "governs, "
     "give the flux of ORDEM or MASTER for the orbit in [sizing]"
 )
 THINNEST, THICKEST = 1e-6, 1.0

@@ -62,4 +62,3 @@ def demands(needed: Required, zeta: float, steady: float, length: float, time: f
 def _bears(load: float, material: Material, factor: float) -> float:
     assert material.strength is not None
     return tethers.diameter_of(tethers.load_section(load, material.strength, factor))
-

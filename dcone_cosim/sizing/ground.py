@@ -24,6 +24,7 @@ from orbital.plain import mean_motion
 
 PHASE = "removal"
 LINE = ("tether.diameter", "tether.youngs_modulus", "tether.rest_length", "tether.damping_ratio")
+BREAK = "break.strength"
 Values = Mapping[str, float]
 
 
@@ -55,6 +56,7 @@ class Ground:
 
     alone      the scene, its phases each by itself, begun already
     runner     runs its cases; set before the first
+    breaks_at  load at which the line breaks in the scene [N], None where it does not
     """
 
     def __init__(self, alone: Alone, progress: Progress) -> None:
@@ -74,6 +76,7 @@ class Ground:
                 f'{alone.scene.source}: sizing needs a line that stretches; reel law "{reel}" has no {missing[0]}'
             )
         self.values: dict[str, float] = {**main.defaults, **main.parameters}
+        self.breaks_at = self.values.get(BREAK)
         self.fmus = Fmus(progress)
         self.runner: Runner | None = None
 

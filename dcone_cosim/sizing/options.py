@@ -34,7 +34,7 @@ class Options:
     least_breaking_load: float = 0.0
     mission_time: float | None = None
     cut_probability: float = 0.01
-    flux: Flux = Flux()
+    flux: Flux = field(default_factory=Flux)
     offset: float = 0.1
     torque: float = 0.2
     ranges: Mapping[str, Sequence[str]] = field(default_factory=dict)
@@ -45,7 +45,13 @@ class Options:
 
 
 FULL, QUICK = Options(), Options(samples=12, steps=3, quick=True)
-_FLUX = {"flux": "value", "flux_size": "size", "flux_exponent": "exponent", "flux_sizes": "sizes", "flux_values": "values"}
+_FLUX = {
+    "flux": "value",
+    "flux_size": "size",
+    "flux_exponent": "exponent",
+    "flux_sizes": "sizes",
+    "flux_values": "values",
+}
 MOST_SAMPLES = 100_000
 
 
@@ -81,5 +87,7 @@ def _range(text: str) -> tuple[str, tuple[str, str]]:
     key, sign, ends = text.partition("=")
     low, dots, high = ends.partition("..")
     if not (sign and dots and key.strip() and low.strip() and high.strip()):
-        raise InputError(f'--range {text}: expected KEY=LEAST..LARGEST, such as "removal.thrust.level=-0.02 N..-0.005 N"')
+        raise InputError(
+            f'--range {text}: expected KEY=LEAST..LARGEST, such as "removal.thrust.level=-0.02 N..-0.005 N"'
+        )
     return key.strip(), (low.strip(), high.strip())

@@ -89,7 +89,9 @@ def _required(study: Study, figure: Any) -> None:
     names = [f"{one.material.name} {one.material.form}" for one in shown]
     axes.barh(names, [1e3 * one.diameter for one in shown], color=style.NET, label="simulated, at the fixed point")
     axes.plot([1e3 * one.closed for one in shown], names, "o", color=style.ACCENT, ms=4, label="closed form")
-    axes.plot([1e3 * one.fixed for one in shown], names, "x", color=style.BULLET, ms=5, label="from the scene's peak: wrong")
+    axes.plot(
+        [1e3 * one.fixed for one in shown], names, "x", color=style.BULLET, ms=5, label="from the scene's peak: wrong"
+    )
     axes.axvline(1e3 * study.ground.values["tether.diameter"], color=style.MUTED, ls=":", label="the scene's line")
     axes.set_xlabel("diameter [mm]")
     axes.tick_params(axis="y", labelsize=7)
@@ -140,7 +142,9 @@ def _region(study: Study, figure: Any) -> None:
         axes.set_title(f"thrust {thrust:g} N", loc="left", fontsize=9)
         axes.grid(False)
     panels[0].set_ylabel("offset of the line [m]")
-    style.head(figure, "Admissible (green): peak within strength over factor of safety, little of the line on the debris")
+    style.head(
+        figure, "Admissible (green): peak within strength over factor of safety, little of the line on the debris"
+    )
 
 
 def _box(x: float, y: float, colour: str) -> Any:
@@ -180,7 +184,9 @@ def openings(points: Any, path: Path) -> None:
     with rc_context(style.SETTINGS):
         figure = style.new_figure(7.2, 3.4)
         axes = _axes(figure, left=0.1)
-        axes.plot([p.ratio for p in points], [p.opening for p in points], "o-", color=style.CHASER, label="largest mouth")
+        axes.plot(
+            [p.ratio for p in points], [p.opening for p in points], "o-", color=style.CHASER, label="largest mouth"
+        )
         axes.axvline(budget.BULLETS_OVER_NET, color=style.BULLET, ls="--", label="the paper's rule, 6:1")
         axes.set_xlabel("mass of four bullets over that of the net")
         axes.set_ylabel("mouth over the net's area")

@@ -1,7 +1,7 @@
 """Net, bullets, tether and shot for a debris, by the paper's scalings, and the scene that tests them.
 
-The scene is `mission` made larger or smaller: lengths go with the net's side `a`, speeds with the shot's `v`, so times with
-a/v, forces with m v^2/a. Each figure says from what it follows.
+The scene is `mission` made larger or smaller: lengths go with the net's side `a`, speeds with the shot's `v`, so times
+with a/v, forces with m v^2/a. Each figure says from what it follows.
 
 Checked  tests/sizing/test_proposal.py
 """
@@ -14,24 +14,22 @@ from dataclasses import dataclass
 from dcone_cosim.sizing import budget
 from dcone_cosim.sizing.debris import Debris
 from orbital import netting, tethers
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.materials import MATERIALS
-from orbital.plain import mean_motion
 
 SIDE, SPEED, ANGLE = 12.0, 3.0, math.radians(40.0)
 """Of `mission`: the net's side [m]; the bullets' speed [m/s] and angle [rad], of Table 1."""
 KNOWN = 3.9
-"""Greatest length up to which the paper has nets by length [m], Table 3; beyond, net and mesh grow together, so that the
-shot stays similar and its threads bear the same. The paper's own net for 25 m is of 36 m, and leaves part of it outside."""
+"""Greatest length up to which the paper has nets by length [m], Table 3; beyond, net and mesh grow together, so that
+the shot stays similar and its threads bear the same. The paper's own net for 25 m is of 36 m, and leaves part of it
+outside."""
 CHASER = 2000.0
 """Mass of the chaser [kg], Table 2."""
-ALTITUDE = 800e3
-"""Of the orbit [m], Table 2."""
 LATER = 2.0
-"""Speed of the hardest tug over that of the first [1]: tide and thrust bring the pair back faster than it parted. 1.6 in
-`mission` over six hours; the scene shows what it is."""
+"""Speed of the hardest tug over that of the first [1]: tide and thrust bring the pair back faster than it parted. 1.6
+in `mission` over six hours; the scene shows what it is."""
 SAFETY = 2.0
-"""On the highest tension [1]: for 2 on the highest stress see section 4 of the paper's kind of practice, ECSS-E-ST-32-10C."""
+"""On the highest tension [1]: for 2 on the highest stress see section 4 of the paper's kind of practice,
+ECSS-E-ST-32-10C."""
 LOCK_LENGTH = 0.25
 """Of a locked cord between two bullets [m], the model's default."""
 STOCK = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 4e-3, 5e-3, 6e-3, 8e-3, 10e-3, 12e-3, 16e-3, 20e-3)
@@ -94,7 +92,11 @@ class Proposal:
         """All of it with reasons."""
         whole = f"the next whole number of {self.mesh:g} m meshes"
         margin = f"with the budget's margin of {100 * budget.MARGIN:g} %"
-        mesh = "the paper's, section 4" if self.mesh == budget.MESH else f"0.5 m x length / {KNOWN:g} m: similar to Table 3"
+        mesh = (
+            "the paper's, section 4"
+            if self.mesh == budget.MESH
+            else f"0.5 m x length / {KNOWN:g} m: similar to Table 3"
+        )
         need = f"FoS {SAFETY:g} on a tug of {LATER:g} x the first's speed, Kevlar 29 braid, at the fixed point; "
         return [
             Figure("net.side", "net, side", self.side, "m", "", f"{self.side_why}; {whole}"),
@@ -104,7 +106,9 @@ class Proposal:
             Figure("bullets.speed", "shot, speed", self.speed, "m/s", "", "Table 1"),
             Figure("bullets.angle", "shot, angle", ANGLE, "rad", "deg", "Table 1"),
             Figure("shot.distance", "shot, distance", self.distance, "m", "", "the net's side: it is open by then"),
-            Figure("closing.rings", "rings between two bullets", float(self.rings), "1", "", "loops less than the girth"),
+            Figure(
+                "closing.rings", "rings between two bullets", float(self.rings), "1", "", "loops less than the girth"
+            ),
             Figure("tether.length", "tether, length", self.line, "m", "", "14/12 of the distance, as in `mission`"),
             Figure("tether.diameter", "tether, diameter", self.diameter, "m", "mm", f"{need}next in stock from 1 mm"),
             Figure(
@@ -142,10 +146,9 @@ def scene_text(proposal: Proposal) -> str:
     p = proposal
     depth, width = p.debris.size[2], p.debris.size[1]
     scale, force = p.side / SIDE, (p.bullet / 1.27) * (p.speed / SPEED) ** 2 / (p.side / SIDE)
-    rate = mean_motion(EARTH_EQUATORIAL_RADIUS + ALTITUDE, EARTH_MU)
     drop = 0.006 * p.pace
-    return f'''# Proposed by `dcone size --debris "{p.debris.text}"`: the scene `mission` for this debris. Its own sizing: `dcone size` with
-# this file. Change what you know better.
+    return f'''# Proposed by `dcone size --debris "{p.debris.text}"`: the scene `mission` for this debris. Its own
+# sizing: `dcone size` with this file. Change what you know better.
 title = "Proposal: {p.debris.text} of debris is netted, handed over and towed"
 phases = ["capture", "removal"]
 
@@ -183,7 +186,7 @@ mass = "{CHASER:g} kg"
 start_position = ["0 m", "{-p.distance:.6g} m", "0 m"]
 
 [capture.shot]
-axis = [{-drop:.2g}, 1.0, 0.0] # a little low: on its way the Coriolis acceleration, 2 n v = {2e3 * rate * p.speed:.2g} mm/s2, lifts the net
+axis = [{-drop:.2g}, 1.0, 0.0] # a little low: on its way the Coriolis acceleration lifts the net
 
 [capture.target]
 shape = "box"

@@ -1,8 +1,9 @@
-"""Where a tow is admissible: how fast the debris may turn, how far from its middle the line may pull, how hard to thrust.
+"""Where a tow is admissible: how fast the debris may turn, how far from its middle the line may pull, how hard to
+thrust.
 
 Each point of the grid is a tow of a debris that turns; admissible is one whose tension stays within the strength of the
-scene's line over the factor of safety, and of whose line no more than an allowed share comes to lie on the debris. A scene
-whose target is a point says nothing of its shape: then it is a box, of the capture's target, or of Table 1's.
+scene's line over the factor of safety, and of whose line no more than an allowed share comes to lie on the debris. A
+scene whose target is a point says nothing of its shape: then it is a box, of the capture's target, or of Table 1's.
 
 Checked  tests/sizing/test_region.py
 """

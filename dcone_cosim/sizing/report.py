@@ -1,4 +1,5 @@
-"""The parts of the report of a sizing: each number with its unit, what it is for, and the run or source that made it."""
+"""The parts of the report of a sizing: each number with its unit, what it is for, and the run or source that made
+it."""
 
 from __future__ import annotations
 
@@ -55,7 +56,8 @@ def headline(study: Study) -> list[str]:
     line = 1e3 * study.ground.values["tether.diameter"]
     margin = margin_of_safety(study.breaking, worst.peak, factor)
     said = [
-        f"peak tension {study.nominal.peak:.4g} N in the scene as it is; {worst.peak:.4g} N at most over {len(study.all)} "
+        f"peak tension {study.nominal.peak:.4g} N in the scene as it is; {worst.peak:.4g} N at most over "
+        f"{len(study.all)} "
         f"runs of what is uncertain ({sample.label})",
         f"sustained tension {study.steady:.4g} N, without tugs",
         f"the scene's line, {line:.4g} mm of {_name(study.chief)}, breaks at {study.breaking:.4g} N: margin of safety "
@@ -65,7 +67,8 @@ def headline(study: Study) -> list[str]:
     governing = study.demands[0]
     if math.isfinite(own.diameter):
         said.append(
-            f"its peak asks for {1e3 * own.diameter:.4g} mm of {_name(own.material)} ({own.mass:.3g} kg), at the fixed point, by "
+            f"its peak asks for {1e3 * own.diameter:.4g} mm of {_name(own.material)} ({own.mass:.3g} kg), at the "
+            f"fixed point, by "
             f"simulation; {1e3 * own.closed:.4g} mm in closed form"
         )
     said.append(
@@ -85,7 +88,8 @@ def _about_damping(study: Study) -> Iterator[str]:
         yield f"without damping the peak would be {study.bound.peak:.4g} N: a bound, not a prediction"
     if zeta >= DASHPOT_GOVERNS:
         yield (
-            f"with a damping ratio of {zeta:g}, above {DASHPOT_GOVERNS:g}, the largest tension is the dashpot's jump as the "
+            f"with a damping ratio of {zeta:g}, above {DASHPOT_GOVERNS:g}, the largest tension is the dashpot's jump "
+            f"as the "
             "line goes taut: that is the model's, which damps by the rate of stretch, and no line's"
         )
 
@@ -108,11 +112,13 @@ def _loads(study: Study) -> Section:
     ]  # fmt: skip
     heads = (
         text("run", "run"), Head("peak", "peak tension", "N"), Head("mean", "mean, last orbit", "N"),
-        Head("last", "largest, last orbit", "N"), Head("tugs", "tugs"), Head("speed", "speed of the hardest", "m/s", "mm/s"),
+        Head("last", "largest, last orbit", "N"), Head("tugs", "tugs"),
+        Head("speed", "speed of the hardest", "m/s", "mm/s"),
         Head("margin", "margin of safety"),
     )  # fmt: skip
     purpose = (
-        "Peak and sustained tension of the line: the first sizes it, the last orbit's tell what it holds for months. Each row "
+        "Peak and sustained tension of the line: the first sizes it, the last orbit's tell what it holds for "
+        "months. Each row "
         "is a run; the margin is that of the scene's own line, strength over (factor of safety x peak) less one."
     )
     return Section("loads", "Loads of the line", purpose, heads, rows, PICTURES["loads"])
@@ -127,17 +133,23 @@ def _required(study: Study) -> Section:
         for one in study.needed
     ]  # fmt: skip
     heads = (
-        text("material", "material"), Head("youngs_modulus", "E", "Pa", "GPa"), Head("strength", "strength", "Pa", "GPa"),
+        text("material", "material"), Head("youngs_modulus", "E", "Pa", "GPa"),
+        Head("strength", "strength", "Pa", "GPa"),
         Head("closed", "diameter, closed form", "m", "mm"), Head("diameter", "diameter, simulated", "m", "mm"),
-        Head("mass", "mass of the line", "kg"), Head("peak", "peak at that diameter", "N"), Head("margin", "margin left"),
+        Head("mass", "mass of the line", "kg"), Head("peak", "peak at that diameter", "N"),
+        Head("margin", "margin left"),
         Head("fixed", "from the scene's peak (wrong)", "m", "mm"), text("note", "how"),
     )  # fmt: skip
     factor = study.options.factor_of_safety
     purpose = (
-        f"The least diameter whose strength is {factor:g} times the peak tension of a line of that diameter. A thicker line is "
-        "stiffer and snaps harder, so it is a fixed point: A = F^2 g^2 v^2 E m / (l sigma^2) + 2 F P / sigma in closed form, "
-        f"and by simulation with the scene as it is and its {min(3, len(study.made))} hardest neighbours, verified by the run "
-        "at that diameter, whose margin is told. The column marked wrong takes the peak of the scene's own line for that of "
+        f"The least diameter whose strength is {factor:g} times the peak tension of a line of that diameter. A "
+        f"thicker line is "
+        "stiffer and snaps harder, so it is a fixed point: A = F^2 g^2 v^2 E m / (l sigma^2) + 2 F P / sigma in "
+        "closed form, "
+        f"and by simulation with the scene as it is and its {min(3, len(study.made))} hardest neighbours, verified "
+        f"by the run "
+        "at that diameter, whose margin is told. The column marked wrong takes the peak of the scene's own line for "
+        "that of "
         "any other. Diameters are of a solid round; a braid's figures count its gaps."
     )
     section = Section("required", "Required line", purpose, heads, rows, PICTURES["required"])
@@ -162,7 +174,8 @@ def _governs(study: Study) -> Section:
     diameter, length = study.ground.values["tether.diameter"], study.ground.values["tether.rest_length"]
     cuts = flux.cuts(diameter, length, study.time)
     section.said = [
-        f"the scene's own line would be cut with a probability of {-math.expm1(-cuts):.3g} in that time, by particles from a "
+        f"the scene's own line would be cut with a probability of {-math.expm1(-cuts):.3g} in that time, by "
+        f"particles from a "
         f"third of its diameter; flux: {flux.source}"
     ]
     return section
@@ -190,18 +203,23 @@ def _spectrum(study: Study) -> Section:
     purpose = "Tugs of the scene as it is by size: what fatigue, knots and terminals see in its duration."
     section = Section("spectrum", "Load spectrum: tugs by size", purpose, heads, rows, PICTURES["spectrum"])
     if study.nominal.loads["missed"]:
-        section.said = [f"{study.nominal.loads['missed']} tugs were not seen: more fell in a macro step than the FMU keeps"]
+        section.said = [
+            f"{study.nominal.loads['missed']} tugs were not seen: more fell in a macro step than the FMU keeps"
+        ]
     return section
 
 
 def _rainflow(study: Study) -> Section:
     rows = cycle_classes(cycles(turning_points(study.nominal.loads)), study.nominal.peak)
     heads = (
-        Head("from", "range from", "N"), Head("to", "to", "N"), Head("cycles", "cycles"), Head("mean", "their mean", "N"),
+        Head("from", "range from", "N"), Head("to", "to", "N"), Head("cycles", "cycles"),
+        Head("mean", "their mean", "N"),
     )  # fmt: skip
     purpose = (
-        "Cycles by range, counted by rainflow (ASTM E1049-85, package rainflow), for a fatigue curve. Turning points are the "
-        "tugs' own peaks, each from zero to zero, and of a line that stays taut the least and largest tension of every macro "
+        "Cycles by range, counted by rainflow (ASTM E1049-85, package rainflow), for a fatigue curve. Turning "
+        "points are the "
+        "tugs' own peaks, each from zero to zero, and of a line that stays taut the least and largest tension of "
+        "every macro "
         "step; what swings more than once in such a step is not counted."
     )
     return Section("rainflow", "Load spectrum: cycles", purpose, heads, rows)
@@ -215,12 +233,14 @@ def _ranges(study: Study) -> Section:
         peaks = [None if run is None or math.isnan(run.peak) else run.peak for run in runs]
         rows.append((one.label, *one.labels, *peaks, one.why))
     heads = (
-        text("what", "value"), text("low", "least"), text("high", "largest"), Head("peak_low", "peak at the least", "N"),
+        text("what", "value"), text("low", "least"), text("high", "largest"),
+        Head("peak_low", "peak at the least", "N"),
         Head("peak_high", "peak at the largest", "N"), text("why", "from"),
     )  # fmt: skip
     count = study.options.samples
     purpose = (
-        f"How far each value may be off, and the peak at both ends, the others as they are; {count} more runs vary all of "
+        f"How far each value may be off, and the peak at both ends, the others as they are; {count} more runs vary "
+        f"all of "
         "them together at random (Latin hypercube). Give your own ranges in [sizing.ranges] or with --range."
     )
     return Section("ranges", "What is uncertain", purpose, heads, rows)
@@ -233,9 +253,12 @@ def _slopes(study: Study) -> Section:
         Head("largest_error", "+-"),
     )  # fmt: skip
     purpose = (
-        f"d ln peak / d ln x: by how many per cent the peak changes with one per cent of a value, by {study.options.steps} runs "
-        f"within {100 * REACH:g} % of it, and the standard error of that slope. A pure snap has 1 for the diameter, 0.5 for E, "
-        "-0.5 for the length at the same speed; what makes the pair part faster counts beside. Where the error is as large as the slope the bounces are near chaos: only the error is known."
+        f"d ln peak / d ln x: by how many per cent the peak changes with one per cent of a value, by "
+        f"{study.options.steps} runs "
+        f"within {100 * REACH:g} % of it, and the standard error of that slope. A pure snap has 1 for the diameter, "
+        f"0.5 for E, "
+        "-0.5 for the length at the same speed; what makes the pair part faster counts beside. Where the error is "
+        "as large as the slope the bounces are near chaos: only the error is known."
     )
     return Section("sensitivities", "Sensitivities", purpose, heads, rows, PICTURES["sensitivities"])
 
@@ -249,8 +272,10 @@ def _region(study: Study) -> Section:
     )  # fmt: skip
     body = "" if found is None else found.body
     purpose = (
-        "Where the tow may be flown: tumble rate about an axis across the line, offset of the attachment from the middle of the "
-        f"face, thrust; of {body}. Admissible: the peak is at most the scene's line's strength over the factor of safety, and at "
+        "Where the tow may be flown: tumble rate about an axis across the line, offset of the attachment from the "
+        "middle of the "
+        f"face, thrust; of {body}. Admissible: the peak is at most the scene's line's strength over the factor of "
+        f"safety, and at "
         f"most {100 * WRAPPED:g} % of the line come to lie on the debris, within {LASTS / 60:g} min."
     )
     return Section("region", "Admissible region", purpose, heads, rows, PICTURES["region"])
@@ -267,9 +292,12 @@ def _net(study: Study) -> Section:
         Head("held", "debris inside, at the end", "1", "%"), text("outcome", "the net is then"),
     )  # fmt: skip
     purpose = (
-        "What the tow's hardest tug does to threads and debris: the net, just closed, is drawn together by a light pull and then "
-        "pulled by a half-wave of that height; each start once with the pulse and once without. Threads bear bullets that still "
-        "swing as well, so only what a pulse adds is the tug's. The net is chaotic: the spread over the starts is its own."
+        "What the tow's hardest tug does to threads and debris: the net, just closed, is drawn together by a light "
+        "pull and then "
+        "pulled by a half-wave of that height; each start once with the pulse and once without. Threads bear "
+        "bullets that still "
+        "swing as well, so only what a pulse adds is the tug's. The net is chaotic: the spread over the starts is "
+        "its own."
     )
     section = Section("net", "From tug to thread", purpose, heads, rows)
     pulled = [one for one in study.net if one.tug > 0.0 and math.isfinite(one.thread)]
@@ -278,12 +306,15 @@ def _net(study: Study) -> Section:
         with_it, without = max(one.thread for one in pulled), max(one.thread for one in calm)
         more = "more than" if with_it > without else "no more than"
         section.said = [
-            f"threads bear {with_it:.3g} N at most with the pulse of {pulled[0].tug:.3g} N and {without:.3g} N without: the tug "
+            f"threads bear {with_it:.3g} N at most with the pulse of {pulled[0].tug:.3g} N and {without:.3g} N "
+            f"without: the tug "
             f"asks {more} what the net's own motion does"
         ]
         off = [one for one in pulled if one.outcome not in ("captured", "settled")]
         section.said.append(
-            f"in {len(off)} of {len(pulled)} runs the net slips off under the tug" if off else "the net stays on in every run"
+            f"in {len(off)} of {len(pulled)} runs the net slips off under the tug"
+            if off
+            else "the net stays on in every run"
         )
     return section
 
@@ -308,9 +339,10 @@ def _ways(study: Study) -> Section:
         Head("tension", "steady tension", "N"), Head("beam", "beam lost on the debris", "1", "%"), text("how", "from"),
     )  # fmt: skip
     purpose = (
-        "Electric beside chemical disposal of chaser and debris, in closed form: propellant, time, power, the tension that the "
-        "thrust keeps in the line, and the share of a beam behind the chaser (95 % within 15 deg on a face of 4 m, unless the "
+        "Electric beside chemical disposal of chaser and debris, in closed form: propellant, time, power, the "
+        "tension that the "
+        "thrust keeps in the line, and the share of a beam behind the chaser (95 % within 15 deg on a face of 4 m, "
+        "unless the "
         "scene says otherwise) that meets the debris at the line's length and pushes it back."
     )
     return Section("disposal", "Bringing it down", purpose, heads, rows)
-

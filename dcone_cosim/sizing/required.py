@@ -98,7 +98,8 @@ class Required:
     diameter   by simulation [m], the largest tension at it [N]; NaN where it was not found
     mass       of the line at that diameter [kg]
     margin     of the run at that diameter, over the factor of safety [1]
-    fixed      diameter that the peak of the scene's own line would ask for [m]: wrong, as the peak is not that of this line
+    fixed      diameter that the peak of the scene's own line would ask for [m]: wrong, as the peak is not that of this
+               line
     """
 
     material: Material
@@ -115,7 +116,8 @@ class Required:
 def in_closed_form(
     own: Values, sample: Values, tug: tuple[float, float, float], steady: float, material: Material, safety: float
 ) -> float:
-    """Diameter [m] of a line of a material that bears this tug: time [s], peak [N] and speed [m/s] on the line of a run.
+    """Diameter [m] of a line of a material that bears this tug: time [s], peak [N] and speed [m/s] on the line of a
+    run.
 
     own, sample    values of the scene, and of the run beside them; its shares of diameter and stiffness apply to the
                    material's line too

@@ -93,7 +93,7 @@ class Section:
     def columns(self) -> list[Column]:
         """The same as columns of a file."""
         return [
-            Column(head.key, [_plain(row[i]) for row in self.rows], head.unit or "1")
+            Column(head.key, [_plain(row[i]) for row in self.rows], "1" if head.unit in ("", ROW) else head.unit)
             for i, head in enumerate(self.heads)
         ]
 
@@ -121,6 +121,8 @@ def long_table(sections: Sequence[Section]) -> list[Column]:
             own = dict(zip((head.key for head in section.heads), row, strict=True)).get("unit")
             for head, value in zip(section.heads, row, strict=True):
                 if head.unit and value is not None and not isinstance(value, str):
-                    rows.append((section.key, label, head.key, float(value), str(own) if head.unit == ROW else head.unit))
+                    rows.append(
+                        (section.key, label, head.key, float(value), str(own) if head.unit == ROW else head.unit)
+                    )
     names = ("part", "row", "quantity", "value", "unit")
     return [Column(name, [row[i] for row in rows]) for i, name in enumerate(names)]

@@ -1,8 +1,8 @@
 """The load spectrum: tugs by size, and cycles by range and mean, counted by rainflow.
 
-Turning points are not those of the recorded rows, between which tugs fall. Each tug gives 0, its peak, 0, exactly, however
-short it is; in a macro step in which the line was taut all the time, the least and the largest tension that the FMU tells
-of it. What a damped line swings more than once within such a step is not counted; it is smaller.
+Turning points are not those of the recorded rows, between which tugs fall. Each tug gives 0, its peak, 0, exactly,
+however short it is; in a macro step in which the line was taut all the time, the least and the largest tension that the
+FMU tells of it. What a damped line swings more than once within such a step is not counted; it is smaller.
 
 Source   rainflow counting, ASTM E1049-85, by the package `rainflow`
 Checked  tests/sizing/test_spectrum.py
@@ -11,6 +11,7 @@ Checked  tests/sizing/test_spectrum.py
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ def cycle_classes(found: Sequence[tuple[float, float, float]], most: float) -> l
     """Classes of cycles: range from [N], to [N], cycles, and their mean tension [N]."""
     edges = np.linspace(0.0, most, CLASSES + 1)
     rows = []
-    for a, b in zip(edges, edges[1:], strict=False):
+    for a, b in pairwise(edges.tolist()):
         inside = [(mean, count) for size, mean, count in found if a < size <= b]
         number = sum(count for _, count in inside)
         mean = sum(mean * count for mean, count in inside) / number if number else float("nan")

@@ -1,10 +1,11 @@
-"""The sizing of a scene, from its runs to the numbers: peaks, spectrum, required lines, sensitivities, region, closed net."""
+"""The sizing of a scene, from its runs to the numbers: peaks, spectrum, required lines, sensitivities, region, closed
+net."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.rows import Row
@@ -12,7 +13,7 @@ from dcone_cosim.cases.runner import Runner
 from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.sizing import chaser, closed_net, governs, region, required, sensitivity
-from dcone_cosim.sizing.ground import Found, Ground, preload, reduced, steady, stiffness
+from dcone_cosim.sizing.ground import BREAK, Found, Ground, preload, reduced, steady, stiffness
 from dcone_cosim.sizing.options import Options
 from dcone_cosim.sizing.uncertain import Sample, Uncertain, samples, uncertain
 from orbital import tethers
@@ -89,7 +90,14 @@ class Study:
         return max(self.all, key=lambda one: one[1].peak)
 
 
-def study(ground: Ground, others: Sequence[tuple[str, Ground]], options: Options, runner: Runner, nets: Runner, progress: Progress) -> Study:
+def study(
+    ground: Ground,
+    others: Sequence[tuple[str, Ground]],
+    options: Options,
+    runner: Runner,
+    nets: Runner,
+    progress: Progress,
+) -> Study:
     """Run everything.
 
     others    the tow as other shots hand it over, each with what was different
@@ -97,8 +105,8 @@ def study(ground: Ground, others: Sequence[tuple[str, Ground]], options: Options
     """
     for one in (ground, *(other for _, other in others)):
         one.runner = runner
-        if "break.strength" in one.values:  # a line that breaks does not tell what it would have had to bear
-            one.pin({"break.strength": UNBREAKABLE})
+        if one.breaks_at is not None:  # a line that breaks does not tell what it would have had to bear
+            one.pin({BREAK: UNBREAKABLE})
     nominal = ground.one(history=True)
     if math.isnan(nominal.peak):
         raise InputError(f"{ground.scene.source}: the tow does not come to its end: {nominal.row.message}")
@@ -151,13 +159,23 @@ def _last(row: Row) -> str:
 
 
 def chief_material(ground: Ground) -> tuple[Material, float]:
-    """The material of the scene's line, and the load at which that breaks [N]; Kevlar 29 where the scene tells none."""
-    line = ground.phase.main.lines.get("tether")
+    """The scene's line as a material, and the load at which it breaks [N]; Kevlar 29 where the scene tells none.
+
+    Stiffness and strength are those of the scene, where it says them; `break.strength` goes before all.
+    """
+    line, values = ground.phase.main.lines.get("tether"), ground.values
     material = line.material if line is not None and line.material is not None else MATERIALS["Kevlar 29"]
+    area = section(values["tether.diameter"])
     strength = line.strength if line is not None and line.strength is not None else material.strength
-    if material.strength is None or strength is None:
-        raise InputError(f"{ground.scene.source}: the strength of {material.name} is not known; say it in [removal.tether]")
-    return material, strength * section(ground.values["tether.diameter"])
+    if ground.breaks_at is not None:
+        strength = ground.breaks_at / area
+    if strength is None:
+        source, name = ground.scene.source, material.name
+        raise InputError(f'{source}: the strength of {name} is not known; say it: removal.tether.strength = "2.9 GPa"')
+    own = replace(material, youngs_modulus=values["tether.youngs_modulus"], strength=strength)
+    if own != material:
+        own = replace(own, name=f"the scene's {material.name}")
+    return own, strength * area
 
 
 def materials(chief: Material) -> list[Material]:
@@ -241,4 +259,3 @@ def _net(alone: Alone, found: Study, options: Options, runner: Runner, progress:
         rows[row.key] = row
         progress.count("runs", len(rows), len(cases), f"closed net: {len(rows)} of {len(cases)}")
     return list(closed_net.borne(cases, rows))
-

@@ -53,7 +53,13 @@ def loads_of(result: PhaseResult, history: bool) -> dict[str, Any]:
         if name in recorder and len(recorder)
     }
     angles = _angles(result, [row[0] for row in rows])
-    found: dict[str, Any] = {"tugs": rows, "angles": angles, "missed": missed, "peak": max(peaks, default=0.0), "extremes": extremes}
+    found: dict[str, Any] = {
+        "tugs": rows,
+        "angles": angles,
+        "missed": missed,
+        "peak": max(peaks, default=0.0),
+        "extremes": extremes,
+    }
     if history and {"tether.tension_peak", "tether.tension_least"} <= set(recorder.names):
         least, most = recorder["tether.tension_least"][1:], recorder["tether.tension_peak"][1:]
         times = recorder["time"][1:]
@@ -63,7 +69,8 @@ def loads_of(result: PhaseResult, history: bool) -> dict[str, Any]:
 
 
 def _angles(result: PhaseResult, times: list[float]) -> list[list[float]]:
-    """Angle of the line [rad] and its rate [rad/s] at times [s], by cubic splines through the rows; none where there is no
+    """Angle of the line [rad] and its rate [rad/s] at times [s], by cubic splines through the rows; none where there is
+    no
     such output."""
     recorder = result.recorder
     if not times or "tether.angle" not in recorder or len(recorder) < 4:
