@@ -30,7 +30,7 @@ ENOUGH = 0.9
 
 @dataclass(frozen=True)
 class Opening:
-    """One flight: bullets over net [1], largest mouth over the net's area [1], when [s], and since when above 80 % [s]."""
+    """One flight: bullets over net [1], largest mouth over the net's area [1], when [s]; above 80 % since [s]."""
 
     ratio: float
     opening: float

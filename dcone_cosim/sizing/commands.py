@@ -12,12 +12,11 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from dcone_cosim import interrupts
 from dcone_cosim.cases.alone import Alone
@@ -28,7 +27,7 @@ from dcone_cosim.cases.runner import Memory, Rows, Runner
 from dcone_cosim.cases.store import Store
 from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.commands import write_new
-from dcone_cosim.errors import SUCCESS, InputError
+from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.run_folder import default_folder
@@ -39,51 +38,15 @@ from dcone_cosim.sizing.debris import read
 from dcone_cosim.sizing.ground import Ground
 from dcone_cosim.sizing.options import Options, options_of
 from dcone_cosim.sizing.proposal import propose, scene_text
+from dcone_cosim.sizing.result import Sizing
 from dcone_cosim.sizing.section import Section, long_table
-from dcone_cosim.sizing.study import Study, study
+from dcone_cosim.sizing.study import study
 from dcone_cosim.units import by_name, spoken
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "a sizing"
 PAPER = "The mass budgets of Benvenuto and Lavagna, rebuilt"
 SHOTS = ("capture.bullets.speed", 0.95, 1.05)
 """Key of the shot that is dispersed, and by how much: momentum of the net that is handed over [1]."""
-
-
-@dataclass
-class Sizing:
-    """What a sizing came to.
-
-    said        the answer in sentences
-    sections    parts of the report, in their order
-    study       all that was found, of a scene
-    folder      where it is, None for nowhere
-    """
-
-    title: str
-    said: list[str]
-    sections: list[Section]
-    study: Study | None = None
-    folder: Path | None = None
-    notes: list[str] = field(default_factory=list)
-
-    @property
-    def exit_code(self) -> int:
-        return SUCCESS
-
-    def __getitem__(self, key: str) -> pd.DataFrame:
-        """A part as a table of pandas, SI: `sizing["required"]`; units in `attrs["units"]`."""
-        return next(one for one in self.sections if one.key == key).frame()
-
-    def keys(self) -> list[str]:
-        """Names of the parts."""
-        return [one.key for one in self.sections]
-
-    def told(self) -> dict[str, Any]:
-        """For machines."""
-        return {"title": self.title, "said": self.said, "parts": {one.key: one.told() for one in self.sections}}
 
 
 def of_scene(
@@ -257,7 +220,7 @@ def of_debris(text: str, out: Path | None) -> Sizing:
     """What is proposed for a debris; the scene that tests it is written to a file where one is named."""
     proposal = propose(read(text))
     heads = (section.text("what", "what"), section.Head("value", "value", section.ROW), section.text("unit", "unit"),
-             section.text("why", "from"))  # fmt: skip
+             section.text("reason", "from"))  # fmt: skip
     rows = [
         (one.name, by_name(one.shown_in or one.unit).from_si(one.value), spoken(one.shown_in or one.unit), one.why)
         for one in proposal.figures()

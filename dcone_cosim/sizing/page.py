@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from dcone_cosim.sizing.section import Section
 
 if TYPE_CHECKING:
-    from dcone_cosim.sizing.commands import Sizing
+    from dcone_cosim.sizing.result import Sizing
 
 
 def write(done: Sizing, about: Mapping[str, Any], folder: Path) -> None:

@@ -102,11 +102,10 @@ def _slopes(study: Study, figure: Any) -> None:
     axes = _axes(figure, left=0.2)
     shown = [one for one in study.slopes if math.isfinite(one.largest)][:MOST_BARS][::-1]
     places = np.arange(len(shown))
-    for shift, colour, label, pick in (
-        (0.2, style.CHASER, "largest tug", lambda one: (one.largest, one.largest_error)),
-        (-0.2, style.MUTED, "first tug", lambda one: (one.first, one.first_error)),
+    for shift, colour, label, pairs in (
+        (0.2, style.CHASER, "largest tug", [(one.largest, one.largest_error) for one in shown]),
+        (-0.2, style.MUTED, "first tug", [(one.first, one.first_error) for one in shown]),
     ):
-        pairs = [pick(one) for one in shown]
         axes.barh(
             places + shift, [value for value, _ in pairs], 0.38, xerr=[error for _, error in pairs], color=colour,
             label=label, error_kw={"lw": 0.8},
@@ -125,7 +124,7 @@ def _region(study: Study, figure: Any) -> None:
     figure.subplots_adjust(left=0.08, right=0.97, bottom=0.14, top=0.8, wspace=0.08)
     for axes, thrust in zip(panels, thrusts, strict=True):
         of = [point for point in found.points if point.thrust == thrust]
-        rates, offsets = (list(dict.fromkeys(pick(p) for p in of)) for pick in (lambda p: p.rate, lambda p: p.offset))
+        rates, offsets = list(dict.fromkeys(p.rate for p in of)), list(dict.fromkeys(p.offset for p in of))
         for point in of:
             good = point.verdict == "admissible"
             colour = "#cfe8d8" if good else "#f3c6c0"

@@ -48,7 +48,7 @@ def moved(
 ) -> dict[str, list[tuple[float, Mapping[str, float]]]]:
     """Of each number: shares of the scene's value, and the values then."""
     shares = np.linspace(1.0 - REACH, 1.0 + REACH, steps).tolist()
-    found = {}
+    found: dict[str, list[tuple[float, Mapping[str, float]]]] = {}
     for one in uncertain:
         names = list(one.ends[0])
         if one.smooth and any(ground.values.get(name) for name in names):

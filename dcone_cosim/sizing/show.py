@@ -9,7 +9,7 @@ from dcone_cosim.sizing.section import Section
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from dcone_cosim.sizing.commands import Sizing
+    from dcone_cosim.sizing.result import Sizing
 
 MOST_ROWS = 14
 """Rows of a part that are shown; its file has all."""

@@ -13,6 +13,7 @@ from dcone_cosim.cases.runner import Runner
 from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.sizing import chaser, closed_net, governs, region, required, sensitivity
+from dcone_cosim.sizing.flux import YEAR
 from dcone_cosim.sizing.ground import BREAK, Found, Ground, preload, reduced, steady, stiffness
 from dcone_cosim.sizing.options import Options
 from dcone_cosim.sizing.uncertain import Sample, Uncertain, samples, uncertain
@@ -242,7 +243,7 @@ def _mission(options: Options, down: float | None) -> tuple[float, str]:
         return options.mission_time, "[sizing] mission_time"
     if down is not None:
         return down, "until the scene's thrust has brought the pair down, in closed form"
-    return governs.YEAR, "a year: the scene has no thrust that would bring the pair down"
+    return YEAR, "a year: the scene has no thrust that would bring the pair down"
 
 
 def _net(alone: Alone, found: Study, options: Options, runner: Runner, progress: Progress) -> list[closed_net.Borne]:

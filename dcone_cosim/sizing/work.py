@@ -78,7 +78,7 @@ def _angles(result: PhaseResult, times: list[float]) -> list[list[float]]:
     from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(recorder["time"], np.unwrap(recorder["tether.angle"]))
-    return np.column_stack([spline(times), spline(times, 1)]).tolist()
+    return [[float(angle), float(rate)] for angle, rate in zip(spline(times), spline(times, 1), strict=True)]
 
 
 def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
