@@ -2,7 +2,7 @@
 thrust.
 
 Each point of the grid is a tow of a debris that turns; admissible is one whose tension stays within the strength of the
-scene's line over the factor of safety, and of whose line no more than an allowed share comes to lie on the debris. A
+scene's line over the factor of safety, and of whose line no more comes to lie on the debris than goes half way round it. A
 scene whose target is a point says nothing of its shape: then it is a box, of the capture's target, or of Table 1's.
 
 Checked  tests/sizing/test_region.py
@@ -33,15 +33,13 @@ THRUSTS = (1.0, 10.0)
 QUICK_GRID = ((0.0, 1.0, 5.0), (0.0, 0.5), (1.0,))
 LASTS = 3600.0
 """How long each tow lasts [s]."""
-WRAPPED = 0.25
-"""Share of the line that may lie on the debris [1]."""
 
 
 @dataclass(frozen=True)
 class Point:
     """One tow of the grid.
 
-    rate [rad/s], offset [m], thrust [N]; peak [N]; wrapped   share of the line on the debris at most [1]
+    rate [rad/s], offset [m], thrust [N]; peak [N]; wrapped   of the line on the debris at most [m]
     verdict    "admissible", or what is wrong
     """
 
@@ -55,11 +53,11 @@ class Point:
 
 @dataclass(frozen=True)
 class Region:
-    """All of them, and of what debris."""
+    """All of them, of what debris, and how much of the line goes half way round it [m]."""
 
     points: Sequence[Point]
     body: str
-    strength: float
+    half_round: float
 
 
 def region(ground: Ground, breaking: float, safety: float, quick: bool) -> Region:
@@ -89,27 +87,26 @@ def region(ground: Ground, breaking: float, safety: float, quick: bool) -> Regio
         phase = replace(phase, main=own, duration=min(phase.duration, LASTS), macro_step=min(phase.macro_step, 60.0))
         cases.append(ground.case_of(replace(base, phases=(phase,))))
     runs = list(ground.run(cases, "admissible region"))
-    allowed = breaking / safety
+    allowed, half_round = breaking / safety, _half_round(values)
     points = []
     for (rate, offset, thrust), run in zip(plan, runs, strict=True):
         if math.isnan(run.peak):
             points.append(Point(rate, offset, thrust, math.nan, math.nan, _last(run.row.message)))
             continue
         most = run.loads["extremes"].get("tether.wrapped", [0.0, 0.0, 0.0])[2]
-        share = most / values["tether.rest_length"]
-        points.append(Point(rate, offset, thrust, run.peak, share, _verdict(run.peak, allowed, share)))
-    return Region(points, body, breaking)
+        points.append(Point(rate, offset, thrust, run.peak, most, _verdict(run.peak, allowed, most, half_round)))
+    return Region(points, body, half_round)
 
 
 def _last(message: str) -> str:
     return message.splitlines()[-1].strip() if message else "no result"
 
 
-def _verdict(peak: float, allowed: float, wrapped: float) -> str:
+def _verdict(peak: float, allowed: float, wrapped: float, half_round: float) -> str:
     wrong = []
     if peak > allowed:
         wrong.append("too hard")
-    if wrapped > WRAPPED:
+    if wrapped > half_round:
         wrong.append("wraps")
     return " and ".join(wrong) or "admissible"
 
@@ -118,6 +115,15 @@ def _half_width(values: Mapping[str, float]) -> float:
     if "target.size[1]" in values:
         return 0.5 * values["target.size[1]"]
     return values.get("target.cylinder_radius", 0.5 * TABLE_1[0])
+
+
+def _half_round(values: Mapping[str, float]) -> float:
+    """Half of the way round the debris across its third axis, about which it turns [m]."""
+    if "target.size[1]" in values:
+        return values["target.size[1]"] + values["target.size[2]"]
+    if "target.cylinder_radius" in values:
+        return 2.0 * values["target.cylinder_radius"] + values["target.cylinder_length"]
+    return TABLE_1[0] + TABLE_1[1]
 
 
 def _turning(ground: Ground) -> tuple[Scene, str]:

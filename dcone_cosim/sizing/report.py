@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dcone_cosim.sizing.chaser import Asked
 from dcone_cosim.sizing.flux import YEAR
 from dcone_cosim.sizing.ground import Found
-from dcone_cosim.sizing.region import LASTS, WRAPPED
+from dcone_cosim.sizing.region import LASTS
 from dcone_cosim.sizing.section import ROW, Head, Section, text
 from dcone_cosim.sizing.sensitivity import REACH
 from dcone_cosim.sizing.spectrum import by_size, cycle_classes, cycles, turning_points
@@ -268,15 +268,14 @@ def _region(study: Study) -> Section:
     rows = [] if found is None else [(p.rate, p.offset, p.thrust, p.peak, p.wrapped, p.verdict) for p in found.points]
     heads = (
         Head("rate", "tumble rate", "rad/s", "deg/s"), Head("offset", "offset", "m"), Head("thrust", "thrust", "N"),
-        Head("peak", "peak tension", "N"), Head("wrapped", "line on the debris", "1", "%"), text("verdict", "verdict"),
+        Head("peak", "peak tension", "N"), Head("wrapped", "line on the debris", "m"), text("verdict", "verdict"),
     )  # fmt: skip
-    body = "" if found is None else found.body
+    body, half = ("", 0.0) if found is None else (found.body, found.half_round)
     purpose = (
         "Where the tow may be flown: tumble rate about an axis across the line, offset of the attachment from the "
-        "middle of the "
-        f"face, thrust; of {body}. Admissible: the peak is at most the scene's line's strength over the factor of "
-        f"safety, and at "
-        f"most {100 * WRAPPED:g} % of the line come to lie on the debris, within {LASTS / 60:g} min."
+        f"middle of the face, thrust; of {body}. Admissible: the peak is at most the scene's line's strength over the "
+        f"factor of safety, and no more of the line lies on the debris than goes half way round it, {half:.3g} m, within "
+        f"{LASTS / 60:g} min."
     )
     return Section("region", "Admissible region", purpose, heads, rows, PICTURES["region"])
 

@@ -23,8 +23,12 @@ CLOSE = 0.005
 """Share to which the diameter is found [1]."""
 ROUNDS = 14
 """Most that it may take."""
+PATIENCE = 5
+"""Runs after which the bracket is halved: where bounces change, the peak jumps with the diameter."""
 APART = 1.25
 """Factor of the first steps outwards."""
+JUMP = 0.02
+"""Margin left at the fixed point from which on the peak is said to jump there [1]."""
 THINNEST, THICKEST = 1e-6, 0.2
 """Diameters that are tried [m]."""
 LINE, MODULUS = "tether.diameter", "tether.youngs_modulus"
@@ -63,12 +67,12 @@ class Search:
         if self.thin is None:
             return self.thick[0] / APART ** (1 + len(self.tried) // 3)
         (a, ya), (b, yb) = self.thin, self.thick
-        share = ya / (ya - yb)  # where a straight line in logarithms meets zero
-        low, high = (0.25, 0.75) if len(self.tried) > 6 else (0.02, 0.98)
         width = math.log(b / a)
-        inner = min(0.25, 0.3 * CLOSE / width)  # just beyond, so that the next run closes in from the other side
-        share = min(max(share, low), high)
-        share += inner if abs(yb) < abs(ya) else -inner
+        if len(self.tried) >= PATIENCE:
+            return a * math.exp(0.5 * width)
+        share = ya / (ya - yb)  # where a straight line in logarithms meets zero
+        beyond = min(0.25, 0.3 * CLOSE / width)  # so that the next run closes in from the other side
+        share += beyond if abs(yb) < abs(ya) else -beyond
         return a * math.exp(min(max(share, 0.02), 0.98) * width)
 
     def take(self, diameter: float, peak: float, factor: float) -> None:
@@ -188,5 +192,6 @@ def result(one: Search, closed: float, fixed: float, length: float, safety: floa
     diameter = one.thick[0]
     load = material.breaking_load(diameter)
     assert load is not None
-    mass = material.mass_per_metre(diameter) * length
-    return Required(material, closed, diameter, one.peak, mass, load / (safety * one.peak) - 1.0, fixed, len(one.tried))
+    mass, margin = material.mass_per_metre(diameter) * length, load / (safety * one.peak) - 1.0
+    note = "the peak jumps here with the diameter" if margin > JUMP else ""
+    return Required(material, closed, diameter, one.peak, mass, margin, fixed, len(one.tried), note)

@@ -15,7 +15,7 @@ MOST_ROWS = 14
 """Rows of a part that are shown; its file has all."""
 
 
-ASIDE, WIDE = ("how", "why", "youngs_modulus", "strength"), 140
+ASIDE, WIDE = ("how", "why", "note", "youngs_modulus", "strength"), 140
 """Columns that a terminal with fewer letters leaves out; page and files have them."""
 
 

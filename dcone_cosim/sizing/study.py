@@ -16,14 +16,14 @@ from dcone_cosim.sizing import chaser, closed_net, governs, region, required, se
 from dcone_cosim.sizing.flux import YEAR
 from dcone_cosim.sizing.ground import BREAK, Found, Ground, preload, reduced, steady, stiffness
 from dcone_cosim.sizing.options import Options
-from dcone_cosim.sizing.uncertain import Sample, Uncertain, samples, uncertain
+from dcone_cosim.sizing.uncertain import Sample, Uncertain, at_random, ends, uncertain
 from orbital import tethers
 from orbital.materials import MATERIALS, Material, section
 from orbital.oscillators import snap_duration
 
 WORST = 3
 """Hardest of all runs that the required line is made for, beside the scene as it is."""
-UNBREAKABLE = 1e15
+UNBREAKABLE = 1e12
 """Strength of a line that is to show its load, not to break [N]."""
 FAR_BELOW = 0.05
 """Share of the hardest tug below which a tug is not held against its closed form [1]."""
@@ -110,13 +110,17 @@ def study(
             one.pin({BREAK: UNBREAKABLE})
     nominal = ground.one(history=True)
     if math.isnan(nominal.peak):
-        raise InputError(f"{ground.scene.source}: the tow does not come to its end: {nominal.row.message}")
+        raise InputError(f"{ground.scene.source}: the tow does not come to its end: {_last(nominal.row)}")
     if not nominal.peak > 0.0:
         raise InputError(f"{ground.scene.source}: the line is never taut: there is no load to size it for")
     bound = ground.one({"tether.damping_ratio": 0.0}, what="without damping")
     ranges = uncertain(ground, options.ranges)
-    wanted = samples(ranges, options.samples)
-    made = list(zip(wanted, ground.run([ground.case(one.values) for one in wanted], "uncertain values"), strict=True))
+    each = ends(ranges)
+    found_each = list(ground.run([ground.case(sample.values) for _, sample in each], "uncertain values"))
+    able = [one for one in ranges if not any(o is one and _lost(r) for (o, _), r in zip(each, found_each, strict=True))]
+    wanted = at_random(able, options.samples)
+    together = ground.run([ground.case(sample.values) for sample in wanted], "uncertain values together")
+    made = [*zip((sample for _, sample in each), found_each, strict=True), *zip(wanted, together, strict=True)]
     captures = [(Sample(label, {}), other.one(what=label)) for label, other in others]
     notes = [f"{one.label}: left out: {_last(run.row)}" for one, run in (*made, *captures) if math.isnan(run.peak)]
     chief, breaking = chief_material(ground)
@@ -155,8 +159,14 @@ def study(
     return found
 
 
+def _lost(run: Found) -> bool:
+    return math.isnan(run.peak)
+
+
 def _last(row: Row) -> str:
-    return row.message.splitlines()[-1].strip() if row.message else row.status
+    """What a row says of its failure: the last line that is about it, not where it came from."""
+    lines = [line.strip() for line in row.message.splitlines() if line.strip()]
+    return next((line for line in reversed(lines) if not line.startswith("(")), row.status)
 
 
 def chief_material(ground: Ground) -> tuple[Material, float]:

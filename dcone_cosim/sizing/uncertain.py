@@ -5,7 +5,6 @@ Each value at both of its ends, the others as they are; every choice; and all to
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -151,22 +150,28 @@ def _told(ground: Ground, key: str, ends: Sequence[str]) -> Uncertain:
     return Uncertain(key, key.removeprefix(f"{PHASE}."), (kept[0], kept[1]), (ends[0], ends[1]), "told")
 
 
-def samples(ranges: Sequence[Uncertain], count: int) -> list[Sample]:
-    """Both ends of each, and so many at random, evenly spread in each value (a Latin hypercube)."""
-    from scipy.stats import qmc
-
-    found = [
-        Sample(f"{one.label} {text}", dict(end))
+def ends(ranges: Sequence[Uncertain]) -> list[tuple[Uncertain, Sample]]:
+    """A run at either end of each, the others as they are; of a choice at what is not the scene's own."""
+    return [
+        (one, Sample(f"{one.label} {text}", dict(end)))
         for one in ranges
         for end, text in zip(one.ends, one.labels, strict=True)
         if one.smooth or end is one.ends[1]
     ]
-    if not ranges:
-        return found
-    for number, shares in enumerate(qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(SEED)).random(count)):
+
+
+def at_random(ranges: Sequence[Uncertain], count: int) -> list[Sample]:
+    """So many runs with all of them at random, evenly spread in each value (a Latin hypercube)."""
+    from scipy.stats import qmc
+
+    if not ranges or not count:
+        return []
+    cube = qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(SEED)).random(count)
+    found = []
+    for number, shares in enumerate(cube.tolist()):
         values: dict[str, float] = {}
-        for one, share in zip(ranges, shares.tolist(), strict=True):
+        for one, share in zip(ranges, shares, strict=True):
             if one.smooth or share >= 0.5:  # several values of one choice: the last that is drawn
                 values |= one.at(share)
         found.append(Sample(f"at random, {number + 1}", values))
-    return [one for one in found if all(math.isfinite(v) for v in one.values.values())]
+    return found

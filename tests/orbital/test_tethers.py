@@ -52,7 +52,9 @@ def test_a_section_bears_its_own_snap(preload: float, share: float) -> None:
     sought = brentq(surplus, 1e-12, 1e-3, rtol=1e-14, xtol=1e-24)
     found = tethers.snap_section(speed, mass, length, modulus, strength, safety, preload, share)
     assert found == pytest.approx(sought, rel=1e-9)
-    fixed = safety * (preload + math.sqrt(preload**2 + modulus * 1e-6 / length * mass * (share * speed) ** 2)) / strength
+    fixed = (
+        safety * (preload + math.sqrt(preload**2 + modulus * 1e-6 / length * mass * (share * speed) ** 2)) / strength
+    )
     assert fixed != pytest.approx(found, rel=0.1), "the peak of another line asks for another section"
 
 
