@@ -91,7 +91,8 @@ def run(
 
     Exit code: 0 success, 1 the results are complete but could not be told, 2 bad input, 3 the capture failed,
     4 the hand-off was refused or violated, 5 an FMU failed, 6 interrupted, and what was reached is kept,
-    7 some runs of an ensemble failed, 8 a line bore more than it can; 130 or 143 interrupted, and there was nothing to keep.
+    7 some runs of an ensemble failed, 8 a line bore more than it can; 130 or 143 interrupted, and there was nothing to
+    keep.
     """
     promise(offline)
     if ensemble is not None:

@@ -201,6 +201,15 @@ def size(
             help='How far a value may be off, such as "removal.thrust.level=-0.02 N..-0.005 N"; several times.',
         ),
     ] = None,
+    material: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--material",
+            metavar="NAME",
+            help='What the line is sized of beside the scene\'s own, such as "Kevlar 29 braid"; several times. All '
+            "there are if not given.",
+        ),
+    ] = None,
     samples: Annotated[
         int | None, typer.Option("--samples", help="Runs with all uncertain values at random: 64; with --quick 12.")
     ] = None,
@@ -235,7 +244,7 @@ def size(
         else:
             assert scene is not None
             done = commands.size(
-                scene, out, progress, settings or [], quick, fos, samples, ranges or [], jobs, isolate
+                scene, out, progress, settings or [], quick, fos, samples, ranges or [], material or [], jobs, isolate
             )  # fmt: skip
     answer(json, done.told(), lambda console: show.show(done, console), done.notes, done.folder)
     raise typer.Exit(done.exit_code)

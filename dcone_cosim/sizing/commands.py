@@ -11,7 +11,9 @@ provenance.json scene.toml        what made it
 from __future__ import annotations
 
 import shlex
+import shutil
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -41,6 +43,7 @@ from dcone_cosim.sizing.proposal import propose, scene_text
 from dcone_cosim.sizing.result import Sizing
 from dcone_cosim.sizing.section import Section, long_table
 from dcone_cosim.sizing.study import study
+from dcone_cosim.sizing.uncertain import uncertain
 from dcone_cosim.units import by_name, spoken
 
 KIND = "a sizing"
@@ -88,13 +91,15 @@ def size(
     factor_of_safety: float | None = None,
     samples: int | None = None,
     ranges: Sequence[str] = (),
+    materials: Sequence[str] = (),
     jobs: int | None = None,
     isolate: bool | None = None,
 ) -> Sizing:
     """Size the hardware of a scene and write the folder. Bad input raises and leaves nothing."""
     started = datetime.now(UTC)
     alone = Alone(name, settings, isolate)
-    options = options_of(alone.scene, quick, factor_of_safety, samples, ranges)
+    options = options_of(alone.scene, quick, factor_of_safety, samples, ranges, materials)
+    uncertain(Ground(alone, progress), options.ranges)  # what is wrong with them is told before anything is run
     alone, others = _begun(name, settings, isolate, progress, alone)
     ground = Ground(alone, progress)
     scene = alone.scene
@@ -103,7 +108,11 @@ def size(
     told = {"kind": KIND, "scene": scene.name, "varied": [], "fmus": {}, "code": code()}
     told["content"] = digest(content(scene), asked)
     count = jobs or cores()
-    with interrupts.heeded(TOLD), Store(folder, told) as store:
+    with ExitStack() as stack:
+        if not folder.exists():
+            stack.push(partial(_leave_nothing, folder))
+        stack.enter_context(interrupts.heeded(TOLD))
+        store = stack.enter_context(Store(folder, told))
         interrupts.arm()
         with Workers(count) as workers:
             done = _sized(
@@ -113,10 +122,16 @@ def size(
         store.gather_if_many()
         done.folder = folder
         assert done.study is not None
-        command = _command(name, settings, quick, factor_of_safety, samples, ranges)
+        command = _command(name, settings, quick, factor_of_safety, samples, ranges, materials)
         pictures = partial(plot.draw, done.study)
         write(done, [scene], pictures, folder, started, command)
     return done
+
+
+def _leave_nothing(folder: Path, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
+    """Remove a folder that this command has made, where its input turns out to be bad."""
+    if isinstance(error, InputError):
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _begun(
@@ -176,11 +191,13 @@ def write(
 
 
 def _command(
-    name: str, settings: Sequence[str], quick: bool, factor: float | None, samples: int | None, ranges: Sequence[str]
-) -> str:
+    name: str, settings: Sequence[str], quick: bool, factor: float | None, samples: int | None, ranges: Sequence[str],
+    materials: Sequence[str],
+) -> str:  # fmt: skip
     """What makes the report again."""
     parts = ["dcone", "size", name, *(part for setting in settings for part in ("--set", setting))]
     parts += [part for text in ranges for part in ("--range", text)]
+    parts += [part for name in materials for part in ("--material", name)]
     parts += [] if factor is None else ["--fos", f"{factor:g}"]
     parts += [] if samples is None else ["--samples", str(samples)]
     return shlex.join([*parts, *(["--quick"] if quick else [])])

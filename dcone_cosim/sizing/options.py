@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from dcone_cosim.errors import InputError
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.sizing.flux import Flux
+from orbital.materials import FORMS, Material, UnknownMaterial, named
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Options:
     torque                of the chaser's attitude control, where the scene has none [N m]
     ranges                key of the scene: least and largest value, as texts
     samples, steps        runs of the uncertain values at random; points of a sensitivity
+    materials             names of those that the line is sized of beside the scene's own; empty: all that there are
     quick                 fewer runs, for a first look
     told                  names of those that the scene or the command line says
     """
@@ -40,6 +42,7 @@ class Options:
     ranges: Mapping[str, Sequence[str]] = field(default_factory=dict)
     samples: int = 64
     steps: int = 7
+    materials: tuple[str, ...] = ()
     quick: bool = False
     told: frozenset[str] = frozenset()
 
@@ -61,11 +64,18 @@ def options_of(
     factor_of_safety: float | None = None,
     samples: int | None = None,
     ranges: Sequence[str] = (),
+    materials: Sequence[str] = (),
 ) -> Options:
     """What a sizing of a scene asks.
 
-    ranges    `KEY=LEAST..LARGEST` of the command line
+    ranges      `KEY=LEAST..LARGEST` of the command line
+    materials   names, of yarns and of braids as in "Kevlar 29 braid"
     """
+    for name in materials:
+        try:
+            of_name(name)
+        except UnknownMaterial as error:
+            raise InputError(f"--material {name}: {error}") from None
     told = dict(scene.sizing)
     chosen = QUICK if quick else FULL
     if factor_of_safety is not None:
@@ -77,10 +87,18 @@ def options_of(
             raise InputError(f"--samples {samples}: expected 0 to {MOST_SAMPLES}")
         told["samples"] = samples
     told["ranges"] = {**told.get("ranges", {}), **dict(_range(text) for text in ranges)}
+    told["materials"] = tuple(materials)
     flux = {_FLUX[name]: told.pop(name) for name in list(told) if name in _FLUX}
     if flux:
         told["flux"] = replace(chosen.flux, source="the scene, [sizing]", **flux)
     return replace(chosen, **told, told=frozenset(name for name, value in told.items() if value))
+
+
+def of_name(name: str) -> Material:
+    """The material of a name that may have its form behind it: "Kevlar 29", "Kevlar 29 braid"."""
+    plain = name.strip()
+    form = next((form for form in FORMS if plain.lower().endswith(f" {form}")), "")
+    return named(plain[: len(plain) - len(form)].strip(), form or FORMS[0])
 
 
 def _range(text: str) -> tuple[str, tuple[str, str]]:

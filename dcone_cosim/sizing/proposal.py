@@ -123,8 +123,8 @@ class Proposal:
 def propose(debris: Debris) -> Proposal:
     """Net, bullets, tether and shot for a debris."""
     wanted, why = budget.side_of(debris.length), f"{budget.SIDE_OVER_LENGTH:g} x length, Table 3"
-    mesh = budget.MESH * max(1.0, debris.length / KNOWN)
-    side = mesh * math.ceil(wanted / mesh - 1e-9)
+    mesh = round(budget.MESH * max(1.0, debris.length / KNOWN), 2)
+    side = round(mesh * math.ceil(wanted / mesh - 1e-9), 2)
     net = netting.net_mass(side, side, mesh, THREAD.density, budget.THREAD, budget.MARGIN)
     bullet = budget.bullet_of(net)
     speed = SPEED
@@ -163,8 +163,8 @@ hand_over = "captured"
 
 [capture.net]
 shape = "square"
-side = "{p.side:.6g} m"
-mesh = "{p.mesh:.6g} m"
+side = "{p.side:.9g} m"
+mesh = "{p.mesh:.9g} m"
 mass = "{p.net:.4g} kg"
 material = "{THREAD.name}"
 damping_ratio = 0.106

@@ -2,8 +2,9 @@
 thrust.
 
 Each point of the grid is a tow of a debris that turns; admissible is one whose tension stays within the strength of the
-scene's line over the factor of safety, and of whose line no more comes to lie on the debris than goes half way round it. A
-scene whose target is a point says nothing of its shape: then it is a box, of the capture's target, or of Table 1's.
+scene's line over the factor of safety, and of whose line no more comes to lie on the debris than goes half way round
+it. A scene whose target is a point says nothing of its shape: then it is a box, of the capture's target, or of Table
+1's.
 
 Checked  tests/sizing/test_region.py
 """

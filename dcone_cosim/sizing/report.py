@@ -216,11 +216,9 @@ def _rainflow(study: Study) -> Section:
         Head("mean", "their mean", "N"),
     )  # fmt: skip
     purpose = (
-        "Cycles by range, counted by rainflow (ASTM E1049-85, package rainflow), for a fatigue curve. Turning "
-        "points are the "
-        "tugs' own peaks, each from zero to zero, and of a line that stays taut the least and largest tension of "
-        "every macro "
-        "step; what swings more than once in such a step is not counted."
+        "Cycles by range, counted by rainflow (ASTM E1049-85, package rainflow), for a fatigue curve. Turning points are "
+        "slack, the tugs' own peaks, and of a line that stays taut the least and largest tension of every macro step; "
+        "what swings more than once in such a step is counted once."
     )
     return Section("rainflow", "Load spectrum: cycles", purpose, heads, rows)
 
@@ -274,8 +272,8 @@ def _region(study: Study) -> Section:
     purpose = (
         "Where the tow may be flown: tumble rate about an axis across the line, offset of the attachment from the "
         f"middle of the face, thrust; of {body}. Admissible: the peak is at most the scene's line's strength over the "
-        f"factor of safety, and no more of the line lies on the debris than goes half way round it, {half:.3g} m, within "
-        f"{LASTS / 60:g} min."
+        f"factor of safety, and no more of the line lies on the debris than goes half way round it, {half:.3g} m, "
+        f"within {LASTS / 60:g} min."
     )
     return Section("region", "Admissible region", purpose, heads, rows, PICTURES["region"])
 

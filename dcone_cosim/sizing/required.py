@@ -61,11 +61,13 @@ class Search:
         """The diameter to try."""
         if self.thin is None and self.thick is None:
             return self.start
-        if self.thick is None:
-            assert self.thin is not None
-            return self.thin[0] * APART ** (1 + len(self.tried) // 3)
-        if self.thin is None:
-            return self.thick[0] / APART ** (1 + len(self.tried) // 3)
+        if (
+            self.thin is None or self.thick is None
+        ):  # a snap grows with the diameter, and what a line bears with its square
+            end = self.thin or self.thick
+            assert end is not None
+            step = math.exp(abs(end[1])) * (1.0 + CLOSE) * APART ** (len(self.tried) // 3)
+            return end[0] * step if self.thick is None else end[0] / step
         (a, ya), (b, yb) = self.thin, self.thick
         width = math.log(b / a)
         if len(self.tried) >= PATIENCE:

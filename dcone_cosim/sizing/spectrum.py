@@ -1,8 +1,8 @@
 """The load spectrum: tugs by size, and cycles by range and mean, counted by rainflow.
 
-Turning points are not those of the recorded rows, between which tugs fall. Each tug gives 0, its peak, 0, exactly,
-however short it is; in a macro step in which the line was taut all the time, the least and the largest tension that the
-FMU tells of it. What a damped line swings more than once within such a step is not counted; it is smaller.
+Turning points are not those of the recorded rows, between which tugs fall. From slack each tug rises to its peak, exactly,
+however short it is; while the line stays taut over whole macro steps, the least and the largest tension that the FMU tells
+of each follow; and then it is slack again. What swings more than once within a macro step is counted once.
 
 Source   rainflow counting, ASTM E1049-85, by the package `rainflow`
 Checked  tests/sizing/test_spectrum.py
@@ -16,15 +16,26 @@ from typing import Any
 
 import numpy as np
 
+SAME = 1e-9
+"""Share to which the peak of a tug and that of a macro step are the same [1]."""
 CLASSES = 10
 """Into which the tugs are sorted, up to the largest."""
 
 
 def turning_points(loads: Mapping[str, Any]) -> list[float]:
     """Tension [N] at each turn, in their order."""
-    events: list[tuple[float, tuple[float, ...]]] = [(time, (0.0, peak, 0.0)) for time, peak, _ in loads["tugs"]]
-    events += [(time, (least, most)) for time, least, most in loads.get("taut", ())]
-    series = [value for _, values in sorted(events, key=lambda event: event[0]) for value in values]
+    tugs, taut = loads["tugs"], loads.get("taut", [])
+    begins = [time for time, _, _ in tugs]
+    series = [0.0]
+    for number, (begin, peak, _) in enumerate(tugs):
+        until = begins[number + 1] if number + 1 < len(begins) else np.inf
+        rows = [(least, most) for time, least, most in taut if begin < time <= until]
+        if not any(most >= (1.0 - SAME) * peak for _, most in rows):
+            series.append(peak)
+        for pair in rows:
+            series += pair if abs(pair[0] - series[-1]) <= abs(pair[1] - series[-1]) else pair[::-1]
+        if np.isfinite(until) or not rows:
+            series.append(0.0)
     return [value for i, value in enumerate(series) if i == 0 or value != series[i - 1]]
 
 

@@ -15,7 +15,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.sizing import chaser, closed_net, governs, region, required, sensitivity
 from dcone_cosim.sizing.flux import YEAR
 from dcone_cosim.sizing.ground import BREAK, Found, Ground, preload, reduced, steady, stiffness
-from dcone_cosim.sizing.options import Options
+from dcone_cosim.sizing.options import Options, of_name
 from dcone_cosim.sizing.uncertain import Sample, Uncertain, at_random, ends, uncertain
 from orbital import tethers
 from orbital.materials import MATERIALS, Material, section
@@ -189,9 +189,13 @@ def chief_material(ground: Ground) -> tuple[Material, float]:
     return own, strength * area
 
 
-def materials(chief: Material) -> list[Material]:
-    """Those that a line is sized of: the scene's, yarns, and braids of them."""
+def materials(chief: Material, options: Options) -> list[Material]:
+    """Those that a line is sized of: the scene's, and those asked for; else all yarns, and braids of them."""
     known = [one for yarn in MATERIALS.values() for one in (yarn, yarn.braided()) if one.strength is not None]
+    if options.materials:
+        known = [of_name(name) for name in options.materials]
+    elif options.quick:
+        known = [one for one in known if one.form == chief.form]
     return [chief, *(one for one in known if one != chief)]
 
 
@@ -227,9 +231,7 @@ def _needed(
     hardest = sorted((one for one in made if math.isfinite(one[1].peak)), key=lambda one: -one[1].peak)[:WORST]
     runs = [(Sample("the scene as it is"), nominal), *hardest]
     chief, _ = chief_material(ground)
-    chosen = materials(chief)
-    if options.quick:
-        chosen = chosen[:1] + [one for one in chosen[1:] if one.form == chief.form]
+    chosen = materials(chief, options)
     closed, fixed = [], []
     for material in chosen:
         assert material.strength is not None

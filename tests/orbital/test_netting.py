@@ -42,7 +42,8 @@ def test_fig_9(sides: tuple[float, float]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("sides", "bare", "margined"), [((36.0, 36.0), 0.445, 0.535), ((30.0, 26.0), 0.267, 0.321), ((18.0, 18.0), 0.111, 0.133)]
+    ("sides", "bare", "margined"),
+    [((36.0, 36.0), 0.445, 0.535), ((30.0, 26.0), 0.267, 0.321), ((18.0, 18.0), 0.111, 0.133)],
 )  # fmt: skip
 def test_mesh_that_table_4_allows(sides: tuple[float, float], bare: float, margined: float) -> None:
     for mesh, margin in ((bare, 0.0), (margined, 0.2)):

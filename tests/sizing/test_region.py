@@ -1,0 +1,36 @@
+"""Where a tow may be flown: what makes a point of the grid bad, and that a debris that turns pulls harder."""
+
+from __future__ import annotations
+
+import math
+
+from dcone_cosim.sizing.region import _verdict
+from dcone_cosim.sizing.result import Sizing
+
+
+def test_what_is_not_admissible() -> None:
+    assert _verdict(99.0, 100.0, 5.0, 6.0) == "admissible"
+    assert _verdict(101.0, 100.0, 5.0, 6.0) == "too hard"
+    assert _verdict(99.0, 100.0, 7.0, 6.0) == "wraps"
+    assert _verdict(101.0, 100.0, 7.0, 6.0) == "too hard and wraps"
+
+
+def test_a_debris_that_turns_pulls_harder(done: Sizing) -> None:
+    found = done["region"]
+    assert len(found) == 6
+    still, fast = (found[found.rate.round(6) == round(math.radians(rate), 6)] for rate in (0.0, 5.0))
+    assert (fast.peak.to_numpy() > 5.0 * still.peak.to_numpy()).all()
+    assert set(found.verdict) <= {"admissible", "too hard", "wraps", "too hard and wraps"}
+    assert done.study is not None
+    assert done.study.region is not None
+    assert done.study.region.half_round == 12.0, "half of the way round Table 1's box, 4 x 8 m"
+    assert "Table 1" in done.study.region.body
+
+
+def test_a_point_of_the_grid_is_the_tow_with_that_box(done: Sizing) -> None:
+    """A box that does not turn, made fast in the middle, first tugs as the point does: as much slack, as much mass."""
+    assert done.study is not None
+    found = done["region"]
+    first = done.study.nominal.tugs[0]
+    plain = found[(found.rate == 0.0) & (found.offset == 0.0)]
+    assert float(plain.peak.iloc[0]) > 0.9 * first[1]
