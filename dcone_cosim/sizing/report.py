@@ -36,7 +36,9 @@ def sections(study: Study) -> list[Section]:
         _slopes(study),
         _region(study),
         _net(study),
-        _asked("reel", "What the reel has to do", "Size drum, brake and motor by these.", study.reel),
+        _asked(
+            "reel", "What the reel has to do", "Size drum, brake and motor by these, the largest of all runs.", study.reel
+        ),
         _asked(
             "attitude", "What the pull asks of the chaser's attitude control",
             "A line that pulls beside the centre of mass turns the chaser. Size wheels and thrusters by these, or move "
@@ -160,7 +162,7 @@ def _required(study: Study) -> Section:
 
 def _governs(study: Study) -> Section:
     options = study.options
-    rows = [(one.load, one.size, one.diameter, one.how) for one in study.demands]
+    rows = [(one.load, one.size if math.isfinite(one.size) else None, one.diameter, one.how) for one in study.demands]
     heads = (
         text("load", "load"), Head("size", "size", "N"), Head("diameter", "diameter it asks for", "m", "mm"),
         text("how", "how"),
@@ -216,9 +218,9 @@ def _rainflow(study: Study) -> Section:
         Head("mean", "their mean", "N"),
     )  # fmt: skip
     purpose = (
-        "Cycles by range, counted by rainflow (ASTM E1049-85, package rainflow), for a fatigue curve. Turning points are "
-        "slack, the tugs' own peaks, and of a line that stays taut the least and largest tension of every macro step; "
-        "what swings more than once in such a step is counted once."
+        "Cycles by range, counted by rainflow (ASTM E1049-85, package rainflow), for a fatigue curve. Turning points "
+        "are slack, the tugs' own peaks, and of a line that stays taut the least and largest tension of every macro "
+        "step; what swings more than once in such a step is counted once."
     )
     return Section("rainflow", "Load spectrum: cycles", purpose, heads, rows)
 
@@ -237,9 +239,8 @@ def _ranges(study: Study) -> Section:
     )  # fmt: skip
     count = study.options.samples
     purpose = (
-        f"How far each value may be off, and the peak at both ends, the others as they are; {count} more runs vary "
-        f"all of "
-        "them together at random (Latin hypercube). Give your own ranges in [sizing.ranges] or with --range."
+        f"How far each value may be off, and the peak at both ends, the others as they are; one run has "
+        f"each at its worse end, {count} have all of them at random (Latin hypercube). Give your own ranges in [sizing.ranges] or with --range."
     )
     return Section("ranges", "What is uncertain", purpose, heads, rows)
 

@@ -1,8 +1,9 @@
 """The load spectrum: tugs by size, and cycles by range and mean, counted by rainflow.
 
-Turning points are not those of the recorded rows, between which tugs fall. From slack each tug rises to its peak, exactly,
-however short it is; while the line stays taut over whole macro steps, the least and the largest tension that the FMU tells
-of each follow; and then it is slack again. What swings more than once within a macro step is counted once.
+Turning points are not those of the recorded rows, between which tugs fall. From slack each tug rises to its peak,
+exactly, however short it is; while the line stays taut over whole macro steps, the least and the largest tension that
+the FMU tells of each follow; and then it is slack again. What swings more than once within a macro step is counted
+once.
 
 Source   rainflow counting, ASTM E1049-85, by the package `rainflow`
 Checked  tests/sizing/test_spectrum.py

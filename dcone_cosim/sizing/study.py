@@ -118,7 +118,7 @@ def study(
     each = ends(ranges)
     found_each = list(ground.run([ground.case(sample.values) for _, sample in each], "uncertain values"))
     able = [one for one in ranges if not any(o is one and _lost(r) for (o, _), r in zip(each, found_each, strict=True))]
-    wanted = at_random(able, options.samples)
+    wanted = [_corner(each, found_each, nominal), *at_random(able, options.samples)]
     together = ground.run([ground.case(sample.values) for sample in wanted], "uncertain values together")
     made = [*zip((sample for _, sample in each), found_each, strict=True), *zip(wanted, together, strict=True)]
     captures = [(Sample(label, {}), other.one(what=label)) for label, other in others]
@@ -157,6 +157,17 @@ def study(
     found.reel = list(chaser.of_reel(ground, [run for _, run in found.all]))
     found.net = _net(ground.alone, found, options, nets, progress)
     return found
+
+
+def _corner(each: Sequence[tuple[Uncertain, Sample]], runs: Sequence[Found], nominal: Found) -> Sample:
+    """All values at once, each at the end at which the peak was larger, where that was larger than the scene's."""
+    values: dict[str, float] = {}
+    peaks: dict[str, float] = {}
+    for (one, sample), run in zip(each, runs, strict=True):
+        if run.peak > max(nominal.peak, peaks.get(one.label, 0.0)):
+            peaks[one.label] = run.peak
+            values |= sample.values
+    return Sample("each at its worse end", values)
 
 
 def _lost(run: Found) -> bool:

@@ -80,7 +80,7 @@ def test_the_same_command_goes_on(done: Sizing) -> None:
         "table2-deorbit", done.folder, Progress(), SHORT, quick=True, factor_of_safety=SAFETY, samples=2,
         ranges=("removal.thrust.level=-0.012 N..-0.008 N",), materials=("Technora", "Vectran braid"),
     )  # fmt: skip
-    assert [one.rows for one in again.sections] == [one.rows for one in done.sections]
+    assert [one.cells() for one in again.sections] == [one.cells() for one in done.sections]
     assert sorted(p.name for p in (done.folder / "rows").iterdir()) == before
 
 
