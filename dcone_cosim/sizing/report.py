@@ -37,7 +37,8 @@ def sections(study: Study) -> list[Section]:
         _region(study),
         _net(study),
         _asked(
-            "reel", "What the reel has to do", "Size drum, brake and motor by these, the largest of all runs.", study.reel
+            "reel", "What the reel has to do", "Size drum, brake and motor by these, the largest of all runs.",
+            study.reel,
         ),
         _asked(
             "attitude", "What the pull asks of the chaser's attitude control",
@@ -239,8 +240,9 @@ def _ranges(study: Study) -> Section:
     )  # fmt: skip
     count = study.options.samples
     purpose = (
-        f"How far each value may be off, and the peak at both ends, the others as they are; one run has "
-        f"each at its worse end, {count} have all of them at random (Latin hypercube). Give your own ranges in [sizing.ranges] or with --range."
+        "How far each value may be off, and the peak at both ends, the others as they are; one run has each at its "
+        f"worse end, {count} have all of them at random (Latin hypercube). Give your own ranges in [sizing.ranges] or "
+        "with --range."
     )
     return Section("ranges", "What is uncertain", purpose, heads, rows)
 
