@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from dcone_cosim.sizing.region import _verdict
+import pytest
+
+from dcone_cosim.cases.alone import Alone
+from dcone_cosim.cases.rows import Row
+from dcone_cosim.progress import Progress
+from dcone_cosim.sizing.ground import Found, Ground
+from dcone_cosim.sizing.region import _verdict, region
 from dcone_cosim.sizing.result import Sizing
+from dcone_cosim.sizing.work import Load
 
 
 def test_what_is_not_admissible() -> None:
@@ -13,6 +21,22 @@ def test_what_is_not_admissible() -> None:
     assert _verdict(101.0, 100.0, 5.0, 6.0) == "too hard"
     assert _verdict(99.0, 100.0, 7.0, 6.0) == "wraps"
     assert _verdict(101.0, 100.0, 7.0, 6.0) == "too hard and wraps"
+
+
+def test_the_strength_counts_over_the_factor_of_safety(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every tow of the grid pulls with 60 N: too hard for a line that breaks at 100 N, with a factor of 2."""
+
+    def pulls(self: Ground, cases: Sequence[Load], what: str) -> list[Found]:
+        row = Row("key", "completed", samples={"removal": {"extremes": {}}})
+        return [Found(60.0, (), row) for _ in cases]
+
+    monkeypatch.setattr(Ground, "run", pulls)
+    ground = Ground(Alone("tumbling-target", (), None), Progress())
+    assert {point.verdict for point in region(ground, 100.0, 2.0, quick=True).points} == {"too hard"}
+    found = region(ground, 130.0, 2.0, quick=False)
+    assert {point.verdict for point in found.points} == {"admissible"}
+    assert len(found.points) == 40
+    assert found.body == "the scene's box"
 
 
 def test_a_debris_that_turns_pulls_harder(done: Sizing) -> None:
