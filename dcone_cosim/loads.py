@@ -44,6 +44,7 @@ class Load:
     strength     at which it breaks; None: not known                         [Pa]
     breaks_at    load at which it breaks; None: not known                    [N]
     broke        when it broke in the model; None: it did not                [s]
+    broken       how many of its kind did                                    [1]
     may_break    whether it can break in the model
     spread       standard deviation over mean of the tension, 0 for no sample of many  [1]
     likely       fibre that it may be of, where none is named
@@ -58,6 +59,7 @@ class Load:
     strength: float | None
     breaks_at: float | None
     broke: float | None
+    broken: int
     may_break: bool
     spread: float
     likely: Material
@@ -77,6 +79,12 @@ class Load:
     @property
     def where(self) -> str:
         return f"[{self.phase}.{self.line.table}]"
+
+    @property
+    def lacks_section(self) -> str:
+        """What to do where nothing tells its section."""
+        wanted = "a material or a diameter" if self.line.stiffness else "a diameter"
+        return f"section not known: name {wanted} in {self.where}"
 
 
 def of_phase(run: RunResult, name: str) -> list[Load]:
@@ -128,7 +136,8 @@ def _load(
     may_break = line.breaks_at in values
     breaks_at = values[line.breaks_at] if may_break else _times(scene.strength, area)
     last = result.recorder.last()
-    broke = last[line.broken[1]] if line.broken is not None and last.get(line.broken[0]) else None
+    broken = int(last.get(line.broken[0], 0)) if line.broken is not None else 0
+    broke = last[line.broken[1]] if line.broken is not None and broken else None
     return Load(
         phase,
         line,
@@ -139,6 +148,7 @@ def _load(
         breaks_at / area if breaks_at is not None and area is not None else scene.strength,
         breaks_at,
         broke,
+        broken,
         may_break,
         spread,
         _likely(line, values, main),
@@ -180,7 +190,9 @@ def told_of(component: ComponentScene, where: str) -> list[tuple[str, str]]:
         if material is None:
             continue
         found.append((f"[{where}.{table}]", f"{material.name}, {material.form}"))
-        found += [(f"  {figure.replace('_', ' ')}", source) for figure, source in material.sources.items()]
+        for source in dict.fromkeys(material.sources.values()):
+            of = ", ".join(figure.replace("_", " ") for figure, its in material.sources.items() if its == source)
+            found.append((f"  {of}", source))
         for name, value in scene.apart.items():
             found.append((f"  {where}.{name}", f"as the scene says; the material has {value:.6g}, SI"))
         if material.damping_ratio is None:
@@ -214,8 +226,7 @@ def findings(run: RunResult, name: str) -> Iterator[Finding]:
         if load.scene.material is not None:
             yield Finding(name, f"{key}.material", f"{what} is of", made_of(load.scene))
         if load.stress is None:
-            text = "section not known: name a material or a diameter"
-            yield Finding(name, f"{key}.stress", f"largest stress of {what}", text)
+            yield Finding(name, f"{key}.stress", f"largest stress of {what}", load.lacks_section)
         else:
             yield Finding(
                 name, f"{key}.stress", f"largest stress of {what}", load.stress, "Pa", load.spread, shown_in="MPa"
@@ -233,10 +244,9 @@ def _of_margin(name: str, key: str, load: Load) -> Finding:
         spread = load.spread * (1.0 + margin) / abs(margin) if margin else load.spread
         return Finding(name, f"{key}.margin_of_safety", label, margin, "", spread)
     if load.breaks_at is None:
-        wants = "" if load.strength is None else ", and a diameter"
-        return Finding(
-            name, f"{key}.margin_of_safety", label, f"strength not known: name a material in {load.where}{wants}"
-        )
+        unknown = f"strength not known: name a material in {load.where}"
+        text = unknown if load.strength is None else load.lacks_section
+        return Finding(name, f"{key}.margin_of_safety", label, text)
     return Finding(name, f"{key}.margin_of_safety", label, "it bore nothing")
 
 
@@ -255,7 +265,8 @@ def headlines(run: RunResult) -> list[str]:
                 "in truth it would have broken, and what follows is not to be trusted"
             )
         elif load.broke is not None:
-            found.append(f"BROKEN: {what}{of} broke at {load.broke:.6g} s, at {load.breaks_at:.4g} N")
+            more = f"; {load.broken} of them in all" if load.broken > 1 else ""
+            found.append(f"BROKEN: {what}{of} broke at {load.broke:.6g} s, at {load.breaks_at:.4g} N{more}")
     return found
 
 

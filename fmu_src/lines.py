@@ -59,23 +59,18 @@ class Line:
     group: str = ""
     area: Callable[[Values, Terms], float | None] = _unknown
 
-    def follow(
-        self, material: Material | None, strength: float | None, diameter: float | None, offered: Collection[str]
-    ) -> dict[str, float]:
-        """Values of those parameters on offer that its material and strength give, SI by FMI name.
+    def follow(self, material: Material, diameter: float | None, offered: Collection[str]) -> dict[str, float]:
+        """Values of those parameters on offer that its material gives, SI by FMI name.
 
-        strength    at which it breaks [Pa]
         diameter    [m], None where nothing tells it
         """
         found: dict[str, float] = {}
-        for name, figure in self.follows.items() if material is not None else ():
+        for name, figure in self.follows.items():
             value = getattr(material, figure)
             if callable(value):
                 value = value(diameter) if diameter is not None else None
             if value is not None and name in offered:
                 found[name] = value
-        if self.breaks_at in offered and strength is not None and diameter is not None:
-            found[self.breaks_at] = strength * section(diameter)
         return found
 
     def section(self, values: Values, terms: Terms, material: Material | None, diameter: float | None) -> float | None:

@@ -53,7 +53,7 @@ from dcone_cosim.scenes.keys import (
     read_value,
     table_in,
 )
-from dcone_cosim.scenes.lines import read_own
+from dcone_cosim.scenes.lines import read_own, set_apart
 from dcone_cosim.scenes.relations import about_steps, about_values, designed, pairs, phases_to_run
 from orbital.materials import Material
 
@@ -142,7 +142,9 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
             made[after - 1 : after + 1] = kind_of(made[after].name).joined(made[after - 1], made[after])
         flags = {key for key, expected in handoff_keys().items() if expected.kind == "Boolean"}
         handoff = {key: bool(value) if key in flags else value for key, value in handoff.items()}
-        notes = tuple(_close_calls(whole, phases))
+        parts = [one for read in phases.values() for one in (read.main, *read.others)]
+        apart = (note for one in parts for note in set_apart(one.part.path, one.lines, places))
+        notes = (*_close_calls(whole, phases), *apart)
         scene = Scene(
             name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes, (), accuracy, sizing
         )

@@ -215,7 +215,7 @@ def read_lines(
         table = tables.get(name)
         if isinstance(table, dict):
             keys = keys_of(line, part.keys)
-            read = read_line(line, keys, table, (*part.path, name), part.defaults(), found, own, mistakes)
+            read = read_line(line, keys, table, (*part.path, name), part.defaults(), found, part.terms, own, mistakes)
             if read is not None:
                 lines[name], taken = read
                 follows |= taken
@@ -329,7 +329,11 @@ def _no_variable(part: ReadComponent, name: str, path: Path, value: object) -> M
     slot = part.slots.get(name) or part.slots.get(f"{name}[1]")
     what = part.fmu.name if part.fmu is not None else f"this {part.model.name if part.model else 'model'}"
     if slot is None:
-        known = [*part.keys, *part.reserved] if path == (*part.path, name) else part.keys
+        names = [
+            *part.keys,
+            *(f"{table}.{key}" for table, line in part.lines.items() for key in keys_of(line, part.keys)),
+        ]
+        known = [*names, *part.reserved] if path == (*part.path, name) else names
         return unknown(path, value, f"{what} has no variable {name!r} that can be set", name, known)
     kind = {"output": "an output", "local": "a local variable"}.get(slot.causality, f"a {slot.causality}")
     return Mistake(path, value, f"{name!r} of {what} is {kind}: only parameters and inputs can be set")

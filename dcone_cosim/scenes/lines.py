@@ -14,14 +14,14 @@ Checked  tests/cosim/test_materials.py
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterator, Mapping
 from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.scene.data import LineScene
 from dcone_cosim.scene.expected import TEXT, Expected, Unexpected
-from dcone_cosim.scene.mistakes import Mistake
-from dcone_cosim.scene.toml_lines import Path
+from dcone_cosim.scene.mistakes import Mistake, Places
+from dcone_cosim.scene.toml_lines import Path, dotted
 from dcone_cosim.scenes.keys import OWN_MATERIALS as OWN
 from dcone_cosim.scenes.keys import read_table, read_value, table_in
 from orbital.materials import ALSO, FORMS, MATERIALS, Material, UnknownMaterial, named
@@ -100,6 +100,7 @@ def read_line(
     path: Path,
     known: Mapping[str, float],
     given: Mapping[str, float],
+    terms: Mapping[str, str],
     own: Mapping[str, Material],
     mistakes: list[Mistake],
 ) -> tuple[LineScene, dict[str, float]] | None:
@@ -109,6 +110,7 @@ def read_line(
     table    of the scene that has them, at `path`
     known    parameters that the component has, with their start values
     given    those that the scene says
+    terms    of the component
     own      its own materials
     """
     told = {
@@ -132,7 +134,10 @@ def read_line(
         text = f"says nothing of its stiffness without a {MATERIAL} or {key} beside it"
         mistakes.append(Mistake((*path, DIAMETER), table[DIAMETER], text))
     usual = diameter if diameter is not None else line.usual
-    follows = line.follow(material, strength, usual, known)
+    follows = {} if material is None else line.follow(material, usual, known)
+    if line.breaks_at in known and strength is not None:
+        area = line.section({**known, **follows, **given}, terms, material, told.get(DIAMETER))
+        follows |= {} if area is None else {line.breaks_at: strength * area}
     apart = {name: value for name, value in follows.items() if _differs(given.get(name, value), value)}
     taken = {name: value for name, value in follows.items() if name not in given}
     return LineScene(material, strength, told.get(DIAMETER), tuple(taken), apart), taken
@@ -151,6 +156,19 @@ def _named(name: str, told: Mapping[str, Any], own: Mapping[str, Material]) -> M
     if FORM in told and found.form != form:
         raise Unexpected(f"is a {found.form}, and the {form} it is made of is not known; leave {FORM} out")
     return found
+
+
+def set_apart(path: Path, lines: Mapping[str, LineScene], places: Places) -> Iterator[str]:
+    """What does not follow from a material that the command line sets, since the scene says it itself.
+
+    path    of the component whose lines these are, by table
+    """
+    for table, line in lines.items():
+        by_command = any(places.override((*path, table, key)) for key in (MATERIAL, FORM))
+        if line.material is not None and by_command:
+            for name, value in line.apart.items():
+                key, of = dotted((*path, *name.split("."))), f"{line.material.name}, {line.material.form}"
+                yield f"{key} is as the scene says; {of}, has {value:.4g}, SI"
 
 
 def _differs(given: float, of_material: float) -> bool:

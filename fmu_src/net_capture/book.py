@@ -20,6 +20,7 @@ def make_balance(composition: Any) -> Any:
     has_contact = composition.contact is not None
     has_closing = composition.closing is not None
     has_tether = composition.tether is not None
+    has_break = composition.breaking is not None
     potential_at, bends, frame_rate = composition.gravity.potential, composition.gravity.bends, composition.gravity.rate
     node_plane = composition.memory.node_plane
 
@@ -41,7 +42,7 @@ def make_balance(composition: Any) -> Any:
 
     @kernel
     def energy_balance(p, work):
-        """Energy of all bodies now [J], with what contact and dashpots took and without what the winches gave.
+        """Energy of all bodies now [J], with what contact, dashpots and breaks took and without what the winches gave.
 
         Checked  tests/net_capture/test_energy_book.py
         """
@@ -55,6 +56,8 @@ def make_balance(composition: Any) -> Any:
             energy += p.cord_dissipated - p.closing_work
         if has_tether:
             energy -= p.tether_work
+        if has_break:
+            energy += p.break_energy
         if bends:
             potential = potential_of_nodes(p, work)
             potential += p.chaser_mass * potential_at(p, p.chaser_place)

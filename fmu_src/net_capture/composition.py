@@ -34,7 +34,7 @@ class Composition:
     memory       kernels that find what lies in the work memory
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, folding, target, contact, closing, tether, pulls, pace, scheme
+    gravity, net, folding, target, contact, closing, tether, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -58,7 +58,7 @@ class Composition:
         self.contact = self._make("contact")
         self.closing, self.tether = self._make("closing"), self._make("tether")
         self.pulls = _make_pulls(self.closing, self.tether)
-        self.pace = self._make("substeps")
+        self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
 
     def _term(self, group: str) -> Term:

@@ -29,6 +29,8 @@ LINES = (
             "net.damping_ratio": "damping_ratio",
         },
         modulus="net.youngs_modulus",
+        breaks_at="break.strength",
+        broken=("break.count", "break.time"),
         area=thread_area,
     ),
     Line(

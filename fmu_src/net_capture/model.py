@@ -51,6 +51,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
 
     net, folding, gravity, scheme = parts.net, parts.folding, parts.gravity, parts.scheme
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
+    has_break, breaking = parts.breaking is not None, parts.breaking
     shot, measures = make_shot(parts), quality.make_quality(parts)
     choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
     judge = outcome.make_judge(parts, measures)
@@ -271,6 +272,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             p.cord_loss = 0.0
         if has_tether:
             tether.start(p)
+        if has_break:
+            breaking.start(p)
         measures.start_mouth(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power

@@ -102,6 +102,7 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
     has_before = before >= 0
     watches = has_before and "contact" in composition.terms
     is_double = composition.terms["precision"] == "double"
+    tears = has_before and composition.breaking is not None
 
     @kernel
     def note_peak(p, tensions, first, above):
@@ -148,7 +149,8 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
         The rate of stretch is that of the predicted velocities, which belong to the same instant as the positions.
         Where the tension is held at zero the dashpot takes what the shortening thread gives up. A thread that was slack
         a substep ago gives its nodes a kick that no prediction knows of: there the rate is the mean of those before and
-        after it. Of a strip along a row, whose lanes are a chain, a node gets the forces of both its threads at once.
+        after it. A thread that breaks pulls for half a substep. Of a strip along a row, whose lanes are a chain, a node
+        gets the forces of both its threads at once.
 
         Checked  tests/net_capture/test_threads.py, tests/net_capture/test_energy_book.py
         """
@@ -208,6 +210,18 @@ def make_pull(composition: Any, place: int, rate: int, before: int) -> Any:
             if above != np.uint64(0):
                 note_peak(p, tension, first + np.int64(j), above)
                 peak = splat(p.thread_tension_peak)
+            if tears:
+                torn = bits(tension > splat(p.break_strength)) & here
+                if torn != np.uint64(0):
+                    p.torn_lanes |= np.int64(torn << j)
+                    stretch = where(flags_of(torn), rest * s / g, zero)
+                    released = half * stiffness * stretch * stretch
+                    for i in range(width):
+                        p.break_energy += lane(released, np.int64(i))
+                    # half of the kick leads to this instant, and it goes no further
+                    share = where(flags_of(torn), half, one)
+                    pulling = pulling * share
+                    elastic = elastic * share
             if watches and bits(tension > splat(p.contact_force)) != np.uint64(0):
                 for i in range(width):
                     p.contact_force = max(p.contact_force, 2.0 * lane(tension, np.int64(i)))
@@ -267,6 +281,7 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
     lane = lanes.lane
     pull = make_pull(composition, X, rate, before)
     own, follows = memory.own, composition.pace is not None
+    can_tear = composition.breaking is not None
     note = composition.pace.note if follows else None
 
     @kernel
@@ -294,6 +309,9 @@ def make_threads(composition: Any, rate: int, before: int) -> Threads:
         y = b + place * slots
         limit = splat(squared)
         found = np.uint64(0)
+        if can_tear:
+            if lanes == 0:
+                return found
         for j in range(0, np.int64(highest(np.uint64(lanes))) + 1, width):
             dx = load(reals, y + j) - load(reals, x + j)
             dy = load(reals, y + slots + j) - load(reals, x + slots + j)

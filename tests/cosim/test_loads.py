@@ -76,6 +76,8 @@ def test_without_a_strength_none_is_guessed(make_scene: MakeScene) -> None:
     nothing = rows(tow(make_scene, [0.0, 1000.0, 1.0], None, {}))
     assert str(nothing["line.stress"].value).startswith("section not known")
     assert "line.strain" not in nothing
+    thick = rows(tow(make_scene, [0.0, 1000.0, 1.0], KEVLAR, {}))
+    assert thick["line.margin_of_safety"].value == "section not known: name a diameter in [removal.tether]"
     slack = rows(tow(make_scene, [0.0, 0.0, 0.0]))
     assert slack["line.margin_of_safety"].value == "it bore nothing"
 

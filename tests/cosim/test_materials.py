@@ -108,6 +108,16 @@ def test_threads_and_cord() -> None:
     assert told.parameters["closing.axial_stiffness"] == 903.0
 
 
+def test_threads_that_may_break() -> None:
+    """By hand: 0.33 kg over 1200 m and 1440 kg/m3 are 0.190972 mm2, of 2920 MPa 557.64 N."""
+    net = '[capture.net]\nshape = "square"\nside = "24 m"\nmesh = "1 m"\nmass = "0.33 kg"\nmaterial = "Kevlar 29"\n'
+    main = main_of(NET + net + "[capture.break]\n")
+    assert main.parameters["break.strength"] == pytest.approx(557.64, rel=1e-5)
+    assert main_of(NET + net + '[capture.break]\nstrength = "40 N"\n').parameters["break.strength"] == 40.0
+    said = mistakes(NET + net + '[capture.break]\n[capture.solver]\nscheme = "rk4"\n')
+    assert 'capture.solver.scheme = "rk4": keeps all threads whole; [capture.break] needs "leapfrog"' in said
+
+
 def test_a_reel_without_an_elastic_line_has_one_all_the_same() -> None:
     text = TOW.replace('"locked"', '"linear"') + '[removal.tether]\nmaterial = "PBO"\ndiameter = "0.5 mm"\n'
     line = main_of(text).lines["tether"]
@@ -188,6 +198,13 @@ def test_our_scenes_name_what_their_lines_are_of(name: str) -> None:
         wanted = {"tether"} if phase.name == "removal" else {"net"}
         wanted |= {"closing"} if "closing" in phase.main.terms else set()
         assert {table for table, line in phase.main.lines.items() if line.strength} == wanted
+
+
+def test_a_material_that_is_set_tells_what_does_not_follow() -> None:
+    """Whoever sets one for a run may believe that its stiffness follows; a scene as it is needs no such word."""
+    (told,) = load("table2-deorbit", ["removal.tether.material=Technora"]).notes
+    assert told == "removal.tether.youngs_modulus is as the scene says; Technora, yarn, has 7.355e+10, SI"
+    assert load("table2-deorbit").notes == ()
 
 
 def test_a_new_scene_keeps_materials() -> None:

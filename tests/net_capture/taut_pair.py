@@ -29,9 +29,9 @@ def matrix_of(ratio):
     return np.array([[0.0, 1.0], [-PER_MASS * STIFFNESS, -PER_MASS * dashpot(ratio)]])
 
 
-def pair(scheme, stretch, rate, changes):
+def pair(scheme, stretch, rate, changes, terms=FREE):
     """That net: stretch [m] of the thread and its rate [m/s] at the start; all other knots rest half way."""
-    net = Instance(MODEL, FREE | {"solver": scheme}, PAIR | changes).initialise()
+    net = Instance(MODEL, terms | {"solver": scheme}, PAIR | changes).initialise()
     memory, slots = planes(net), nodes(net)
     for first in (X, U, P):
         memory[first : first + 3, slots] = 0.0

@@ -91,7 +91,9 @@ def make(composition: Any) -> Scheme:
         (contact.begin_step, contact.touch_row, contact.clear_steps, contact.hurries) if has_contact else [None] * 4
     )
     pull_nodes, pull_nodes_shown, book = pulls.pull, pulls.pull_shown, pulls.book
-    follows = composition.pace is not None
+    follows, breaking = composition.pace is not None, composition.breaking
+    can_tear = breaking is not None
+    tear = breaking.tear if can_tear else None
     note = composition.pace.note if follows else None
 
     @kernel
@@ -161,7 +163,14 @@ def make(composition: Any) -> Scheme:
             poke(words, z + QUIET, 0)
             mark(p, words, in_a, a, taut)
             mark(p, words, in_b, b, taut)
-            return pull(p, reals, p.node_slots, numbers, q, a, b, peek(table, s + FIRST), taut, earlier)
+            power = pull(p, reals, p.node_slots, numbers, q, a, b, peek(table, s + FIRST), taut, earlier)
+            if can_tear:
+                tear(p, table, strip)
+            return power
+        if can_tear:
+            if peek(table, s + LANES) == 0:
+                poke(words, z + WAKE, p.grid + LONGEST_SLEEP)
+                return splat(0.0)
         quiet = peek(words, z + QUIET) + 1
         poke(words, z + QUIET, quiet)
         if quiet > QUIET_LOOKS:
