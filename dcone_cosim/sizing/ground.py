@@ -24,7 +24,7 @@ from orbital.plain import mean_motion
 
 PHASE = "removal"
 LINE = ("tether.diameter", "tether.youngs_modulus", "tether.rest_length", "tether.damping_ratio")
-BREAK = "break.strength"
+BREAK, SEPARATION, LENGTH = "break.strength", "start.separation", "tether.rest_length"
 Values = Mapping[str, float]
 
 
@@ -103,6 +103,16 @@ class Ground:
             phase = replace(phase, duration=min(duration, phase.duration))
         return replace(self.scene, phases=(phase,))
 
+    def fitted(self, values: Values) -> dict[str, float]:
+        """Values with the start no farther from taut than the scene's own is, if that is what they change: a line that
+        begins stretched is no start."""
+        if self.handed_over or SEPARATION not in self.values:
+            return dict(values)
+        both = {**self.values, **values}
+        beyond = max(0.0, self.values[SEPARATION] - self.values[LENGTH])
+        most = both[LENGTH] + beyond
+        return {**values, SEPARATION: most} if both[SEPARATION] > most else dict(values)
+
     def case(self, values: Values | None = None, history: bool = False) -> Load:
         """The case of the tow with these values in the place of its own."""
         return self.case_of(self.scene_with(values or {}), history)
@@ -124,6 +134,12 @@ class Ground:
 
     def one(self, values: Values | None = None, history: bool = False, what: str = "the scene as it is") -> Found:
         return next(self.run([self.case(values, history)], what))
+
+
+def why(row: Row) -> str:
+    """What a row says of its failure: the last line that is about it, not where it came from."""
+    lines = [line.strip() for line in row.message.splitlines() if line.strip()]
+    return next((line for line in reversed(lines) if not line.startswith("(")), row.status)
 
 
 def found(row: Row) -> Found:

@@ -19,7 +19,7 @@ from typing import Any
 from dcone_cosim.errors import InputError
 from dcone_cosim.level import GROUP, with_term
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.sizing.ground import PHASE, Ground
+from dcone_cosim.sizing.ground import LENGTH, PHASE, SEPARATION, Ground, why
 
 BOX = "box"
 SURFACES = ("box", "cylinder", "hull")
@@ -32,6 +32,8 @@ OFFSETS = (0.0, 0.25, 0.5, 1.0)
 THRUSTS = (1.0, 10.0)
 """Over the scene's thrust [1]."""
 QUICK_GRID = ((0.0, 1.0, 5.0), (0.0, 0.5), (1.0,))
+TOUCH = 1e-3
+"""Slack that a start whose line reaches aside has beside the scene's own [m]."""
 LASTS = 3600.0
 """How long each tow lasts [s]."""
 
@@ -83,6 +85,9 @@ def region(ground: Ground, breaking: float, safety: float, quick: bool) -> Regio
             "target.attachment[1]": far[0] + offset,
             "thrust.level": thrust,
         }
+        if SEPARATION in values and not ground.handed_over:  # the line reaches aside: no start is stretched for that
+            aside = math.hypot(values[LENGTH], offset) - values[LENGTH]
+            changed[SEPARATION] = values[SEPARATION] - aside - TOUCH * bool(offset)
         own = replace(main, parameters={**main.parameters, **changed})
         phase = base.phases[0]
         phase = replace(phase, main=own, duration=min(phase.duration, LASTS), macro_step=min(phase.macro_step, 60.0))
@@ -92,15 +97,11 @@ def region(ground: Ground, breaking: float, safety: float, quick: bool) -> Regio
     points = []
     for (rate, offset, thrust), run in zip(plan, runs, strict=True):
         if math.isnan(run.peak):
-            points.append(Point(rate, offset, thrust, math.nan, math.nan, _last(run.row.message)))
+            points.append(Point(rate, offset, thrust, math.nan, math.nan, why(run.row)))
             continue
         most = run.loads["extremes"].get("tether.wrapped", [0.0, 0.0, 0.0])[2]
         points.append(Point(rate, offset, thrust, run.peak, most, _verdict(run.peak, allowed, most, half_round)))
     return Region(points, body, half_round)
-
-
-def _last(message: str) -> str:
-    return message.splitlines()[-1].strip() if message else "no result"
 
 
 def _verdict(peak: float, allowed: float, wrapped: float, half_round: float) -> str:

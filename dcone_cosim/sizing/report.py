@@ -259,7 +259,8 @@ def _slopes(study: Study) -> Section:
         f"within {100 * REACH:g} % of it, and the standard error of that slope. A pure snap has 1 for the diameter, "
         f"0.5 for E, "
         "-0.5 for the length at the same speed; what makes the pair part faster counts beside. Where the error is "
-        "as large as the slope the bounces are near chaos: only the error is known."
+        "as large as the slope the bounces are near chaos: only the error is known. None is told where a run so near "
+        "could not begin."
     )
     return Section("sensitivities", "Sensitivities", purpose, heads, rows, PICTURES["sensitivities"])
 

@@ -15,7 +15,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from dcone_cosim.sizing.ground import Ground, Values
+from dcone_cosim.sizing.ground import Ground, Values, why
 from orbital import tethers
 from orbital.materials import Material, section
 
@@ -168,7 +168,7 @@ def search(
             of = runs[i * len(samples) : (i + 1) * len(samples)]
             bad = next((run for run in of if math.isnan(run.peak)), None)
             if bad is not None:
-                one.failed = bad.row.message.splitlines()[-1].strip() or bad.row.status
+                one.failed = why(bad.row)
                 continue
             one.take(diameter, max(run.peak for run in of), safety)
     return searches

@@ -8,13 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from dcone_cosim.cases.alone import Alone
-from dcone_cosim.cases.rows import Row
 from dcone_cosim.cases.runner import Runner
 from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.sizing import chaser, closed_net, governs, region, required, sensitivity
 from dcone_cosim.sizing.flux import YEAR
-from dcone_cosim.sizing.ground import BREAK, Found, Ground, preload, reduced, steady, stiffness
+from dcone_cosim.sizing.ground import BREAK, Found, Ground, preload, reduced, steady, stiffness, why
 from dcone_cosim.sizing.options import Options, of_name
 from dcone_cosim.sizing.uncertain import Sample, Uncertain, at_random, ends, uncertain
 from orbital import tethers
@@ -110,19 +109,20 @@ def study(
             one.pin({BREAK: UNBREAKABLE})
     nominal = ground.one(history=True)
     if math.isnan(nominal.peak):
-        raise InputError(f"{ground.scene.source}: the tow does not come to its end: {_last(nominal.row)}")
+        raise InputError(f"{ground.scene.source}: the tow does not come to its end: {why(nominal.row)}")
     if not nominal.peak > 0.0:
         raise InputError(f"{ground.scene.source}: the line is never taut: there is no load to size it for")
     bound = ground.one({"tether.damping_ratio": 0.0}, what="without damping")
     ranges = uncertain(ground, options.ranges)
-    each = ends(ranges)
+    each = [(one, replace(sample, values=ground.fitted(sample.values))) for one, sample in ends(ranges)]
     found_each = list(ground.run([ground.case(sample.values) for _, sample in each], "uncertain values"))
     able = [one for one in ranges if not any(o is one and _lost(r) for (o, _), r in zip(each, found_each, strict=True))]
-    wanted = [_corner(each, found_each, nominal), *at_random(able, options.samples)]
+    drawn = [_corner(each, found_each, nominal), *at_random(able, options.samples)]
+    wanted = [replace(one, values=ground.fitted(one.values)) for one in drawn]
     together = ground.run([ground.case(sample.values) for sample in wanted], "uncertain values together")
     made = [*zip((sample for _, sample in each), found_each, strict=True), *zip(wanted, together, strict=True)]
     captures = [(Sample(label, {}), other.one(what=label)) for label, other in others]
-    notes = [f"{one.label}: left out: {_last(run.row)}" for one, run in (*made, *captures) if math.isnan(run.peak)]
+    notes = [f"{one.label}: left out: {why(run.row)}" for one, run in (*made, *captures) if math.isnan(run.peak)]
     chief, breaking = chief_material(ground)
     still = _still(ground, nominal)
     needed = _needed(ground, nominal, made, options, still)
@@ -172,12 +172,6 @@ def _corner(each: Sequence[tuple[Uncertain, Sample]], runs: Sequence[Found], nom
 
 def _lost(run: Found) -> bool:
     return math.isnan(run.peak)
-
-
-def _last(row: Row) -> str:
-    """What a row says of its failure: the last line that is about it, not where it came from."""
-    lines = [line.strip() for line in row.message.splitlines() if line.strip()]
-    return next((line for line in reversed(lines) if not line.startswith("(")), row.status)
 
 
 def chief_material(ground: Ground) -> tuple[Material, float]:

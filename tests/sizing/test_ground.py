@@ -35,6 +35,15 @@ def test_preload(ground: Ground) -> None:
     assert preload(ground.values, 0.0, -2.0 * N) == pytest.approx(3.0 * weight, rel=1e-6)
 
 
+def test_no_start_is_stretched(ground: Ground) -> None:
+    """Table 2's starts two metres from taut; a shorter line or a farther start goes as far as the line reaches."""
+    assert ground.fitted({"start.separation": 13.0})["start.separation"] == 12.0
+    assert ground.fitted({"tether.rest_length": 9.0}) == {"tether.rest_length": 9.0, "start.separation": 9.0}
+    assert ground.fitted({"tether.rest_length": 11.0}) == {"tether.rest_length": 11.0}
+    heavy = Ground(Alone("tumbling-target", (), None), Progress())
+    assert heavy.fitted({"start.separation": 15.0})["start.separation"] == 14.0, "its line ends 4 m before the centre"
+
+
 def test_what_is_pinned_stays_in_every_run(ground: Ground) -> None:
     before = ground.case({}).key
     values = dict(ground.scene_with({"tether.diameter": 2e-3}).phases[0].main.parameters)
