@@ -143,7 +143,7 @@ def _turning(ground: Ground) -> tuple[Scene, str]:
     kept = {name: value for name, value in main.parameters.items() if name in own.defaults}
     changed: dict[str, Any] = {f"target.size[{i + 1}]": size[i] for i in range(3)}
     changed |= {f"target.inertia[{i + 1}]": moments[i] if i < 3 else 0.0 for i in range(6)}
-    changed |= {f"target.attachment[{i + 1}]": (0.0, -0.5 * b, 0.0)[i] for i in range(3)}
+    changed |= {f"target.attachment[{i + 1}]": (0.0, 0.5 * b * _towards_chaser(ground), 0.0)[i] for i in range(3)}
     changed |= {"target.rate_frame": float(own.choices["target.rate_frame"].index("inertial"))}
     if "start.separation" in own.defaults and not ground.handed_over:
         slack = ground.values["tether.rest_length"] - ground.values["start.separation"]
@@ -152,6 +152,15 @@ def _turning(ground: Ground) -> tuple[Scene, str]:
     phase = replace(ground.phase, main=own)
     text = f"a full box of {a:g} x {b:g} x {c:g} m ({whose}) in place of the point, {mass:.6g} kg"
     return replace(ground.scene, phases=(phase,)), text
+
+
+def _towards_chaser(ground: Ground) -> float:
+    """On which side of the debris the chaser is at the start: -1 behind it, along the track, 1 ahead."""
+    values = ground.values
+    if ground.handed_over:
+        return -math.copysign(1.0, values["start.relative_position[2]"])
+    leading = ground.phase.main.choices.get("start.leading", ())
+    return 1.0 if leading and leading[int(values["start.leading"])] == "chaser" else -1.0
 
 
 def _size(ground: Ground) -> tuple[tuple[float, float, float], str]:

@@ -11,7 +11,7 @@ from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.progress import Progress
 from dcone_cosim.sizing.ground import Found, Ground
-from dcone_cosim.sizing.region import _verdict, region
+from dcone_cosim.sizing.region import _turning, _verdict, region
 from dcone_cosim.sizing.result import Sizing
 from dcone_cosim.sizing.work import Load
 
@@ -37,6 +37,16 @@ def test_the_strength_counts_over_the_factor_of_safety(monkeypatch: pytest.Monke
     assert {point.verdict for point in found.points} == {"admissible"}
     assert len(found.points) == 40
     assert found.body == "the scene's box"
+
+
+@pytest.mark.parametrize(("leading", "side"), [("target", -4.0), ("chaser", 4.0)])
+def test_the_line_is_made_fast_towards_the_chaser(leading: str, side: float) -> None:
+    ground = Ground(Alone("table2-deorbit", (f"removal.start.leading='{leading}'",), None), Progress())
+    scene, _ = _turning(ground)
+    values = scene.phases[0].main.parameters
+    assert [values[f"target.attachment[{i}]"] for i in (1, 2, 3)] == [0.0, side, 0.0]
+    assert values["start.separation"] == pytest.approx(10.0 + 4.0), "as much slack as the point has"
+    assert values["target.inertia[1]"] == pytest.approx(1000.0 * (8.0**2 + 4.0**2) / 12.0)
 
 
 def test_a_debris_that_turns_pulls_harder(done: Sizing) -> None:
