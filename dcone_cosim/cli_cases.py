@@ -165,6 +165,91 @@ def stability(
     raise typer.Exit(done.exit_code)
 
 
+@cases_app.command()
+def size(
+    scene: Annotated[
+        str | None,
+        typer.Argument(metavar="[SCENE]", help="A scene with a tow, as for dcone run.", autocompletion=scenes_like),
+    ] = None,
+    debris: Annotated[
+        str | None,
+        typer.Option(
+            "--debris",
+            metavar="TEXT",
+            help='Instead of a scene: a debris, such as "1000 kg, 3.9 m" or "8000 kg, 25 x 10 x 5 m". Proposes net, '
+            "bullets, tether and shot; -o FILE.toml writes the scene that tests them.",
+        ),
+    ] = None,
+    paper: Annotated[
+        bool, typer.Option("--paper", help="Instead of a scene: Tables 3 and 4 and Fig. 9 of the paper, rebuilt.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--out", help="Folder for the report, in which the same command goes on; of --debris the scene."
+        ),
+    ] = None,
+    settings: Settings = None,
+    fos: Annotated[
+        float | None, typer.Option("--fos", help="Factor of safety on the highest tension; 2 if not given.")
+    ] = None,
+    ranges: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--range",
+            metavar="KEY=LEAST..LARGEST",
+            help='How far a value may be off, such as "removal.thrust.level=-0.02 N..-0.005 N"; several times.',
+        ),
+    ] = None,
+    material: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--material",
+            metavar="NAME",
+            help='What the line is sized of beside the scene\'s own, such as "Kevlar 29 braid"; several times. All '
+            "there are if not given.",
+        ),
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option("--samples", help="Runs with all uncertain values at random: 64; with --quick 12.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer runs and materials, for a first look.")] = False,
+    jobs: Jobs = None,
+    json: Json = False,
+    isolate: Annotated[
+        bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
+    ] = None,
+    offline: Offline = False,
+) -> None:
+    """Size the hardware: how thick the line must be and what governs that, of a scene with a tow.
+
+    Peak and sustained tension over all that is uncertain, the load spectrum, the required line of every material as the
+    fixed point that it is, sensitivities, where the tow may be flown, threads, reel, attitude control, propellant. The
+    net
+    is shot once for all tows. The folder has report.html, pictures, and a table for each part.
+
+    Exit code: 0 done, 2 bad input, 6 interrupted, and what is done is kept.
+    """
+    promise(offline)
+    from dcone_cosim.errors import InputError
+    from dcone_cosim.sizing import commands, show
+
+    if [scene is not None, debris is not None, paper].count(True) != 1:
+        raise InputError("dcone size: expected one of a SCENE, --debris or --paper")
+    with at_work() as progress:
+        if debris is not None:
+            done = commands.of_debris(debris, out)
+        elif paper:
+            done = commands.of_paper(out, progress, quick, jobs, isolate)
+        else:
+            assert scene is not None
+            done = commands.size(
+                scene, out, progress, settings or [], quick, fos, samples, ranges or [], material or [], jobs, isolate
+            )  # fmt: skip
+    answer(json, done.told(), lambda console: show.show(done, console), done.notes, done.folder)
+    raise typer.Exit(done.exit_code)
+
+
 def ensemble(
     scene: str,
     count: int,

@@ -182,14 +182,14 @@ def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
     schema = f"./{SCHEMA}" if (path.parent / SCHEMA).is_file() else ""
     text = new_scene(read_text(source), origin, str(path), schema)
     parse(text, path.stem, str(path))
-    _write_new(path, text)
+    write_new(path, text)
     steps = [f"next: edit {path}, then `dcone validate {path}` and `dcone run {path}`"]
     if not schema:
         steps.append(f"for an editor that completes and checks it: `dcone schema -o {path.parent / SCHEMA}`")
     return path, steps
 
 
-def _write_new(path: Path, text: str) -> None:
+def write_new(path: Path, text: str) -> None:
     """Write a file that must not be there yet."""
     try:
         with Scratch(path.absolute().parent) as folder:

@@ -16,6 +16,7 @@ import tomlkit
 from dcone_cosim import build
 from dcone_cosim.cases.case import identities
 from dcone_cosim.errors import InputError
+from dcone_cosim.level import GROUP, with_term
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.phases import kind_of
@@ -38,7 +39,7 @@ class Alone:
         phases = load(name, settings).phases if choose else ()
         self._settings = (*settings, *(c for p in phases if p.chosen is not None for c in p.chosen.changes))
         self.scene = load(name, self._settings, choose=False).isolating(isolate)
-        self._taken: dict[str, tuple[Mapping[str, float], float]] = {}
+        self._taken: dict[str, tuple[Mapping[str, float], float, str | None]] = {}
 
     @property
     def phases(self) -> list[str]:
@@ -59,7 +60,8 @@ class Alone:
     def _keep(self, result: RunResult, phase: str) -> None:
         own = next(p.main.parameters for p in self.scene.phases if p.name == phase)
         given = {name: value for name, value in result.given[phase].items() if own.get(name) != value}
-        self._taken[phase] = (given, result.handovers[phase].start)
+        begun = next(p.main.terms.get(GROUP) for p in result.scene.phases if p.name == phase)
+        self._taken[phase] = (given, result.handovers[phase].start, begun)
 
     def scene_of(
         self, phase: str, changes: Sequence[str] = (), without: Collection[str] = (), to_its_end: bool = False
@@ -79,8 +81,11 @@ class Alone:
         if phase != self.phases[-1]:
             own = kind_of(phase).by_itself(own)
         if phase in self._taken:
-            given, start = self._taken[phase]
-            own = replace(own, main=replace(own.main, parameters={**own.main.parameters, **given}), start=start)
+            given, start, body = self._taken[phase]
+            main = own.main
+            if body is not None and GROUP in main.unnamed and main.terms.get(GROUP) != body:
+                main = with_term(main, GROUP, body)  # the level that carries what was handed over
+            own = replace(own, main=replace(main, parameters={**main.parameters, **given}), start=start)
         return replace(scene, phases=(own,))
 
     def _without(self, phase: str, changes: Sequence[str], tables: Collection[str]) -> Scene:

@@ -19,7 +19,7 @@ from typing import Any
 
 from dcone_cosim.scene.data import ComponentScene, Scene
 
-WORDS = frozenset({"name", "title", "text", "source", "places", "notes", "cautions"})
+WORDS = frozenset({"name", "title", "text", "source", "places", "notes", "cautions", "sizing"})
 """Fields of a scene that change no number."""
 PLACES = frozenset({"isolate", "choices", "defaults", "asked", "designed"})
 """The same of a component; its defaults, and what is designed, are told with its parameters."""

@@ -180,6 +180,7 @@ class Scene:
     places     where each key was written
     notes      what is no mistake, and may be one all the same
     cautions   what it means that its user may not expect, as far as its values tell it
+    sizing     what its hardware is sized for, as far as it says
     """
 
     name: str
@@ -192,6 +193,7 @@ class Scene:
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
     accuracy: Accuracy | None = None
+    sizing: Mapping[str, Any] = field(default_factory=dict)
 
     def with_phase(self, phase: PhaseScene) -> Scene:
         """The same with a phase in the place of the one of its name."""

@@ -7,6 +7,7 @@ Nothing is built for it: what a model of ours takes is known from its rows, what
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path as File
@@ -36,7 +37,10 @@ from dcone_cosim.scenes.coupling import about_components, about_one_length, read
 from dcone_cosim.scenes.fmus import file_of, offer, opened
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
+    RANGES,
     REQUIRED,
+    SIZING,
+    SIZING_KEYS,
     SOLVER,
     SOLVER_KEYS,
     TOP,
@@ -122,6 +126,7 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
     handoff = read_table(table_in(document, ("handoff",), mistakes), handoff_keys(), ("handoff",), mistakes)
     orbit = _orbit(document, mistakes)
     accuracy, materials = _accuracy(document, mistakes), read_own(document, mistakes)
+    sizing = _sizing(document, mistakes)
     present = [phase for phase in kinds() if isinstance(document.get(phase), dict)]
     phases = {phase: _read_phase(phase, document[phase], orbit, folder, materials, mistakes) for phase in present}
     chosen = phases_to_run(document, present, mistakes)
@@ -141,7 +146,7 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
         apart = (note for one in parts for note in set_apart(one.part.path, one.lines, places))
         notes = (*_close_calls(whole, phases), *apart)
         scene = Scene(
-            name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes, (), accuracy
+            name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes, (), accuracy, sizing
         )
         mistakes = [*about_steps(scene, document), *about_values(scene, document)]
         if not mistakes:
@@ -162,6 +167,23 @@ def _accuracy(document: dict[str, Any], mistakes: list[Mistake]) -> Accuracy | N
     if "accuracy" not in found:
         return None
     return Accuracy(found["accuracy"], tuple(found.get("quantities", ())), int(found.get("runs", 1)))
+
+
+def _sizing(document: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
+    """What the hardware is sized for, as far as the scene says."""
+    table = table_in(document, (SIZING,), mistakes)
+    found: dict[str, Any] = read_table(table, SIZING_KEYS, (SIZING,), mistakes, (RANGES,))
+    sizes, values = (found.get(key, []) for key in ("flux_sizes", "flux_values"))
+    if len(sizes) != len(values) or len(sizes) == 1 or sorted(set(sizes)) != sizes:
+        text = "expected two or more sizes, the least first, and as many flux_values"
+        mistakes.append(Mistake((SIZING, "flux_sizes"), table.get("flux_sizes"), text))
+    for key, ends in table_in(table, (SIZING, RANGES), mistakes).items():
+        if not isinstance(ends, list) or len(ends) != 2:
+            text = 'expected the least and the largest value, such as ["-0.02 N", "-0.005 N"]'
+            mistakes.append(Mistake((SIZING, RANGES, key), ends, text))
+        else:
+            found.setdefault(RANGES, {})[key] = [json.dumps(end) if not isinstance(end, str) else end for end in ends]
+    return found
 
 
 def _orbit(document: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:

@@ -22,7 +22,9 @@ SOLVER = "solver"
 """Table at the top that says how exact the run is to be."""
 OWN_MATERIALS = "materials"
 """Table at the top with a scene's own materials, a table each."""
-TOP = ("title", "phases", SHARED, SOLVER, OWN_MATERIALS, "handoff")
+SIZING, RANGES = "sizing", "ranges"
+"""Table at the top that says what the hardware is sized for, and the one in it with what is uncertain."""
+TOP = ("title", "phases", SHARED, SOLVER, OWN_MATERIALS, SIZING, "handoff")
 """Keys at the top of a scene, beside the phases."""
 MOST_STEPS = 5_000_000
 """Macro steps of a phase: each leaves a row, and a run keeps all rows in memory."""
@@ -68,6 +70,19 @@ SOLVER_KEYS: Mapping[str, Expected] = {
     "quantities": Expected("1", TEXT, size=ANY),
     "runs": Expected("1", "Integer", example="16", minimum=1.0, maximum=10000.0),
 }
+SIZING_KEYS: Mapping[str, Expected] = {
+    "factor_of_safety": Expected("1", example="2.0", minimum=1.0),
+    "least_breaking_load": _not_negative("N", "200 N"),
+    "mission_time": _positive("s", "3 yr"),
+    "cut_probability": Expected("1", example="1 %", minimum=0.0, maximum=0.99, open_minimum=True, share=True),
+    "flux": _positive("1/m2.s", "0.003 /(m2 yr)"),
+    "flux_size": _positive("m", "1 mm"),
+    "flux_exponent": Expected("1", example="2.5", minimum=1.0, open_minimum=True),
+    "flux_sizes": Expected("m", size=ANY, example="0.1 mm", minimum=0.0, open_minimum=True),
+    "flux_values": Expected("1/m2.s", size=ANY, example="0.003 /(m2 yr)", minimum=0.0, open_minimum=True),
+    "offset": _not_negative("m", "0.1 m"),
+    "torque": _positive("N.m", "0.2 N m"),
+}
 COUPLING_KEYS: Mapping[str, Expected] = {
     "method": _one_of("gauss_seidel", "jacobi"),
     "step": _positive("s", "1 s"),
@@ -83,6 +98,19 @@ MEANING: Mapping[str, str] = {
     "accuracy": "how exact the run is to be: scheme, step and tolerances are chosen for it, and its error is estimated",
     "quantities": "what it is the accuracy of; those that each phase means by it if not given",
     "runs": "how many runs may be made where a single one scatters more than that; one if not given",
+    SIZING: "what the hardware is sized for, see `dcone size`",
+    RANGES: "what is uncertain of the tow: a key of the scene, its least and its largest value",
+    "factor_of_safety": "of the line, on its highest tension; 2 if not given",
+    "least_breaking_load": "that handling asks of the line, whatever it bears in space; 0 N if not given",
+    "mission_time": "for which the line is out; until the thrust has brought the pair down to 200 km if not given",
+    "cut_probability": "that debris cuts the line in that time, at most; 1 % if not given",
+    "flux": "of particles larger than flux_size, through a surface that turns at random, per its area and time",
+    "flux_size": "of the particles that flux counts; 1 mm if not given",
+    "flux_exponent": "with which the flux falls with their size; 2.5 if not given",
+    "flux_sizes": "sizes of a table of fluxes, the least first, in the place of a power law",
+    "flux_values": "fluxes of larger particles than each of flux_sizes",
+    "offset": "of the pull from the chaser's centre of mass, where the chaser is a point; 0.1 m if not given",
+    "torque": "that the chaser's attitude control has, where the scene has none; 0.2 N m if not given",
     OWN_MATERIALS: "materials of your own by name, a table each: [materials.mine]",
     "macro_step": "the grid of the results: every output is recorded this often",
     "duration": "the phase ends after this at the latest",

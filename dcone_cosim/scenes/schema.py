@@ -21,7 +21,10 @@ from dcone_cosim.scenes.keys import (
     COUPLING_KEYS,
     MEANING,
     OWN_MATERIALS,
+    RANGES,
     REQUIRED,
+    SIZING,
+    SIZING_KEYS,
     SOLVER,
     SOLVER_KEYS,
     handoff_keys,
@@ -55,6 +58,7 @@ def schema() -> Schema:
         **{phase: _phase(phase) for phase in kinds()},
         OWN_MATERIALS: _materials(),
         SOLVER: _table(_options(SOLVER_KEYS), "how exact the run is to be"),
+        SIZING: _table({**_options(SIZING_KEYS), RANGES: _ranges()}, MEANING[SIZING]),
         "handoff": _table(_options(handoff_keys()), "how a capture hands over to a removal"),
     }
     return {
@@ -84,6 +88,12 @@ def _materials() -> Schema:
         "description": MEANING[OWN_MATERIALS],
         "additionalProperties": own | {"required": list(NEEDED)},
     }
+
+
+def _ranges() -> Schema:
+    """Ranges of what is uncertain, by key of the scene."""
+    ends: Schema = {"type": "array", "minItems": 2, "maxItems": 2}
+    return {"type": "object", "description": MEANING[RANGES], "additionalProperties": ends}
 
 
 def _options(keys: Mapping[str, Expected]) -> dict[str, Schema]:

@@ -6,6 +6,7 @@ Written once: the model's kernels use them, and so does whoever wants to know wh
 import math
 from collections.abc import Callable
 
+from orbital import netting
 from orbital.kernel import kernel
 from orbital.oscillators import explicit_step_limit
 
@@ -17,18 +18,7 @@ RINGS_SHARE = 0.2
 """Share of a locked cord that lies in its rings."""
 
 
-@kernel
-def grid_length(along: float, across: float, mesh: float) -> float:
-    """Length of all threads of a rectangular net of square meshes [m].
-
-        a (b/l + 1) + b (a/l + 1)
-
-    along, across a, b   sides of the flat net                   [m]
-    mesh          l      knot spacing                            [m]
-
-    Checked  tests/net_capture/test_formulas.py; 1200 m for 24 m x 24 m at 1 m
-    """
-    return along * (across / mesh + 1.0) + across * (along / mesh + 1.0)
+grid_length = kernel(netting.grid_length)
 
 
 @kernel

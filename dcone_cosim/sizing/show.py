@@ -1,0 +1,51 @@
+"""A sizing on the terminal: the answer, then a table for each part."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from dcone_cosim.sizing.section import Section
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from dcone_cosim.sizing.result import Sizing
+
+MOST_ROWS = 14
+"""Rows of a part that are shown; its file has all."""
+
+
+ASIDE, WIDE = ("how", "why", "note", "youngs_modulus", "strength"), 140
+"""Columns that a terminal with fewer letters leaves out; page and files have them."""
+
+
+def show(done: Sizing, console: Console) -> None:
+    """The answer, and all parts."""
+    from rich.text import Text
+
+    console.print(Text(done.title, style="bold"))
+    for sentence in done.said:
+        console.print(Text(f"- {sentence}"), highlight=False, soft_wrap=True)
+    console.print()
+    for section in done.sections:
+        _show(section, console)
+
+
+def _show(section: Section, console: Console) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=Text(section.title, style="table.title"), title_justify="left", box=None, pad_edge=False)
+    shown = [i for i, head in enumerate(section.heads) if console.width >= WIDE or head.key not in ASIDE]
+    for head in (section.heads[i] for i in shown):
+        side: Literal["left", "right"] = "left" if not head.unit else "right"
+        table.add_column(Text(head.title), justify=side, overflow="fold")
+    cells = section.cells()
+    for row in cells[:MOST_ROWS]:
+        table.add_row(*(Text(row[i]) for i in shown))
+    console.print(table)
+    if len(cells) > MOST_ROWS:
+        console.print(Text(f"and {len(cells) - MOST_ROWS} more rows in {section.key}.csv"), highlight=False)
+    for sentence in section.said:
+        console.print(Text(sentence), highlight=False, soft_wrap=True)
+    console.print()

@@ -1,0 +1,1 @@
+"""The sizing: what the simulation is for."""

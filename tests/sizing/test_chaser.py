@@ -1,0 +1,57 @@
+"""Reel, attitude control and disposal against sums by hand and against the scenes they are taken from."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from dcone_cosim.sizing.result import Sizing
+
+
+def test_reel(done: Sizing) -> None:
+    assert done.study is not None
+    found = done["reel"].set_index("what").value
+    every = [run for _, run in done.study.all]
+    assert found["holding force"] == max(run.peak for run in every)
+    fastest = max(abs(tug[2]) for run in every for tug in run.tugs)
+    assert found["energy of a tug"] == pytest.approx(0.5 * 2000.0 / 3.0 * fastest**2)
+    assert found["rate"] >= fastest
+    peak, speed = max(((tug[1], tug[2]) for run in every for tug in run.tugs), key=lambda one: one[0])
+    assert found["power of a brake"] == pytest.approx(peak * speed)
+
+
+def test_attitude(done: Sizing) -> None:
+    """The hardest tug's momentum is its tension over its time, and so is that beside the centre."""
+    assert done.study is not None
+    found = done["attitude"].set_index("what").value
+    tug = done.study.nominal.worst
+    assert tug is not None
+    zeta, stiffness, mass = 0.05, 60e9 * math.pi * 1e-6 / 4.0 / 12.0, 2000.0 / 3.0
+    w = math.sqrt(stiffness / mass)
+    lasts = 2.0 * math.acos(zeta) / (w * math.sqrt(1.0 - zeta**2))
+    steps = 20000
+    place, speed, given = 0.0, tug[2], 0.0
+    for _ in range(steps):  # the snap itself, step by step
+        tension = stiffness * place + 2.0 * zeta * math.sqrt(stiffness * mass) * speed
+        given += max(tension, 0.0) * lasts / steps
+        speed -= tension / mass * lasts / steps
+        place += speed * lasts / steps
+    assert found["momentum it leaves"] == pytest.approx(0.1 * given, rel=2e-3)
+    assert found["torque of the hardest tug"] == pytest.approx(0.1 * tug[1])
+    assert found["time to take that up"] == pytest.approx(found["momentum it leaves"] / 0.2)
+
+
+def test_disposal_is_that_of_the_scenes(done: Sizing) -> None:
+    """33.8 kg and 46 days by `electric-tug`, 212 kg by `chemical-tug`, whose long burn loses a seventh to gravity."""
+    found = done["disposal"].set_index("way")
+    electric = found.loc["electric, as `electric-tug`"]
+    assert electric.propellant == pytest.approx(33.8, rel=0.01)
+    assert electric.time / 86400.0 == pytest.approx(46.0, rel=0.02)
+    assert electric.power == pytest.approx(6.1e3, rel=0.02)
+    chemical = found.loc["chemical, as `chemical-tug`"]
+    assert 0.8 * 212.0 < chemical.propellant < 212.0
+    assert math.isnan(chemical.power)
+    own = found.loc["the scene's own"]
+    assert own.time / (365.25 * 86400.0) == pytest.approx(3.16, rel=0.01)
+    assert own.tension == pytest.approx(0.01 / 3.0)

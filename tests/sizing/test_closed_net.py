@@ -1,0 +1,82 @@
+"""The pull on the closed net: a pulse of the tug's height, and what is kept of what the net bears."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dcone_cosim.cases.rows import Row
+from dcone_cosim.contract import OUTCOMES
+from dcone_cosim.sizing import closed_net
+from dcone_cosim.sizing.closed_net import Pull, borne
+from tests.cosim.conftest import scene_of
+
+CAUGHT = 0.2
+
+
+class Net:
+    """A net that is caught after a while, and of which a thread bears twice what pulls at it."""
+
+    def __init__(self) -> None:
+        self.time = self.pull = self.peak = self.impulse = 0.0
+        self.pulls: list[tuple[float, float, float]] = []
+
+    def set(self, values: Mapping[str, float]) -> None:
+        self.pull = values.get(closed_net.PULL, self.pull)
+
+    def enter_initialisation(self, start: float, stop: float | None = None) -> None:
+        self.time = start
+
+    def exit_initialisation(self) -> None:
+        pass
+
+    def step(self, time: float, size: float) -> None:
+        assert time == pytest.approx(self.time)
+        self.pulls.append((time, size, self.pull))
+        self.peak, self.impulse = 2.0 * self.pull, self.impulse + 3.0 * self.pull * size
+        self.time += size
+
+    def get(self, names: Sequence[str]) -> dict[str, float]:
+        known = {
+            "captured": float(self.time > CAUGHT),
+            "outcome": float(OUTCOMES.index("captured" if self.time > CAUGHT else "flying")),
+            "thread.tension_peak": self.peak,
+            "contact.impulse": self.impulse,
+            "enclosure.share": 0.97,
+        }
+        return {name: known[name] for name in names}
+
+
+def pulled(tug: float, lasts: float = 1.3) -> tuple[dict[str, float], Net]:
+    net: Any = Net()
+    case = Pull("key", scene_of("capture"), tug=tug, light=0.8, lasts=lasts)
+    return closed_net._pulled(case, net), net
+
+
+def test_the_pulse_is_a_half_wave_of_the_tugs_height() -> None:
+    found, net = pulled(40.0)
+    assert max(pull for *_, pull in net.pulls) == pytest.approx(40.0, rel=2e-3)
+    begin = next(time for time, _, pull in net.pulls if pull > 1.0)
+    given = sum(size * pull for time, size, pull in net.pulls if begin <= time < begin + 1.3)
+    assert given == pytest.approx(40.0 * 1.3 * 2.0 / math.pi, rel=5e-3), "the impulse of half a sine"
+    assert found["thread"] == pytest.approx(80.0, rel=2e-3)
+    assert found["contact"] == pytest.approx(120.0, rel=2e-3)
+    assert found["drawn"] == pytest.approx(1.6, rel=0.06)
+    early = [pull for time, _, pull in net.pulls if time < CAUGHT]
+    assert not np.any(early), "nothing pulls while the net flies"
+
+
+def test_without_the_pulse_the_light_pull_goes_on() -> None:
+    found, _ = pulled(0.0)
+    assert found["thread"] == pytest.approx(1.6, rel=1e-6)
+
+
+def test_a_run_that_fails_is_told() -> None:
+    case = Pull("key", scene_of("capture"), tug=5.0)
+    (one,) = borne([case], {"key": Row("key", "failed", 5, "no capture\nwithin 3 s")})
+    assert math.isnan(one.thread)
+    assert one.failure == "within 3 s"
