@@ -40,6 +40,10 @@ PACKAGES = (
 )
 
 
+NODES = "nodes"
+"""Name of the table of the net's knots."""
+
+
 def default_folder(scene: str) -> Path:
     return Path("runs") / f"{scene}-{datetime.now().strftime('%Y%m%dT%H%M%S')}"
 
@@ -64,7 +68,7 @@ def fill(
             headed = table.rename_columns([csv_head(f) for f in table.schema])
             pyarrow.csv.write_csv(headed, folder / f"{name}.csv")
     for place, (name, handover) in enumerate(run.handovers.items()):
-        _write_ledger(handover, folder / (f"ledger_{name}.json" if place else "ledger.json"))
+        _write_ledger(handover, folder / ledger_file(place, name))
     _write_json(folder / "summary.json", summary)
     if draw is not None:
         draw(folder)
@@ -133,7 +137,7 @@ def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
         kind, clock = kind_of(name), kind_of(name).clock(run)
         yield name, phase_table(result, clock)
         if result.snapshots.times:
-            yield "nodes", nodes_table(result.snapshots, clock)
+            yield NODES, nodes_table(result.snapshots, clock)
         if result.tugs is not None:
             yield kind.tugs_file, tugs_table(result.tugs, clock)
         if result.passive:
@@ -197,6 +201,11 @@ def passive_table(result: PhaseResult, clock: str) -> pa.Table:
     )
 
 
+def ledger_file(place: int, phase: str) -> str:
+    """Name of the file of a hand-over: the first of a run, or a later one."""
+    return f"ledger_{phase}.json" if place else "ledger.json"
+
+
 def _write_ledger(handover: Handover, path: Path) -> None:
     """What was handed over, as JSON, and its ledger once more as CSV."""
     _write_json(path, handover.told())
@@ -239,6 +248,8 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
             "inputs": run.inputs.get(name, {}),
             "given": given,
             "handed_over": {n: value for n, value in given.items() if phase.main.parameters.get(n) != value},
+            "left": run.left.get(name, {}),
+            "came_out": _came_out(result),
         }
     return {
         "scene": run.scene.name,
@@ -257,4 +268,32 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         "processors": os.cpu_count(),
         "packages": versions,
         "phases": phases,
+        "without_recoil": {name: _compared(result) for name, result in run.comparisons.items()},
+        "attained": {name: vars(attained) for name, attained in run.attained.items()},
+        "gone_on": dict(run.gone_on),
     }
+
+
+def _came_out(result: PhaseResult) -> dict[str, Any]:
+    """How a phase came out, beside its tables."""
+    located = None if result.located is None else {"value": result.located, "unit": "s"}
+    return {
+        "outcome": result.outcome,
+        "located": located,
+        "located_by": result.located_by,
+        "ended_by": result.ended_by,
+        "ended_at": {"value": result.ended_at, "unit": "s"},
+        "tugs": None if result.tugs is None else {"count": result.tugs.count, "ring": result.tugs.ring},
+        "coupling": dict(result.coupling),
+    }
+
+
+def _compared(result: PhaseResult) -> dict[str, Any]:
+    """What is told of a phase run for comparison, beside its tugs: whether its line began taut, and its extremes."""
+    recorder = result.recorder
+    row = {}
+    if len(recorder) and "tether.taut" in recorder:
+        row["tether.taut"] = float(recorder["tether.taut"][0])
+    if len(recorder) and "tether.tension_peak" in recorder:
+        row["tether.tension_peak"] = float(np.max(recorder["tether.tension_peak"]))
+    return {"tugs": _came_out(result)["tugs"], "row": row}

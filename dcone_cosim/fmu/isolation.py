@@ -39,9 +39,9 @@ START = 120.0
 """How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
 FAREWELL = 5.0
 """How long a child may take to free its FMU [s]."""
-KEEPING = frozenset({"read", "reader", "get", "save", "release", "cpu"})
+KEEPING = frozenset({"read", "reader", "get", "save", "release", "as_kept", "cpu"})
 """Calls after which what was read before still holds."""
-ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int, "cpu": float}
+ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int, "cpu": float, "as_kept": dict}
 """What a call is answered with; all others with nothing."""
 
 
@@ -163,6 +163,16 @@ class IsolatedComponent:
     def state_size(self) -> int:
         """Bytes of a serialised state."""
         return int(self._ask("", "state_size"))
+
+    def as_kept(self) -> dict[str, Any]:
+        """The present state as bytes, for an instance of another process."""
+        found: dict[str, Any] = self._ask("", "as_kept")
+        return found
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Be in a state that `as_kept` gave; this instance must have begun."""
+        self._ask(" as it takes up a state", "take_up", dict(kept))
+        self.time = float(kept["time"])
 
     def cpu_apart(self) -> float:
         """CPU time of its process [s]; what was known last when that is gone."""

@@ -55,6 +55,7 @@ class Capture(Phase):
     }
     examples = ("0.02 s", "30 s")
     begins_at_zero = True
+    keeps_nodes = True
     chaotic = True
     judged_by = capture_quantities.NAMES
     own_clock = True

@@ -18,11 +18,12 @@ from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
 from dcone_cosim.quantities import Quantity, at
-from dcone_cosim.results import Handover, PhaseResult, RunResult
+from dcone_cosim.results import Begun, Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake
 from dcone_cosim.scene.toml_lines import Path as KeyPath
+from dcone_cosim.states import KeptState, Keeper
 
 Figure = tuple[str, Callable[[Path], object]]
 """File name, and what draws it there."""
@@ -41,6 +42,10 @@ class Loop(Protocol):
     """Steps a component through its phase."""
 
     result: PhaseResult
+    keeper: Keeper | None
+
+    def take_up(self, state: KeptState, earlier: PhaseResult, changed: Mapping[str, float]) -> None:
+        """Go on from a kept state, with other values of some variables from there on, SI."""
 
     def run(self) -> PhaseResult: ...
 
@@ -88,6 +93,8 @@ class Stage:
     """A phase on its turn.
 
     before, after   the phases that hand over to it and that it hands over to, None for none
+    keeper          of states on the way, None where none is to be kept
+    begun           what the run goes on from, where that is a state of this phase
     """
 
     run: RunResult
@@ -96,6 +103,8 @@ class Stage:
     after: PhaseScene | None
     instantiate: Instantiate
     progress: Progress
+    keeper: Keeper | None = None
+    begun: Begun | None = None
 
 
 class Phase:
@@ -116,6 +125,7 @@ class Phase:
     begins_at_zero whether its FMU has to be told to begin at 0
     own_clock      its times count from its begin, whatever time its FMU is told
     tugs_file      name of the table of its tugs
+    keeps_nodes    the positions of a net's knots are kept of it
     chaotic        its figures are samples: they part company however small a change is
     judged_by      names of its quantities; none: those of its outputs
     to_its_end     settings of its table with which it goes on to its end, whatever comes of it
@@ -136,6 +146,7 @@ class Phase:
     begins_at_zero = False
     own_clock = False
     tugs_file = "tugs"
+    keeps_nodes = False
     chaotic = False
     judged_by: Sequence[str] = ()
     to_its_end: Sequence[str] = ()
