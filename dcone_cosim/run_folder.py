@@ -62,7 +62,7 @@ def fill(
     import pyarrow.parquet
 
     keep(run.scene, folder)
-    for name, table in _tables(run):
+    for name, table in tables_of(run):
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet")
         if with_csv:
             headed = table.rename_columns([csv_head(f) for f in table.schema])
@@ -132,7 +132,8 @@ def _arrow(values: npt.NDArray[Any]) -> Any:
     return pa.Array.from_buffers(kind, len(values), [None, pa.py_buffer(contiguous)])
 
 
-def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
+def tables_of(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
+    """Every table of a run by its name."""
     for name, result in run.phases.items():
         kind, clock = kind_of(name), kind_of(name).clock(run)
         yield name, phase_table(result, clock)

@@ -1,7 +1,7 @@
 """A run read back from its folder: what was computed, as it was, to be drawn again, compared and gone on from.
 
-Columns come from the tables with every bit, values from the provenance, the scene from its text. What a phase took over is worked out
-again from what the one before it left, and its ledger is the one that was written.
+Columns come from the tables with every bit, values from the provenance, the scene from its text. What a phase took over
+is worked out again from what the one before it left, and its ledger is the one that was written.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ def read_run(folder: Path, scene: Scene | None = None) -> RunResult:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         version = told.get("packages", {}).get("dcone-cosim", "?")
         raise InputError(
-            f"{folder} cannot be read as a run: {type(error).__name__}: {error}; it was written by dcone-cosim {version}, "
-            "and `dcone run` on the folder makes the run again"
+            f"{folder} cannot be read as a run: {type(error).__name__}: {error}; it was written by dcone-cosim "
+            f"{version}, and `dcone run` on the folder makes the run again"
         ) from error
 
 

@@ -143,6 +143,11 @@ class SceneFmus:
             text = f"{self._scene.source}: {component.name} of the {phase.name} cannot begin"
             raise InputError(f"{text}\n  {where}{error.said}\n  ({error.detail})") from error
 
+    def without_states(self, phase: str) -> list[str]:
+        """Components of a phase whose FMU cannot write its state to a file."""
+        plan = self._phases[phase]
+        return [c.name for c in plan.components if not self._archive(plan, c).can_serialise]
+
     def facts(self) -> dict[str, dict[str, Any]]:
         """What identifies the FMUs of each phase and how they were coupled, for the provenance."""
         return {name: self._facts_of(phase) for name, phase in self._phases.items()}

@@ -1,7 +1,8 @@
 """The state of a phase at a communication point, kept so that the phase can go on from there in another process.
 
-It is all that the steps after it hang on: the state of each FMU, what the master holds beside it (extremes of the row, tugs, what is
-between coupled FMUs, step control), and where its loop stands. The rows up to it are those of the run's own table.
+It is all that the steps after it hang on: the state of each FMU, what the master holds beside it (extremes of the row,
+tugs, what is between coupled FMUs, step control), and where its loop stands. The rows up to it are those of the run's
+own table.
 """
 
 from __future__ import annotations

@@ -11,9 +11,9 @@ provenance.json scene.toml what made it; the scene before anything was varied
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, wait
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -22,15 +22,16 @@ from dcone_cosim import interrupts, placed
 from dcone_cosim.cases import ensemble as ensembles
 from dcone_cosim.cases import show, vary
 from dcone_cosim.cases.alone import Fmus
+from dcone_cosim.cases.beginnings import in_order, shared
 from dcone_cosim.cases.case import Case, Value, code, content, digest, identities, key_of
 from dcone_cosim.cases.pace import Pace
 from dcone_cosim.cases.plot import draw
 from dcone_cosim.cases.rows import Row, refused
-from dcone_cosim.cases.runner import Runner
+from dcone_cosim.cases.runner import LOOK, Runner
 from dcone_cosim.cases.statistics import Summary, summarise
 from dcone_cosim.cases.store import ROWS, Store
 from dcone_cosim.cases.table import Column, Entry, write
-from dcone_cosim.cases.work import run_case
+from dcone_cosim.cases.work import run_beginning, run_case
 from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.drafts import PROVENANCE, to_disk
 from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError, Interrupted
@@ -77,6 +78,7 @@ class Plan:
     entries    in the order of the table: the case, or the row of one that cannot be; its values; its seed
     facts      of the FMUs, for the provenance; `fmus` identifies those of the base
     about      what else the summary and the provenance tell
+    identified what the FMUs of a case are, by its key, of those that may have beginnings in common
     """
 
     kind: str
@@ -87,6 +89,7 @@ class Plan:
     facts: list[Mapping[str, Any]]
     fmus: Mapping[str, str]
     about: Mapping[str, Any]
+    identified: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def cases(self) -> list[Case]:
@@ -115,10 +118,24 @@ def sweep(
     isolate: bool | None = None,
 ) -> Done:
     """Run a grid of cases and write its folder. Bad input raises and leaves nothing."""
-    keys = vary.read(arguments, settings)
+    return sweep_over(name, vary.read(arguments, settings), out, progress, settings, jobs, with_figures, isolate)
+
+
+def sweep_over(
+    name: str,
+    keys: Sequence[vary.Varied],
+    out: Path | None,
+    progress: Progress,
+    settings: Sequence[str] = (),
+    jobs: int | None = None,
+    with_figures: bool = True,
+    isolate: bool | None = None,
+) -> Done:
+    """The same with the keys and their values as they are."""
     base = named(name, settings).isolating(isolate)
     fmus = Fmus(progress)
     of_base = fmus.of(base)
+    identified: dict[str, Mapping[str, str]] = {}
     entries: list[tuple[Case | Row, Mapping[str, Value], int | None]] = []
     for combination in vary.grid(name, keys, settings, progress.say):
         if combination.scene is None:
@@ -126,7 +143,9 @@ def sweep(
             entries.append((refused(key, combination.refusal), combination.values, None))
             continue
         scene = combination.scene.isolating(isolate)
-        key = key_of(scene, fmus.of(scene), None)
+        of_scene = fmus.of(scene)
+        key = key_of(scene, of_scene, None)
+        identified[key] = of_scene
         entries.append(
             (Case(key, scene, (*settings, *combination.settings), combination.values), combination.values, None)
         )
@@ -139,6 +158,7 @@ def sweep(
         list(fmus.facts.values()),
         of_base,
         {"varied": {key.key: list(key.values) for key in keys}},
+        identified,
     )
     return _carry_out(plan, out, progress, jobs, with_figures)
 
@@ -181,11 +201,30 @@ def _carry_out(plan: Plan, out: Path | None, progress: Progress, jobs: int | Non
     with interrupts.heeded(TOLD), Store(folder, plan.study()) as store:
         interrupts.arm()
         with Workers(count) as workers:
+            cases = begun_together(plan, store, workers, progress)
             rows = run_all(cases, store, workers, 2 * count, progress)
         store.gather_if_many()
         done = _result(plan, rows, folder)
         _write(plan, done, folder, started, with_figures)
     return done
+
+
+def begun_together(plan: Plan, store: Store, workers: Executor, progress: Progress) -> list[Case]:
+    """The cases, with what they have in common run once, as far as it is not there from before."""
+    known = [(case, plan.identified[case.key]) for case in plan.cases if case.key in plan.identified]
+    of = shared(known, store.folder)
+    missing = [case for case in plan.cases if (row := store.get(case.key)) is None or not row.lasting]
+    for turn in in_order([of[case.key] for case in missing if case.key in of]):
+        progress.say(f"running {len(turn)} of what several cases begin with: {', '.join(turn[0].over)}")
+        going = [workers.submit(run_beginning, beginning) for beginning in turn]
+        while going:
+            if interrupts.noted():
+                raise Interrupted(
+                    f"interrupted by {interrupts.noted()}; no case was begun, and the same command goes on"
+                )
+            _, still = wait(going, LOOK)
+            going = list(still)
+    return [replace(case, begins=of[case.key].begins) if case.key in of else case for case in plan.cases]
 
 
 def run_all(

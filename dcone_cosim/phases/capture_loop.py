@@ -20,7 +20,7 @@ from dcone_cosim.phases.stepping import carried_out, grid_steps, length_of, take
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots
 from dcone_cosim.results import PhaseResult
-from dcone_cosim.states import KeptState, Keeper
+from dcone_cosim.states import Keeper, KeptState
 
 LOCATED_TO = 1e-6
 """How closely the instant of a hand-over is located by halving [s]."""

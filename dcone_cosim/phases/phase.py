@@ -13,6 +13,7 @@ from typing import Any, Protocol
 
 from dcone_cosim.contract import NEVER, Need
 from dcone_cosim.criteria import Criterion, Evidence, finite
+from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.phases.stepping import PhaseLoop
@@ -23,7 +24,7 @@ from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake
 from dcone_cosim.scene.toml_lines import Path as KeyPath
-from dcone_cosim.states import KeptState, Keeper
+from dcone_cosim.states import Keeper, KeptState
 
 Figure = tuple[str, Callable[[Path], object]]
 """File name, and what draws it there."""
@@ -237,6 +238,16 @@ class Phase:
         for output in [key for key in last if key != "time"][:MOST_OUTPUTS]:
             unit = recorder.units[output]
             yield Finding(name, output, f"{output} at the end", last[output], "" if unit == "1" else unit)
+
+    def events(self, run: RunResult, result: PhaseResult) -> Iterator[Event]:
+        """What happened in it, in the order of its own time."""
+        found = [Event(result.name, "begins", result.start), *self.own_events(result)]
+        found.append(Event(result.name, "its FMU ends" if result.ended_by else "ends", result.end))
+        yield from sorted(found, key=lambda event: event.time)
+
+    def own_events(self, result: PhaseResult) -> Iterator[Event]:
+        """What happens in phases of this kind alone."""
+        yield from ()
 
     def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
         """By what it is judged when it is computed in another way: of a phase that nothing is known of, its outputs.

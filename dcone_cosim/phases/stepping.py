@@ -21,7 +21,7 @@ from dcone_cosim.holding import Holding, holding
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import PhaseResult
-from dcone_cosim.states import KeptState, Keeper
+from dcone_cosim.states import Keeper, KeptState
 
 SAME = 1e-6
 """Relative difference up to which two steps are of one length: at t = 1e6 s a step of 1 ms has lost six digits."""

@@ -50,10 +50,10 @@ def _split(setting: str) -> tuple[tuple[str, ...], Any]:
     while isinstance(nested, dict):
         ((name, nested),) = nested.items()
         names.append(name)
-    return tuple(names), _value(text.strip())
+    return tuple(names), value_of(text.strip())
 
 
-def _value(text: str) -> Any:
+def value_of(text: str) -> Any:
     try:
         parsed = tomllib.loads(f"value={text}")
     except (tomllib.TOMLDecodeError, ValueError, RecursionError):
