@@ -74,6 +74,23 @@ def run(
             show_default=False,
         ),
     ] = None,
+    save_at: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--save-at",
+            metavar="PHASE:TIME",
+            help="Keep the state there, such as removal:1h, by the phase's own time; may be given several times.",
+        ),
+    ] = None,
+    go_on: Annotated[
+        str,
+        typer.Option(
+            "--from",
+            metavar="PHASE[:TIME]",
+            help="Go on from there: SCENE is the folder of a run, which kept that state, or handed over to that phase.",
+            show_default=False,
+        ),
+    ] = "",
     ensemble: Annotated[
         int | None,
         typer.Option(
@@ -89,6 +106,10 @@ def run(
     With --ensemble the summary is mean, spread and percentiles of all figures, and a table has every run; the same
     command goes on with the runs that are missing.
 
+    A run may go on from another: `dcone run FOLDER --from removal` runs the removal anew from that run's hand-over,
+    `--from removal:1h` goes on from the state kept by `--save-at removal:1h`, with the same bits. With --set, what is
+    not over may change: later phases, how long the phase lasts, its inputs and tunable parameters.
+
     Exit code: 0 success, 1 the results are complete but could not be told, 2 bad input, 3 the capture failed,
     4 the hand-off was refused or violated, 5 an FMU failed, 6 interrupted, and what was reached is kept,
     7 some runs of an ensemble failed; 130 or 143 interrupted, and there was nothing to keep.
@@ -97,6 +118,8 @@ def run(
     if ensemble is not None:
         if force:
             raise InputError("--force: an ensemble goes on with what is in its folder; choose another with -o")
+        if save_at or go_on:
+            raise InputError("--ensemble: its runs keep no states and go on from none; leave --save-at and --from out")
         raise typer.Exit(cli_cases.ensemble(scene, ensemble, seed, out, settings or [], jobs, isolate, json))
     gc.disable()  # while modules are imported nothing is garbage; `run_and_write` enables it again
     from dcone_cosim.commands import run_and_write
@@ -104,7 +127,9 @@ def run(
     progress = make_progress()
     try:
         with exits.noise_apart():
-            written = run_and_write(scene, out, progress, csv, figures, force, settings or (), isolate)
+            written = run_and_write(
+                scene, out, progress, csv, figures, force, settings or (), isolate, save_at or (), go_on
+            )
     finally:
         progress.close()
     result = written.result

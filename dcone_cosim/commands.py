@@ -20,6 +20,8 @@ from dcone_cosim.plots import style
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
 from dcone_cosim.results import Attained, RunResult
+from dcone_cosim.resume import instants
+from dcone_cosim.resume.begin import Origin
 from dcone_cosim.run_folder import default_folder, fill
 from dcone_cosim.running import run_once
 from dcone_cosim.scenes.kept import unlike
@@ -50,10 +52,20 @@ def run_and_write(
     force: bool = False,
     settings: Sequence[str] = (),
     isolate: bool | None = None,
+    save_at: Sequence[str] = (),
+    go_on: str = "",
 ) -> Written:
-    """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing."""
+    """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing.
+
+    save_at    instants at which states are kept
+    go_on      where the run of the folder that `name` is goes on; "" to run it from its beginning
+    """
     started = datetime.now(UTC)
-    scene = named(name, settings).isolating(isolate)
+    origin = Origin(Path(name), go_on, settings) if go_on else None
+    scene = (named(name, settings) if origin is None else origin.scene).isolating(isolate)
+    keep = instants.save_at(save_at, scene)
+    if keep and scene.accuracy is not None:
+        raise InputError("--save-at: the scene asks for an accuracy, for which it is run several times; leave one out")
     folder = out if out is not None else default_folder(scene.name)
     left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
@@ -70,9 +82,10 @@ def run_and_write(
         threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
 
     with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
-        ran = run_once(scene, progress, attained=attained, meanwhile=meanwhile)
+        begin = None if origin is None else origin.begun
+        ran = run_once(scene, progress, begin, keep, attained, meanwhile)
         result, notes = ran.result, [*([LEFT_BEHIND] if left + draft.removed else []), *ran.notes]
-        if Path(name) == Path(scene.source).parent:
+        if origin is None and Path(name) == Path(scene.source).parent:
             notes += unlike(Path(name), ran.facts)
 
         def draw(path: Path) -> None:

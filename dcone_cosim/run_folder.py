@@ -2,7 +2,7 @@
 
     summary.json  provenance.json  scene.toml  fmus/*.fmu  ledger.json  ledger.csv
     PHASE.parquet  nodes.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
-    *.png
+    states/*.state  *.png
 
 Columns carry their unit in the field metadata of the Parquet file, and in `df.attrs["units"]` where pandas reads it; in
 a CSV the unit stands in the header. An output called `time` is in the column `output.time`, beside that of our own.
@@ -25,11 +25,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from dcone_cosim import state_file
 from dcone_cosim.drafts import PROVENANCE, contents
 from dcone_cosim.phases import kind_of
 from dcone_cosim.recorder import Snapshots, TugLog
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scenes.kept import keep
+from dcone_cosim.states import KeptState
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -69,11 +71,20 @@ def fill(
             pyarrow.csv.write_csv(headed, folder / f"{name}.csv")
     for place, (name, handover) in enumerate(run.handovers.items()):
         _write_ledger(handover, folder / ledger_file(place, name))
+    states = [_write_state(state, folder) for state in run.states]
     _write_json(folder / "summary.json", summary)
     if draw is not None:
         draw(folder)
     files = sorted({*contents(folder), PROVENANCE})
-    _write_json(folder / PROVENANCE, provenance(run, fmus, started) | {"files": files})
+    _write_json(folder / PROVENANCE, provenance(run, fmus, started) | {"states": states, "files": files})
+
+
+def _write_state(state: KeptState, folder: Path) -> dict[str, Any]:
+    """Write a kept state; returns what the provenance tells of it."""
+    name = state_file.name_of(state)
+    (folder / name).parent.mkdir(exist_ok=True)
+    about = {"phase": state.phase, "asked": state.asked, "time": state.time, "rows": state.rows}
+    return {"file": name, "sha256": state_file.write(state, folder / name), **about}
 
 
 def csv_head(field: pa.Field) -> str:

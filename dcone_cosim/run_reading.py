@@ -34,16 +34,17 @@ KINDS = {"double": "Real", "int64": "Integer", "bool": "Boolean"}
 EXTREMES = {"tether.taut": "Boolean", "tether.tension_peak": "Real"}
 
 
-def read_run(folder: Path, scene: Scene | None = None) -> RunResult:
+def read_run(folder: Path, scene: Scene | None = None, until: str = "") -> RunResult:
     """The run that left this folder; `InputError` where it is none, or where something of it is missing.
 
     scene    with which its hand-overs are worked out again; its own if not given
+    until    name of the phase from which on nothing is read; "" for all
 
     Checked  tests/cosim/test_run_reading.py
     """
     told = provenance_of(folder)
     try:
-        return _read(folder, told, scene)
+        return _read(folder, told, scene, until)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         version = told.get("packages", {}).get("dcone-cosim", "?")
         raise InputError(
@@ -72,19 +73,25 @@ def json_of(path: Path) -> dict[str, Any]:
     return content
 
 
-def _read(folder: Path, told: Mapping[str, Any], scene: Scene | None) -> RunResult:
+def _read(folder: Path, told: Mapping[str, Any], scene: Scene | None, until: str) -> RunResult:
     run = RunResult(load(str(folder)) if scene is None else scene)
     run.status, run.message, run.exit_code = told["status"], told["message"], int(told["exit_code"])
     run.gone_on = told.get("gone_on", {})
     for name, about in told["phases"].items():
+        if name == until:
+            break
         run.phases[name] = _phase(folder, name, about)
         for of in ("parameters", "inputs", "given", "left"):
             if about[of]:
                 getattr(run, of)[name] = _numbers(about[of])
         _take_terms(run, name, about["terms"])
     for place, name in enumerate(told["handed_over_at"]):
+        if name == until:
+            break
         _recall(run, name, json_of(folder / ledger_file(place, name)))
     for name, about in told["without_recoil"].items():
+        if name not in run.phases:
+            continue
         columns = {"time": ("s", "Real", np.zeros(1))}
         columns |= {key: ("1", EXTREMES[key], np.array([float(value)])) for key, value in about["row"].items()}
         tugs = _tugs(folder / f"{name}_without_recoil_tugs.parquet", about["tugs"])

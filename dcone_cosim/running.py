@@ -33,14 +33,14 @@ class Ran:
 def run_once(
     scene: Scene,
     progress: Progress,
-    begun: Begun | None = None,
+    begin: Callable[[SceneFmus, Scene], Begun] | None = None,
     keep: Instants = MappingProxyType({}),
     attained: Mapping[str, Attained] = MappingProxyType({}),
     meanwhile: Callable[[], object] = lambda: None,
 ) -> Ran:
     """Run a scene.
 
-    begun        what it goes on from
+    begin        tells what it goes on from, once its FMUs are there
     keep         when states are kept
     attained     how exact its phases are known to be
     meanwhile    called once the FMUs are there
@@ -48,6 +48,7 @@ def run_once(
     started, notes = datetime.now(UTC), list(scene.notes)
     with SceneFmus(scene, progress) as archives:
         need_states(archives, scene, keep)
+        begun = None if begin is None else begin(archives, scene)
         meanwhile()
         result = run_scene(scene, archives.instantiate, progress, archives.adopt, begun, keep)
         facts = archives.facts()

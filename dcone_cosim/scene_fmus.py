@@ -14,6 +14,7 @@ from dcone_cosim.fmu.component import CallError, Component, Steppable
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.leaving import guard_exit
 from dcone_cosim.fmu.shelf import Shelf
+from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import places_named
@@ -142,6 +143,11 @@ class SceneFmus:
             where = places_named(error.said, self._scene.places, phase.name, "components", component.name)
             text = f"{self._scene.source}: {component.name} of the {phase.name} cannot begin"
             raise InputError(f"{text}\n  {where}{error.said}\n  ({error.detail})") from error
+
+    def variables(self, phase: str) -> Mapping[str, VariableInfo]:
+        """Of the main FMU of a phase."""
+        plan = self._phases[phase]
+        return self._archive(plan, plan.main).variables
 
     def without_states(self, phase: str) -> list[str]:
         """Components of a phase whose FMU cannot write its state to a file."""

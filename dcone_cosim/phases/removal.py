@@ -242,7 +242,7 @@ class Removal(Tow):
         record = run.handovers.get(self.name)
         if not isinstance(record, HandoffRecord) or not run.scene.handoff.compare_without_recoil:
             return
-        if stage.begun is not None and stage.begun.changed:
+        if stage.begun is not None and run.gone_on.get("changed"):
             stage.progress.say("the comparison without recoil is left out: values were changed where the tow went on")
             return
         assert stage.before is not None, "somebody handed over"

@@ -87,8 +87,15 @@ def unlike(folder: Path, facts: Mapping[str, Mapping[str, Any]]) -> list[str]:
 
     facts    of the FMUs of each phase as they are now, as the provenance has them
     """
-    then, now = _identities(_read(folder / PROVENANCE).get("phases", {})), _identities(facts)
-    return [
+    told = _read(folder / PROVENANCE)
+    then, now = _identities(told.get("phases", {})), _identities(facts)
+    gone_on = told.get("gone_on") or {}
+    changed = ", ".join(gone_on.get("changed") or ())
+    on_the_way = [
+        f"made again from its beginning: {folder} went on from the run {gone_on['run']} in its {gone_on['phase']}, "
+        f"where {changed} changed; here that holds throughout"
+    ]
+    return (on_the_way if changed else []) + [
         f"made again with another FMU of the {name}: its SHA-256 is {now[name][:12]}..., it was {sha[:12]}..."
         for name, sha in then.items()
         if now.get(name, sha) != sha
