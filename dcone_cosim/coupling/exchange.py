@@ -198,7 +198,8 @@ class Exchange:
 
     def as_kept(self) -> dict[str, Any]:
         """What stands between the components, as plain data; they themselves are kept apart."""
-        return {"out": self.out, "held": self._held, "rate": self._rate, "surprise": self.surprise}
+        lists = {"out": self.out, "held": self._held, "rate": self._rate, "surprise": self.surprise}
+        return {name: list(values) for name, values in lists.items()}
 
     def take_up(self, kept: Mapping[str, Any]) -> None:
         """Stand where `as_kept` says."""
