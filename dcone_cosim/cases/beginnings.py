@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import shutil
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 from dcone_cosim.cases.case import Begins, Case, code, content, digest
@@ -50,6 +51,12 @@ class Beginning:
     @property
     def begins(self) -> Begins:
         return Begins(self.folder, self.over)
+
+    def parts(self) -> Iterator[Beginning]:
+        """This one, and those that it goes on from."""
+        yield self
+        if self.before is not None:
+            yield from self.before.parts()
 
     @property
     def is_there(self) -> bool:
@@ -101,10 +108,8 @@ def in_order(wanted: Sequence[Beginning]) -> list[list[Beginning]]:
     """Those to be run, each once, in turns: what a turn goes on from is there after the one before it."""
     turns: dict[int, dict[str, Beginning]] = {}
     for last in wanted:
-        beginning: Beginning | None = last
-        while beginning is not None and not beginning.is_there:
+        for beginning in takewhile(lambda part: not part.is_there, last.parts()):
             turns.setdefault(len(beginning.over), {})[beginning.key] = beginning
-            beginning = beginning.before
     return [list(turns[length].values()) for length in sorted(turns)]
 
 

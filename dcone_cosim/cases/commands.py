@@ -10,6 +10,7 @@ provenance.json scene.toml what made it; the scene before anything was varied
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, wait
 from contextlib import ExitStack
@@ -24,6 +25,7 @@ from dcone_cosim.cases import show, vary
 from dcone_cosim.cases.alone import Fmus
 from dcone_cosim.cases.beginnings import in_order, shared
 from dcone_cosim.cases.case import Case, Value, code, content, digest, identities, key_of
+from dcone_cosim.cases.early import Early
 from dcone_cosim.cases.pace import Pace
 from dcone_cosim.cases.plot import draw
 from dcone_cosim.cases.rows import Row, refused
@@ -31,7 +33,7 @@ from dcone_cosim.cases.runner import LOOK, Runner
 from dcone_cosim.cases.statistics import Summary, summarise
 from dcone_cosim.cases.store import ROWS, Store
 from dcone_cosim.cases.table import Column, Entry, write
-from dcone_cosim.cases.work import run_beginning, run_case
+from dcone_cosim.cases.work import make_ready, run_beginning, run_case
 from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.drafts import PROVENANCE, to_disk
 from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError, Interrupted
@@ -133,8 +135,35 @@ def sweep_over(
 ) -> Done:
     """The same with the keys and their values as they are."""
     base = named(name, settings).isolating(isolate)
-    fmus = Fmus(progress)
-    of_base = fmus.of(base)
+    folder = _folder(base, SWEEP, out)
+    count = _processes(jobs, math.prod(len(key.values) for key in keys))
+    with ExitStack() as stack:
+        workers = stack.enter_context(Workers(count))
+        for _ in range(count):
+            workers.submit(make_ready, None)
+        fmus = Fmus(progress)
+        of_base = fmus.of(base)
+        firsts = [] if len(base.phases) == 1 else vary.first_two(name, keys, settings)
+        firsts = [scene.isolating(isolate) for scene in firsts]
+        early = Early([(scene, fmus.of(scene)) for scene in firsts], folder, workers)
+        stack.callback(early.close)
+        for _ in range(count):
+            workers.submit(make_ready, base)
+        plan = _planned(name, base, keys, settings, isolate, progress, fmus, of_base)
+        return _carry_out(plan, folder, progress, workers, 2 * count, with_figures, early)
+
+
+def _planned(
+    name: str,
+    base: Scene,
+    keys: Sequence[vary.Varied],
+    settings: Sequence[str],
+    isolate: bool | None,
+    progress: Progress,
+    fmus: Fmus,
+    of_base: Mapping[str, str],
+) -> Plan:
+    """Every case, checked."""
     identified: dict[str, Mapping[str, str]] = {}
     entries: list[tuple[Case | Row, Mapping[str, Value], int | None]] = []
     for combination in vary.grid(name, keys, settings, progress.say):
@@ -149,7 +178,7 @@ def sweep_over(
         entries.append(
             (Case(key, scene, (*settings, *combination.settings), combination.values), combination.values, None)
         )
-    plan = Plan(
+    return Plan(
         SWEEP,
         base,
         f"{base.title} (varied: {', '.join(key.key for key in keys)})".lstrip(),
@@ -160,7 +189,6 @@ def sweep_over(
         {"varied": {key.key: list(key.values) for key in keys}},
         identified,
     )
-    return _carry_out(plan, out, progress, jobs, with_figures)
 
 
 def ensemble(
@@ -188,33 +216,52 @@ def ensemble(
     about = {"ensemble": {"runs": count, "first_seed": seed, "jitter": list(ensembles.jitter(base, seed))}}
     title = f"{base.title}: {count} runs with jittered starts"
     plan = Plan(ENSEMBLE, base, title, {}, entries, facts, identities(facts[0]), about)
-    return _carry_out(plan, out, progress, jobs, False)
+    processes = _processes(jobs, count)
+    with Workers(processes) as workers:
+        return _carry_out(plan, _folder(base, ENSEMBLE, out), progress, workers, 2 * processes, False)
 
 
-def _carry_out(plan: Plan, out: Path | None, progress: Progress, jobs: int | None, with_figures: bool) -> Done:
-    started = datetime.now(UTC)
+def _processes(jobs: int | None, cases: int) -> int:
     if jobs is not None and not 1 <= jobs <= MOST_JOBS:
         raise InputError(f"--jobs {jobs}: expected 1 to {MOST_JOBS} processes")
-    cases = plan.cases
-    count = max(1, min(jobs or cores(), len(cases)))
-    folder = out if out is not None else default_folder(f"{plan.base.name}-{plan.kind.split()[1]}")
+    return max(1, min(jobs or cores(), cases))
+
+
+def _folder(base: Scene, kind: str, out: Path | None) -> Path:
+    return out if out is not None else default_folder(f"{base.name}-{kind.split()[1]}")
+
+
+def _carry_out(
+    plan: Plan,
+    folder: Path,
+    progress: Progress,
+    workers: Executor,
+    ahead: int,
+    with_figures: bool,
+    early: Early | None = None,
+) -> Done:
+    started = datetime.now(UTC)
     with interrupts.heeded(TOLD), Store(folder, plan.study()) as store:
         interrupts.arm()
-        with Workers(count) as workers:
-            cases = begun_together(plan, store, workers, progress)
-            rows = run_all(cases, store, workers, 2 * count, progress)
+        cases = begun_together(plan, store, workers, progress, early)
+        rows = run_all(cases, store, workers, ahead, progress)
         store.gather_if_many()
         done = _result(plan, rows, folder)
         _write(plan, done, folder, started, with_figures)
     return done
 
 
-def begun_together(plan: Plan, store: Store, workers: Executor, progress: Progress) -> list[Case]:
+def begun_together(
+    plan: Plan, store: Store, workers: Executor, progress: Progress, early: Early | None = None
+) -> list[Case]:
     """The cases, with what they have in common run once, as far as it is not there from before."""
     known = [(case, plan.identified[case.key]) for case in plan.cases if case.key in plan.identified]
     of = shared(known, store.folder)
     missing = [case for case in plan.cases if (row := store.get(case.key)) is None or not row.lasting]
-    for turn in in_order([of[case.key] for case in missing if case.key in of]):
+    wanted = [of[case.key] for case in missing if case.key in of]
+    if early is not None:
+        early.put([part for last in wanted for part in last.parts()])
+    for turn in in_order(wanted):
         progress.say(f"running {len(turn)} of what several cases begin with: {', '.join(turn[0].over)}")
         going = [workers.submit(run_beginning, beginning) for beginning in turn]
         while going:

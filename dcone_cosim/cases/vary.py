@@ -186,6 +186,16 @@ def grid(
     return found
 
 
+def first_two(name: str, varied: Sequence[Varied], settings: Sequence[str] = ()) -> list[Scene]:
+    """The scenes of the first two combinations; none where one of them cannot be."""
+    *others, last = varied
+    fixed = [f"{key.key}={in_si(key.values[0]).given}" for key in others]
+    try:
+        return [load(name, [*settings, *fixed, f"{last.key}={in_si(of).given}"]) for of in last.values[:2]]
+    except InputError:
+        return []
+
+
 def _need_to_work(values: Mapping[str, Sequence[Value]], found: Sequence[Combination]) -> None:
     for key, of in values.items():
         for value in of:

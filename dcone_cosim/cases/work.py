@@ -55,7 +55,7 @@ class Fleet:
 
     def row(self, case: Case, tell: Telling = tell_summary) -> Row:
         """Run a case; whatever happens comes out as a row."""
-        with_kept = self._get_ready(case.scene) and not self.new
+        with_kept = self.get_ready(case.scene) and not self.new
         row = self._run(case, tell)
         if not with_kept or self._proved or not row.succeeded:
             return row
@@ -69,7 +69,7 @@ class Fleet:
 
     def begin(self, beginning: Beginning) -> None:
         """Run first phases that cases have in common, and keep them."""
-        self._get_ready(beginning.scene)
+        self.get_ready(beginning.scene)
         scene, started = beginning.scene, datetime.now(UTC)
         if self._fmus is None:
             return  # the cases tell why
@@ -91,7 +91,7 @@ class Fleet:
             self._begun = None if found is None else (begins, found)
         return None if self._begun is None else self._begun[1]
 
-    def _get_ready(self, scene: Scene) -> bool:
+    def get_ready(self, scene: Scene) -> bool:
         """Have the FMUs of the scene; whether instances of the case before may be used again."""
         of = fmus_of(scene)
         if self._fmus is not None and of == self._of:
@@ -141,6 +141,12 @@ def _about(fmus: SceneFmus) -> list[Any]:
 
 
 _fleet: Fleet | None = None
+
+
+def make_ready(scene: Scene | None = None) -> None:
+    """Have imported what cases need, and the FMUs of a scene like them unpacked, before the first comes."""
+    if scene is not None:
+        _own_fleet().get_ready(scene)
 
 
 def run_beginning(beginning: Beginning) -> None:

@@ -89,13 +89,24 @@ def unlike(folder: Path, facts: Mapping[str, Mapping[str, Any]]) -> list[str]:
     """
     told = _read(folder / PROVENANCE)
     then, now = _identities(told.get("phases", {})), _identities(facts)
-    gone_on = told.get("gone_on") or {}
-    changed = ", ".join(gone_on.get("changed") or ())
-    on_the_way = [
-        f"made again from its beginning: {folder} went on from the run {gone_on['run']} in its {gone_on['phase']}, "
-        f"where {changed} changed; here that holds throughout"
+    return [
+        *_changed_on_the_way(folder, told.get("gone_on") or {}),
+        *_other_fmus(then, now),
     ]
-    return (on_the_way if changed else []) + [
+
+
+def _changed_on_the_way(folder: Path, gone_on: Mapping[str, Any]) -> list[str]:
+    """Of a run that went on from another with other values: made again, it has them from its beginning."""
+    if not gone_on.get("changed"):
+        return []
+    return [
+        f"made again from its beginning: {folder} went on from the run {gone_on['run']} in its {gone_on['phase']}, "
+        f"where {', '.join(gone_on['changed'])} changed; here that holds throughout"
+    ]
+
+
+def _other_fmus(then: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
+    return [
         f"made again with another FMU of the {name}: its SHA-256 is {now[name][:12]}..., it was {sha[:12]}..."
         for name, sha in then.items()
         if now.get(name, sha) != sha
