@@ -16,9 +16,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from dcone_cosim.api import Run, Scene, list_scenes, load_run, load_scene, run, sweep
+    from dcone_cosim.api import (
+        Comparison,
+        Run,
+        Scene,
+        compare,
+        go_on,
+        list_scenes,
+        load_run,
+        load_scene,
+        run,
+        sweep,
+    )
 
-__all__ = ["Run", "Scene", "list_scenes", "load_run", "load_scene", "run", "sweep"]
+__all__ = ["Comparison", "Run", "Scene", "compare", "go_on", "list_scenes", "load_run", "load_scene", "run", "sweep"]
 
 
 def __getattr__(name: str) -> Any:

@@ -37,7 +37,7 @@ class Run(Mapping[str, "pd.DataFrame"]):
     Its tables are those of a run folder, by the same names.
 
     result    all of it, as the master leaves it
-    folder    that it was read from, None for a run that is nowhere yet
+    folder    that it was read from or saved to, None for a run that is nowhere yet
     notes     what to tell of it
     """
 
@@ -156,6 +156,7 @@ class Run(Mapping[str, "pd.DataFrame"]):
                 told = summary.as_dict(self.result)
                 draw = (lambda path: draw_all(self.result, path, False)) if figures else None
                 fill(draft.path, self.result, self._facts, told, self._started, csv, draw)
+        self.folder = draft.folder
         return draft.folder
 
     def __repr__(self) -> str:

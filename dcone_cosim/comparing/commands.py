@@ -29,7 +29,7 @@ class Comparison:
     tables   of both, and whether they hold the same bits
     """
 
-    folders: tuple[Path, Path]
+    folders: tuple[Path | None, Path | None]
     names: tuple[str, str]
     runs: tuple[RunResult, RunResult]
     figures: list[Pair]
@@ -44,11 +44,18 @@ class Comparison:
 
 def compare(one: Path, other: Path) -> Comparison:
     """Set two runs side by side; `InputError` where one cannot be read."""
-    first, second = read_run(one), read_run(other)
+    return beside((one, other), _names(one, other), (read_run(one), read_run(other)))
+
+
+def beside(
+    folders: tuple[Path | None, Path | None], names: tuple[str, str], runs: tuple[RunResult, RunResult]
+) -> Comparison:
+    """The same of two runs at hand; a folder is None where a run is in none."""
+    first, second = runs
     return Comparison(
-        (one, other),
-        _names(one, other),
-        (first, second),
+        folders,
+        names,
+        runs,
         figures(first, second),
         scene_keys(first.scene, second.scene),
         same_tables(first, second),

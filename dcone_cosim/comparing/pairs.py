@@ -15,7 +15,6 @@ from dcone_cosim.results import RunResult
 from dcone_cosim.resume.differences import differences
 from dcone_cosim.run_folder import tables_of
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.scenes.kept import SCENE
 
 MISSING = "-"
 
@@ -103,7 +102,7 @@ def _pair(name: str, one: Finding | None, other: Finding | None, apart: bool) ->
 
 def scene_keys(one: Scene, other: Scene) -> list[KeyPair]:
     """Keys in which two scenes differ, as they are written; of packages, as they reach the FMUs, in SI."""
-    if all(scene.source.endswith(SCENE) for scene in (one, other)):
+    if all(scene.source.endswith(".toml") for scene in (one, other)):
         first, second = (dict(_flat(tomllib.loads(scene.text))) for scene in (one, other))
         keys = [key for key in {**first, **second} if key != "title" and first.get(key) != second.get(key)]
         return [KeyPair(key, first.get(key, MISSING), second.get(key, MISSING)) for key in keys]

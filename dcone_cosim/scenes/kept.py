@@ -97,12 +97,15 @@ def unlike(folder: Path, facts: Mapping[str, Mapping[str, Any]]) -> list[str]:
 
 def _changed_on_the_way(folder: Path, gone_on: Mapping[str, Any]) -> list[str]:
     """Of a run that went on from another with other values: made again, it has them from its beginning."""
-    if not gone_on.get("changed"):
-        return []
-    return [
-        f"made again from its beginning: {folder} went on from the run {gone_on['run']} in its {gone_on['phase']}, "
-        f"where {', '.join(gone_on['changed'])} changed; here that holds throughout"
-    ]
+    found = []
+    while gone_on:
+        if gone_on.get("changed"):
+            found.append(
+                f"made again from its beginning: {folder} went on from the run {gone_on['run']} in its "
+                f"{gone_on['phase']}, where {', '.join(gone_on['changed'])} changed; here that holds throughout"
+            )
+        gone_on = gone_on.get("earlier") or {}
+    return found
 
 
 def _other_fmus(then: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
