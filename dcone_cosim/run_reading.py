@@ -81,9 +81,10 @@ def _read(folder: Path, told: Mapping[str, Any], scene: Scene | None, until: str
         if name == until:
             break
         run.phases[name] = _phase(folder, name, about)
-        for of in ("parameters", "inputs", "given", "left"):
-            if about[of]:
-                getattr(run, of)[name] = _numbers(about[of])
+        for of in ("parameters", "inputs", "given"):
+            getattr(run, of)[name] = _numbers(about[of])
+        if about["left"]:
+            run.left[name] = _numbers(about["left"])
         _take_terms(run, name, about["terms"])
     for place, name in enumerate(told["handed_over_at"]):
         if name == until:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,7 @@ EXPECTED = (
 def settings_of(changes: Mapping[str, Any]) -> Iterator[str]:
     """`KEY=VALUE` of each change; a table stands for its keys: {"removal": {"tether.diameter": "2 mm"}}.
 
-    Checked  tests/cosim/test_api_scene.py
+    Checked  tests/api/test_scene.py
     """
     for key, value in changes.items():
         if isinstance(value, Mapping):
@@ -41,7 +40,7 @@ def _toml(key: str, value: Any) -> str:
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
-        return repr(value) if math.isfinite(value) else str(value)
+        return repr(float(value))
     if isinstance(value, str | Path):
         return json.dumps(str(value))
     if hasattr(value, "unit") and hasattr(value, "value"):

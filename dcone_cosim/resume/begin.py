@@ -65,7 +65,6 @@ class Origin:
         if self.place.time is None:
             return Begun(before, self.over, told=self._about(None, {}, before))
         state = self._state()
-        archives.adopt(next(phase for phase in before.scene.phases if phase.name == state.phase))
         changed = self._changed(found, archives.variables(state.phase))
         place = list(self._told["handed_over_at"]).index(state.phase) if self.over else 0
         ledger = json_of(self.folder / ledger_file(place, state.phase)) if self.over else {}
@@ -134,7 +133,7 @@ class Origin:
         if self.place.time is None:
             return
         name = self.place.phase
-        archives.adopt(next(phase for phase in before.scene.phases if phase.name == name))
+        self._adopt(archives, before)
         then, now = self._told["phases"][name], archives.facts()[name]
         version = self._told["packages"]["dcone-cosim"]
         pairs = [(name, then, now)]
@@ -148,6 +147,12 @@ class Origin:
                     f"{self.option}: the kept state is of another FMU of the {part}: its GUID is {one}, kept by "
                     f"dcone-cosim {version}; this one has {other}. Run the scene from its beginning"
                 )
+
+    def _adopt(self, archives: SceneFmus, before: RunResult) -> None:
+        """Have the FMU that the phase was run with: what was handed over may have needed another than the scene's."""
+        phase = next(phase for phase in before.scene.phases if phase.name == self.place.phase)
+        if phase.main.fmu is None:
+            archives.adopt(phase)
 
     def _state(self) -> KeptState:
         """The state that was kept nearest to the instant."""
