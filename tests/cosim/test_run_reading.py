@@ -75,7 +75,7 @@ def test_the_figures_drawn_again(mission: Left, tmp_path: Path) -> None:
     assert {path.name: path.read_bytes() for path in paths} == before
     copy = shutil.copytree(folder, tmp_path / "copy")
     (copy / "removal.parquet").unlink()
-    with pytest.raises(InputError, match="removal.parquet cannot be read"):
+    with pytest.raises(InputError, match=r"removal\.parquet cannot be read"):
         draw_again(copy, None, Progress())
 
 
