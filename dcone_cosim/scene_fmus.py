@@ -8,7 +8,7 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError, InputError
-from dcone_cosim.fmu import isolation
+from dcone_cosim.fmu import children
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, Steppable
 from dcone_cosim.fmu.isolation import IsolatedComponent
@@ -35,7 +35,7 @@ class SceneFmus:
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
         try:
-            isolation.make_ready(sum(c.isolate or (c.isolate is None and c.fmu is not None) for _, c in components))
+            children.make_ready(sum(c.isolate or (c.isolate is None and c.fmu is not None) for _, c in components))
             with progress.working("building"):
                 built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
             paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
@@ -206,7 +206,7 @@ class SceneFmus:
         return self
 
     def close(self) -> None:
-        isolation.dismiss()
+        children.dismiss()
         if self._shelf is not None:
             self._shelf.clear()
         for archive in (*self._of.values(), *(adopted for _, adopted in self._adopted.values())):

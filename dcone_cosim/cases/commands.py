@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Executor, wait
+from concurrent.futures import Executor
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -23,17 +23,16 @@ from dcone_cosim import interrupts, placed
 from dcone_cosim.cases import ensemble as ensembles
 from dcone_cosim.cases import show, vary
 from dcone_cosim.cases.alone import Fmus
-from dcone_cosim.cases.beginnings import in_order, shared
 from dcone_cosim.cases.case import Case, Value, code, content, digest, identities, key_of
-from dcone_cosim.cases.early import Early
+from dcone_cosim.cases.early import Early, begun_together
 from dcone_cosim.cases.pace import Pace
 from dcone_cosim.cases.plot import draw
 from dcone_cosim.cases.rows import Row, refused
-from dcone_cosim.cases.runner import LOOK, Runner
+from dcone_cosim.cases.runner import Runner
 from dcone_cosim.cases.statistics import Summary, summarise
 from dcone_cosim.cases.store import ROWS, Store
 from dcone_cosim.cases.table import Column, Entry, write
-from dcone_cosim.cases.work import make_ready, run_beginning, run_case
+from dcone_cosim.cases.work import make_ready, run_case
 from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.drafts import PROVENANCE, to_disk
 from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError, Interrupted
@@ -243,35 +242,12 @@ def _carry_out(
     started = datetime.now(UTC)
     with interrupts.heeded(TOLD), Store(folder, plan.study()) as store:
         interrupts.arm()
-        cases = begun_together(plan, store, workers, progress, early)
+        cases = begun_together(plan.cases, plan.identified, store, workers, progress, early)
         rows = run_all(cases, store, workers, ahead, progress)
         store.gather_if_many()
         done = _result(plan, rows, folder)
         _write(plan, done, folder, started, with_figures)
     return done
-
-
-def begun_together(
-    plan: Plan, store: Store, workers: Executor, progress: Progress, early: Early | None = None
-) -> list[Case]:
-    """The cases, with what they have in common run once, as far as it is not there from before."""
-    known = [(case, plan.identified[case.key]) for case in plan.cases if case.key in plan.identified]
-    of = shared(known, store.folder)
-    missing = [case for case in plan.cases if (row := store.get(case.key)) is None or not row.lasting]
-    wanted = [of[case.key] for case in missing if case.key in of]
-    if early is not None:
-        early.put([part for last in wanted for part in last.parts()])
-    for turn in in_order(wanted):
-        progress.say(f"running {len(turn)} of what several cases begin with: {', '.join(turn[0].over)}")
-        going = [workers.submit(run_beginning, beginning) for beginning in turn]
-        while going:
-            if interrupts.noted():
-                raise Interrupted(
-                    f"interrupted by {interrupts.noted()}; no case was begun, and the same command goes on"
-                )
-            _, still = wait(going, LOOK)
-            going = list(still)
-    return [replace(case, begins=of[case.key].begins) if case.key in of else case for case in plan.cases]
 
 
 def run_all(
