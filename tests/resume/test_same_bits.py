@@ -8,7 +8,9 @@ from pathlib import Path
 import pyarrow.parquet
 import pytest
 
-from tests.resume.conftest import Kept
+from dcone_cosim.commands import run_and_write
+from dcone_cosim.progress import Progress
+from tests.resume.conftest import TUG, Kept
 from tests.runs import put, tables
 
 
@@ -123,3 +125,25 @@ def test_fmus_in_processes_of_their_own(tug: Kept, tmp_path: Path) -> None:
     back = put(apart, tmp_path / "back", ("removal.isolate=false",), go_on="2 min")
     for folder in (here, apart, back):
         assert tables(folder) == tables(tug.whole)
+
+
+def test_passive_safety_follows_the_tow_from_its_beginning(tug: Kept, tmp_path: Path) -> None:
+    """So it is made again where nothing has changed, and left out where an input has."""
+    assert "removal_passive_safety.parquet" in tables(put(tug.folder, tmp_path / "same", go_on="87 s"))
+    on = put(tug.folder, tmp_path / "on", ("removal.thrust.offset=0.1 N",), go_on="87 s")
+    assert "removal_passive_safety.parquet" not in tables(on)
+
+
+def test_no_state_is_kept_off_the_grid(tmp_path: Path) -> None:
+    """An end after half a macro step is no communication point of a longer run; nothing is kept there, with a word."""
+    settings = (*TUG, "removal.duration=10.5 s")
+    done = run_and_write(
+        "table2-deorbit",
+        tmp_path / "run",
+        Progress(),
+        with_figures=False,
+        settings=settings,
+        save_at=("10.2 s", "9.5 s"),
+    )
+    assert [state.time for state in done.result.states] == [10.0]
+    assert any("no state was kept at 10.2 s" in note for note in done.notes)
