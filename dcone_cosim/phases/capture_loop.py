@@ -176,6 +176,12 @@ class CaptureLoop:
 
     def take_up(self, state: KeptState, earlier: PhaseResult, changed: Mapping[str, float]) -> None:
         """Go on from a kept state, with other values of some variables from there on, SI."""
+        located = state.loop["result"]["located"]
+        if located is not None and self.plan.stop_there:
+            raise FmuError(
+                f"{self.component.name}: it would have handed over at t = {located:.9g} s, before the state was kept; "
+                "go on from an earlier one"
+            )
         take_up(self.component, self.read, self.result, state, earlier)
         self._next = int(state.loop["next"])
         self.result.snapshots.take_up(state.loop["snapshots"])

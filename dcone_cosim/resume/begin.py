@@ -17,7 +17,7 @@ from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.loading import load
 from dcone_cosim.results import Begun, RunResult
 from dcone_cosim.resume.differences import Difference, differences
-from dcone_cosim.resume.instants import Place, go_on_at
+from dcone_cosim.resume.instants import Place, begin_of, go_on_at, phase_of
 from dcone_cosim.run_folder import ledger_file
 from dcone_cosim.run_reading import json_of, provenance_of, read_run
 from dcone_cosim.scene.data import Scene
@@ -65,6 +65,7 @@ class Origin:
         if self.place.time is None:
             return Begun(before, self.over, told=self._about(None, {}, before))
         state = self._state()
+        self._need_time(state, scene)
         changed = self._changed(found, archives.variables(state.phase))
         place = list(self._told["handed_over_at"]).index(state.phase) if self.over else 0
         ledger = json_of(self.folder / ledger_file(place, state.phase)) if self.over else {}
@@ -153,6 +154,14 @@ class Origin:
         phase = next(phase for phase in before.scene.phases if phase.name == self.place.phase)
         if phase.main.fmu is None:
             archives.adopt(phase)
+
+    def _need_time(self, state: KeptState, scene: Scene) -> None:
+        """Refuse a phase that is to end before the state."""
+        begin, lasts = begin_of(scene, state.phase), phase_of(scene, state.phase).duration
+        if state.time > begin + lasts:
+            raise InputError(
+                f"{self.option}: {state.phase}.duration = {lasts:g} s ends before that, at {begin + lasts:g} s"
+            )
 
     def _state(self) -> KeptState:
         """The state that was kept nearest to the instant."""

@@ -37,7 +37,7 @@ def save_at(texts: Sequence[str], scene: Scene) -> dict[str, list[float]]:
         phase, said = _parts(text, scene, option)
         if not said:
             raise InputError(f'{option}: expected a time with its unit, such as {phase}:"1 h"')
-        time, begin = _seconds(said, option), _begin(scene, phase)
+        time, begin = _seconds(said, option), begin_of(scene, phase)
         if not begin <= time <= begin + phase_of(scene, phase).duration:
             end = begin + phase_of(scene, phase).duration
             raise InputError(f"{option}: the {phase} goes from {begin:g} s to {end:g} s by its own time")
@@ -56,7 +56,7 @@ def phase_of(scene: Scene, name: str) -> PhaseScene:
     return next(phase for phase in scene.phases if phase.name == name)
 
 
-def _begin(scene: Scene, name: str) -> float:
+def begin_of(scene: Scene, name: str) -> float:
     """What a phase's own time begins with [s]."""
     from dcone_cosim.phases import kind_of
 

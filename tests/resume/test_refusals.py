@@ -16,7 +16,7 @@ from dcone_cosim.errors import InputError
 from tests.cases.conftest import SCENE
 from tests.cosim.fmus.build import build
 from tests.resume.conftest import Kept
-from tests.runs import put
+from tests.runs import COARSE, put, tables
 
 
 @pytest.fixture
@@ -223,3 +223,19 @@ def test_an_fmu_that_cannot_write_its_state(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="does not say canSerializeFMUstate = true"):
             put(folder / "drift.toml", folder / "out", save_at=("50 s",))
         assert not (folder / "out").exists()
+
+
+def test_an_end_before_the_state(copy: Path) -> None:
+    assert "removal.duration = 300 s ends before that" in refused(copy, "removal:10 min", "removal.duration=5 min")
+
+
+def test_a_capture_that_would_have_handed_over_before(tmp_path: Path) -> None:
+    """Flown on for a second after its capture, it is no longer what a removal would have taken over; the twin from
+    before the capture is, and comes to the mission's own hand-over."""
+    alone = (*COARSE, 'phases=["capture"]', "capture.after_capture=1 s")
+    kept = put("mission", tmp_path / "alone", alone, ("capture:9 s", "capture:7 s"))
+    both = ('phases=["capture", "removal"]',)
+    assert "would have handed over at t = 8.8" in refused(kept, "capture:9 s", *both)
+    on = put(kept, tmp_path / "on", both, go_on="capture:7 s")
+    whole = put("mission", tmp_path / "whole", (*COARSE, "capture.after_capture=1 s"))
+    assert tables(on) == tables(whole)
