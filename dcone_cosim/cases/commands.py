@@ -136,8 +136,7 @@ def sweep_over(
     base = named(name, settings).isolating(isolate)
     folder = _folder(base, SWEEP, out)
     count = _processes(jobs, math.prod(len(key.values) for key in keys))
-    with ExitStack() as stack:
-        workers = stack.enter_context(Workers(count))
+    with ExitStack() as last, Workers(count) as workers:
         for _ in range(count):
             workers.submit(make_ready, None)
         fmus = Fmus(progress)
@@ -145,7 +144,7 @@ def sweep_over(
         firsts = [] if len(base.phases) == 1 else vary.first_two(name, keys, settings)
         firsts = [scene.isolating(isolate) for scene in firsts]
         early = Early([(scene, fmus.of(scene)) for scene in firsts], folder, workers)
-        stack.callback(early.close)
+        last.callback(early.close)  # once no worker writes there any more
         for _ in range(count):
             workers.submit(make_ready, base)
         plan = _planned(name, base, keys, settings, isolate, progress, fmus, of_base)

@@ -149,6 +149,16 @@ def test_what_is_damaged_counts_as_not_there(swept: Path, dcone: Dcone, tmp_path
     assert len(beginnings(copy)) == 1
 
 
+def test_bad_input_leaves_nothing_of_what_was_begun_early(dcone: Dcone, tmp_path: Path) -> None:
+    """The first two cases are good, and their capture is on its way as the third is found to be none."""
+    settings = [part for setting in COARSE for part in ("--set", setting)]
+    vary = "removal.tether.diameter=1 mm,2 mm,3 kg"
+    code, _, err = dcone("sweep", "mission", "--vary", vary, "-o", "deep/out", *settings)
+    assert code == 2
+    assert "3 kg" in err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_capture_that_fails_fails_every_case(tmp_path: Path) -> None:
     """Its rows say why, as whole runs do."""
     settings = (*COARSE, "capture.duration=7 s")
