@@ -8,7 +8,9 @@ from pathlib import Path
 import pyarrow.parquet
 import pytest
 
+from dcone_cosim import interrupts
 from dcone_cosim.commands import run_and_write
+from dcone_cosim.errors import Interrupted
 from dcone_cosim.progress import Progress
 from tests.resume.conftest import TUG, Kept
 from tests.runs import put, tables
@@ -147,3 +149,25 @@ def test_no_state_is_kept_off_the_grid(tmp_path: Path) -> None:
     )
     assert [state.time for state in done.result.states] == [10.0]
     assert any("no state was kept at 10.2 s" in note for note in done.notes)
+
+
+def test_a_run_that_was_interrupted(mission: Kept, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It goes on from the state it had kept by then, and comes to the end of one that never stopped."""
+
+    def check(phase: str, time: float) -> None:
+        if time > 5.0:
+            raise Interrupted(f"interrupted at {time:g} s of the {phase}")
+
+    with monkeypatch.context() as stopped:
+        stopped.setattr(interrupts, "check", check)
+        done = run_and_write(
+            mission.scene,
+            tmp_path / "cut",
+            Progress(),
+            False,
+            False,
+            settings=mission.settings,
+            save_at=("capture:3 s",),
+        )
+    assert (done.result.status, list(done.result.phases)) == ("interrupted", ["capture"])
+    assert tables(put(done.folder, tmp_path / "on", go_on="capture:3 s")) == tables(mission.whole)
