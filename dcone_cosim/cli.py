@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -23,8 +22,9 @@ from dcone_cosim.cli_options import (
     promise,
     results,
 )
+from dcone_cosim.cli_runs import runs_app
 from dcone_cosim.completion import phases_like, scenes_like
-from dcone_cosim.errors import BAD_INPUT, DconeError, InputError
+from dcone_cosim.errors import BAD_INPUT, DconeError
 from dcone_cosim.exits import complain as _complain
 from dcone_cosim.exits import reader_may_leave as _reader_may_leave
 
@@ -35,6 +35,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help takes half the time: rich would load its Markdown reader for it
 )
 app.add_typer(cache_app, name="cache")
+app.add_typer(runs_app)
 app.add_typer(cases_app)
 
 
@@ -53,81 +54,6 @@ def common(
     ] = False,
 ) -> None:
     """Net capture and tethered removal of space debris, as a co-simulation of FMI 2.0 units."""
-
-
-@app.command()
-def run(
-    scene: SceneName,
-    out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="Folder for the results; runs/SCENE-TIME if not given.")
-    ] = None,
-    settings: Settings = None,
-    csv: Annotated[bool, typer.Option("--csv", help="Write the columns as CSV too.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
-    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
-    force: Annotated[bool, typer.Option("--force", help="Replace the results in the folder.")] = False,
-    isolate: Annotated[
-        bool | None,
-        typer.Option(
-            "--isolate/--no-isolate",
-            help="Run every FMU in a process of its own, or none; those that were not built here if not given.",
-            show_default=False,
-        ),
-    ] = None,
-    ensemble: Annotated[
-        int | None,
-        typer.Option(
-            "--ensemble", metavar="N", help="Run it N times, each with a start that differs by 1 um: mean and spread."
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="Of an ensemble's first run; the others count on.")] = 0,
-    jobs: Jobs = None,
-    offline: Offline = False,
-) -> None:
-    """Run a scene and write its results.
-
-    With --ensemble the summary is mean, spread and percentiles of all figures, and a table has every run; the same
-    command goes on with the runs that are missing.
-
-    Exit code: 0 success, 1 the results are complete but could not be told, 2 bad input, 3 the capture failed,
-    4 the hand-off was refused or violated, 5 an FMU failed, 6 interrupted, and what was reached is kept,
-    7 some runs of an ensemble failed, 8 a line bore more than it can; 130 or 143 interrupted, and there was nothing to
-    keep.
-    """
-    promise(offline)
-    if ensemble is not None:
-        if force:
-            raise InputError("--force: an ensemble goes on with what is in its folder; choose another with -o")
-        raise typer.Exit(cli_cases.ensemble(scene, ensemble, seed, out, settings or [], jobs, isolate, json))
-    gc.disable()  # while modules are imported nothing is garbage; `run_and_write` enables it again
-    from dcone_cosim.commands import run_and_write
-
-    progress = make_progress()
-    try:
-        with exits.noise_apart():
-            written = run_and_write(scene, out, progress, csv, figures, force, settings or (), isolate)
-    finally:
-        progress.close()
-    result = written.result
-    from dcone_cosim.reports import summary
-    from dcone_cosim.reports.warnings import warnings
-
-    with _reader_may_leave():
-        if json:
-            from dcone_cosim.run_folder import as_json
-
-            more = {"folder": str(written.folder), "notes": written.notes}
-            typer.echo(as_json(summary.as_dict(result) | more))
-        else:
-            summary.show(result, results())
-            typer.echo(f"results in {written.folder}")
-    for note in written.notes:
-        _complain(f"note: {note}")
-    for warning in warnings(result):
-        _complain(f"warning: {warning}")
-    if result.message:
-        _complain(result.message)
-    raise typer.Exit(result.exit_code)
 
 
 @app.command()

@@ -7,22 +7,23 @@ import gc
 import sys
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
-from dcone_cosim import build, interrupts, loads, placed
+from dcone_cosim import build, interrupts, placed
 from dcone_cosim.apart import ours, phases_apart
 from dcone_cosim.drafts import atomic_folder, check_folder, check_free
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import find, load, named
-from dcone_cosim.master import run_scene
 from dcone_cosim.plots import style
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
 from dcone_cosim.results import Attained, RunResult
+from dcone_cosim.resume import instants
+from dcone_cosim.resume.begin import Origin
 from dcone_cosim.run_folder import default_folder, fill
-from dcone_cosim.scene_fmus import SceneFmus, remarks
+from dcone_cosim.running import run_once
 from dcone_cosim.scenes.kept import unlike
 from dcone_cosim.scenes.reading import parse, read_text
 from dcone_cosim.scratch import Scratch, clear_left
@@ -51,35 +52,41 @@ def run_and_write(
     force: bool = False,
     settings: Sequence[str] = (),
     isolate: bool | None = None,
+    save_at: Sequence[str] = (),
+    go_on: str = "",
 ) -> Written:
-    """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing."""
+    """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing.
+
+    save_at    instants at which states are kept
+    go_on      where the run of the folder that `name` is goes on; "" to run it from its beginning
+    """
     started = datetime.now(UTC)
-    scene = named(name, settings).isolating(isolate)
+    origin = Origin(Path(name), go_on, settings) if go_on else None
+    scene = (named(name, settings) if origin is None else origin.scene).isolating(isolate)
+    keep = instants.save_at(save_at, scene)
+    if keep and scene.accuracy is not None:
+        raise InputError("--save-at: the scene asks for an accuracy, for which it is run several times; leave one out")
     folder = out if out is not None else default_folder(scene.name)
     left = clear_left(folder.absolute().parent)
     check_free(folder, force and out is not None)
-    notes = list(scene.notes)
     attained: Mapping[str, Attained] = {}
     if scene.accuracy is not None:
-        from dcone_cosim.accuracy.attain import attain
+        from dcone_cosim.accuracy.attain import as_asked
 
         with interrupts.heeded():
-            changes, attained = attain(name, settings, scene, isolate, progress)
-        scene = replace(scene, phases=load(name, [*settings, *changes], choose=False).isolating(isolate).phases)
+            scene, attained = as_asked(name, settings, scene, isolate, progress)
+
+    def meanwhile() -> None:
+        gc.freeze()  # what has been imported by now stays
+        gc.enable()
+        threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
+
     with interrupts.heeded(), atomic_folder(folder, force and out is not None) as draft:
-        if left + draft.removed:
-            notes.append(LEFT_BEHIND)
-        with SceneFmus(scene, progress) as archives:
-            gc.freeze()  # what has been imported by now stays
-            gc.enable()
-            threading.Thread(target=_load, args=(with_figures,), daemon=True).start()
-            result = run_scene(scene, archives.instantiate, progress, archives.adopt)
-            facts = archives.facts()
-        loads.judge(result)
-        result.attained = attained
-        notes += [*nothing_recorded(result), *remarks(facts)]
-        if Path(name) == Path(scene.source).parent:
-            notes += unlike(Path(name), facts)
+        begin = None if origin is None else origin.begun
+        ran = run_once(scene, progress, begin, keep, attained, meanwhile)
+        result, notes = ran.result, [*([LEFT_BEHIND] if left + draft.removed else []), *ran.notes]
+        if origin is None and Path(name) == Path(scene.source).parent:
+            notes += unlike(Path(name), ran.facts)
 
         def draw(path: Path) -> None:
             if interrupts.noted():
@@ -89,19 +96,10 @@ def run_and_write(
                 progress.say("drawing")
                 notes.extend(_draw(result, path))
 
-        fill(draft.path, result, facts, summary.as_dict(result), started, with_csv, draw if with_figures else None)
+        fill(draft.path, result, ran.facts, summary.as_dict(result), started, with_csv, draw if with_figures else None)
     if out is not None and draft.folder != folder:
         notes.append(f"{folder} came to be while the scene ran and was not touched; the results are in {draft.folder}")
     return Written(result, draft.folder, notes)
-
-
-def nothing_recorded(result: RunResult) -> list[str]:
-    """Which phases leave nothing but their times."""
-    return [
-        f"nothing is recorded of the {name}: its FMU has no outputs that are numbers"
-        for name, phase in result.phases.items()
-        if len(phase.recorder.names) == 1
-    ]
 
 
 def _load(with_figures: bool) -> None:

@@ -8,8 +8,8 @@ since what it holds is saved and restored with the state.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Protocol, runtime_checkable
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -269,6 +269,20 @@ class Held:
     def release(self, key: str = "") -> None:
         self.component.release(key)
         self._kept.pop(key, None)
+
+    def as_kept(self) -> dict[str, Any]:
+        self.settle()
+        log = self._log
+        tugs = None if log is None else {"count": log.count, "rows": [[n, *row] for n, row in log.rows.items()]}
+        return {"component": self.component.as_kept(), "row": asdict(self._state), "tugs": tugs}
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        self.component.take_up(kept["component"])
+        self._pending = self._checkpoint = False
+        self._rates = {}
+        self._state = _State(**kept["row"])
+        if self._log is not None:
+            self._log.take_up(kept["tugs"]["count"], kept["tugs"]["rows"])
 
 
 class _Row:

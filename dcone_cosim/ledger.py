@@ -9,8 +9,9 @@ sums would hide everything: 1e-12 of the geocentric angular momentum is 160 N m 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -53,6 +54,13 @@ class LedgerRow:
     @property
     def closed(self) -> bool:
         return self.closure <= CLOSURE
+
+    @classmethod
+    def of(cls, told: Mapping[str, Any]) -> LedgerRow:
+        """The row that `as_dict` told of."""
+        before, after, accounted = (float(told[name]) for name in ("before", "after", "accounted"))
+        size = float(told["sum_of_magnitudes"])
+        return cls(told["quantity"], told["unit"], before, after, accounted, told["account"], size)
 
     def as_dict(self) -> dict[str, str | float | bool]:
         return {

@@ -8,31 +8,52 @@ away what was reached: they end up in the `RunResult`, whose `exit_code` says wh
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from dcone_cosim.errors import FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
 from dcone_cosim.fmu.component import NUMBERS, CallError, Steppable
 from dcone_cosim.phases import kind_of
 from dcone_cosim.phases.phase import Adopt, Instantiate, Loop, Stage
 from dcone_cosim.progress import Progress
-from dcone_cosim.results import Handover, RunResult
+from dcone_cosim.results import Begun, Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.mistakes import places_named
+from dcone_cosim.states import Keeper
 
 
 def adopt_nothing(phase: PhaseScene) -> None:
     """For FMUs that are the same whatever is handed over."""
 
 
-def run_scene(scene: Scene, instantiate: Instantiate, progress: Progress, adopt: Adopt = adopt_nothing) -> RunResult:
+def run_scene(
+    scene: Scene,
+    instantiate: Instantiate,
+    progress: Progress,
+    adopt: Adopt = adopt_nothing,
+    begun: Begun | None = None,
+    keep: Mapping[str, Sequence[float]] = MappingProxyType({}),
+    until: str = "",
+) -> RunResult:
     """Run every phase of the scene; a fault of an FMU before its first step is an `InputError`, since it is the
-    parameters that it refuses, unless a phase before has handed them over."""
-    run, phases = RunResult(scene), scene.phases
+    parameters that it refuses, unless a phase before has handed them over.
+
+    begun    what the run goes on from, None for one from its beginning
+    keep     instants at which the state of a phase is kept, by the phase's own time [s]
+    until    name of the phase that is not run any more; "" to run all
+    """
+    run, phases = RunResult(scene) if begun is None else begun.run_of(scene), scene.phases
     for before, phase, after in zip((None, *phases), phases, (*phases[1:], None), strict=False):
-        _run(Stage(run, phase, before, after, instantiate, progress), adopt)
-        if run.exit_code != SUCCESS:
+        if run.exit_code != SUCCESS or phase.name == until:
             break
+        if phase.name in run.phases:
+            continue
+        keeper = Keeper(phase.name, keep[phase.name]) if phase.name in keep else None
+        here = begun if begun is not None and begun.state is not None and begun.state.phase == phase.name else None
+        _run(Stage(run, phase, before, after, instantiate, progress, keeper, here), adopt)
+        if keeper is not None:
+            run.states += keeper.kept
     return run
 
 
@@ -83,9 +104,12 @@ def _begun(stage: Stage, component: Steppable, handover: Handover | None) -> Loo
     if handover is not None:
         values |= handover.parameters(component)
         start = handover.start
+    if stage.begun is not None:
+        return _gone_on(stage, stage.begun, component, handover, start)
     try:
         _initialise(stage, component, values, start)
         loop = kind_of(phase.name).loop(stage, component, start)
+        loop.keeper = stage.keeper
     except FmuError as error:
         if handover is None:
             raise cannot_begin(run.scene, phase.name, error) from error
@@ -110,12 +134,39 @@ def _begun(stage: Stage, component: Steppable, handover: Handover | None) -> Loo
     return loop
 
 
+def _gone_on(stage: Stage, begun: Begun, component: Steppable, handover: Handover | None, start: float) -> Loop:
+    """The component in a state that an earlier run kept, and what steps it on; `InputError` where it does not take
+    that."""
+    run, name, before = stage.run, stage.phase.name, begun.before
+    assert begun.state is not None
+    for of in (before.given, before.parameters, before.inputs):
+        if name not in of:
+            raise InputError(f"the kept state of the {name} cannot be gone on from: that run does not tell its values")
+    run.given[name], run.parameters[name], run.inputs[name] = (
+        dict(of[name]) for of in (before.given, before.parameters, before.inputs)
+    )
+    if handover is not None:
+        handover.recall(begun.ledger)
+    try:
+        component.set(run.given[name])
+        component.enter_initialisation(start, None)
+        component.exit_initialisation()
+        loop = kind_of(name).loop(stage, component, start)
+        loop.keeper = stage.keeper
+        loop.take_up(begun.state, before.phases[name], begun.changed)
+    except FmuError as error:
+        raise InputError(f"the kept state of the {name} cannot be gone on from\n  {error}") from error
+    return loop
+
+
 def _initialise(stage: Stage, component: Steppable, values: Mapping[str, float], start: float) -> None:
     """Set the values, begin at `start` [s], and keep what then stands."""
     run, name = stage.run, stage.phase.name
     run.given[name] = dict(values)
     component.set(values)
-    component.enter_initialisation(start, start + stage.phase.duration)
+    # a state that is kept may be gone on from for longer: no end is told where one is to be kept
+    stop = None if stage.keeper is not None else start + stage.phase.duration
+    component.enter_initialisation(start, stop)
     component.exit_initialisation()
     run.parameters[name] = standing(component, "parameter")
     run.inputs[name] = standing(component, "input")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -53,6 +54,25 @@ class Recorder:
         self._full = self._rows
         self._block: Row = np.empty((len(self.names), rows))
         self._blocks.append(self._block)
+
+    @classmethod
+    def of(cls, columns: Mapping[str, tuple[str, str, Row]]) -> Recorder:
+        """One that holds rows already: unit, kind and values of each column, the time first."""
+        recorder = cls((), {})
+        recorder.names = tuple(columns)
+        recorder.units = {name: unit for name, (unit, _, _) in columns.items()}
+        recorder.kinds = {name: kind for name, (_, kind, _) in columns.items()}
+        recorder._place = {name: i for i, name in enumerate(recorder.names)}
+        recorder._block = np.array([values for _, _, values in columns.values()], dtype=float)
+        recorder._blocks = [recorder._block]
+        recorder._rows = recorder._block.shape[1]
+        return recorder
+
+    def take_up(self, earlier: Recorder, rows: int) -> None:
+        """Begin with the first rows of another one with the same columns."""
+        self._block = np.empty((len(self.names), rows + min(max(rows, FIRST_ROWS), MOST_ROWS)))
+        self._block[:, :rows] = [earlier[name][:rows] for name in self.names]
+        self._blocks, self._rows, self._full = [self._block], rows, 0
 
     def __len__(self) -> int:
         return self._rows
@@ -119,6 +139,28 @@ class Snapshots:
         self._seen += 1
         return (self._seen - 1) % self._stride == 0
 
+    def as_kept(self) -> dict[str, Any]:
+        """All of it as plain data and bytes."""
+        shapes = [list(nodes.shape) for nodes in self.nodes]
+        nodes = np.concatenate([part.ravel() for part in self.nodes]) if self.nodes else np.zeros(0)
+        return {
+            "times": list(self.times),
+            "shapes": shapes,
+            "nodes": nodes.tobytes(),
+            "wanted": list(self._wanted),
+            "stride": self._stride,
+            "seen": self._seen,
+        }
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Hold what `as_kept` says, and go on in the same rhythm."""
+        self.times, self.nodes, begin = list(kept["times"]), [], 0
+        numbers = np.frombuffer(kept["nodes"])
+        for rows, columns in kept["shapes"]:
+            self.nodes.append(numbers[begin : begin + rows * columns].reshape(rows, columns).copy())
+            begin += rows * columns
+        self._wanted, self._stride, self._seen = list(kept["wanted"]), kept["stride"], kept["seen"]
+
     def add(self, time: float, positions: Row) -> None:
         """positions: (nodes, 3) [m]"""
         self.times.append(time)
@@ -146,6 +188,11 @@ class TugLog:
         self.count = count
         for place, (time, peak, speed) in enumerate(latest[:changed].tolist()):
             self.rows[count - place] = (time, peak, speed)
+
+    def take_up(self, count: int, rows: Sequence[Sequence[float]]) -> None:
+        """Hold these rows: number, time [s], peak [N], speed [m/s] of each."""
+        self.count = int(count)
+        self.rows = {int(number): (time, peak, speed) for number, time, peak, speed in rows}
 
     @property
     def newest(self) -> tuple[float, float, float] | None:

@@ -14,6 +14,7 @@ from dcone_cosim.fmu.steppable import Steppable, Terminated
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 from dcone_cosim.scene.data import PhaseScene, Scene
+from dcone_cosim.states import KeptState
 
 
 @dataclass
@@ -91,6 +92,9 @@ class Handover(Protocol):
     def told(self) -> dict[str, Any]:
         """What `ledger.json` holds of it."""
 
+    def recall(self, told: Mapping[str, Any]) -> None:
+        """Know again what was found as it was closed, from what `ledger.json` holds."""
+
 
 @dataclass(frozen=True)
 class Attained:
@@ -126,6 +130,8 @@ class RunResult:
     handovers    by the phase that took over
     comparisons  by phase, the same once more, had the shot given no momentum
     attained     by phase, where the scene asks for an accuracy
+    states       that were kept on the way
+    gone_on      of a run that went on from another: from where, and what was changed there
     """
 
     scene: Scene
@@ -140,6 +146,8 @@ class RunResult:
     status: str = "completed"
     message: str = ""
     exit_code: int = SUCCESS
+    states: list[KeptState] = field(default_factory=list)
+    gone_on: Mapping[str, Any] = field(default_factory=dict)
 
     def fail(self, status: str, message: str, exit_code: int) -> None:
         self.status, self.message, self.exit_code = status, message, exit_code
@@ -148,3 +156,35 @@ class RunResult:
         """Note what ended a phase early: an interrupt, or a failure of its FMU."""
         status = "interrupted" if isinstance(error, Interrupted) else "FMU failed"
         self.fail(status, str(error), error.exit_code)
+
+
+@dataclass(frozen=True)
+class Begun:
+    """What a run goes on from.
+
+    before    an earlier run
+    over      phases of it that are over and stay as they are
+    state     in which the phase after these was left, None where that begins anew
+    changed   variables of its main FMU that have other values from there on, SI
+    ledger    of what that phase took over when it began, as `Handover.told` has it; only with a state
+    told      of it, for the provenance
+    """
+
+    before: RunResult
+    over: Sequence[str]
+    state: KeptState | None = None
+    changed: Mapping[str, float] = field(default_factory=dict)
+    ledger: Mapping[str, Any] = field(default_factory=dict)
+    told: Mapping[str, Any] = field(default_factory=dict)
+
+    def run_of(self, scene: Scene) -> RunResult:
+        """The run that goes on, with the phases that are over; failed as the earlier one where the last did not hand
+        over."""
+        before, run = self.before, RunResult(scene, gone_on=self.told)
+        for of in ("phases", "parameters", "inputs", "given", "left", "handovers", "comparisons", "attained"):
+            setattr(run, of, {name: value for name, value in getattr(before, of).items() if name in self.over})
+        for record in run.handovers.values():
+            run.scene = run.scene.with_phase(record.phase)
+        if self.over and self.over[-1] not in run.left:
+            run.fail(before.status, before.message, before.exit_code)
+        return run

@@ -2,7 +2,7 @@
 
     summary.json  provenance.json  scene.toml  fmus/*.fmu  ledger.json  ledger.csv
     PHASE.parquet  nodes.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
-    *.png
+    states/*.state  *.png
 
 Columns carry their unit in the field metadata of the Parquet file, and in `df.attrs["units"]` where pandas reads it; in
 a CSV the unit stands in the header. An output called `time` is in the column `output.time`, beside that of our own.
@@ -25,11 +25,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from dcone_cosim import state_file
 from dcone_cosim.drafts import PROVENANCE, contents
 from dcone_cosim.phases import kind_of
 from dcone_cosim.recorder import Snapshots, TugLog
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scenes.kept import keep
+from dcone_cosim.states import KeptState
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -38,6 +40,10 @@ PACKAGES = (
     *("dcone-cosim", "numpy", "fmpy", "astropy", "tomlkit", "pyarrow", "matplotlib", "typer"),
     *("numba", "llvmlite", "ziglang"),
 )
+
+
+NODES = "nodes"
+"""Name of the table of the net's knots."""
 
 
 def default_folder(scene: str) -> Path:
@@ -58,18 +64,27 @@ def fill(
     import pyarrow.parquet
 
     keep(run.scene, folder)
-    for name, table in _tables(run):
+    for name, table in tables_of(run):
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet")
         if with_csv:
             headed = table.rename_columns([csv_head(f) for f in table.schema])
             pyarrow.csv.write_csv(headed, folder / f"{name}.csv")
     for place, (name, handover) in enumerate(run.handovers.items()):
-        _write_ledger(handover, folder / (f"ledger_{name}.json" if place else "ledger.json"))
+        _write_ledger(handover, folder / ledger_file(place, name))
+    states = [_write_state(state, folder) for state in run.states]
     _write_json(folder / "summary.json", summary)
     if draw is not None:
         draw(folder)
     files = sorted({*contents(folder), PROVENANCE})
-    _write_json(folder / PROVENANCE, provenance(run, fmus, started) | {"files": files})
+    _write_json(folder / PROVENANCE, provenance(run, fmus, started) | {"states": states, "files": files})
+
+
+def _write_state(state: KeptState, folder: Path) -> dict[str, Any]:
+    """Write a kept state; returns what the provenance tells of it."""
+    name = state_file.name_of(state)
+    (folder / name).parent.mkdir(exist_ok=True)
+    about = {"phase": state.phase, "asked": state.asked, "time": state.time, "rows": state.rows}
+    return {"file": name, "sha256": state_file.write(state, folder / name), **about}
 
 
 def csv_head(field: pa.Field) -> str:
@@ -128,12 +143,13 @@ def _arrow(values: npt.NDArray[Any]) -> Any:
     return pa.Array.from_buffers(kind, len(values), [None, pa.py_buffer(contiguous)])
 
 
-def _tables(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
+def tables_of(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
+    """Every table of a run by its name."""
     for name, result in run.phases.items():
         kind, clock = kind_of(name), kind_of(name).clock(run)
         yield name, phase_table(result, clock)
         if result.snapshots.times:
-            yield "nodes", nodes_table(result.snapshots, clock)
+            yield NODES, nodes_table(result.snapshots, clock)
         if result.tugs is not None:
             yield kind.tugs_file, tugs_table(result.tugs, clock)
         if result.passive:
@@ -197,6 +213,11 @@ def passive_table(result: PhaseResult, clock: str) -> pa.Table:
     )
 
 
+def ledger_file(place: int, phase: str) -> str:
+    """Name of the file of a hand-over: the first of a run, or a later one."""
+    return f"ledger_{phase}.json" if place else "ledger.json"
+
+
 def _write_ledger(handover: Handover, path: Path) -> None:
     """What was handed over, as JSON, and its ledger once more as CSV."""
     _write_json(path, handover.told())
@@ -239,6 +260,8 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
             "inputs": run.inputs.get(name, {}),
             "given": given,
             "handed_over": {n: value for n, value in given.items() if phase.main.parameters.get(n) != value},
+            "left": run.left.get(name, {}),
+            "came_out": _came_out(result),
         }
     return {
         "scene": run.scene.name,
@@ -257,4 +280,32 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         "processors": os.cpu_count(),
         "packages": versions,
         "phases": phases,
+        "without_recoil": {name: _compared(result) for name, result in run.comparisons.items()},
+        "attained": {name: vars(attained) for name, attained in run.attained.items()},
+        "gone_on": dict(run.gone_on),
     }
+
+
+def _came_out(result: PhaseResult) -> dict[str, Any]:
+    """How a phase came out, beside its tables."""
+    located = None if result.located is None else {"value": result.located, "unit": "s"}
+    return {
+        "outcome": result.outcome,
+        "located": located,
+        "located_by": result.located_by,
+        "ended_by": result.ended_by,
+        "ended_at": {"value": result.ended_at, "unit": "s"},
+        "tugs": None if result.tugs is None else {"count": result.tugs.count, "ring": result.tugs.ring},
+        "coupling": dict(result.coupling),
+    }
+
+
+def _compared(result: PhaseResult) -> dict[str, Any]:
+    """What is told of a phase run for comparison, beside its tugs: whether its line began taut, and its extremes."""
+    recorder = result.recorder
+    row = {}
+    if len(recorder) and "tether.taut" in recorder:
+        row["tether.taut"] = float(recorder["tether.taut"][0])
+    if len(recorder) and "tether.tension_peak" in recorder:
+        row["tether.tension_peak"] = float(np.max(recorder["tether.tension_peak"]))
+    return {"tugs": _came_out(result)["tugs"], "row": row}

@@ -8,12 +8,13 @@ from typing import Any
 
 from dcone_cosim import build
 from dcone_cosim.errors import FmuError, InputError
-from dcone_cosim.fmu import isolation
+from dcone_cosim.fmu import children
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, Steppable
 from dcone_cosim.fmu.isolation import IsolatedComponent
 from dcone_cosim.fmu.leaving import guard_exit
 from dcone_cosim.fmu.shelf import Shelf
+from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import ComponentScene, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import places_named
@@ -34,7 +35,7 @@ class SceneFmus:
         components = [(phase.name, component) for phase in scene.phases for component in phase.components]
         ours = [(phase, component) for phase, component in components if component.fmu is None]
         try:
-            isolation.make_ready(sum(c.isolate or (c.isolate is None and c.fmu is not None) for _, c in components))
+            children.make_ready(sum(c.isolate or (c.isolate is None and c.fmu is not None) for _, c in components))
             with progress.working("building"):
                 built = build.ensure([(component.model, component.terms) for _, component in ours], progress.say)
             paths = {(phase, c.name): path for (phase, c), path in zip(ours, built, strict=True)}
@@ -143,6 +144,16 @@ class SceneFmus:
             text = f"{self._scene.source}: {component.name} of the {phase.name} cannot begin"
             raise InputError(f"{text}\n  {where}{error.said}\n  ({error.detail})") from error
 
+    def variables(self, phase: str) -> Mapping[str, VariableInfo]:
+        """Of the main FMU of a phase."""
+        plan = self._phases[phase]
+        return self._archive(plan, plan.main).variables
+
+    def without_states(self, phase: str) -> list[str]:
+        """Components of a phase whose FMU cannot write its state to a file."""
+        plan = self._phases[phase]
+        return [c.name for c in plan.components if not self._archive(plan, c).can_serialise]
+
     def facts(self) -> dict[str, dict[str, Any]]:
         """What identifies the FMUs of each phase and how they were coupled, for the provenance."""
         return {name: self._facts_of(phase) for name, phase in self._phases.items()}
@@ -195,7 +206,7 @@ class SceneFmus:
         return self
 
     def close(self) -> None:
-        isolation.dismiss()
+        children.dismiss()
         if self._shelf is not None:
             self._shelf.clear()
         for archive in (*self._of.values(), *(adopted for _, adopted in self._adopted.values())):

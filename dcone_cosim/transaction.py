@@ -5,7 +5,7 @@ The mapping itself is `handoff`'s, the line's `line`'s; here they are held again
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -124,6 +124,13 @@ class HandoffRecord:
 
     def close(self, component: Steppable) -> None:
         close_ledger(self, component)
+
+    def recall(self, told: Mapping[str, Any]) -> None:
+        self.rows = [LedgerRow.of(row) for row in told["rows"]]
+        self.checks = [Check(**check) for check in told["cross_checks"]]
+        more = {name: float(v) for name, v in told["set_in_removal"].items() if name not in self.handed.parameters}
+        self.line_parameters, self.turning = ({}, more) if RATE_FRAME in more else (more, {})
+        self.failure = told["failure"]
 
     def findings(self) -> list[Finding]:
         return list(findings(self))

@@ -325,6 +325,8 @@ class Model:
 
 def _reduced(v: Variable, inputs: Container[str], is_state: bool) -> Variable:
     """A row with the dependencies it has beside these inputs; those of a state hold at the start alone."""
+    if not (v.partials or v.at_start):
+        return v
     partials = tuple(p for p in v.partials if p[0] in inputs)
     at_start = tuple(name for name in v.at_start if name in inputs)
     if is_state:

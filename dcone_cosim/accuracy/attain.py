@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from dcone_cosim.accuracy.judge import SIGMAS, Sample, error_of, sample_of, scatters
 from dcone_cosim.accuracy.plan import Planned, Planner
@@ -26,6 +26,7 @@ from dcone_cosim.cases.rows import Row
 from dcone_cosim.cases.runner import Memory, Runner
 from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.errors import FmuError, InputError
+from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import Attained
 from dcone_cosim.scene.data import Accuracy, PhaseScene, Scene
@@ -38,6 +39,16 @@ MARGIN = 1.3
 """More runs than the scatter asks for, which is known from few."""
 Make = Callable[[Sequence[Planned], int], list[Sample]]
 """Runs each of some settings so many times."""
+
+
+def as_asked(
+    name: str, settings: Sequence[str], scene: Scene, isolate: bool | None, progress: Progress
+) -> tuple[Scene, Mapping[str, Attained]]:
+    """The scene with the settings that have the accuracy it asks for, if it does, and how exact each phase then is."""
+    if scene.accuracy is None:
+        return scene, {}
+    changes, attained = attain(name, settings, scene, isolate, progress)
+    return replace(scene, phases=load(name, [*settings, *changes], choose=False).isolating(isolate).phases), attained
 
 
 @dataclass

@@ -35,12 +35,21 @@ class Value:
 
 
 @dataclass(frozen=True)
+class Begins:
+    """Where the run is kept that a case goes on from, and which of its phases that has: see `beginnings`."""
+
+    folder: Path
+    over: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Case:
     """One run to be made; plain data, which can be sent to another process or machine.
 
     key        its hash, under which its row is kept
     settings   `KEY=VALUE`, what the command line would have to set to run this case alone
     varied     what the keys that are varied are here
+    begins     phases that need not be run, since others have them in common; it has no part in the hash
     """
 
     key: str
@@ -48,6 +57,7 @@ class Case:
     settings: tuple[str, ...] = ()
     varied: Mapping[str, Value] = field(default_factory=dict)
     seed: int | None = None
+    begins: Begins | None = field(default=None, kw_only=True)
 
 
 def content(scene: Scene) -> Any:

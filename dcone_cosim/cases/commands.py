@@ -10,6 +10,7 @@ provenance.json scene.toml what made it; the scene before anything was varied
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
@@ -23,6 +24,7 @@ from dcone_cosim.cases import ensemble as ensembles
 from dcone_cosim.cases import show, vary
 from dcone_cosim.cases.alone import Fmus
 from dcone_cosim.cases.case import Case, Value, code, content, digest, identities, key_of
+from dcone_cosim.cases.early import Early, begun_together
 from dcone_cosim.cases.pace import Pace
 from dcone_cosim.cases.plot import draw
 from dcone_cosim.cases.rows import Row, refused
@@ -30,7 +32,7 @@ from dcone_cosim.cases.runner import Runner
 from dcone_cosim.cases.statistics import Summary, summarise
 from dcone_cosim.cases.store import ROWS, Store
 from dcone_cosim.cases.table import Column, Entry, write
-from dcone_cosim.cases.work import run_case
+from dcone_cosim.cases.work import make_ready, run_case
 from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.drafts import PROVENANCE, to_disk
 from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError, Interrupted
@@ -77,6 +79,7 @@ class Plan:
     entries    in the order of the table: the case, or the row of one that cannot be; its values; its seed
     facts      of the FMUs, for the provenance; `fmus` identifies those of the base
     about      what else the summary and the provenance tell
+    identified what the FMUs of a case are, by its key, of those that may have beginnings in common
     """
 
     kind: str
@@ -87,6 +90,7 @@ class Plan:
     facts: list[Mapping[str, Any]]
     fmus: Mapping[str, str]
     about: Mapping[str, Any]
+    identified: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def cases(self) -> list[Case]:
@@ -115,10 +119,50 @@ def sweep(
     isolate: bool | None = None,
 ) -> Done:
     """Run a grid of cases and write its folder. Bad input raises and leaves nothing."""
-    keys = vary.read(arguments, settings)
+    return sweep_over(name, vary.read(arguments, settings), out, progress, settings, jobs, with_figures, isolate)
+
+
+def sweep_over(
+    name: str,
+    keys: Sequence[vary.Varied],
+    out: Path | None,
+    progress: Progress,
+    settings: Sequence[str] = (),
+    jobs: int | None = None,
+    with_figures: bool = True,
+    isolate: bool | None = None,
+) -> Done:
+    """The same with the keys and their values as they are."""
     base = named(name, settings).isolating(isolate)
-    fmus = Fmus(progress)
-    of_base = fmus.of(base)
+    folder = _folder(base, SWEEP, out)
+    count = _processes(jobs, math.prod(len(key.values) for key in keys))
+    with ExitStack() as last, Workers(count) as workers:
+        for _ in range(count):
+            workers.submit(make_ready, None)
+        fmus = Fmus(progress)
+        of_base = fmus.of(base)
+        firsts = [] if len(base.phases) == 1 else vary.first_two(name, keys, settings)
+        firsts = [scene.isolating(isolate) for scene in firsts]
+        early = Early([(scene, fmus.of(scene)) for scene in firsts], folder, workers)
+        last.callback(early.close)  # once no worker writes there any more
+        for _ in range(count):
+            workers.submit(make_ready, base)
+        plan = _planned(name, base, keys, settings, isolate, progress, fmus, of_base)
+        return _carry_out(plan, folder, progress, workers, 2 * count, with_figures, early)
+
+
+def _planned(
+    name: str,
+    base: Scene,
+    keys: Sequence[vary.Varied],
+    settings: Sequence[str],
+    isolate: bool | None,
+    progress: Progress,
+    fmus: Fmus,
+    of_base: Mapping[str, str],
+) -> Plan:
+    """Every case, checked."""
+    identified: dict[str, Mapping[str, str]] = {}
     entries: list[tuple[Case | Row, Mapping[str, Value], int | None]] = []
     for combination in vary.grid(name, keys, settings, progress.say):
         if combination.scene is None:
@@ -126,11 +170,13 @@ def sweep(
             entries.append((refused(key, combination.refusal), combination.values, None))
             continue
         scene = combination.scene.isolating(isolate)
-        key = key_of(scene, fmus.of(scene), None)
+        of_scene = fmus.of(scene)
+        key = key_of(scene, of_scene, None)
+        identified[key] = of_scene
         entries.append(
             (Case(key, scene, (*settings, *combination.settings), combination.values), combination.values, None)
         )
-    plan = Plan(
+    return Plan(
         SWEEP,
         base,
         f"{base.title} (varied: {', '.join(key.key for key in keys)})".lstrip(),
@@ -139,8 +185,8 @@ def sweep(
         list(fmus.facts.values()),
         of_base,
         {"varied": {key.key: list(key.values) for key in keys}},
+        identified,
     )
-    return _carry_out(plan, out, progress, jobs, with_figures)
 
 
 def ensemble(
@@ -168,20 +214,35 @@ def ensemble(
     about = {"ensemble": {"runs": count, "first_seed": seed, "jitter": list(ensembles.jitter(base, seed))}}
     title = f"{base.title}: {count} runs with jittered starts"
     plan = Plan(ENSEMBLE, base, title, {}, entries, facts, identities(facts[0]), about)
-    return _carry_out(plan, out, progress, jobs, False)
+    processes = _processes(jobs, count)
+    with Workers(processes) as workers:
+        return _carry_out(plan, _folder(base, ENSEMBLE, out), progress, workers, 2 * processes, False)
 
 
-def _carry_out(plan: Plan, out: Path | None, progress: Progress, jobs: int | None, with_figures: bool) -> Done:
-    started = datetime.now(UTC)
+def _processes(jobs: int | None, cases: int) -> int:
     if jobs is not None and not 1 <= jobs <= MOST_JOBS:
         raise InputError(f"--jobs {jobs}: expected 1 to {MOST_JOBS} processes")
-    cases = plan.cases
-    count = max(1, min(jobs or cores(), len(cases)))
-    folder = out if out is not None else default_folder(f"{plan.base.name}-{plan.kind.split()[1]}")
+    return max(1, min(jobs or cores(), cases))
+
+
+def _folder(base: Scene, kind: str, out: Path | None) -> Path:
+    return out if out is not None else default_folder(f"{base.name}-{kind.split()[1]}")
+
+
+def _carry_out(
+    plan: Plan,
+    folder: Path,
+    progress: Progress,
+    workers: Executor,
+    ahead: int,
+    with_figures: bool,
+    early: Early | None = None,
+) -> Done:
+    started = datetime.now(UTC)
     with interrupts.heeded(TOLD), Store(folder, plan.study()) as store:
         interrupts.arm()
-        with Workers(count) as workers:
-            rows = run_all(cases, store, workers, 2 * count, progress)
+        cases = begun_together(plan.cases, plan.identified, store, workers, progress, early)
+        rows = run_all(cases, store, workers, ahead, progress)
         store.gather_if_many()
         done = _result(plan, rows, folder)
         _write(plan, done, folder, started, with_figures)

@@ -73,10 +73,17 @@ def read(arguments: Sequence[str], settings: Sequence[str] = ()) -> list[Varied]
         found.append(Varied(key, tuple(values)))
     if not found:
         raise InputError(f"nothing is varied; give --vary: {FORM}")
-    count = math.prod(len(varied.values) for varied in found)
+    return checked(found)
+
+
+def checked(keys: list[Varied]) -> list[Varied]:
+    """The same, if they make no more cases than a grid may have."""
+    if not keys or not all(key.values for key in keys):
+        raise InputError("nothing is varied; expected a key with its values")
+    count = math.prod(len(varied.values) for varied in keys)
     if count > MOST:
         raise InputError(f"a grid of {count:,} cases; expected {MOST:,} at most")
-    return found
+    return keys
 
 
 def _pieces(argument: str, text: str) -> list[str]:
@@ -177,6 +184,16 @@ def grid(
     _need_to_work(values, found)
     _need_effects(name, found)
     return found
+
+
+def first_two(name: str, varied: Sequence[Varied], settings: Sequence[str] = ()) -> list[Scene]:
+    """The scenes of the first two combinations; none where one of them cannot be."""
+    *others, last = varied
+    fixed = [f"{key.key}={in_si(key.values[0]).given}" for key in others]
+    try:
+        return [load(name, [*settings, *fixed, f"{last.key}={in_si(of).given}"]) for of in last.values[:2]]
+    except InputError:
+        return []
 
 
 def _need_to_work(values: Mapping[str, Sequence[Value]], found: Sequence[Combination]) -> None:

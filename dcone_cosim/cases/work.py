@@ -12,17 +12,21 @@ import time as clock
 import traceback
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import replace
+from datetime import UTC, datetime
 from typing import Any
 
 from dcone_cosim import loads
-from dcone_cosim.cases.case import Case
+from dcone_cosim.cases.beginnings import Beginning, begun, write
+from dcone_cosim.cases.case import Begins, Case
 from dcone_cosim.cases.rows import FAULT, Row, of_summary, refused
 from dcone_cosim.errors import BAD_INPUT, FAILED_AFTER, FMU_FAILED, DconeError
 from dcone_cosim.fmu.shelf import Shelf
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.results import RunResult
+from dcone_cosim.results import Begun, RunResult
+from dcone_cosim.running import Ran
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus, fmus_of
 
@@ -49,10 +53,11 @@ class Fleet:
         self._of: tuple[Any, ...] = ()
         self._fmus: SceneFmus | None = None
         self._proved = False
+        self._begun: tuple[Begins, Begun] | None = None
 
     def row(self, case: Case, tell: Telling = tell_summary) -> Row:
         """Run a case; whatever happens comes out as a row."""
-        with_kept = self._get_ready(case.scene) and not self.new
+        with_kept = self.get_ready(case.scene) and not self.new
         row = self._run(case, tell)
         if not with_kept or self._proved or not row.succeeded:
             return row
@@ -64,7 +69,31 @@ class Fleet:
             self.shelf.clear()
         return fresh
 
-    def _get_ready(self, scene: Scene) -> bool:
+    def begin(self, beginning: Beginning) -> None:
+        """Run first phases that cases have in common, and keep them."""
+        self.get_ready(beginning.scene)
+        scene, started = beginning.scene, datetime.now(UTC)
+        if self._fmus is None:
+            return  # the cases tell why
+        begun = self._begun_of(None if beginning.before is None else beginning.before.begins, scene)
+        try:
+            result = run_scene(
+                scene, self._fmus.instantiate, Progress(), self._fmus.adopt, begun, until=beginning.until
+            )
+            write(beginning, Ran(result, self._fmus.facts(), started))
+        except DconeError:
+            self.shelf.clear()
+
+    def _begun_of(self, begins: Begins | None, scene: Scene) -> Begun | None:
+        """What a run goes on from; that of the case before is at hand."""
+        if begins is None:
+            return None
+        if self._begun is None or self._begun[0] != begins:
+            found = begun(begins, scene)
+            self._begun = None if found is None else (begins, found)
+        return None if self._begun is None else self._begun[1]
+
+    def get_ready(self, scene: Scene) -> bool:
         """Have the FMUs of the scene; whether instances of the case before may be used again."""
         of = fmus_of(scene)
         if self._fmus is not None and of == self._of:
@@ -82,10 +111,14 @@ class Fleet:
         try:
             if self._fmus is None:
                 self._fmus = SceneFmus(case.scene, Progress(), self.shelf)
-            result = run_scene(case.scene, self._fmus.instantiate, Progress(), self._fmus.adopt)
-            apart = sum(max(phase.cpu, 0.0) for phase in result.phases.values())
+            before = self._begun_of(case.begins, case.scene)
+            result = run_scene(case.scene, self._fmus.instantiate, Progress(), self._fmus.adopt, before)
+            over = () if before is None else before.over
+            apart = sum(max(phase.cpu, 0.0) for name, phase in result.phases.items() if name not in over)
             spent = max(clock.process_time() - cpu, apart)
             row = tell(case, result, {"cpu": spent, "wall": clock.perf_counter() - began})
+            taken = {time: 0.0 for time in row.timings if time.partition(".")[0] in over}
+            row = replace(row, timings={**row.timings, **taken}) if taken else row
         except DconeError as error:
             self.shelf.clear()
             if error.exit_code == BAD_INPUT:
@@ -112,9 +145,24 @@ def _about(fmus: SceneFmus) -> list[Any]:
 _fleet: Fleet | None = None
 
 
+def make_ready(scene: Scene | None = None) -> None:
+    """Have imported what cases need, and the FMUs of a scene like them unpacked, before the first comes."""
+    if scene is not None:
+        _own_fleet().get_ready(scene)
+
+
+def run_beginning(beginning: Beginning) -> None:
+    """Run first phases in this process, whose FMUs stay loaded for the cases that go on from them."""
+    _own_fleet().begin(beginning)
+
+
 def run_case(case: Case, tell: Telling = tell_summary) -> Row:
     """Run a case in this process, whose FMUs stay loaded for the next."""
+    return _own_fleet().row(case, tell)
+
+
+def _own_fleet() -> Fleet:
     global _fleet
     if _fleet is None:
         _fleet = Fleet()
-    return _fleet.row(case, tell)
+    return _fleet

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -215,6 +216,25 @@ class Coupled:
     def release(self, key: str = "") -> None:
         """Nobody goes back to what was kept under this key any more."""
         self._steps.release(KEPT + key)
+
+    def as_kept(self) -> dict[str, Any]:
+        return {
+            "components": [component.as_kept() for component in self._held],
+            "exchange": self._exchange.as_kept(),
+            "steps": self._steps.as_kept(),
+            "statistics": vars(self._statistics).copy(),
+            "length": self._length,
+            "time": self._time,
+            "stale": self._stale,
+        }
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        for component, own in zip(self._held, kept["components"], strict=True):
+            component.take_up(own)
+        self._exchange.take_up(kept["exchange"])
+        self._steps.take_up(kept["steps"])
+        vars(self._statistics).update(kept["statistics"])
+        self._length, self._time, self._stale = kept["length"], kept["time"], kept["stale"]
 
     def cpu_apart(self) -> float:
         """CPU time of those in processes of their own [s]."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from dcone_cosim.coupling.wiring import Link
 from dcone_cosim.errors import FmuError
@@ -194,6 +195,16 @@ class Exchange:
                 raise
             restoring.replay(component, read, kept, time, end, COUPLED_FIXED)
             component.release()
+
+    def as_kept(self) -> dict[str, Any]:
+        """What stands between the components, as plain data; they themselves are kept apart."""
+        lists = {"out": self.out, "held": self._held, "rate": self._rate, "surprise": self.surprise}
+        return {name: list(values) for name, values in lists.items()}
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Stand where `as_kept` says."""
+        self.out, self._held = list(kept["out"]), list(kept["held"])
+        self._rate, self.surprise = list(kept["rate"]), list(kept["surprise"])
 
     def save(self, key: str) -> None:
         """Save every component and what stands between them under a key."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from dcone_cosim.coupling.exchange import Exchange
 from dcone_cosim.coupling.options import Coupling
@@ -55,6 +56,11 @@ class StepControl(Protocol):
     def save(self, key: str) -> None: ...
     def restore(self, key: str, time: float) -> None: ...
     def release(self, key: str) -> None: ...
+    def as_kept(self) -> dict[str, Any]:
+        """What it remembers, as plain data."""
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Remember what `as_kept` says."""
 
 
 class FixedSteps:
@@ -110,6 +116,12 @@ class FixedSteps:
 
     def release(self, key: str) -> None:
         self.exchange.release(key)
+
+    def as_kept(self) -> dict[str, Any]:
+        return {}
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Steps of one length remember nothing."""
 
 
 class ControlledSteps:
@@ -247,3 +259,10 @@ class ControlledSteps:
     def release(self, key: str) -> None:
         self.exchange.release(key)
         self._kept.pop(key, None)
+
+    def as_kept(self) -> dict[str, Any]:
+        return {"next": self._next, "largest": list(self._largest), "forced": self._forced, "restores": self._restores}
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        self._next, self._forced, self._restores = kept["next"], kept["forced"], kept["restores"]
+        self._largest = list(kept["largest"])

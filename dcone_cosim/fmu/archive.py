@@ -96,6 +96,11 @@ class Archive:
         return _flag(self.description.coSimulation.canGetAndSetFMUstate)
 
     @property
+    def can_serialise(self) -> bool:
+        """Whether its state can be written to a file, and taken up in another process."""
+        return self.can_save and _flag(self.description.coSimulation.canSerializeFMUstate)
+
+    @property
     def can_interpolate(self) -> bool:
         return _flag(self.description.coSimulation.canInterpolateInputs)
 

@@ -55,6 +55,8 @@ __all__ = [
     "output_names",
 ]
 
+SERIAL = "to be serialised"
+"""Key under which a state is kept for a moment."""
 WHOLE = 2.0**31
 """An Integer of FMI 2.0 stays below it."""
 
@@ -225,6 +227,20 @@ class Component:
         if state is not None:
             del self._times[key], self._steps_of[key]
             self._call("freeFMUstate", state)
+
+    def as_kept(self) -> dict[str, Any]:
+        """The present state as bytes, for an instance of another process."""
+        self.save(SERIAL)
+        data: bytes = self._call("serializeFMUstate", self._states[SERIAL])
+        self.release(SERIAL)
+        return {"state": data, "time": self.time}
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Be in a state that `as_kept` gave; this instance must have begun."""
+        state = self._call("deSerializeFMUstate", kept["state"])
+        self._call("setFMUstate", state)
+        self._call("freeFMUstate", state)
+        self.time = float(kept["time"])
 
     def reset(self) -> None:
         """Back to how it was when it was made: every variable at its start value, no state kept, to be set and

@@ -24,7 +24,7 @@ from dcone_cosim.fmu.messages import listeners
 CALLS = frozenset(
     {
         *("set", "set_texts", "set_rates", "get", "enter_initialisation", "exit_initialisation"),
-        *("save", "restore", "release", "state_size", "reset"),
+        *("save", "restore", "release", "state_size", "as_kept", "take_up", "reset"),
     }
 )
 """Calls that go straight to the component."""

@@ -26,22 +26,20 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim import interrupts
-from dcone_cosim.child import how_it_ended, kill, start
+from dcone_cosim.child import how_it_ended, kill
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import Archive
+from dcone_cosim.fmu.children import FAREWELL, next_child
 from dcone_cosim.fmu.frames import NEXT_CALL, Garbled, Incoming, from_fields, receive, send
 from dcone_cosim.fmu.steppable import CallError, Row, Terminated, VariableInfo
 
-CHILD = "dcone_cosim.fmu.isolated_child"
 LAST_WORDS = 600
 """Characters that an error quotes at most of the last three lines an FMU wrote."""
 START = 120.0
 """How long the child's interpreter may take to start on a busy computer; the FMU has no part in it [s]."""
-FAREWELL = 5.0
-"""How long a child may take to free its FMU [s]."""
-KEEPING = frozenset({"read", "reader", "get", "save", "release", "cpu"})
+KEEPING = frozenset({"read", "reader", "get", "save", "release", "as_kept", "cpu"})
 """Calls after which what was read before still holds."""
-ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int, "cpu": float}
+ANSWERS = {"get": dict, "read": bytes, "reader": list, "step": list, "state_size": int, "cpu": float, "as_kept": dict}
 """What a call is answered with; all others with nothing."""
 
 
@@ -72,7 +70,7 @@ class IsolatedComponent:
         self._deadline = math.inf
         self._noise = b""
         self._over = threading.Event()
-        self._child = _next_child()
+        self._child = next_child()
         assert self._child.stdout is not None
         self._answers = Incoming(self._child.stdout.fileno(), self._is_over)
         self._listener = threading.Thread(target=self._listen, daemon=True)
@@ -163,6 +161,16 @@ class IsolatedComponent:
     def state_size(self) -> int:
         """Bytes of a serialised state."""
         return int(self._ask("", "state_size"))
+
+    def as_kept(self) -> dict[str, Any]:
+        """The present state as bytes, for an instance of another process."""
+        found: dict[str, Any] = self._ask("", "as_kept")
+        return found
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Be in a state that `as_kept` gave; this instance must have begun."""
+        self._ask(" as it takes up a state", "take_up", dict(kept))
+        self.time = float(kept["time"])
 
     def cpu_apart(self) -> float:
         """CPU time of its process [s]; what was known last when that is gone."""
@@ -318,32 +326,3 @@ def _checked(call: str, frame: Any) -> tuple[FmuError | None, Any, list[str]]:
         case [list(fields), None, list(remarks)]:
             return from_fields(fields), None, [str(remark) for remark in remarks]
     raise Garbled
-
-
-_ready: list[subprocess.Popen[bytes]] = []
-
-
-def make_ready(count: int) -> None:
-    """Start children ahead: to import what they need takes each 0.2 s, in which something else can be done."""
-    _ready.extend(start(CHILD) for _ in range(count))
-
-
-def dismiss() -> None:
-    """End the children that nobody has needed."""
-    while _ready:
-        child = _ready.pop()
-        try:
-            child.communicate(timeout=FAREWELL)  # it ends with the stream of its calls
-        except subprocess.TimeoutExpired:
-            kill(child)
-            child.communicate()
-
-
-def _next_child() -> subprocess.Popen[bytes]:
-    """One that was made ready, or a new one."""
-    while _ready:
-        child = _ready.pop(0)
-        if child.poll() is None:
-            return child
-        child.communicate()
-    return start(CHILD)

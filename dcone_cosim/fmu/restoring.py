@@ -28,7 +28,7 @@ def restore(component: Steppable, read: Readable, kept: Row, time: float, unless
     Raises `FmuError` that names the first output that differs.
     """
     component.restore()
-    found = _differing(read.names, kept, read())
+    found = differing(read.names, kept, read())
     if found is not None:
         name, before, after = found
         told = f"at t = {time:.9g} s its output {name} was {before:.12g} before, {after:.12g} after"
@@ -43,7 +43,7 @@ def replay(component: Steppable, read: Readable, kept: Row, begin: float, end: f
     first = read.values.copy()
     restore(component, read, kept, begin, unless)
     component.step(begin, end - begin)
-    found = _differing(read.names, first, read())
+    found = differing(read.names, first, read())
     if found is not None:
         name, before, after = found
         step = f"the step from {begin:.9g} s to {end:.9g} s"
@@ -51,7 +51,7 @@ def replay(component: Steppable, read: Readable, kept: Row, begin: float, end: f
     restore(component, read, kept, begin, unless)
 
 
-def _differing(names: Sequence[str], before: Row, after: Row) -> tuple[str, float, float] | None:
+def differing(names: Sequence[str], before: Row, after: Row) -> tuple[str, float, float] | None:
     """The first output that is not what it was: its name, and its value before and after."""
     if (before == after).all():
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -77,6 +77,12 @@ class Steppable(Protocol):
     def restore(self, key: str = "") -> None: ...
     def release(self, key: str = "") -> None:
         """Nobody goes back to what was kept under this key any more; nothing may be kept."""
+
+    def as_kept(self) -> dict[str, Any]:
+        """The present state as plain data and bytes, for a component of another process; where FMUs can do that."""
+
+    def take_up(self, kept: Mapping[str, Any]) -> None:
+        """Be in a state that `as_kept` gave; the component must have begun with the same values."""
 
     def close(self) -> None: ...
 

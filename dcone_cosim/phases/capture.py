@@ -11,6 +11,7 @@ from dcone_cosim import build
 from dcone_cosim.contract import ENDED, FAILED_OUTCOMES, FLOWN, HAND_OVER, NEVER, OUTCOMES
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import CAPTURE_FAILED
+from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS
@@ -55,6 +56,7 @@ class Capture(Phase):
     }
     examples = ("0.02 s", "30 s")
     begins_at_zero = True
+    keeps_nodes = True
     chaotic = True
     judged_by = capture_quantities.NAMES
     own_clock = True
@@ -135,6 +137,9 @@ class Capture(Phase):
 
     def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         return capture_report.findings(run, result)
+
+    def own_events(self, result: PhaseResult) -> Iterator[Event]:
+        return capture_report.own_events(result)
 
     def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
         return capture_quantities.quantities(result, run.parameters.get(self.name, {}), instants)

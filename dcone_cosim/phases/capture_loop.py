@@ -6,8 +6,9 @@ Times count from the shot, whatever time the FMU is told to begin at.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from dcone_cosim import interrupts
 from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES
@@ -15,10 +16,11 @@ from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import restoring
 from dcone_cosim.fmu.component import Readable, Row, Steppable, output_names
 from dcone_cosim.holding import holding
-from dcone_cosim.phases.stepping import carried_out, grid_steps, length_of
+from dcone_cosim.phases.stepping import carried_out, grid_steps, length_of, take_up
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Snapshots
 from dcone_cosim.results import PhaseResult
+from dcone_cosim.states import Keeper, KeptState
 
 LOCATED_TO = 1e-6
 """How closely the instant of a hand-over is located by halving [s]."""
@@ -51,6 +53,8 @@ class CaptureLoop:
         self.component = holding(component)
         self.plan = plan
         self.progress = progress
+        self.keeper: Keeper | None = None
+        self._next = 0
         names = output_names(component.variables, without=(NODE_PREFIX,))
         self.read = self.component.row(names)
         self.place = {name: i for i, name in enumerate(self.read.names)}
@@ -120,10 +124,12 @@ class CaptureLoop:
 
     def _run(self) -> None:
         plan, result = self.plan, self.result
-        self._record(0.0)
+        if not len(result.recorder):
+            self._record(0.0)
+            self._offer(0, 0.0)
         interrupts.arm()
-        last = plan.duration
-        for i in range(grid_steps(plan.duration, plan.macro_step)):
+        last = plan.duration if result.located is None else min(plan.duration, result.located + plan.after_capture)
+        for i in range(self._next, grid_steps(plan.duration, plan.macro_step)):
             begin, end = i * plan.macro_step, min((i + 1) * plan.macro_step, last)
             if begin >= last:
                 break
@@ -153,8 +159,35 @@ class CaptureLoop:
             self.progress.at(end)
             if searching and result.outcome in FAILED_OUTCOMES and result.located is None:
                 break
+            if end == (i + 1) * plan.macro_step:
+                self._offer(i + 1, end)
         self.read()
         result.outcome = self.outcome()
+
+    def _offer(self, following: int, time: float) -> None:
+        """The state here may be kept: it is on the grid of all captures with this macro step."""
+        if self.keeper is not None:
+            self.keeper.look(time, len(self.result.recorder), self.component, lambda: self._stand(following))
+
+    def _stand(self, following: int) -> dict[str, Any]:
+        result = self.result
+        told = {name: getattr(result, name) for name in ("steps", "outcome", "located", "located_by")}
+        return {"next": following, "snapshots": result.snapshots.as_kept(), "result": told}
+
+    def take_up(self, state: KeptState, earlier: PhaseResult, changed: Mapping[str, float]) -> None:
+        """Go on from a kept state, with other values of some variables from there on, SI."""
+        located = state.loop["result"]["located"]
+        if located is not None and self.plan.stop_there:
+            raise FmuError(
+                f"{self.component.name}: it would have handed over at t = {located:.9g} s, before the state was kept; "
+                "go on from an earlier one"
+            )
+        take_up(self.component, self.read, self.result, state, earlier)
+        self._next = int(state.loop["next"])
+        self.result.snapshots.take_up(state.loop["snapshots"])
+        vars(self.result).update(state.loop["result"])
+        if changed:
+            self.component.set(changed)
 
     def _locate(self, begin: float, end: float) -> float:
         """Instant of the trigger in the step just taken, since the shot; the component is left there.

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim import build
+from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.phases.end import of_end
 from dcone_cosim.phases.phase import Figure
@@ -109,6 +110,17 @@ EVENTS = (
     ("closing.t_start", "winches start", "-."),
     ("t_capture", "captured", "-"),
 )
+
+
+def own_events(result: PhaseResult) -> Iterator[Event]:
+    """What the FMU tells the instant of, and the hand-over."""
+    last = result.recorder.last() if len(result.recorder) else {}
+    told = (*((name, label) for name, label, _ in EVENTS), ("mouth.t_max", "mouth widest"), ("t_lost", "target lost"))
+    for name, label in told:
+        if last.get(name, -1.0) >= 0.0:
+            yield Event(result.name, label, last[name])
+    if result.located is not None:
+        yield Event(result.name, "hand-over condition met", result.located)
 
 
 def mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:

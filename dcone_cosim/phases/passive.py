@@ -83,6 +83,8 @@ def examine(stage: Stage, result: PhaseResult) -> list[Instant]:
     phase, options = stage.phase, stage.phase.options
     found: list[Instant] = []
     reasons: list[str] = []
+    if stage.begun is not None and stage.run.gone_on.get("changed"):
+        raise FmuError("it follows the tow from its beginning, and values were changed where this one went on")
     record = stage.run.handovers.get(phase.name)
     start = phase.start if record is None else record.start
     component = stage.instantiate(phase.name, f"{phase.name} passive")

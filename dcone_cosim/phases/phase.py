@@ -13,16 +13,18 @@ from typing import Any, Protocol
 
 from dcone_cosim.contract import NEVER, Need
 from dcone_cosim.criteria import Criterion, Evidence, finite
+from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.progress import Progress
 from dcone_cosim.quantities import Quantity, at
-from dcone_cosim.results import Handover, PhaseResult, RunResult
+from dcone_cosim.results import Begun, Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake
 from dcone_cosim.scene.toml_lines import Path as KeyPath
+from dcone_cosim.states import Keeper, KeptState
 
 Figure = tuple[str, Callable[[Path], object]]
 """File name, and what draws it there."""
@@ -41,6 +43,10 @@ class Loop(Protocol):
     """Steps a component through its phase."""
 
     result: PhaseResult
+    keeper: Keeper | None
+
+    def take_up(self, state: KeptState, earlier: PhaseResult, changed: Mapping[str, float]) -> None:
+        """Go on from a kept state, with other values of some variables from there on, SI."""
 
     def run(self) -> PhaseResult: ...
 
@@ -88,6 +94,8 @@ class Stage:
     """A phase on its turn.
 
     before, after   the phases that hand over to it and that it hands over to, None for none
+    keeper          of states on the way, None where none is to be kept
+    begun           what the run goes on from, where that is a state of this phase
     """
 
     run: RunResult
@@ -96,6 +104,8 @@ class Stage:
     after: PhaseScene | None
     instantiate: Instantiate
     progress: Progress
+    keeper: Keeper | None = None
+    begun: Begun | None = None
 
 
 class Phase:
@@ -116,6 +126,7 @@ class Phase:
     begins_at_zero whether its FMU has to be told to begin at 0
     own_clock      its times count from its begin, whatever time its FMU is told
     tugs_file      name of the table of its tugs
+    keeps_nodes    the positions of a net's knots are kept of it
     chaotic        its figures are samples: they part company however small a change is
     judged_by      names of its quantities; none: those of its outputs
     to_its_end     settings of its table with which it goes on to its end, whatever comes of it
@@ -136,6 +147,7 @@ class Phase:
     begins_at_zero = False
     own_clock = False
     tugs_file = "tugs"
+    keeps_nodes = False
     chaotic = False
     judged_by: Sequence[str] = ()
     to_its_end: Sequence[str] = ()
@@ -226,6 +238,16 @@ class Phase:
         for output in [key for key in last if key != "time"][:MOST_OUTPUTS]:
             unit = recorder.units[output]
             yield Finding(name, output, f"{output} at the end", last[output], "" if unit == "1" else unit)
+
+    def events(self, run: RunResult, result: PhaseResult) -> Iterator[Event]:
+        """What happened in it, in the order of its own time."""
+        found = [Event(result.name, "begins", result.start), *self.own_events(result)]
+        found.append(Event(result.name, "its FMU ends" if result.ended_by else "ends", result.end))
+        yield from sorted(found, key=lambda event: event.time)
+
+    def own_events(self, result: PhaseResult) -> Iterator[Event]:
+        """What happens in phases of this kind alone."""
+        yield from ()
 
     def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
         """By what it is judged when it is computed in another way: of a phase that nothing is known of, its outputs.

@@ -14,6 +14,7 @@ from dcone_cosim import build
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import DconeError, FmuError, Interrupted
+from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
@@ -107,6 +108,9 @@ class Tow(Phase):
 
     def findings(self, run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         return removal_report.findings(run, self.name, result)
+
+    def own_events(self, result: PhaseResult) -> Iterator[Event]:
+        return removal_report.own_events(result)
 
     def quantities(self, run: RunResult, result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
         return removal_quantities.quantities(result, instants)
@@ -237,6 +241,9 @@ class Removal(Tow):
         run, phase = stage.run, stage.phase
         record = run.handovers.get(self.name)
         if not isinstance(record, HandoffRecord) or not run.scene.handoff.compare_without_recoil:
+            return
+        if stage.begun is not None and run.gone_on.get("changed"):
+            stage.progress.say("the comparison without recoil is left out: values were changed where the tow went on")
             return
         assert stage.before is not None, "somebody handed over"
         capture = run.parameters[stage.before.name]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dcone_cosim import build
+from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.phases import passive
 from dcone_cosim.phases.end import of_end
@@ -223,6 +224,20 @@ def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterat
     label = "largest tension" if taut else "largest tug"
     seen, mark = ("_seen", " seen") if tugs.missed and "tether.tension_peak" not in recorder else ("", "")
     yield Finding(phase, f"largest_tug{seen}_peak{suffix}", f"{label}{mark}{note}", largest, "N")
+
+
+def own_events(result: PhaseResult) -> Iterator[Event]:
+    """Its tugs, how near the bodies came, and when the line broke."""
+    taut, log = _is_taut_from_start(result), result.tugs
+    for number, (time, peak, speed) in sorted(log.rows.items()) if log is not None else ():
+        label = "taut from the start" if taut and number == 1 else f"tug {number - taut}"
+        yield Event(result.name, label, time, peak, speed)
+    nearest = approach(result)
+    if nearest is not None:
+        yield Event(result.name, "bodies nearest", nearest.time)
+    last = result.recorder.last() if len(result.recorder) else {}
+    if last.get("break.broken"):
+        yield Event(result.name, "line breaks", last["break.time"])
 
 
 def _is_taut_from_start(result: PhaseResult) -> bool:

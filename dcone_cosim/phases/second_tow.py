@@ -165,6 +165,9 @@ class TowHandover:
         if broken:
             raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
 
+    def recall(self, told: Mapping[str, Any]) -> None:
+        self.rows, self.failure = [LedgerRow.of(row) for row in told["rows"]], told["failure"]
+
     def findings(self) -> list[Finding]:
         place = f"hand-off to {self.phase.name}"
         apart = float(np.linalg.norm(vector(self.left, "relative.position")))

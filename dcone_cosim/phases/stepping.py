@@ -7,17 +7,21 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+
+import numpy as np
 
 from dcone_cosim import interrupts
 from dcone_cosim.contract import NODE_PREFIX, TUG_PREFIX
 from dcone_cosim.errors import FmuError, Interrupted
-from dcone_cosim.fmu.component import Steppable, Terminated, output_names
+from dcone_cosim.fmu.component import Readable, Steppable, Terminated, output_names
+from dcone_cosim.fmu.restoring import differing
 from dcone_cosim.fmu.steppable import cpu_apart
-from dcone_cosim.holding import holding
+from dcone_cosim.holding import Holding, holding
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import PhaseResult
+from dcone_cosim.states import Keeper, KeptState
 
 SAME = 1e-6
 """Relative difference up to which two steps are of one length: at t = 1e6 s a step of 1 ms has lost six digits."""
@@ -73,6 +77,30 @@ def carried_out(result: PhaseResult, component: Steppable, steps: Callable[[], N
     return result
 
 
+def take_up(component: Holding, read: Readable, result: PhaseResult, state: KeptState, earlier: PhaseResult) -> None:
+    """Stand where a state was kept, with the rows up to it; `FmuError` where it does not fit them.
+
+    earlier    the phase as it was run when the state was kept
+    """
+    name, rows = result.name, earlier.recorder
+    if not 0 < state.rows <= len(rows) or rows["time"][state.rows - 1] != state.time:
+        raise FmuError(
+            f"{name}: row {state.rows} of its table is not at t = {state.time:.9g} s, where the state was kept"
+        )
+    if rows.names != result.recorder.names:
+        raise FmuError(f"{name}: its table has other columns than the outputs of its FMU")
+    component.take_up(state.component)
+    result.recorder.take_up(rows, state.rows)
+    last = result.recorder.last()
+    found = differing(read.names, np.array(list(last.values())), read())
+    if found is not None:
+        output, before, after = found
+        raise FmuError(
+            f"{name}: the kept state does not fit its table: at t = {state.time:.9g} s the output {output} was "
+            f"{before:.12g}, and is {after:.12g} in the state"
+        )
+
+
 class PhaseLoop:
     """Steps a component for the duration of a phase, records a row at every communication point, and gathers its tugs.
 
@@ -92,6 +120,8 @@ class PhaseLoop:
         self.component = holding(component)
         self.macro_step, self.duration = macro_step, duration
         self.progress = progress
+        self.keeper: Keeper | None = None
+        self._next = 0
         self.read = self.component.row(output_names(component.variables, without=(NODE_PREFIX, TUG_PREFIX)))
         self.result = PhaseResult(
             component.name,
@@ -116,14 +146,31 @@ class PhaseLoop:
         component, result = self.component, self.result
         start, origin = result.start, result.origin
         steps = grid_steps(self.duration, self.macro_step)
-        self._record(start)
+        if not len(result.recorder):
+            self._record(start)
+            self._offer(0, start)
         interrupts.arm()
-        for i in range(steps):
+        for i in range(self._next, steps):
             interrupts.check(result.name, start + i * self.macro_step)
             end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
             begun = origin + (start + i * self.macro_step)
             component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
             result.steps += 1
             self._record(end)
+            if end == start + (i + 1) * self.macro_step:
+                self._offer(i + 1, end)
             self.progress.at(end)
         result.outcome = COMPLETED
+
+    def _offer(self, following: int, time: float) -> None:
+        """The state here may be kept: it is on the grid of all runs with this macro step, however long they are."""
+        if self.keeper is not None:
+            rows = len(self.result.recorder)
+            self.keeper.look(time, rows, self.component, lambda: {"next": following, "steps": self.result.steps})
+
+    def take_up(self, state: KeptState, earlier: PhaseResult, changed: Mapping[str, float]) -> None:
+        """Go on from a kept state, with other values of some variables from there on, SI."""
+        take_up(self.component, self.read, self.result, state, earlier)
+        self._next, self.result.steps = int(state.loop["next"]), int(state.loop["steps"])
+        if changed:
+            self.component.set(changed)

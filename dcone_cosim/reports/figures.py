@@ -12,10 +12,15 @@ from dcone_cosim.plots import side_by_side, style
 from dcone_cosim.results import RunResult
 
 
-def draw_all(run: RunResult, folder: Path) -> list[str]:
-    """Draw what the run has data for, a PNG each; returns which could not be drawn, and why."""
+def draw_all(run: RunResult, folder: Path, aside: bool = True) -> list[str]:
+    """Draw what the run has data for, a PNG each; returns which could not be drawn, and why.
+
+    aside    some may be drawn in a forked process, which suits none that has threads
+    """
     style.load()
     figures = list(_figures(run))
+    if not aside:
+        return [*_without_data(run), *_draw(folder, figures)]
     # The capture in space takes as long as the others together.
     return [*_without_data(run), *side_by_side.halves(partial(_draw, folder), figures[:1], figures[1:])]
 

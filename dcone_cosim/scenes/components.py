@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
@@ -141,7 +141,7 @@ def of_model(
         mistakes.append(Mistake(path, part.terms[group_name], f"cannot go together with {' and '.join(others)}"))
         part.terms[group_name] = group.default or next(iter(group.terms))
     interface = model.interface(part.terms)
-    part.keys = {build.scene_name(row): key_of(row) for row in build.settable(interface)}
+    part.keys = dict(_keys(model.name, tuple(part.terms.items())))
     part.files = {table.name: table for table in interface.tables}
     part.lines = {line.table: line for line in build.lines(model.name, part.terms)}
     _offer_slots(part, model)
@@ -160,9 +160,22 @@ def follow(part: ReadComponent, values: Mapping[str, float]) -> None:
 
 
 def _offer_slots(part: ReadComponent, model: build.Model) -> None:
-    part.slots = {
+    part.slots = dict(_slots(model.name, tuple(part.terms.items())))
+
+
+@lru_cache(maxsize=64)
+def _keys(model: str, terms: tuple[tuple[str, str], ...]) -> Mapping[str, Key]:
+    """Keys of a model of ours with these terms: the same in every case of a sweep."""
+    interface = build.CATALOGUE[model].interface(dict(terms))
+    return {build.scene_name(row): key_of(row) for row in build.settable(interface)}
+
+
+@lru_cache(maxsize=64)
+def _slots(model: str, terms: tuple[tuple[str, str], ...]) -> Mapping[str, Slot]:
+    """What can be connected or given of it."""
+    return {
         name: Slot(row.kind, by_name(row.unit), row.causality)
-        for row in model.interface(part.terms).variables
+        for row in build.CATALOGUE[model].interface(dict(terms)).variables
         if row.at_interface
         for name in row.element_names()
     }

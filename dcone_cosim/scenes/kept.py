@@ -87,7 +87,28 @@ def unlike(folder: Path, facts: Mapping[str, Mapping[str, Any]]) -> list[str]:
 
     facts    of the FMUs of each phase as they are now, as the provenance has them
     """
-    then, now = _identities(_read(folder / PROVENANCE).get("phases", {})), _identities(facts)
+    told = _read(folder / PROVENANCE)
+    then, now = _identities(told.get("phases", {})), _identities(facts)
+    return [
+        *_changed_on_the_way(folder, told.get("gone_on") or {}),
+        *_other_fmus(then, now),
+    ]
+
+
+def _changed_on_the_way(folder: Path, gone_on: Mapping[str, Any]) -> list[str]:
+    """Of a run that went on from another with other values: made again, it has them from its beginning."""
+    found = []
+    while gone_on:
+        if gone_on.get("changed"):
+            found.append(
+                f"made again from its beginning: {folder} went on from the run {gone_on['run']} in its "
+                f"{gone_on['phase']}, where {', '.join(gone_on['changed'])} changed; here that holds throughout"
+            )
+        gone_on = gone_on.get("earlier") or {}
+    return found
+
+
+def _other_fmus(then: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
     return [
         f"made again with another FMU of the {name}: its SHA-256 is {now[name][:12]}..., it was {sha[:12]}..."
         for name, sha in then.items()

@@ -10,7 +10,6 @@ import pandas
 import pyarrow.parquet
 import pytest
 
-from dcone_cosim.commands import nothing_recorded
 from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.fmu.component import VariableInfo
@@ -20,6 +19,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import RunResult
 from dcone_cosim.run_folder import phase_table
+from dcone_cosim.running import nothing_recorded
 from dcone_cosim.scene.data import Scene
 from tests.cosim.mock_components import MockCapture, MockComponent
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim import cli, commands, drafts, interrupts
+from dcone_cosim import cli, commands, drafts, interrupts, running
 from dcone_cosim.progress import Bar, Lines, Progress
 from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
@@ -55,7 +55,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, make_scene: Callable[..., Scene]) 
     class SceneFmus(NoArchives):
         pass
 
-    monkeypatch.setattr(commands, "SceneFmus", SceneFmus)
+    monkeypatch.setattr(running, "SceneFmus", SceneFmus)
     monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture", "removal"))
     return SceneFmus
 
@@ -215,10 +215,10 @@ PROGRAM = """
     import sys, time
     from pathlib import Path
     sys.path.insert(0, {root!r})
-    from dcone_cosim import cli, commands
+    from dcone_cosim import cli, commands, running
     from tests.cosim.conftest import scene_of
     from tests.cosim.test_command_line import NoArchives
-    commands.SceneFmus, commands.named = NoArchives, lambda *_: scene_of("capture", "removal")
+    running.SceneFmus, commands.named = NoArchives, lambda *_: scene_of("capture", "removal")
     NoArchives.meanwhile = staticmethod(lambda: {act})
     sys.argv = ["dcone", "run", "mock", "-o", "deep/out", "--no-figures"]
     cli.main()

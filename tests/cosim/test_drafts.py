@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from dcone_cosim import commands, scratch
+from dcone_cosim import commands, running, scratch
 from dcone_cosim.drafts import atomic_folder
 from dcone_cosim.progress import Progress
 from tests.cosim.mock_components import MockCapture
@@ -104,7 +104,7 @@ def test_the_next_run_says_so(tmp_path: Path, make_scene, monkeypatch: pytest.Mo
             return {}
 
     monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture"))
-    monkeypatch.setattr(commands, "SceneFmus", NoArchives)
+    monkeypatch.setattr(running, "SceneFmus", NoArchives)
     with dying(tmp_path / "run", "ctypes.string_at(0)") as process:
         process.communicate()
     notes = [

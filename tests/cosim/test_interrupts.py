@@ -15,7 +15,7 @@ from pathlib import Path
 import pyarrow.parquet
 import pytest
 
-from dcone_cosim import commands, interrupts, progress
+from dcone_cosim import commands, interrupts, progress, running
 from dcone_cosim.progress import Lines, Progress
 from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
@@ -52,7 +52,7 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch, make_scene: Callable[..., Scene])
                     return capture(reports=True)
                 return (coming.pop(0) if coming else MockRemoval)(tugs=[(12.0, 5.0, 0.01)])
 
-        monkeypatch.setattr(commands, "SceneFmus", SceneFmus)
+        monkeypatch.setattr(running, "SceneFmus", SceneFmus)
         monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture", "removal"))
 
     return use
@@ -128,7 +128,7 @@ def test_only_the_command_takes_signals(make_scene: Callable[..., Scene]) -> Non
 SLOW = """
     import sys, time
     sys.path.insert(0, {root!r})
-    from dcone_cosim import cli, commands, progress
+    from dcone_cosim import cli, commands, progress, running
     from tests.cosim.conftest import scene_of
     from tests.cosim.mock_components import MockCapture, MockRemoval
     from tests.cosim.test_command_line import NoArchives
@@ -138,7 +138,7 @@ SLOW = """
             time.sleep({pause})
             super().step(at, size)
     NoArchives.instantiate = lambda self, phase, name: MockCapture() if phase == "capture" else Slow(tugs=[])
-    commands.SceneFmus, commands.named = NoArchives, lambda *_: scene_of("capture", "removal")
+    running.SceneFmus, commands.named = NoArchives, lambda *_: scene_of("capture", "removal")
     progress.REMINDER = {reminder}
     sys.argv = ["dcone", "run", "mock", "-o", "out", "--no-figures"]
     cli.main()

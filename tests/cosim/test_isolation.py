@@ -20,7 +20,7 @@ from dcone_cosim import build as models
 from dcone_cosim.coupling.coupled import Coupled
 from dcone_cosim.coupling.options import Coupling
 from dcone_cosim.errors import FmuError
-from dcone_cosim.fmu import frames, isolation
+from dcone_cosim.fmu import children, frames, isolation
 from dcone_cosim.fmu.archive import Archive
 from dcone_cosim.fmu.component import CallError, Component, output_names
 from dcone_cosim.fmu.isolation import IsolatedComponent
@@ -226,15 +226,15 @@ def test_a_closed_one_leaves_no_process(fmu: Fmu) -> None:
 
 def test_children_made_ready_are_taken_or_ended(fmu: Fmu) -> None:
     """One that has died meanwhile is not taken."""
-    isolation.make_ready(3)
-    first, second, third = isolation._ready
+    children.make_ready(3)
+    first, second, third = children._ready
     first.kill()
     first.wait()
     with IsolatedComponent(fmu(), "tow") as component:
         assert component._child is second
         component.initialise(0.0)
-    isolation.dismiss()
-    assert not isolation._ready
+    children.dismiss()
+    assert not children._ready
     assert not any(is_alive(child.pid) for child in (first, second, third))
 
 

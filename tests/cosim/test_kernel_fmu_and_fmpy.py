@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build
-from dcone_cosim.commands import SceneFmus
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import PhaseResult
 from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene_fmus import SceneFmus
 from fmu_src import instance
 from tests.cosim.in_process import KernelComponent
 

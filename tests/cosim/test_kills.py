@@ -20,7 +20,7 @@ from typing import Any
 
 import pytest
 
-from dcone_cosim import commands, scratch
+from dcone_cosim import commands, running, scratch
 from dcone_cosim.drafts import contents
 from dcone_cosim.interface_kit import write_template
 from dcone_cosim.loading import load
@@ -111,7 +111,7 @@ def place(tmp_path: Path, make_scene, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "runs").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
     monkeypatch.setattr(commands, "named", lambda *_: make_scene("capture"))
-    monkeypatch.setattr(commands, "SceneFmus", Unpacking)
+    monkeypatch.setattr(running, "SceneFmus", Unpacking)
     monkeypatch.setattr(commands, "fill", fill)
     monkeypatch.setattr(commands, "_load", lambda *_: None)
     return tmp_path / "runs"
@@ -294,13 +294,13 @@ def test_the_check_itself(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 PROGRAM = """
     import os, sys, tempfile
     sys.path.insert(0, {root!r})
-    from dcone_cosim import cli, commands
+    from dcone_cosim import cli, commands, running
     import pyarrow.parquet, fmpy, dcone_cosim.fmu.component
     from tests.cosim.conftest import scene_of
     from tests.cosim.mock_components import MockCapture, MockRemoval
     from tests.cosim.test_kills import Unpacking, kill_at
     Unpacking.instantiate = lambda self, phase, name: MockCapture() if phase == "capture" else MockRemoval(tugs=[])
-    commands.SceneFmus, commands.named = Unpacking, lambda *_: scene_of("capture", "removal")
+    running.SceneFmus, commands.named = Unpacking, lambda *_: scene_of("capture", "removal")
     sys.argv = ["dcone", "run", "mock", "-o", "runs/out", "--csv", *sys.argv[2:]]
     kill_at(int({event}))
     cli.main()
