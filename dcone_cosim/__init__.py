@@ -20,16 +20,31 @@ if TYPE_CHECKING:
         Comparison,
         Run,
         Scene,
+        Sizing,
         compare,
         go_on,
         list_scenes,
         load_run,
         load_scene,
         run,
+        size,
         sweep,
     )
 
-__all__ = ["Comparison", "Run", "Scene", "compare", "go_on", "list_scenes", "load_run", "load_scene", "run", "sweep"]
+__all__ = [
+    "Comparison",
+    "Run",
+    "Scene",
+    "Sizing",
+    "compare",
+    "go_on",
+    "list_scenes",
+    "load_run",
+    "load_scene",
+    "run",
+    "size",
+    "sweep",
+]
 
 
 def __getattr__(name: str) -> Any:
