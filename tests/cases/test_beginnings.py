@@ -138,7 +138,7 @@ def test_what_is_damaged_counts_as_not_there(swept: Path, dcone: Dcone, tmp_path
     copy = shutil.copytree(swept / "tows", tmp_path / "tows")
     (only,) = (copy / FOLDER).iterdir()
     settings = [part for setting in COARSE for part in ("--set", setting)]
-    command = ("sweep", "mission", "--vary", DIAMETERS, "-o", "tows", "--no-figures", *settings)
+    command = ("sweep", "mission", "--vary", DIAMETERS, "-o", "tows", "--no-figures", "-j", "1", *settings)
     before = (copy / "table.parquet").read_bytes()
     for damage in (lambda: (only / "capture.parquet").write_bytes(b"no table"), lambda: shutil.rmtree(copy / FOLDER)):
         shutil.rmtree(copy / "rows")
@@ -153,7 +153,7 @@ def test_bad_input_leaves_nothing_of_what_was_begun_early(dcone: Dcone, tmp_path
     """The first two cases are good, and their capture is on its way as the third is found to be none."""
     settings = [part for setting in COARSE for part in ("--set", setting)]
     vary = "removal.tether.diameter=1 mm,2 mm,3 kg"
-    code, _, err = dcone("sweep", "mission", "--vary", vary, "-o", "deep/out", *settings)
+    code, _, err = dcone("sweep", "mission", "--vary", vary, "-o", "deep/out", "-j", "1", *settings)
     assert code == 2
     assert "3 kg" in err
     assert list(tmp_path.iterdir()) == []
@@ -162,7 +162,7 @@ def test_bad_input_leaves_nothing_of_what_was_begun_early(dcone: Dcone, tmp_path
 def test_a_capture_that_fails_fails_every_case(tmp_path: Path) -> None:
     """Its rows say why, as whole runs do."""
     settings = (*COARSE, "capture.duration=7 s")
-    done = commands.sweep("mission", (DIAMETERS,), tmp_path / "out", Progress(), settings, 2, False)
+    done = commands.sweep("mission", (DIAMETERS,), tmp_path / "out", Progress(), settings, 1, False)
     assert [entry.row.status for entry in done.entries] == ["capture failed"] * 3
     whole = Fleet().row(done_case(settings))
     assert whole.message == done.entries[0].row.message
