@@ -18,6 +18,7 @@ from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.planes import MOST_BULLETS
 from fmu_src.net_capture.precision import PRECISION
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.release import ejection, spin
 from fmu_src.net_capture.rigging import riggings
 from fmu_src.net_capture.schemes import schemes
 from fmu_src.net_capture.shapes import shapes
@@ -216,6 +217,11 @@ def bullets_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str
     return str(NETS[terms["net"]].checks.bullets or USUAL_BULLETS)
 
 
+def each_bullet(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
+    """As many as there are."""
+    return terms.get("bullets") or bullets_of(terms, parameters)
+
+
 class NodeTerms(Mapping[str, Term]):
     """A term for any number of nodes: `{"nodes": "625"}` gives an FMU with outputs for up to 625 nodes."""
 
@@ -271,6 +277,8 @@ GROUPS = {
     "net": Group(NETS, selector="shape"),
     **{name: _rigged(part) for name, part in RIGGINGS.items()},
     "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of),
+    "ejection": Group(ejection.PARTS, selector="number", optional=True, follows=each_bullet),
+    "spin": Group({"turning": spin.PART}, selector="kind", optional=True, follows=lambda terms, values: "turning"),
     "folding": Group(foldings(), selector="pattern", default="flat"),
     "gravity": Group(gravities()),
     "solver": Group(schemes(), selector="scheme", default="leapfrog"),
@@ -279,7 +287,7 @@ GROUPS = {
     "target": Group(TARGETS, selector="shape", optional=True),
     "contact": Group(CONTACTS, optional=True),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
-    "tether": Group({"slack": tether.PART}, selector="state", optional=True),
+    "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=capacity_of),
