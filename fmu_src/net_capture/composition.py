@@ -38,8 +38,8 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, spin, ejection, pulls, pace, breaking,
-    scheme
+    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, spin, ejection, pulls, pace,
+    breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 

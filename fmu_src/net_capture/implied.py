@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.interface import GROUPS, NETS, RIGGINGS, rigged_of
-from fmu_src.net_capture.nets import Hanging
+from fmu_src.net_capture.nets import USUAL_BULLETS, Hanging
+from fmu_src.net_capture.release import ejection, ejector
 from fmu_src.net_capture.shot import opening_distance
 from fmu_src.net_capture.substeps import COUNT
 from fmu_src.net_capture.substeps import substeps as of_parts
@@ -90,6 +91,7 @@ def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     yield from _of_nodes(values, terms)
     yield from _of_canister(values, terms)
     yield from _of_shot(values, terms)
+    yield from ejector.rows(values, terms)
     if "closing" in terms:
         yield from _of_cord(values, terms)
     if "orbit.altitude" in values:
@@ -146,11 +148,15 @@ def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
 
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the corners, which alone leave at the bullets' speed; relative to the chaser before the shot."""
-    corners = 4.0 * (bullet_thread(values, terms) + values["bullets.mass"])
+    bullet = bullet_thread(values, terms) + values["bullets.mass"]
     speed, angle = values["bullets.speed"], values["bullets.angle"]
-    momentum = corners * speed * math.cos(angle)
+    if "ejection" in terms:
+        ways = ejection.ways(values, int(terms["ejection"]))
+    else:
+        ways = [(speed * math.cos(angle), speed)] * int(terms.get("bullets", USUAL_BULLETS))
+    momentum = bullet * sum(forward for forward, _ in ways)
     yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")
-    yield Implied("shot.energy", "energy of the shot", 0.5 * corners * speed * speed, "J")
+    yield Implied("shot.energy", "energy of the shot", 0.5 * bullet * sum(whole * whole for _, whole in ways), "J")
     yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")
     net = NETS[terms["net"]].checks
     fold = GROUPS["folding"].terms[terms.get("folding", "flat")].checks

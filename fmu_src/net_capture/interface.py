@@ -18,7 +18,7 @@ from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.planes import MOST_BULLETS
 from fmu_src.net_capture.precision import PRECISION
 from fmu_src.net_capture.refusal import Refusal, Scene
-from fmu_src.net_capture.release import ejection, spin
+from fmu_src.net_capture.release import ejection, ejector, spin
 from fmu_src.net_capture.rigging import riggings
 from fmu_src.net_capture.schemes import schemes
 from fmu_src.net_capture.shapes import shapes
@@ -276,8 +276,9 @@ NETS, RIGGINGS, TARGETS, CONTACTS, CLOSINGS = nets(), riggings(), shapes(), cont
 GROUPS = {
     "net": Group(NETS, selector="shape"),
     **{name: _rigged(part) for name, part in RIGGINGS.items()},
-    "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of),
-    "ejection": Group(ejection.PARTS, selector="number", optional=True, follows=each_bullet),
+    "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of, early=True),
+    "ejection": Group(ejection.PARTS, selector="number", optional=True, follows=each_bullet, early=True),
+    "ejector": Group(ejector.PARTS, selector="kind", optional=True),
     "spin": Group({"turning": spin.PART}, selector="kind", optional=True, follows=lambda terms, values: "turning"),
     "folding": Group(foldings(), selector="pattern", default="flat"),
     "gravity": Group(gravities()),

@@ -81,8 +81,8 @@ def make_limit_way(composition: Any) -> Any:
 
     @kernel
     def limit_way(p):
-        """Shorten the substep [s] where bullets would move further in it than WAY_SHARE of the target's least dimension,
-        relative to its surface.
+        """Shorten the substep [s] where bullets would move further in it than WAY_SHARE of the target's least
+        dimension, relative to its surface.
 
             h (v + |v_c| + |w| R) <= 0.1 d
 

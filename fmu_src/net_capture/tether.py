@@ -22,7 +22,6 @@ from fmu_src.rows import at_least_zero, count, output, positive, state
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
-
 SCHEME = "leapfrog"
 """That lets a tether drag."""
 
@@ -233,9 +232,7 @@ ROWS = (
     state("tether_pull[#]", "N", "tension at the vertex, towards the chaser", shape=(3,)),
 )
 
-PART = Term(
-    "tether that pays out freely; a tension signal may be injected where it is made fast", ROWS, make=make
-)
+PART = Term("tether that pays out freely; a tension signal may be injected where it is made fast", ROWS, make=make)
 DRAGGING = Term(
     "tether drawn off its spool against friction and, from some length on, a brake",
     (

@@ -13,8 +13,8 @@ BOOKED = (
     vector(
         "chaser.spin",
         "N.m.s",
-        "angular momentum that the release has given the chaser about its centre of mass; what holds its attitude takes "
-        "it up",
+        "angular momentum that the release has given the chaser about its centre of mass; what holds its attitude "
+        "takes it up",
     ),
     state("chaser_turned[#]", "N.m.s", "the same as far back as velocities are kept", shape=(3,)),
 )

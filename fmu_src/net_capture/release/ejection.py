@@ -16,7 +16,7 @@ Checked  tests/net_capture/test_ejection.py
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Term, Variable, fault
@@ -33,7 +33,9 @@ NO_WAY_OUT = fault(
 )
 NONE_LEAVES = fault("none_leaves", "ejection.stays[1]", "every bullet stays; the net would never leave")
 HELD_AND_TURNING = fault(
-    "held_and_turning", "ejection.delay[1]", "a bullet that leaves late or stays cannot go with a net or chaser that turns"
+    "held_and_turning",
+    "ejection.delay[1]",
+    "a bullet that leaves late or stays cannot go with a net or chaser that turns",
 )
 
 
@@ -143,13 +145,14 @@ def make(composition: Any) -> Ejection:
             along = 1.0 * node_plane(p, work, SHOWN)[node]
             across = 1.0 * node_plane(p, work, SHOWN + 1)[node]
             diagonal = math.sqrt(along * along + across * across)
-            c = math.cos(p.ejection_side_angle[i]) / diagonal
-            s = math.sin(p.ejection_side_angle[i]) / diagonal
+            c = math.cos(p.ejection_side_angle[i])
+            s = math.sin(p.ejection_side_angle[i])
             angle = p.bullets_angle + p.ejection_angle_error[i]
             forward = speed_of(p, i) * math.cos(angle)
             outward = speed_of(p, i) * math.sin(angle)
             for axis in range(3):
                 away = (c * along - s * across) * p.axes[axis] + (c * across + s * along) * p.axes[3 + axis]
+                away /= diagonal
                 p.ejection_velocity[i, axis] = forward * p.axes[6 + axis] + outward * away
                 p.ejection_place[i, axis] = node_plane(p, work, X + axis)[node] - p.chaser_start_position[axis]
             p.ejection_held[i] = 1 if is_late(p, i) else 0
@@ -263,7 +266,7 @@ def make(composition: Any) -> Ejection:
 
     @kernel
     def hold(p, work, before):
-        """One velocity for chaser and held bullets, and the one that dashpots see: half a substep on, on a straight line.
+        """One velocity for chaser and held bullets, and the one that dashpots see: half a substep on.
 
         Checked  tests/net_capture/test_ejection.py
         """
@@ -351,11 +354,24 @@ def make(composition: Any) -> Ejection:
     return Ejection(check, fastest, aim, start, wake, hold, carry, count_due, fire, show)
 
 
+def ways(values: Mapping[str, float], number: int) -> list[tuple[float, float]]:
+    """Speed along the shot and whole speed [m/s] of each bullet that leaves, relative to the chaser before."""
+    found = []
+    for i in range(1, number + 1):
+        if not values[f"ejection.stays[{i}]"]:
+            speed = values["bullets.speed"] + values[f"ejection.speed_error[{i}]"]
+            angle = values["bullets.angle"] + values[f"ejection.angle_error[{i}]"]
+            found.append((speed * math.cos(angle), speed))
+    return found
+
+
 def refuses(scene: Scene) -> Iterator[Refusal]:
     """Bullets that cannot leave, and what knows none that are held."""
     scheme = scene.terms.get("solver", SCHEME)
     if scheme != SCHEME:
-        yield Refusal("solver.scheme", f'"{scheme}"', f'knows no bullets that are held; [capture.ejection] needs "{SCHEME}"')
+        yield Refusal(
+            "solver.scheme", f'"{scheme}"', f'knows no bullets that are held; [capture.ejection] needs "{SCHEME}"'
+        )
     number = int(scene.terms["ejection"])
     if scene.terms["ejection"] != scene.terms["bullets"]:
         yield Refusal("ejection.number", str(number), f"must be {scene.terms['bullets']}, the number of bullets")
@@ -363,17 +379,20 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     if all(stays):
         yield Refusal("ejection.stays", "true for every bullet", "at least one must leave, or the net never does")
     speed, angle = scene.values["bullets.speed"], scene.values["bullets.angle"]
-    for name, errors in (
-        ("ejection.speed_error", [speed + error for error in scene.vector("ejection.speed_error", number)]),
-        ("ejection.angle_error", [math.cos(angle + e) for e in scene.vector("ejection.angle_error", number)]),
-    ):
-        for bullet, forward in enumerate(errors, 1):
-            if forward <= 0.0 and not stays[bullet - 1]:
-                yield Refusal(name, f"that of bullet {bullet}", "leaves it no speed along the shot")
+    errors = scene.vector("ejection.speed_error", number), scene.vector("ejection.angle_error", number)
+    for bullet, (faster, wider) in enumerate(zip(*errors, strict=True), 1):
+        if speed + faster <= 0.0 and not stays[bullet - 1]:
+            expected = f"leaves bullet {bullet} no speed; must be more than -{speed:g} m/s, bullets.speed"
+            yield Refusal("ejection.speed_error", f"{faster:g} m/s", expected)
+        if math.cos(angle + wider) <= 0.0 and not stays[bullet - 1]:
+            expected = f"leaves bullet {bullet} no speed along the shot; with bullets.angle it must be less than 90 deg"
+            yield Refusal("ejection.angle_error", f"{math.degrees(wider):g} deg", expected)
     for bullet, late in enumerate(delay, 1):
         if late > scene.duration and not stays[bullet - 1]:
             yield Refusal(
-                "ejection.delay", f"{late:g} s of bullet {bullet}", f"must be at most {scene.duration:g} s, the duration"
+                "ejection.delay",
+                f"{late:g} s of bullet {bullet}",
+                f"must be at most {scene.duration:g} s, the duration",
             )
     if "spin" in scene.terms and (any(stays) or any(delay)):
         turning = [scene.values["spin.rate"], *scene.vector("spin.chaser_rate")]
