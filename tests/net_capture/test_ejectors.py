@@ -138,7 +138,7 @@ def test_scatter_is_that_of_its_deviation_and_seed():
         ("springs", {"ejector__most_impulse": 1.5}, "ejector.most_impulse"),
         ("springs", {"ejector__scatter": 0.1}, "ejector.scatter"),
         ("pneumatic", {"ejector__friction": 1e5}, "ejector.friction"),
-        ("pneumatic", {"ejector__friction": 1500.0, "ejector__shot": 9}, "ejector.shot"),
+        ("pneumatic", {"ejector__friction": 900.0, "ejector__shot": 9}, "ejector.shot"),
         ("pneumatic", {"ejector__friction": 1500.0, "ejector__valve_area": 1e-8}, "ejector.friction"),
         ("pneumatic", {"ejector__supplies": 3.0}, "ejector.supplies"),
     ],

@@ -16,7 +16,7 @@ Between shots the valve is shut and the reservoir comes back to its temperature:
 p V^g constant all the time, is `(p2/p)^(1/g)` of it, and so is the next shot's pressure.
 
 Valid    an ideal gas (helium at 200 bar and 293 K fills 9 % more), no heat taken on the way, no vacuum leaks, a chaser
-         heavy against the bullets
+         heavy against the bullets; a bullet that stops in its barrel stays there
 Source   one-dimensional gas dynamics, such as Shapiro, The dynamics and thermodynamics of compressible fluid flow
          (1953), ch. 4; R from CODATA 2018 and the standard atomic weights
 Checked  tests/net_capture/test_ejectors.py
@@ -178,7 +178,7 @@ def _through_valve(gun: Gun) -> Blast | None:
             flow = -gun.valve * nozzle(second, temperature, first, gun.ratio, gas)
         carried = flow * gun.ratio * heat * temperature
         pushed = second * gun.section - gun.friction
-        if speed <= 0.0:
+        if way <= 0.0:
             pushed = max(pushed, 0.0)
         return [-flow, -carried, flow, carried - second * gun.section * speed, speed, pushed / gun.mass]
 
@@ -230,6 +230,6 @@ def rows(values: Values, barrels: int) -> Iterator[Implied]:
     found = shot(gun, int(values["ejector.shot"]))
     yield Implied("ejector.speed", "speed that the gas gives a bullet", found.speed, "m/s")
     yield Implied("ejector.muzzle_pressure", "pressure behind a bullet as it leaves", found.muzzle, "Pa")
-    yield Implied("ejector.left", "share of the reservoir's gas that a shot leaves", found.left, "1")
+    yield Implied("ejector.left", "share of the reservoir's gas that a shot leaves", found.left, "")
     label = f"shots per reservoir with {100.0 * values['ejector.least_share']:g} % of the first one's speed"
-    yield Implied("ejector.shots", label, float(shots(gun, values["ejector.least_share"])), "1")
+    yield Implied("ejector.shots", label, float(shots(gun, values["ejector.least_share"])), "")
