@@ -221,6 +221,7 @@ class Group:
     table        of the scene that has the selector; empty: that of the group's own name
     follows      `follows(terms, values)`: the term that follows from the other terms and the values, SI by FMI name,
                  where the scene has the table and names none
+    early        it follows from the terms of the groups before it alone, and is known before any value is read
     """
 
     terms: Mapping[str, Term]
@@ -229,6 +230,7 @@ class Group:
     follows: Callable[[Mapping[str, str], Mapping[str, float]], str] | None = None
     default: str = ""
     table: str = ""
+    early: bool = False
 
 
 HEAD = (

@@ -89,7 +89,7 @@ def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: 
     if component is phase.main:
         place = scene.phases.index(phase)
         values |= kind_of(phase.name).values_taken(scene.phases[place - 1]) if place else {}
-        about.implied += build.implied(component.model, values, component.terms)
+        about.implied += build.implied(component.model, {**values, **component.asked}, component.terms)
         about.implied += loads.implied(component, values)
     try:
         with opened(path, component) as archive:

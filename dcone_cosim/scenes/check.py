@@ -148,9 +148,9 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
         scene = Scene(
             name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes, (), accuracy, sizing
         )
-        mistakes = [*about_steps(scene, document), *about_values(scene, document)]
-        if not mistakes:
-            scene, mistakes = designed(scene, document)
+        mistakes = list(about_steps(scene, document))
+        scene, undesigned = designed(scene, document)
+        mistakes += undesigned or about_values(scene, document)
         for before, own in pairs(scene):
             mistakes += kind_of(own.name).value_faults(before, own, document)
         if not mistakes:

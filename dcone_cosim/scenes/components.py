@@ -112,6 +112,9 @@ def of_model(
         if names:
             part.terms[group_name] = names[0]
         if group.follows is not None and isinstance(table, dict) and group.selector not in table:
+            if group.early:
+                part.terms[group_name] = group.follows(part.terms, {})
+                continue
             part.following.append(group_name)
             continue
         if not isinstance(table, dict):

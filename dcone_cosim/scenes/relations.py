@@ -104,12 +104,9 @@ def designed(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistak
             continue
         for name in answer:
             if name in main.parameters:
-                path = (phase.name, *name.split("."))
-                found.append(
-                    Mistake(
-                        path, given_at(document, path), "follows from what is asked of the gains; leave one of them out"
-                    )
-                )
+                path = (phase.name, *name.partition("[")[0].split("."))
+                text = "follows from what this scene asks for; leave one of them out"
+                found.append(Mistake(path, given_at(document, path), text))
         parameters = {**main.parameters, **answer}
         scene = scene.with_phase(replace(phase, main=replace(main, parameters=parameters, designed=tuple(answer))))
     return scene, found

@@ -20,7 +20,9 @@ def make_balance(composition: Any) -> Any:
     has_contact = composition.contact is not None
     has_closing = composition.closing is not None
     has_tether = composition.tether is not None
+    drags = composition.terms.get("tether") == "dragging"
     has_break = composition.breaking is not None
+    has_ejection = composition.ejection is not None
     potential_at, bends, frame_rate = composition.gravity.potential, composition.gravity.bends, composition.gravity.rate
     node_plane = composition.memory.node_plane
 
@@ -56,8 +58,12 @@ def make_balance(composition: Any) -> Any:
             energy += p.cord_dissipated - p.closing_work
         if has_tether:
             energy -= p.tether_work
+        if drags:
+            energy += p.tether_friction_loss
         if has_break:
             energy += p.break_energy
+        if has_ejection:
+            energy -= p.ejection_work
         if bends:
             potential = potential_of_nodes(p, work)
             potential += p.chaser_mass * potential_at(p, p.chaser_place)

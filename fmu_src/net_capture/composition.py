@@ -38,8 +38,8 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, volume, pulls, pace, breaking,
-    scheme
+    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, spin, ejection, volume, pulls,
+    pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -66,7 +66,9 @@ class Composition:
         self.contact = self._make("contact")
         self.closing, self.tether = self._make("closing"), self._make("tether")
         self.volume = self._make("volume")
-        self.pulls = _make_pulls(self.closing, self.tether)
+        self.spin = self._make("spin")
+        self.ejection = self._make("ejection")
+        self.pulls = _make_pulls(self.closing, self.tether, self.ejection)
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
 
@@ -90,9 +92,10 @@ class Composition:
         return tables.make_reader(self._tables, name)
 
 
-def _make_pulls(closing: Any, tether: Any) -> Pulls:
-    """The pulls of cord and tether together."""
-    has_closing, has_tether = closing is not None, tether is not None
+def _make_pulls(closing: Any, tether: Any, ejection: Any) -> Pulls:
+    """The pulls of cord and tether together, and bullets that are held."""
+    has_closing, has_tether, has_ejection = closing is not None, tether is not None, ejection is not None
+    wake_held = ejection.wake if has_ejection else None
     pull_mouth, pull_mouth_shown = (closing.pull, closing.pull_shown) if has_closing else (None, None)
     pull_vertex, pull_vertex_shown, book_impulse = (
         (tether.pull, tether.pull_shown, tether.book) if has_tether else [None] * 3
@@ -104,6 +107,8 @@ def _make_pulls(closing: Any, tether: Any) -> Pulls:
 
         Checked  tests/net_capture/test_closing.py
         """
+        if has_ejection:
+            wake_held(p, work)
         if has_closing:
             pull_mouth(p, work)
         if has_tether:

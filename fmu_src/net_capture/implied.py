@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.interface import GROUPS, NETS, RIGGINGS, rigged_of
-from fmu_src.net_capture.nets import Hanging
+from fmu_src.net_capture.nets import USUAL_BULLETS, Checks, Hanging
+from fmu_src.net_capture.release import ejection, ejector
 from fmu_src.net_capture.shot import opening_distance
 from fmu_src.net_capture.substeps import COUNT
 from fmu_src.net_capture.substeps import substeps as of_parts
@@ -62,20 +63,24 @@ def bullet_thread(values: Values, terms: Mapping[str, str]) -> float:
 
 def catch_mass(values: Values) -> float:
     """Mass [kg] of net, what is rigged to it, bullets and vertex."""
-    rigged = sum(rigged_masses(values).values())
-    return values["net.mass"] + rigged + 4.0 * values["bullets.mass"] + values["vertex.mass"]
+    rigged, net = sum(rigged_masses(values).values()), net_of(values)
+    bullets = USUAL_BULLETS if net is None else net.bullets
+    return values["net.mass"] + rigged + bullets * values["bullets.mass"] + values["vertex.mass"]
+
+
+def net_of(values: Values) -> Checks | None:
+    """The net of ours that has these values: of those all of whose parameters are among them the one with the most."""
+    nets = [
+        part for part in NETS.values() if all(v.name in values for v in part.variables if v.causality == "parameter")
+    ]
+    return max(nets, key=lambda part: len(part.variables)).checks if nets else None
 
 
 def rigged_masses(values: Values) -> dict[str, float]:
     """Mass [kg] of each thing that these values rig to the net, by the name of its group."""
     there = {n: part for n, part in RIGGINGS.items() if any(v.name in values for v in part.variables)}
-    nets = [
-        part for part in NETS.values() if all(v.name in values for v in part.variables if v.causality == "parameter")
-    ]
-    if not there or not nets:
-        return {}
-    net = max(nets, key=lambda part: len(part.variables)).checks
-    return {name: part.checks.mass(values, net) for name, part in there.items()}
+    net = net_of(values)
+    return {} if net is None else {name: part.checks.mass(values, net) for name, part in there.items()}
 
 
 def substeps(values: Values, terms: Mapping[str, str]) -> tuple[float, float]:
@@ -90,6 +95,7 @@ def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     yield from _of_nodes(values, terms)
     yield from _of_canister(values, terms)
     yield from _of_shot(values, terms)
+    yield from ejector.rows(values, terms)
     if "closing" in terms:
         yield from _of_cord(values, terms)
     if "orbit.altitude" in values:
@@ -146,11 +152,15 @@ def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
 
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the corners, which alone leave at the bullets' speed; relative to the chaser before the shot."""
-    corners = 4.0 * (bullet_thread(values, terms) + values["bullets.mass"])
+    bullet = bullet_thread(values, terms) + values["bullets.mass"]
     speed, angle = values["bullets.speed"], values["bullets.angle"]
-    momentum = corners * speed * math.cos(angle)
+    if "ejection" in terms:
+        ways = ejection.ways(values, int(terms["ejection"]))
+    else:
+        ways = [(speed * math.cos(angle), speed)] * int(terms.get("bullets", USUAL_BULLETS))
+    momentum = bullet * sum(forward for forward, _ in ways)
     yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")
-    yield Implied("shot.energy", "energy of the shot", 0.5 * corners * speed * speed, "J")
+    yield Implied("shot.energy", "energy of the shot", 0.5 * bullet * sum(whole * whole for _, whole in ways), "J")
     yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")
     net = NETS[terms["net"]].checks
     fold = GROUPS["folding"].terms[terms.get("folding", "flat")].checks

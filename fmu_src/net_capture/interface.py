@@ -18,6 +18,7 @@ from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.planes import MOST_BULLETS
 from fmu_src.net_capture.precision import PRECISION
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.release import ejection, ejector, spin
 from fmu_src.net_capture.rigging import riggings
 from fmu_src.net_capture.schemes import schemes
 from fmu_src.net_capture.shapes import shapes
@@ -216,6 +217,11 @@ def bullets_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str
     return str(NETS[terms["net"]].checks.bullets or USUAL_BULLETS)
 
 
+def each_bullet(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
+    """As many as there are."""
+    return terms.get("bullets") or bullets_of(terms, parameters)
+
+
 class NodeTerms(Mapping[str, Term]):
     """A term for any number of nodes: `{"nodes": "625"}` gives an FMU with outputs for up to 625 nodes."""
 
@@ -250,8 +256,9 @@ class NodeTerms(Mapping[str, Term]):
 
 def capacity_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
     """The capacity that a net's mesh asks for, "1" where there is no such net."""
-    rigged = sum(part.checks.nodes(parameters) for part in rigged_of(terms).values())
-    return str(min(NETS[terms["net"]].checks.nodes(parameters) + rigged, MOST_NODES))
+    net = NETS[terms["net"]].checks
+    rigged = sum(part.checks.nodes(parameters, net) for part in rigged_of(terms).values())
+    return str(min(net.nodes(parameters) + rigged, MOST_NODES))
 
 
 def rigged_of(terms: Mapping[str, str]) -> dict[str, Term]:
@@ -270,7 +277,10 @@ NETS, RIGGINGS, TARGETS, CONTACTS, CLOSINGS = nets(), riggings(), shapes(), cont
 GROUPS = {
     "net": Group(NETS, selector="shape"),
     **{name: _plain(part) for name, part in RIGGINGS.items()},
-    "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of),
+    "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of, early=True),
+    "ejection": Group(ejection.PARTS, selector="number", optional=True, follows=each_bullet, early=True),
+    "ejector": Group(ejector.PARTS, selector="kind", optional=True),
+    "spin": Group({"turning": spin.PART}, selector="kind", optional=True, follows=lambda terms, values: "turning"),
     "folding": Group(foldings(), selector="pattern", default="flat"),
     "gravity": Group(gravities()),
     "solver": Group(schemes(), selector="scheme", default="leapfrog"),
@@ -279,7 +289,7 @@ GROUPS = {
     "target": Group(TARGETS, selector="shape", optional=True),
     "contact": Group(CONTACTS, optional=True),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
-    "tether": Group({"slack": tether.PART}, selector="state", optional=True),
+    "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "volume": _plain(volume.PART),
@@ -314,7 +324,9 @@ def _refuses_numbers(scene: Scene) -> Iterator[Refusal]:
     bullets = scene.terms.get("bullets", str(USUAL_BULLETS))
     if net.bullets and bullets != str(net.bullets):
         yield Refusal("bullets.number", bullets, f"must be {net.bullets}: a mouth of this shape has so many corners")
-    nodes = net.nodes(scene.values) + sum(part.checks.nodes(scene.values) for part in rigged_of(scene.terms).values())
+    nodes = net.nodes(scene.values) + sum(
+        part.checks.nodes(scene.values, net) for part in rigged_of(scene.terms).values()
+    )
     if int(scene.terms.get("nodes", nodes)) < nodes:
         yield Refusal("nodes.capacity", scene.terms["nodes"], f"must be at least {nodes}, the nodes of this net")
 

@@ -26,7 +26,7 @@ from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES
 from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
-from fmu_src.net_capture.stepping import MEASURE_INTERVAL, limit_way, make_choose_substep
+from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep, make_limit_way
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import entry, kernel
 from orbital.twobody import mean_motion
@@ -53,7 +53,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     graph, folding, gravity, scheme, peaks = parts.graph, parts.folding, parts.gravity, parts.scheme, parts.peaks
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
     has_break, breaking = parts.breaking is not None, parts.breaking
-    shot, measures = make_shot(parts), quality.make_quality(parts)
+    has_ejection, has_spin, ejection = parts.ejection is not None, parts.spin is not None, parts.ejection
+    shot, measures, limit_way = make_shot(parts), quality.make_quality(parts), make_limit_way(parts)
     choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
     judge = outcome.make_judge(parts, measures)
     not_finite, no_axis, too_many_nodes = (parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES))
@@ -71,6 +72,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         fault = graph.count(p, work)
         if fault == 0:
             fault = folding.check(p)
+        if has_ejection and fault == 0:
+            fault = ejection.check(p)
         if fault != 0:
             return fault
         if has_nodes:
@@ -96,6 +99,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         for axis in range(3):
             before[axis] = p.chaser_drift[axis]
         gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, h)
+        if has_ejection:
+            ejection.hold(p, work, before)
         for axis in range(3):
             # staggered by half a substep, or at one instant with the place: then the mean of before and after counts
             change = p.chaser_drift[axis] - before[axis]
@@ -103,6 +108,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_target:
             target.drift(p, frame_rate(p), h)
         p.grid += 1
+        if has_ejection:
+            ejection.carry(p, work)
+            if ejection.count_due(p) > 0:
+                scheme.change(p, work, h)
+                ejection.fire(p, work)
         if has_closing:
             closing.wind(p, work)
         if has_tether:
@@ -142,11 +152,19 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             elastic += closing.stored(p, work)
             p.cord_dissipated = p.cord_loss + late * p.cord_power
             p.closed = 1 if p.mouth_locked_pairs == p.net_corners else 0
+        place_bodies(p, ahead)
+        if has_ejection or has_spin:
+            for axis in range(3):
+                p.chaser_spin[axis] = p.chaser_turned[axis]
+        if has_ejection:
+            ejection.show(p, work)
         measures.measure_net(p, work)
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic
-        place_bodies(p, ahead)
         quality.add_body_momenta(p, p.chaser_mass, p.chaser_position, p.chaser_velocity)
+        if has_ejection or has_spin:
+            for axis in range(3):
+                p.angular_momentum[axis] += p.chaser_spin[axis]
         if has_target:
             target.measure(p)
             target.turn(p.target_attitude, p.target_pose, p.target_rate, p, frame_rate(p), ahead)
@@ -314,6 +332,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_tether:
             tether.pull_chaser(p)
         gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, -late)
+        if has_ejection:
+            ejection.start(p, work)
         if has_target:
             gravity.kick_body(p, p.target_place, p.target_drift, p.rest, -late)
 
@@ -334,6 +354,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if has_tether:
                 tether.pull_chaser(p)
             gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, later)
+            if has_ejection:
+                ejection.hold(p, work, p.chaser_drift)
             if has_target:
                 gravity.kick_body(p, p.target_place, p.target_drift, p.rest, later)
             p.solver_substep = substep

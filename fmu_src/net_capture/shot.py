@@ -85,6 +85,9 @@ def make_shot(composition: Any) -> Shot:
     """Kernels of the shot of the composition's net."""
     memory = composition.memory
     node_plane, bullets, apex = memory.node_plane, memory.bullets, memory.apex
+    has_ejection, has_spin = composition.ejection is not None, composition.spin is not None
+    aim_each = composition.ejection.aim if has_ejection else None
+    turn = composition.spin.turn if has_spin else None
 
     @kernel
     def load(p, work):
@@ -131,6 +134,14 @@ def make_shot(composition: Any) -> Shot:
             velocity = node_plane(p, work, U + axis)
             for i in range(p.node_slots):
                 velocity[i] = p.chaser_start_velocity[axis] if mass[i] > 0.0 else 0.0
+        if has_ejection or has_spin:
+            for axis in range(3):
+                p.chaser_turned[axis] = 0.0
+        if has_spin:
+            turn(p, work)
+        if has_ejection:
+            aim_each(p, work)
+            return
         forward = p.bullets_speed * math.cos(p.bullets_angle)
         outward = p.bullets_speed * math.sin(p.bullets_angle)
         for corner in range(p.net_corners):

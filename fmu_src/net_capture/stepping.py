@@ -71,25 +71,36 @@ def make_choose_substep(composition: Any) -> Any:
     return choose_substep
 
 
-@kernel
-def limit_way(p):
-    """Shorten the substep [s] where bullets would move further in it than WAY_SHARE of the target's least dimension,
-    relative to its surface.
-
-        h (v + |v_c| + |w| R) <= 0.1 d
-
-    v, v_c   of the bullets from the muzzle, of the muzzle                   [m/s]
-    w, R     rate of the target, radius of its envelope                      [rad/s], [m]
-    d        least edge of the box that holds it                             [m]
-
-    A node that passes an edge at a distance below half its way is taken for one that meets it: so far the target is
-    too large.
+def make_limit_way(composition: Any) -> Any:
+    """Kernel `limit_way(p)` of the model with the composition's bullets.
 
     Checked  tests/net_capture/test_following.py
     """
-    speed = p.bullets_speed + math.sqrt(dot(p.chaser_start_velocity, p.chaser_start_velocity))
-    speed += math.sqrt(dot(p.target_start_rate, p.target_start_rate)) * p.envelope_radius
-    way = WAY_SHARE * 2.0 * min(p.half_size[0], p.half_size[1], p.half_size[2])
-    if speed * p.solver_substep > way:
-        p.measure_every = math.ceil(MEASURE_INTERVAL * speed / way - 1e-9)
-        p.solver_substep = MEASURE_INTERVAL / p.measure_every
+    has_ejection = composition.ejection is not None
+    fastest = composition.ejection.fastest if has_ejection else None
+
+    @kernel
+    def limit_way(p):
+        """Shorten the substep [s] where bullets would move further in it than WAY_SHARE of the target's least
+        dimension, relative to its surface.
+
+            h (v + |v_c| + |w| R) <= 0.1 d
+
+        v, v_c   of the bullets from the muzzle, of the muzzle                   [m/s]
+        w, R     rate of the target, radius of its envelope                      [rad/s], [m]
+        d        least edge of the box that holds it                             [m]
+
+        A node that passes an edge at a distance below half its way is taken for one that meets it: so far the target is
+        too large.
+
+        Checked  tests/net_capture/test_following.py
+        """
+        speed = fastest(p) if has_ejection else p.bullets_speed
+        speed += math.sqrt(dot(p.chaser_start_velocity, p.chaser_start_velocity))
+        speed += math.sqrt(dot(p.target_start_rate, p.target_start_rate)) * p.envelope_radius
+        way = WAY_SHARE * 2.0 * min(p.half_size[0], p.half_size[1], p.half_size[2])
+        if speed * p.solver_substep > way:
+            p.measure_every = math.ceil(MEASURE_INTERVAL * speed / way - 1e-9)
+            p.solver_substep = MEASURE_INTERVAL / p.measure_every
+
+    return limit_way

@@ -1,15 +1,29 @@
-"""The tether while the net is cast: slack, but a tension signal (a reel's) may be injected where it is made fast."""
+"""The tether while the net is cast: slack, but a tension signal (a reel's) may be injected where it is made fast; or
+drawn off its spool against friction and, from some length on, a brake.
+
+    T = F + B where out >= brake_at,   while more is drawn off than ever was; otherwise 0
+
+Valid    a line without stretch and mass; at its whole length the run says `tether_taut` and holds nothing back
+Source   Coulomb friction; ours
+Checked  tests/net_capture/test_pay_out.py
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Term, Variable
 from fmu_src.net_capture.planes import FX, SHOWN, X
-from fmu_src.rows import count, output, positive, state
+from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.rows import at_least_zero, count, output, positive, state
 from orbital.kernel import kernel
 from orbital.vectors import dot
+
+SCHEME = "leapfrog"
+"""That lets a tether drag."""
 
 
 class Tether(NamedTuple):
@@ -94,10 +108,25 @@ def measure(p):
     p.tether_paid_out = math.sqrt(squared)
 
 
-def make(composition: Any) -> Tether:
-    """Kernels of the tether at the vertex of the composition's net."""
+def make(composition: Any, drags: bool = False) -> Tether:
+    """Kernels of the tether at the vertex of the composition's net.
+
+    drags    it is drawn off against friction
+    """
+    if drags and composition.terms["solver"] != SCHEME:
+        raise ValueError(f"net_capture: a tether that drags needs solver = {SCHEME!r}")
     memory, rouse = composition.memory, composition.rouse
     node_plane, apex = memory.node_plane, memory.apex
+
+    @kernel
+    def drag(p, away):
+        """Tension [N] of friction and brake at a distance from the chaser to the vertex [m].
+
+        Checked  tests/net_capture/test_pay_out.py
+        """
+        if away <= p.tether_out:
+            return 0.0
+        return p.tether_friction + (p.tether_brake_force if away >= p.tether_brake_at else 0.0)
 
     def make_towards(place: int) -> Any:
         """Kernel of the way from the vertex to the chaser, by the positions in the planes from `place` on."""
@@ -129,7 +158,7 @@ def make(composition: Any) -> Tether:
             """
             for axis in range(3):
                 p.tether_pull[axis] = 0.0
-            if p.tether_vertex_tension == 0.0:
+            if p.tether_vertex_tension == 0.0 and not drags:
                 return
             if wake:
                 for i in range(p.apex_nodes):
@@ -138,9 +167,13 @@ def make(composition: Any) -> Tether:
             if wake and p.tether_grid != p.grid:
                 p.tether_reach = away
                 p.tether_grid = p.grid
+            tension = p.tether_vertex_tension
+            if drags:
+                p.tether_drag = drag(p, away)
+                tension += p.tether_drag
             if away > 0.0:
                 for axis in range(3):
-                    p.tether_pull[axis] = p.tether_vertex_tension * p.tether_way[axis] / away
+                    p.tether_pull[axis] = tension * p.tether_way[axis] / away
                     force = node_plane(p, work, FX + axis)
                     for i in range(p.apex_nodes):
                         force[apex(p, work)[i]] += p.tether_pull[axis] / p.apex_nodes
@@ -155,28 +188,62 @@ def make(composition: Any) -> Tether:
 
         Checked  tests/net_capture/test_energy_book.py
         """
-        if p.tether_vertex_tension != 0.0:
+        if p.tether_vertex_tension != 0.0 or drags:
             before = p.tether_reach
             p.tether_reach = now(p, work)
             p.tether_grid = p.grid
             p.tether_work += p.tether_vertex_tension * (before - p.tether_reach)
+            if drags:
+                p.tether_friction_loss += p.tether_drag * (p.tether_reach - before)
+                p.tether_out = max(p.tether_out, before)
+
+    @kernel
+    def begin(p):
+        """Nothing pulled and nothing drawn off yet.
+
+        Checked  tests/net_capture/test_pay_out.py
+        """
+        start(p)
+        if drags:
+            p.tether_friction_loss = 0.0
+            p.tether_drag = 0.0
+            p.tether_out = 0.0
 
     pull, pull_shown = make_pull(now, True), make_pull(shown, False)
-    return Tether(pull, pull_shown, start, book, kick_chaser, pull_chaser, reel_in, shown, measure)
+    return Tether(pull, pull_shown, begin, book, kick_chaser, pull_chaser, reel_in, shown, measure)
 
 
-PART = Term(
-    "tether that pays out freely; a tension signal may be injected where it is made fast",
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """A scheme that takes several stages in a substep: what is drawn off is known at its ends only."""
+    scheme = scene.terms.get("solver", SCHEME)
+    if scheme != SCHEME:
+        yield Refusal("solver.scheme", f'"{scheme}"', f'knows no tether that drags; it needs "{SCHEME}"')
+
+
+ROWS = (
+    positive("tether.length", "m", "length that can be paid out", 100.0),
+    Variable("tether.vertex_tension", "N", "input", "tension at the vertex, towards the chaser", nominal=1.0),
+    output("tether.paid_out", "m", "distance from the chaser to the vertex"),
+    output("tether.work", "J", "work done by the tension signal so far"),
+    state("tether_reach", "m", "distance from the chaser to the vertex at the begin of a substep that is pulled"),
+    count("tether_grid", "which substep that is", "state"),
+    state("tether_impulse[#]", "N.s", "what the vertex has taken in this substep", shape=(3,)),
+    state("tether_way[#]", "m", "from the vertex to the chaser", shape=(3,)),
+    state("tether_pull[#]", "N", "tension at the vertex, towards the chaser", shape=(3,)),
+)
+
+PART = Term("tether that pays out freely; a tension signal may be injected where it is made fast", ROWS, make=make)
+DRAGGING = Term(
+    "tether drawn off its spool against friction and, from some length on, a brake",
     (
-        positive("tether.length", "m", "length that can be paid out", 100.0),
-        Variable("tether.vertex_tension", "N", "input", "tension at the vertex, towards the chaser", nominal=1.0),
-        output("tether.paid_out", "m", "distance from the chaser to the vertex"),
-        output("tether.work", "J", "work done by the tension signal so far"),
-        state("tether_reach", "m", "distance from the chaser to the vertex at the begin of a substep that is pulled"),
-        count("tether_grid", "which substep that is", "state"),
-        state("tether_impulse[#]", "N.s", "what the vertex has taken in this substep", shape=(3,)),
-        state("tether_way[#]", "m", "from the vertex to the chaser", shape=(3,)),
-        state("tether_pull[#]", "N", "tension at the vertex, towards the chaser", shape=(3,)),
+        *ROWS,
+        at_least_zero("tether.friction", "N", "tension at which it is drawn off", 1.0),
+        at_least_zero("tether.brake_force", "N", "tension that the brake adds", 0.0),
+        at_least_zero("tether.brake_at", "m", "length drawn off from which the brake holds", 0.0),
+        output("tether.friction_loss", "J", "taken by friction and brake so far"),
+        state("tether_drag", "N", "tension of friction and brake in this substep"),
+        state("tether_out", "m", "most that was drawn off before this substep"),
     ),
-    make=make,
+    make=partial(make, drags=True),
+    refuses=refuses,
 )

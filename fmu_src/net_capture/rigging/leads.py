@@ -159,7 +159,7 @@ def _rates(values: Values, net: Any, thread: float, dashpot: float, node: float)
 
 
 def _mass(values: Values, net: Any) -> float:
-    return 4.0 * values["leads.segments"] * _piece(values)[2]
+    return float(net.bullets * values["leads.segments"] * _piece(values)[2])
 
 
 PART = Term(
@@ -179,7 +179,7 @@ PART = Term(
     checks=Checks(
         _rates,
         _mass,
-        nodes=lambda values: 4 * int(values["leads.segments"]),
+        nodes=lambda values, net: net.bullets * int(values["leads.segments"]),
         corner=lambda values, net: 0.5 * _piece(values)[2],
     ),
 )
