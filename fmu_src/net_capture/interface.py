@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
-from fmu_src.net_capture import breaking, shot, tether
+from fmu_src.net_capture import air, breaking, shot, tether
 from fmu_src.net_capture.closing import closings
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
@@ -280,6 +280,7 @@ GROUPS = {
     "contact": Group(CONTACTS, optional=True),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
     "tether": Group({"slack": tether.PART}, selector="state", optional=True),
+    "air": Group({"quadratic": air.PART}, selector="drag", optional=True, follows=lambda terms, values: "quadratic"),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=capacity_of),
