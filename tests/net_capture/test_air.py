@@ -81,9 +81,10 @@ def test_threads_along_their_own_way_have_no_drag(axis, share):
     """Across its plane all threads of a flat net stand in the stream, within it every second."""
     net = shoot({**SHEET, **WEIGHTLESS, f"chaser.start_velocity[{axis}]": 3.0})
     power = 0.5 * RHO * 1.1 * diameter(net) * 624.0 * share * 3.0**3
-    net.step(1e-3)
-    slower = net["air.dissipated"] / 1e-3
-    assert slower == pytest.approx(power, rel=0.02)
+    mass, time = net["catch.mass"], 0.01
+    net.step(time)
+    left = 3.0 / (1.0 + power * time / (mass * 3.0**2))
+    assert net["air.dissipated"] == pytest.approx(0.5 * mass * (3.0**2 - left**2), rel=2e-3)
 
 
 def test_no_air_is_too_thick_for_the_substep():
@@ -98,14 +99,14 @@ def test_no_air_is_too_thick_for_the_substep():
 
 
 def test_the_book_of_a_net_in_air_closes():
-    """What the air took of a shot, to a share of it; the drag of one substep is all that is left over."""
+    """What the air took of a shot, within a hundredth; and which way it pushed."""
     net = shoot({"gravity.acceleration[1]": -9.81, "bullets.speed": 10.0})
     start = net.array("momentum").copy()
     for _ in range(20):
         net.step(0.1)
     taken = net["air.dissipated"]
     assert taken > 50.0
-    assert abs(net["energy.remainder"]) < 2e-3 * taken
+    assert abs(net["energy.remainder"]) < 0.01 * taken
     impulse = net.array("momentum") - start - net["catch.mass"] * np.array([-9.81, 0.0, 0.0]) * net.time
     assert impulse[1] < -1.0, "drag against the shot"
     assert impulse[0] > 1.0, "drag against the fall"
