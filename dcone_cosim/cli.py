@@ -23,6 +23,7 @@ from dcone_cosim.cli_options import (
     promise,
     results,
 )
+from dcone_cosim.cli_tracks import tracks_app
 from dcone_cosim.completion import phases_like, scenes_like
 from dcone_cosim.errors import BAD_INPUT, DconeError, InputError
 from dcone_cosim.exits import complain as _complain
@@ -36,6 +37,7 @@ app = typer.Typer(
 )
 app.add_typer(cache_app, name="cache")
 app.add_typer(cases_app)
+app.add_typer(tracks_app)
 
 
 def _version(asked: bool) -> None:

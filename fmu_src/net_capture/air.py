@@ -24,8 +24,22 @@ import math
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Term
-from fmu_src.net_capture.planes import FX, LANES, LENGTH, SHOWN, SHOWN_RATE, STRIP_NUMBERS, STRIP_WORDS, A, B, P, X
-from fmu_src.net_capture.planes import LONGEST_ROW, MASS, THREAD_MASS
+from fmu_src.net_capture.planes import (
+    FX,
+    LANES,
+    LENGTH,
+    LONGEST_ROW,
+    MASS,
+    SHOWN,
+    SHOWN_RATE,
+    STRIP_NUMBERS,
+    STRIP_WORDS,
+    THREAD_MASS,
+    A,
+    B,
+    P,
+    X,
+)
 from fmu_src.rows import at_least_zero, output, positive, state
 from orbital.kernel import kernel
 
@@ -149,7 +163,9 @@ def make(composition: Any) -> Air:
 PART = Term(
     "drag of still air on threads and bullets, quadratic in their speed; no row of nodes sleeps in air",
     (
-        positive("air.density", "kg/m3", "of the air: 1.225 at sea level and 15 degC (ICAO standard atmosphere)", 1.225),
+        positive(
+            "air.density", "kg/m3", "of the air: 1.225 at sea level and 15 degC (ICAO standard atmosphere)", 1.225
+        ),
         at_least_zero(
             "air.thread_drag",
             "1",

@@ -3,7 +3,7 @@
 From grid time n h to (n + 1) h:
 
     target               kicked by gravity
-    nodes                forces of the threads, the closing cord, the air and a tension at the vertex; the scheme's step;
+    nodes                forces of the threads, closing cord, air and a tension at the vertex; the scheme's step;
                          impulses on the nodes that ended below the target's surface, which they then have not done
     chaser               kicked by gravity and the tension
     both                 drift

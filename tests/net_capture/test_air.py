@@ -1,4 +1,4 @@
-"""Drag of the air, against closed forms: a bullet alone, a flat net that falls, threads that run along their own way."""
+"""Drag of the air, against closed forms: a bullet alone, a flat net that falls, threads along their own way."""
 
 import math
 

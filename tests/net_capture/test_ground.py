@@ -1,4 +1,4 @@
-"""Gravity of the ground and of a parabolic flight, against closed forms, quadrature and the principle of equivalence."""
+"""Gravity of the ground and of a parabolic flight, against closed forms, quadrature and equivalence."""
 
 import math
 

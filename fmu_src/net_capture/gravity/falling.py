@@ -30,7 +30,9 @@ ROWS = (
     falls("gravity.on_chaser", "the chaser falls too; otherwise it is carried, and only recoil and tether move it"),
     falls("gravity.on_target", "the target falls too; otherwise it is carried, and only what touches it moves it"),
     output(
-        "energy.potential", "J", "of all that falls, -m g r with r from the frame's origin, at the gravity of the instant"
+        "energy.potential",
+        "J",
+        "of all that falls, -m g r with r from the frame's origin, at the gravity of the instant",
     ),
     state("gravity_now[#]", "m/s2", "at this instant of the grid", shape=(3,)),
     state("gravity_most", "m/s2", "the largest there is"),

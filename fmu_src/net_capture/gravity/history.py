@@ -27,7 +27,9 @@ def read(path: Path) -> list[list[float]]:
     rows = read_rows(path)
     for count, row in enumerate(rows, 1):
         if len(row) != 4:
-            raise ValueError(f"row {count}: {len(row)} numbers, expected 4: time [s] and acceleration [m/s2] along each axis")
+            raise ValueError(
+                f"row {count}: {len(row)} numbers, expected 4: time [s] and acceleration [m/s2] along each axis"
+            )
         if count > 1 and not row[0] > rows[count - 2][0]:
             raise ValueError(f"row {count}: time {row[0]:g} s, expected one after {rows[count - 2][0]:g} s")
     return rows
