@@ -53,6 +53,15 @@ def fit(
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="Folder for the results; runs/SCENE-fit if not given.")
     ] = None,
+    noise: Annotated[
+        str,
+        typer.Option(
+            "--noise", help='Standard deviation of a measured coordinate, such as "2 mm"; estimated if not given.'
+        ),
+    ] = "",
+    twins: Annotated[
+        int, typer.Option("--twins", min=2, max=64, help="Runs of each set of values, a micrometre apart.")
+    ] = 4,
     settings: Settings = None,
     json: Json = False,
     offline: Offline = False,
@@ -68,5 +77,14 @@ def fit(
     from dcone_cosim.tracks import commands, show
 
     with at_work() as progress:
-        done = commands.fit(scene, file, [key for key in free.split(",") if key.strip()], out, progress, settings or [])
+        done = commands.fit(
+            scene,
+            file,
+            [key for key in free.split(",") if key.strip()],
+            out,
+            progress,
+            settings or [],
+            commands.noise_of(noise),
+            twins,
+        )
     answer(json, done.content, lambda console: show.show(done, console), done.notes, done.folder)

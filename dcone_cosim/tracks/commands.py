@@ -21,6 +21,7 @@ import numpy as np
 from dcone_cosim import interrupts
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.rows import Row
+from dcone_cosim.cases.vary import in_si
 from dcone_cosim.cases.work import Fleet
 from dcone_cosim.drafts import atomic_folder, check_free
 from dcone_cosim.errors import FmuError, InputError
@@ -38,8 +39,8 @@ from dcone_cosim.tracks.reading import Array, Track, read_tracks
 from dcone_cosim.tracks.runs import CAPTURE, of_folder, of_result
 from dcone_cosim.tracks.simulated import Flown
 
-TWINS = (1, 2)
-"""Seeds of the twins."""
+TWINS = 4
+"""Runs of each set of values."""
 JITTER = 1e-6
 """How far beside it each node of a twin begins [m]."""
 
@@ -69,9 +70,20 @@ def tracks(run: Path, file: Path, out: Path | None) -> Laid:
 
 
 def fit(
-    name: str, file: Path, free: Sequence[str], out: Path | None, progress: Progress, settings: Sequence[str] = ()
+    name: str,
+    file: Path,
+    free: Sequence[str],
+    out: Path | None,
+    progress: Progress,
+    settings: Sequence[str] = (),
+    noise: float | None = None,
+    twins: int = TWINS,
 ) -> Laid:
-    """Estimate values of a scene from the tracks of a file."""
+    """Estimate values of a scene from the tracks of a file.
+
+    noise    standard deviation of a measured coordinate [m], None where it is not known
+    twins    runs of each set of values
+    """
     measured = read_tracks(file)
     until = max(float(track.times[-1]) for track in measured)
     scene = named(name, [*settings, 'phases=["capture"]', "capture.hand_over=none"])
@@ -93,25 +105,27 @@ def fit(
         last[:] = [_run(fleet, _with(base, {**dict(zip(wanted, values, strict=True)), **more}))]
         return of_result(last[0])
 
-    def simulate(values: Sequence[float], more: Mapping[str, float] | None = None) -> Array:
-        interrupts.check("fit", 0.0)
-        return _coordinates(compare(fly(values, more or {}), measured))[1]
+    def simulate(values: Sequence[float]) -> Array:
+        rows = []
+        for seed in range(1, twins + 1):
+            interrupts.check("fit", 0.0)
+            rows.append(_coordinates(compare(fly(values, _jitter(seed)), measured))[1])
+        return np.array(rows)
 
     start = [_started(phase, value, key) for value, key in zip(wanted, free, strict=True)]
-    twins = [lambda values, seed=seed: simulate(values, _jitter(seed)) for seed in TWINS]
     try:
-        begun = compare(fly(start, {}), measured)
-        given, _ = _coordinates(begun)
-        answer = estimate(
-            wanted,
-            start,
-            [_bounds(phase, value) for value in wanted],
-            given,
-            simulate,
-            twins,
-            lambda runs, rms: progress.say(f"run {runs}: {rms:.4g} m off"),
-        )
-        found = compare(fly([one.value for one in answer.estimates], {}), measured)
+        with interrupts.heeded():
+            given, _ = _coordinates(compare(fly(start, {}), measured))
+            answer = estimate(
+                wanted,
+                start,
+                [_bounds(phase, value) for value in wanted],
+                given,
+                simulate,
+                noise,
+                lambda runs, rms: progress.say(f"{runs} sets of values, {twins} runs each: {rms:.4g} m off"),
+            )
+            found = compare(fly([one.value for one in answer.estimates], {}), measured)
     finally:
         fleet.close()
     content = {"scene": scene.name, "tracks": str(file), **_of_fit(answer), **_told(found)}
@@ -120,6 +134,16 @@ def fit(
         keep(scene, draft.path)
         (draft.path / "fit.json").write_text(as_json(content) + "\n", encoding="utf-8")
     return Laid(found, draft.folder, content, answer, [*answer.warnings])
+
+
+def noise_of(text: str) -> float | None:
+    """A length as told [m], None of an empty text."""
+    if not text.strip():
+        return None
+    value = in_si(text)
+    if value.unit != "m" or value.number is None or not 0.0 < value.number < math.inf:
+        raise InputError(f'--noise {text}: expected a length above zero with its unit, such as "2 mm"')
+    return value.number
 
 
 def _phase(scene: Scene) -> PhaseScene:
@@ -208,12 +232,13 @@ def _of_fit(answer: Fit) -> dict[str, Any]:
         "confidence": CONFIDENCE,
         "coordinate_rms_before": answer.before,
         "coordinate_rms_after": answer.after,
-        "chaotic_floor": answer.floor,
+        "scatter_of_twins": answer.scatter,
+        "noise": answer.noise,
+        "chi2": answer.chi2,
         "correlation": answer.correlation,
         "coordinates": answer.coordinates,
-        "runs": answer.runs,
+        "sets_of_values": answer.runs,
         "converged": answer.converged,
-        "ended": answer.ended,
     }
 
 

@@ -9,7 +9,8 @@ from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
 from tests.conftest import FREE
 
-AIR = {**FREE, "gravity": "uniform", "air": "quadratic"}
+AIR = {**FREE, "gravity": "uniform", "air": "quadratic", "nodes": "169"}
+"""Of the scene breadboard-nylon."""
 WEIGHTLESS = {f"gravity.acceleration[{i}]": 0.0 for i in (1, 2, 3)}
 RHO, SPEED = 1.225, 20.0
 

@@ -10,7 +10,8 @@ from fmu_src.net_capture.gravity.history import read
 from fmu_src.net_capture.interface import MODEL, refusals
 from tests.conftest import FREE
 
-AIR = {**FREE, "gravity": "uniform", "air": "quadratic"}
+AIR = {**FREE, "gravity": "uniform", "air": "quadratic", "nodes": "169"}
+"""Of the scene breadboard-nylon."""
 HISTORY = {**FREE, "gravity": "history", "target": "box", "contact": "inelastic"}
 PARABOLA = [[0.5, 0.0, 0.0, 0.0], [1.0, -3.0, 0.5, 1.0], [1.7, 0.2, 0.1, 0.0], [2.0, 1.0, -0.3, 0.0]]
 """A pull-out and what is left after it: time [s], acceleration [m/s2]."""
