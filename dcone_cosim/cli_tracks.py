@@ -59,17 +59,14 @@ def fit(
             "--noise", help='Standard deviation of a measured coordinate, such as "2 mm"; estimated if not given.'
         ),
     ] = "",
-    twins: Annotated[
-        int, typer.Option("--twins", min=2, max=64, help="Runs of each set of values, a micrometre apart.")
-    ] = 4,
     settings: Settings = None,
     json: Json = False,
     offline: Offline = False,
 ) -> None:
     """Estimate values of a scene from measured tracks, with intervals.
 
-    Least squares over runs of the scene, which begin with its own values. The intervals hold 95 %, for measurements that
-    err alike and apart from one another; what a net's chaos adds is in them, what the model gets wrong is not.
+    Least squares over runs of the scene, which begin with its own values. The intervals hold 95 %, for measurements
+    that err alike and apart from one another; what a net's chaos adds is in them, what the model gets wrong is not.
 
     Exit code: 0 done, 2 bad input, 5 a run of it failed, 6 interrupted.
     """
@@ -85,6 +82,5 @@ def fit(
             progress,
             settings or [],
             commands.noise_of(noise),
-            twins,
         )
     answer(json, done.content, lambda console: show.show(done, console), done.notes, done.folder)

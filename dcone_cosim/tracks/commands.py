@@ -39,8 +39,6 @@ from dcone_cosim.tracks.reading import Array, Track, read_tracks
 from dcone_cosim.tracks.runs import CAPTURE, of_folder, of_result
 from dcone_cosim.tracks.simulated import Flown
 
-TWINS = 4
-"""Runs of each set of values."""
 JITTER = 1e-6
 """How far beside it each node of a twin begins [m]."""
 
@@ -77,12 +75,10 @@ def fit(
     progress: Progress,
     settings: Sequence[str] = (),
     noise: float | None = None,
-    twins: int = TWINS,
 ) -> Laid:
     """Estimate values of a scene from the tracks of a file.
 
     noise    standard deviation of a measured coordinate [m], None where it is not known
-    twins    runs of each set of values
     """
     measured = read_tracks(file)
     until = max(float(track.times[-1]) for track in measured)
@@ -105,12 +101,9 @@ def fit(
         last[:] = [_run(fleet, _with(base, {**dict(zip(wanted, values, strict=True)), **more}))]
         return of_result(last[0])
 
-    def simulate(values: Sequence[float]) -> Array:
-        rows = []
-        for seed in range(1, twins + 1):
-            interrupts.check("fit", 0.0)
-            rows.append(_coordinates(compare(fly(values, _jitter(seed)), measured))[1])
-        return np.array(rows)
+    def simulate(values: Sequence[float], seed: int) -> Array:
+        interrupts.check("fit", 0.0)
+        return _coordinates(compare(fly(values, _jitter(seed)), measured))[1]
 
     start = [_started(phase, value, key) for value, key in zip(wanted, free, strict=True)]
     try:
@@ -123,7 +116,7 @@ def fit(
                 given,
                 simulate,
                 noise,
-                lambda runs, rms: progress.say(f"{runs} sets of values, {twins} runs each: {rms:.4g} m off"),
+                lambda runs, rms: progress.say(f"run {runs}: {rms:.4g} m off"),
             )
             found = compare(fly([one.value for one in answer.estimates], {}), measured)
     finally:
@@ -232,12 +225,12 @@ def _of_fit(answer: Fit) -> dict[str, Any]:
         "confidence": CONFIDENCE,
         "coordinate_rms_before": answer.before,
         "coordinate_rms_after": answer.after,
-        "scatter_of_twins": answer.scatter,
+        "scatter_of_runs": answer.scatter,
         "noise": answer.noise,
         "chi2": answer.chi2,
         "correlation": answer.correlation,
         "coordinates": answer.coordinates,
-        "sets_of_values": answer.runs,
+        "runs": answer.runs,
         "converged": answer.converged,
     }
 

@@ -1,21 +1,25 @@
-"""Values of a scene estimated from measured tracks: least squares over runs of it, with intervals.
+"""Values of a scene estimated from measured tracks: least squares by regression over runs of it, with intervals.
 
-A net is chaotic: twins that begin a micrometre apart come apart by themselves, so a single run is one sample, and its
-slope by a value is mostly noise. So every set of values is run with several twins; the fit is to their mean, and each
-coordinate counts by what it scatters by: with its variance c2 over M twins, and s2 that of the measurements,
+A net is chaotic: twins that begin a micrometre apart come apart by themselves, and which thread snaps taut first jumps
+with any value. So one run is a sample, its slope by a value is noise, and a search by slopes stops in the next dent. In
+place of that a round runs the scene at values scattered about the present ones, each with a seed of its own, and fits a
+plane to what comes out,
 
-    minimise  sum w (r_measured - mean r(p))^2,   w = 1 / (s2 + (1 + 1/M) c2),
-    p = p_start exp(q)
+    off_i = b + J (q_i - q) + scatter,   off = r(p) - r_measured,   p = p_start exp(q)
 
-over `q`, the logarithm of what each value is of where it began: every value stays of its sign, and all count alike. s2 is
-what a first, unweighted fit leaves over beside the twins' scatter, unless it is told. The slope J is by central
-differences over `STEP` in q. Scatter makes it too steep, and intervals too narrow, by a share that is known:
+over `q`, the logarithm of what each value is of where it began: every value stays of its sign, and all count alike.
+With c2 the variance of a coordinate's scatter about the plane of K runs, s2 that of the measurements, told or left over,
 
-    covariance = chi2 g_i g_k (J'wJ)^-1_ik,   g_k^2 = 1 / (1 - N_k / (J'wJ)_kk),   N_k = sum w 2 c2 / (M (2 STEP)^2)
+    q <- q - (J'wJ)^-1 J'w b,   w = 1 / (s2 + (1 + 1/K) c2)
 
-with chi2 = max(1, S / (m - n)) of m coordinates and n values. The scatter of coordinates hangs together over time; so what each twin by itself would
-move the values by is added: half an interval is `t sqrt(covariance + moved^2)`, t of Student's distribution at 95 %. Values
-further off that fit no worse belong to it too, since the sum is neither round nor smooth.
+and the next round looks closer, until that tells no more. Half an interval is the root of the sum of squares of
+
+- t sqrt(V_kk), t of Student's distribution at 95 %, with chi2 = max(1, S / (m - n)) of m coordinates and n values and
+  V = chi2 g_i g_k (J'wJ)^-1_ik,   g_k^2 = 1 / (1 - N_k / (J'wJ)_kk),   N_k = sum w c2 (A'A)^-1_kk
+  N what scatter alone adds to the square of a slope, A the plan of the round;
+- t times the standard deviation of what each run's scatter by itself would move q by: scatter hangs together over time,
+  and the shot that was measured has its own;
+- twice what the last three rounds, which look wider and closer, disagree by.
 
 Valid    errors of the measurements that are independent and alike; what the model itself gets wrong is not in it
 Source   Bates and Watts, Nonlinear Regression Analysis (1988), chapter 2; Fuller, Measurement Error Models (1987), for N
@@ -27,29 +31,26 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from dcone_cosim.errors import InputError
 from dcone_cosim.tracks.reading import Array
 
-STEP = 0.15
-"""Share of a value by which it is moved for the slope, to either side."""
+POINTS = 8
+"""Runs of a round for each free value, and half as many more."""
+FIRST, CLOSEST = 1.0, 0.01
+"""How far about the present values the first round looks, and the closest, in the logarithm."""
+NARROWER = 0.6
+LEAST_ROUNDS, MOST_ROUNDS = 5, 12
 WIDEST = math.log(30.0)
 """How far a value may go from where it began, in its logarithm."""
 CONFIDENCE = 0.95
-ENOUGH = 2e-3
-"""Change of every value, as a share, below which the search is over."""
-MOST_ROUNDS = 12
-BESIDE = (0.3, 0.6, 1.2)
-"""How far beside a minimum it is looked for a deeper one, in the logarithm of a value."""
-MOST_RESTARTS = 4
 LEAST_KNOWN = 0.1
 """Share of a slope's square that must be left when its noise is off: below, it is nothing but noise."""
 
-Simulate = Callable[[Sequence[float]], Array]
-"""Simulated coordinates [m] of all measured ones at these values: a row for each twin, (M, m)."""
+Simulate = Callable[[Sequence[float], int], Array]
+"""Simulated coordinates [m] of all measured ones at these values, begun with a seed."""
 
 
 @dataclass(frozen=True)
@@ -70,12 +71,11 @@ class Estimate:
 class Fit:
     """What came out.
 
-    before, after   root of the mean squared error of a coordinate, at the start and at the values found [m]
-    scatter         the same of a twin about the mean of all [m]
+    before, after   root of the mean squared error of a coordinate, at the start and, by the plane, at the values found [m]
+    scatter         the same of a run about the plane of the last round [m]
     noise           of the measurements: told, or estimated [m]
     chi2            weighted squares left over per degree of freedom: about 1 where the model is right
     correlation     of the values' errors, (n, n)
-    runs            sets of values that were run
     """
 
     estimates: Sequence[Estimate]
@@ -91,71 +91,24 @@ class Fit:
     warnings: Sequence[str] = field(default_factory=tuple)
 
 
-@dataclass
-class _Problem:
-    """The simulation as a function of q, each set of values run once."""
+@dataclass(frozen=True)
+class _Round:
+    """What a round tells: where it would go on, and how well that is known.
 
-    first: Array
-    measured: Array
-    simulate: Simulate
-    low: Array
-    high: Array
-    tell: Callable[[int, float], None]
-    kept: dict[bytes, Array] = field(default_factory=dict)
+    half      of the interval of every q
+    spread    covariance of q
+    blind     number of a value that it does not tell; -1 for none
+    """
 
-    def twins(self, q: Array) -> Array:
-        key = q.tobytes()
-        if key not in self.kept:
-            self.kept[key] = np.asarray(self.simulate((self.first * np.exp(q)).tolist()))
-            self.tell(len(self.kept), _rms(self.kept[key].mean(axis=0) - self.measured))
-        return self.kept[key]
-
-    def off(self, q: Array) -> Array:
-        """Mean of the twins less what was measured [m]."""
-        found: Array = self.twins(q).mean(axis=0) - self.measured
-        return found
-
-    def slope(self, q: Array) -> tuple[Array, Array]:
-        """Of `off` by each q, and by how much it is too large in the mean, squared: its noise, both (m, n)."""
-        columns, noise = [], []
-        for k in range(len(q)):
-            up, down = q.copy(), q.copy()
-            up[k], down[k] = min(q[k] + STEP, self.high[k]), max(q[k] - STEP, self.low[k])
-            ends = self.twins(up), self.twins(down)
-            way = up[k] - down[k]
-            columns.append((ends[0].mean(axis=0) - ends[1].mean(axis=0)) / way)
-            noise.append(sum(_variance(end) / len(end) for end in ends) / way**2)
-        return np.column_stack(columns), np.column_stack(noise)
-
-    def squares(self, q: Array, weight: Array) -> float:
-        """Weighted sum of squares."""
-        return float(weight @ self.off(q) ** 2)
-
-    def minimise(self, q: Array, weight: Array) -> Any:
-        """The values at which the weighted squares are least."""
-        from scipy import optimize
-
-        root = np.sqrt(weight)
-        return optimize.least_squares(
-            lambda at: root * self.off(at),
-            q,
-            lambda at: root[:, None] * self.slope(at)[0],
-            bounds=(self.low, self.high),
-            x_scale=1.0,
-            xtol=ENOUGH,
-            ftol=1e-6,
-            max_nfev=MOST_ROUNDS,
-        )
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
-def _variance(twins: Array) -> Array:
-    """Of a twin about the mean, each coordinate; 0 of one alone."""
-    found: Array = twins.var(axis=0, ddof=1) if len(twins) > 1 else np.zeros(twins.shape[1])
-    return found
+    q: Array
+    step: Array
+    half: Array
+    spread: Array
+    after: float
+    scatter: float
+    noise: float
+    chi2: float
+    blind: int
 
 
 def estimate(
@@ -171,96 +124,119 @@ def estimate(
 
     bounds      of each value, both included
     noise       standard deviation of a measured coordinate [m]; None: not known
-    tell        called after each set of values with how many there were and its root mean square error [m]
+    tell        called after each run with how many there were and its root mean square error [m]
     """
     first = np.asarray(start, dtype=float)
     many, free = len(measured), len(first)
     if many <= free:
         raise InputError(f"{many} coordinates cannot tell {free} values; expected more")
-    problem = _Problem(first, measured, simulate, *_limits(first, bounds), tell)
-    before = _rms(problem.off(np.zeros(free)))
-    found = problem.minimise(np.zeros(free), np.ones(many))
-    weight, sigma = _weights(problem, found.x, noise)
-    found = problem.minimise(found.x, weight)
-    for _ in range(MOST_RESTARTS):
-        weight, sigma = _weights(problem, found.x, noise)
-        least = problem.squares(found.x, weight)
-        beside = min(_beside(problem, found.x), key=lambda q: problem.squares(q, weight))
-        if not problem.squares(beside, weight) < least - 1.0:
-            break
-        found = problem.minimise(beside, weight)
-    weight, sigma = _weights(problem, found.x, noise)
-    covariance, chi2, moved = _spread(problem, found.x, weight, names)
-    from scipy import stats
+    low, high = _limits(first, bounds)
+    runs = 0
 
-    student = float(stats.t.ppf(0.5 + 0.5 * CONFIDENCE, many - free))
-    half = student * np.sqrt(np.diag(covariance) + moved**2)
-    least, most = found.x - half, found.x + half
-    enough = problem.squares(found.x, weight) + student**2 * max(1.0, chi2)
-    for q in _beside(problem, found.x):  # no worse, to what can be told: then it is within the interval
-        if problem.squares(q, weight) < enough:
-            least, most = np.minimum(least, q), np.maximum(most, q)
+    def off(q: Array) -> Array:
+        nonlocal runs
+        runs += 1
+        found: Array = np.asarray(simulate((first * np.exp(q)).tolist(), runs)) - measured
+        tell(runs, _rms(found))
+        return found
+
+    before = _rms(off(np.zeros(free)))
+    q, radius = np.zeros(free), FIRST
+    rounds: list[_Round] = []
+    while len(rounds) < MOST_ROUNDS:
+        plan = _plan(q, radius, low, high, len(rounds))
+        rounds.append(_look(q, plan, np.array([off(at) for at in plan]), noise, names))
+        q = np.clip(q + np.clip(rounds[-1].step, -1.5 * radius, 1.5 * radius), low, high)
+        if radius <= CLOSEST or (len(rounds) >= LEAST_ROUNDS and float(rounds[-1].half.max()) > radius):
+            break
+        radius = max(CLOSEST, NARROWER * radius)
+    near = rounds[-3:]
+    last = min(near, key=lambda one: (one.blind >= 0, float(np.sum(np.log(one.half)))))
+    q = np.clip(last.q + last.step, low, high)
+    ends = np.array([np.clip(one.q + one.step, low, high) for one in near if one.blind < 0 or one is last])
+    half = np.hypot(last.half, 2.0 * np.sqrt(np.mean((ends - q) ** 2, axis=0)))
+    settled = bool(np.all(np.abs(last.step) <= np.maximum(last.half, NARROWER ** (LEAST_ROUNDS - 1))))
+    if last.blind >= 0:
+        raise InputError(
+            f"the tracks do not tell {names[last.blind]}: what moves with it is no more than the scatter between runs; "
+            "leave it out of --free, or give more markers, or earlier instants"
+        )
     estimates = []
     for k, name in enumerate(names):
-        ends = sorted(float(first[k] * math.exp(end)) for end in (least[k], most[k]))
-        estimates.append(Estimate(name, float(first[k]), float(first[k] * math.exp(found.x[k])), *ends))
-    after, scatter = _rms(problem.off(found.x)), float(np.sqrt(_variance(problem.twins(found.x)).mean()))
+        ends = sorted(float(first[k] * math.exp(q[k] + side * half[k])) for side in (-1.0, 1.0))
+        estimates.append(Estimate(name, float(first[k]), float(first[k] * math.exp(q[k])), *ends))
+    size = np.sqrt(np.diag(last.spread))
     return Fit(
         estimates,
         before,
-        after,
-        scatter,
-        sigma,
-        chi2,
-        covariance / np.sqrt(np.outer(np.diag(covariance), np.diag(covariance))),
+        last.after,
+        last.scatter,
+        last.noise,
+        last.chi2,
+        last.spread / np.outer(size, size),
         many,
-        len(problem.kept),
-        found.status > 0,
-        _warnings(found.status, names, found.x, problem, scatter, sigma, chi2),
+        runs,
+        settled,
+        _warnings(settled, names, q, low, high, last),
     )
 
 
-def _beside(problem: _Problem, q: Array) -> list[Array]:
-    """Values beside these, one moved at a time: a search by slopes stops in any dent of a sum that chaos makes rough."""
-    found = []
-    for k in range(len(q)):
-        for way in (*BESIDE, *(-way for way in BESIDE)):
-            other = q.copy()
-            other[k] = min(max(q[k] + way, problem.low[k]), problem.high[k])
-            found.append(other)
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _plan(q: Array, radius: float, low: Array, high: Array, count: int) -> Array:
+    """Values of a round: pairs opposite one another, evenly drawn within the radius."""
+    free = len(q)
+    pairs = (POINTS * free + POINTS) // 4 + 1
+    drawn = radius * np.random.default_rng(count).uniform(-1.0, 1.0, (pairs, free))
+    found: Array = np.clip(np.concatenate([q + drawn, q - drawn]), low, high)
     return found
 
 
-def _weights(problem: _Problem, q: Array, noise: float | None) -> tuple[Array, float]:
-    """Of every coordinate, and the noise of the measurements [m]: told, or what is left beside the twins' scatter."""
-    twins = problem.twins(q)
-    scatter = (1.0 + 1.0 / len(twins)) * _variance(twins)
-    squared = float(np.mean(problem.off(q) ** 2))
-    sigma2 = noise**2 if noise is not None else max(squared - float(scatter.mean()), 0.05 * squared)
-    return 1.0 / (sigma2 + scatter), math.sqrt(sigma2)
+def _look(q: Array, plan: Array, off: Array, noise: float | None, names: Sequence[str]) -> _Round:
+    """A plane through the runs of a round, the step to its least squares, and the intervals there."""
+    from scipy import stats
 
+    runs, many, free = len(plan), off.shape[1], len(q)
+    design = np.column_stack([np.ones(runs), plan - q])
+    planned = np.linalg.inv(design.T @ design)
+    plane = planned @ design.T @ off
+    base, slope, rest = plane[0], plane[1:].T, off - design @ plane
+    scatter = np.sum(rest**2, axis=0) / (runs - free - 1)
+    told = (1.0 + 1.0 / runs) * scatter
 
-def _spread(problem: _Problem, q: Array, weight: Array, names: Sequence[str]) -> tuple[Array, float, Array]:
-    """Covariance of q, weighted squares per degree of freedom, and what the twins' scatter moves q by."""
-    slope, noise = problem.slope(q)
-    steep = slope.T @ (weight[:, None] * slope)
-    known = np.diag(steep) - noise.T @ weight
-    for name, whole, rest in zip(names, np.diag(steep), known, strict=True):
-        if not rest > LEAST_KNOWN * whole:
-            raise InputError(
-                f"the tracks do not tell {name}: what moves with it is no more than the scatter between twins; leave "
-                "it out of --free, or give more markers, or earlier instants"
-            )
-    size = np.sqrt(np.diag(steep))
-    if not np.linalg.eigvalsh(steep / np.outer(size, size))[0] > 1e-6:
-        raise InputError(f"the tracks tell only a combination of {', '.join(names)}; leave one of them out of --free")
-    inverse = np.linalg.inv(steep)
-    wider = size / np.sqrt(known)
-    off, twins = problem.off(q), problem.twins(q)
-    chi2 = float(off @ (weight * off)) / (len(off) - len(q))
-    apart = (twins - twins.mean(axis=0)) @ (weight[:, None] * slope) @ inverse.T
-    moved = np.sqrt((1.0 + 1.0 / len(twins)) * _variance(apart))
-    return max(1.0, chi2) * np.outer(wider, wider) * inverse, chi2, moved
+    def weights(left: Array) -> tuple[Array, float]:
+        squared = float(np.mean(left**2))
+        sigma2 = noise**2 if noise is not None else max(squared - float(told.mean()), 0.05 * squared, 1e-24)
+        return 1.0 / (sigma2 + told), math.sqrt(sigma2)
+
+    left, step, inverse, sigma = base, np.zeros(free), np.eye(free), 0.0
+    weight = np.ones(many)
+    for _ in range(3):  # the noise is what is left over, and what is left over hangs on the weights
+        weight, sigma = weights(left)
+        steep = slope.T @ (weight[:, None] * slope)
+        size = np.sqrt(np.maximum(np.diag(steep), 1e-300))
+        if not np.linalg.eigvalsh(steep / np.outer(size, size))[0] > 1e-6:
+            blind = [
+                name
+                for name, column in zip(names, slope.T, strict=True)
+                if not np.linalg.norm(column) > 1e-9 * np.linalg.norm(slope)
+            ]
+            which = f"do not tell {blind[0]}" if blind else f"tell only a combination of {', '.join(names)}"
+            raise InputError(f"the tracks {which}; leave one out of --free")
+        inverse = np.linalg.inv(steep)
+        step = -inverse @ (slope.T @ (weight * base))
+        left = base + slope @ step
+    known = 1.0 - (planned.diagonal()[1:] * float(weight @ scatter)) / np.diag(steep)
+    blind_one = int(np.argmin(known)) if known.min() < LEAST_KNOWN else -1
+    wider = 1.0 / np.sqrt(np.maximum(known, LEAST_KNOWN))
+    chi2 = float(left @ (weight * left)) / (many - free)
+    spread = max(1.0, chi2) * np.outer(wider, wider) * inverse
+    moved = rest @ (weight[:, None] * slope) @ inverse.T * wider
+    spread = spread + np.diag(np.sum(moved**2, axis=0) / (runs - free - 1) * (1.0 + 1.0 / runs))
+    half = float(stats.t.ppf(0.5 + 0.5 * CONFIDENCE, many - free)) * np.sqrt(np.diag(spread))
+    return _Round(q, step, half, spread, _rms(left), float(np.sqrt(scatter.mean())), sigma, chi2, blind_one)
 
 
 def _limits(first: Array, bounds: Sequence[tuple[float, float]]) -> tuple[Array, Array]:
@@ -272,23 +248,21 @@ def _limits(first: Array, bounds: Sequence[tuple[float, float]]) -> tuple[Array,
     return low, high
 
 
-def _warnings(
-    status: int, names: Sequence[str], q: Array, problem: _Problem, scatter: float, sigma: float, chi2: float
-) -> tuple[str, ...]:
+def _warnings(settled: bool, names: Sequence[str], q: Array, low: Array, high: Array, last: _Round) -> tuple[str, ...]:
     found = []
-    if status <= 0:
-        found.append(f"the search ended after {MOST_ROUNDS} rounds without settling: the intervals mean little")
-    for name, at, least, most in zip(names, q, problem.low, problem.high, strict=True):
+    if not settled:
+        found.append("the search ended without settling: the intervals mean little")
+    for name, at, least, most in zip(names, q, low, high, strict=True):
         if at - least < 1e-6 or most - at < 1e-6:
             found.append(f"{name} lies at the edge of what was searched: begin elsewhere, or leave it out")
-    if scatter > sigma:
+    if last.scatter > last.noise:
         found.append(
-            f"twins a micrometre apart differ by {scatter:.2g} m, more than the measurements' {sigma:.2g} m: the net's "
-            "own chaos limits what can be found; earlier instants tell more"
+            f"runs scatter by {last.scatter:.2g} m, more than the measurements' {last.noise:.2g} m: the net's own chaos "
+            "limits what can be found; earlier instants tell more"
         )
-    if chi2 > 2.0:
+    if last.chi2 > 2.0:
         found.append(
-            f"what is left over is {math.sqrt(chi2):.2g} times what measurements and chaos explain: the model is off by "
-            "more than these values can mend, and the intervals do not tell that"
+            f"what is left over is {math.sqrt(last.chi2):.2g} times what measurements and chaos explain: the model is "
+            "off by more than these values can mend, and the intervals do not tell that"
         )
     return tuple(found)

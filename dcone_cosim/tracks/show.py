@@ -25,7 +25,7 @@ def show(laid: Laid, console: Console) -> None:
         console.print(values)
         console.print(
             f"a coordinate is off by {laid.fit.before:.4g} m before, {laid.fit.after:.4g} m after; "
-            f"twins scatter by {laid.fit.scatter:.2g} m",
+            f"runs scatter by {laid.fit.scatter:.2g} m",
             highlight=False,
         )
     table = Table(box=None, pad_edge=False)
