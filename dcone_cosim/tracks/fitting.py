@@ -8,7 +8,7 @@ plane to what comes out,
     off_i = b + J (q_i - q) + scatter,   off = r(p) - r_measured,   p = p_start exp(q)
 
 over `q`, the logarithm of what each value is of where it began: every value stays of its sign, and all count alike.
-With c2 the variance of a coordinate's scatter about the plane of K runs, s2 that of the measurements, told or left over,
+With c2 the variance of a coordinate's scatter about the plane of K runs, s2 that of the measurements,
 
     q <- q - (J'wJ)^-1 J'w b,   w = 1 / (s2 + (1 + 1/K) c2)
 
@@ -22,7 +22,7 @@ and the next round looks closer, until that tells no more. Half an interval is t
 - twice what the last three rounds, which look wider and closer, disagree by.
 
 Valid    errors of the measurements that are independent and alike; what the model itself gets wrong is not in it
-Source   Bates and Watts, Nonlinear Regression Analysis (1988), chapter 2; Fuller, Measurement Error Models (1987), for N
+Source   Bates and Watts, Nonlinear Regression Analysis (1988), chapter 2; N: Fuller, Measurement Error Models (1987)
 Checked  tests/cosim/test_fit.py
 """
 
@@ -71,7 +71,7 @@ class Estimate:
 class Fit:
     """What came out.
 
-    before, after   root of the mean squared error of a coordinate, at the start and, by the plane, at the values found [m]
+    before, after   root of the mean squared error of a coordinate, at the start and, by the plane, as found [m]
     scatter         the same of a run about the plane of the last round [m]
     noise           of the measurements: told, or estimated [m]
     chi2            weighted squares left over per degree of freedom: about 1 where the model is right
@@ -163,8 +163,8 @@ def estimate(
         )
     estimates = []
     for k, name in enumerate(names):
-        ends = sorted(float(first[k] * math.exp(q[k] + side * half[k])) for side in (-1.0, 1.0))
-        estimates.append(Estimate(name, float(first[k]), float(first[k] * math.exp(q[k])), *ends))
+        interval = sorted(float(first[k] * math.exp(q[k] + side * half[k])) for side in (-1.0, 1.0))
+        estimates.append(Estimate(name, float(first[k]), float(first[k] * math.exp(q[k])), *interval))
     size = np.sqrt(np.diag(last.spread))
     return Fit(
         estimates,
@@ -211,21 +211,20 @@ def _look(q: Array, plan: Array, off: Array, noise: float | None, names: Sequenc
         sigma2 = noise**2 if noise is not None else max(squared - float(told.mean()), 0.05 * squared, 1e-24)
         return 1.0 / (sigma2 + told), math.sqrt(sigma2)
 
-    left, step, inverse, sigma = base, np.zeros(free), np.eye(free), 0.0
-    weight = np.ones(many)
+    left, sigma = base, 0.0
+    step: Array = np.zeros(free)
+    inverse: Array = np.eye(free)
+    weight: Array = np.ones(many)
     for _ in range(3):  # the noise is what is left over, and what is left over hangs on the weights
         weight, sigma = weights(left)
         steep = slope.T @ (weight[:, None] * slope)
         size = np.sqrt(np.maximum(np.diag(steep), 1e-300))
         if not np.linalg.eigvalsh(steep / np.outer(size, size))[0] > 1e-6:
-            blind = [
-                name
-                for name, column in zip(names, slope.T, strict=True)
-                if not np.linalg.norm(column) > 1e-9 * np.linalg.norm(slope)
-            ]
-            which = f"do not tell {blind[0]}" if blind else f"tell only a combination of {', '.join(names)}"
-            raise InputError(f"the tracks {which}; leave one out of --free")
-        inverse = np.linalg.inv(steep)
+            raise InputError(
+                f"the tracks do not tell {' and '.join(names)} apart: nothing moves with one of them, or all alike; "
+                "leave one out of --free"
+            )
+        inverse = np.asarray(np.linalg.inv(steep), dtype=float)
         step = -inverse @ (slope.T @ (weight * base))
         left = base + slope @ step
     known = 1.0 - (planned.diagonal()[1:] * float(weight @ scatter)) / np.diag(steep)
@@ -257,8 +256,8 @@ def _warnings(settled: bool, names: Sequence[str], q: Array, low: Array, high: A
             found.append(f"{name} lies at the edge of what was searched: begin elsewhere, or leave it out")
     if last.scatter > last.noise:
         found.append(
-            f"runs scatter by {last.scatter:.2g} m, more than the measurements' {last.noise:.2g} m: the net's own chaos "
-            "limits what can be found; earlier instants tell more"
+            f"runs scatter by {last.scatter:.2g} m, more than the measurements' {last.noise:.2g} m: the net's own "
+            "chaos limits what can be found; earlier instants tell more"
         )
     if last.chi2 > 2.0:
         found.append(

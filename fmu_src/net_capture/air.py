@@ -1,8 +1,8 @@
 """Drag of the air on threads and bullets, for tests on the ground.
 
-A thread is a round cylinder: only the part of its speed that runs across it counts (the cross-flow principle), by halves
-at the speeds of its two ends. Of a thread that hangs slack only the share `r/l` of its length lies along its chord;
-the rest runs anywhere:
+A thread is a round cylinder: only the part of its speed that runs across it counts (the cross-flow principle), by
+halves at the speeds of its two ends. Of a thread that hangs slack only the share `r/l` of its length lies along
+its chord; the rest runs anywhere:
 
     F = -1/2 rho C d l/2 |v_n| v_n,   v_n = v - r (r . v) / max(r, l)^2
 
@@ -169,8 +169,8 @@ PART = Term(
         at_least_zero(
             "air.thread_drag",
             "1",
-            "drag coefficient of a thread across the stream, on its diameter: of a round cylinder 1.0 at Reynolds numbers of 1000, 1.4 "
-            "at 100 (Hoerner 1965)",
+            "drag coefficient of a thread across the stream, on its diameter: of a round cylinder 1.0 at Reynolds "
+            "numbers of 1000, 1.4 at 100 (Hoerner 1965)",
             1.1,
         ),
         at_least_zero(

@@ -45,8 +45,8 @@ def make_balance(composition: Any) -> Any:
 
     @kernel
     def energy_balance(p, work):
-        """Energy of all bodies now [J], with what contact, dashpots, air and breaks took and without what the winches gave,
-        or gravity as it changed.
+        """Energy of all bodies now [J], with what contact, dashpots, air and breaks took and without what the winches
+        gave, or gravity as it changed.
 
         Checked  tests/net_capture/test_energy_book.py
         """

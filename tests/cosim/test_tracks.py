@@ -23,7 +23,7 @@ def values(axis=(0.0, 1.0, 0.0), roll=0.0):
 
 
 def flown(shots=(), nodes=(), **more):
-    """Bullet 1 on x = 0, y = -20 + 3 t, z = t^3, and the vertex at rest at the muzzle; samples a quarter second apart."""
+    """Bullet 1 on x = 0, y = -20 + 3 t, z = t^3, and the vertex at rest at the muzzle; four samples a second."""
     t = np.arange(0.0, 2.01, 0.25)
     zero = np.zeros_like(t)
     columns = {"time": t}

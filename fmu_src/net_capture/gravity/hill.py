@@ -102,8 +102,8 @@ def chaser_potential(p):
 
 @kernel
 def target_potential(p):
-    """Potential energy [J] of the target, less the frame's rate times its spin about the orbit normal: a body that turns
-    has a Jacobi integral of its own.
+    """Potential energy [J] of the target, less the frame's rate times its spin about the orbit normal: a body that
+    turns has a Jacobi integral of its own.
 
     Checked  tests/net_capture/test_energy_book.py
     """

@@ -72,7 +72,7 @@ def at_time(rows, time, axis):
 def fall(rows, begin, end, axis, flight):
     """What gravity adds along an axis to velocity [m/s] and way [m] from one time to another [s], into a flight.
 
-        dv = integral g dt,   dx = integral (end - t) g dt; of a straight piece from g0 to g1 in d, to the end's e after it:
+        dv = integral g dt,   dx = integral (end - t) g dt; of a straight piece g0 to g1 in d, with e after it:
         (g0 + g1) d/2   and   (g0/3 + g1/6) d2 + e (g0 + g1) d/2
 
     Checked  tests/net_capture/test_ground.py

@@ -31,7 +31,7 @@ def make(composition: Any) -> Gravity:
 
 
 PART = Term(
-    "uniform gravity of a ground test, on net, bullets and vertex; chaser and target are carried unless they are to fall",
+    "uniform gravity of a ground test, on net, bullets and vertex; chaser and target are carried unless told to fall",
     (
         vector(
             "gravity.acceleration",
