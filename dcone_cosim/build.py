@@ -314,6 +314,26 @@ def mouth_sides(values: Mapping[str, float], terms: Mapping[str, str]) -> list[f
     return [] if part is None else (list(part.checks.sides(values).values()) * 8)[: part.checks.bullets]
 
 
+def shot_frame(values: Mapping[str, float]) -> tuple[Any, Any]:
+    """Muzzle [m] and axes as rows (two transverse, then the shot's own) of the frame that a shot is measured in."""
+    from types import SimpleNamespace
+
+    import numpy as np
+
+    from fmu_src.implied import formula
+    from fmu_src.net_capture.shot import aim
+
+    given = {
+        name.replace(".", "_"): np.array([values[f"{name}[{axis}]"] for axis in (1, 2, 3)])
+        for name in ("chaser.start_position", "shot.axis")
+    }
+    record = SimpleNamespace(
+        **given, shot_roll=values["shot.roll"], axes=np.zeros(9), muzzle=np.zeros(3), scratch=np.zeros(9)
+    )
+    formula(aim)(record)  # type: ignore[no-untyped-call]
+    return record.muzzle, record.axes.reshape(3, 3)
+
+
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:
     """Lines of threads and closed rim of the net with these values, as numbers of nodes; None for none of ours."""
     part = _part(NETS, terms.get("net"), values) if "net.mesh" in values else None

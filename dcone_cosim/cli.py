@@ -23,6 +23,7 @@ from dcone_cosim.cli_options import (
     results,
 )
 from dcone_cosim.cli_runs import runs_app
+from dcone_cosim.cli_tracks import tracks_app
 from dcone_cosim.completion import phases_like, scenes_like
 from dcone_cosim.errors import BAD_INPUT, DconeError
 from dcone_cosim.exits import complain as _complain
@@ -37,6 +38,7 @@ app = typer.Typer(
 app.add_typer(cache_app, name="cache")
 app.add_typer(runs_app)
 app.add_typer(cases_app)
+app.add_typer(tracks_app)
 
 
 def _version(asked: bool) -> None:
@@ -176,14 +178,22 @@ def new(
     origin: Annotated[
         str, typer.Option("--from", metavar="SCENE", help="Scene to begin from.", autocompletion=scenes_like)
     ] = "mission",
+    scaled: Annotated[
+        str,
+        typer.Option(
+            "--scaled", metavar="SHARE", help="Write a breadboard similar to its capture, such as 1/16 as large."
+        ),
+    ] = "",
 ) -> None:
     """Write a scene to start from, with every key explained.
 
-    What is left at its default stands there as a comment with that default. Never replaces a file.
+    What is left at its default stands there as a comment with that default. With --scaled every length and time of its
+    capture is so much smaller at the same speeds, and masses, forces and stiffness follow; comments name what can not
+    be kept. Never replaces a file.
     """
     from dcone_cosim.commands import write_scene
 
-    path, next_steps = write_scene(name, origin)
+    path, next_steps = write_scene(name, origin, scaled)
     with _reader_may_leave():
         typer.echo(path)
     for step in next_steps:

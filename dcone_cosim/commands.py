@@ -162,8 +162,11 @@ def write_fmus(
     return paths, notes
 
 
-def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
-    """Write a scene begun from another; returns where, and what to do next. Never replaces a file."""
+def write_scene(name: str, origin: str, share: str = "") -> tuple[Path, list[str]]:
+    """Write a scene begun from another; returns where, and what to do next. Never replaces a file.
+
+    share    of its lengths and times, as told, for a breadboard that is similar to it; "" for none
+    """
     from dcone_cosim.scenes.new import SCHEMA, new_scene
 
     if not name.strip():
@@ -178,7 +181,12 @@ def write_scene(name: str, origin: str) -> tuple[Path, list[str]]:
     if any(component.fmu is not None for phase in scene.phases for component in phase.components):
         raise InputError(f"{source} names FMU files: only a scene of our models can be begun from; copy the file")
     schema = f"./{SCHEMA}" if (path.parent / SCHEMA).is_file() else ""
-    text = new_scene(read_text(source), origin, str(path), schema)
+    given, comments = read_text(source), list[str]()
+    if share:
+        from dcone_cosim.scenes.scaled import scaled, share_of
+
+        given, comments = scaled(given, scene, share_of(share))
+    text = new_scene(given, origin, str(path), schema, comments)
     parse(text, path.stem, str(path))
     write_new(path, text)
     steps = [f"next: edit {path}, then `dcone validate {path}` and `dcone run {path}`"]

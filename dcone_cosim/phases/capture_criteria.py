@@ -97,9 +97,14 @@ def spacing(evidence: Evidence) -> Array:
     return np.asarray(np.spacing(farthest.astype(np.float32)), dtype=float)
 
 
+def _is_free(evidence: Evidence) -> bool:
+    """Whether nothing acts from outside: no gravity, and no air."""
+    return evidence.terms.get("gravity") == "none" and "air" not in evidence.terms
+
+
 def _momentum(evidence: Evidence) -> Iterator[Criterion]:
     """Of all bodies, in a frame that does not turn: as it was, whatever net, target, winches and reel do."""
-    if evidence.terms.get("gravity") != "none" or not evidence.has("momentum", "angular_momentum", CATCH + ".mass"):
+    if not _is_free(evidence) or not evidence.has("momentum", "angular_momentum", CATCH + ".mass"):
         return
     accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
     size = shot_momentum(evidence)
@@ -128,7 +133,7 @@ def _flight(evidence: Evidence) -> Iterator[Criterion]:
     numbers at most, whatever the signs; what a kick moves a bullet by is far less than such a number.
     """
     values, columns = evidence.values, evidence.columns
-    if evidence.terms.get("gravity") != "none" or not evidence.has("catch.position", "catch.mass"):
+    if not _is_free(evidence) or not evidence.has("catch.position", "catch.mass"):
         return
     if values.get("tether.vertex_tension", 0.0) != 0.0:
         return

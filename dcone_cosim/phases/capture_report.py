@@ -33,6 +33,8 @@ _CAPTURE_ROWS = (
     ("closing.work", "work of the winches", "J"),
     ("thread.dissipated", "taken by the threads' dashpots", "J"),
     ("cord.dissipated", "taken by the cord's dashpots", "J"),
+    ("air.dissipated", "taken by the air", "J"),
+    ("gravity.work", "given by the change of gravity", "J"),
     ("energy.remainder", "left over in the energy book", "J"),
     ("tether.paid_out", "tether paid out", "m"),
     ("net.nodes", "nodes of the net", ""),

@@ -204,9 +204,10 @@ class Removal(Tow):
         return line_notes(offered)
 
     def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
-        if before is not None and before.main.terms.get("gravity") == "none":
+        law = None if before is None else before.main.terms.get("gravity", "hill")
+        if before is not None and law != "hill":
             yield (
-                f'{before.name}.gravity: law = "none" lets the orbital frame stand still in the {before.name}; it '
+                f'{before.name}.gravity: law = "{law}" lets the orbital frame stand still in the {before.name}; it '
                 f"turns in the {self.name}, which takes the velocities handed over as seen in it (n r: 12 mm/s at 12 m "
                 'in low orbit). law = "hill" turns it in both'
             )

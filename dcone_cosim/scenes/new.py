@@ -40,13 +40,14 @@ SCHEMA = "dcone-schema.json"
 """Name under which a schema beside the scene is found."""
 
 
-def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
+def new_scene(text: str, origin: str, name: str, schema: str = "", comments: Sequence[str] = ()) -> str:
     """Text of a scene begun from another.
 
     text      of that other, which has passed every check
     origin    its name
     name      of the file this will be, for the advice at its top
     schema    path of a JSON schema for editors, "" for none
+    comments  what else is to be known of it
     """
     document = tomllib.loads(text)
     lines = [f"#:schema {schema}"] if schema else []
@@ -55,6 +56,8 @@ def new_scene(text: str, origin: str, name: str, schema: str = "") -> str:
         '# A dimensional value is a text with its unit, such as "24 m"; a pure number is bare.',
         "# A line that begins with a # and a key shows what counts when nothing is said; a table that is marked so is",
         "# left out of the FMU altogether.",
+        *(["#"] if comments else []),
+        *(f"# {line}" for line in comments),
         "",
         _line("title", _toml(document.get("title", "")), MEANING["title"]),
     ]

@@ -23,7 +23,10 @@ def make_balance(composition: Any) -> Any:
     drags = composition.terms.get("tether") == "dragging"
     has_break = composition.breaking is not None
     has_ejection = composition.ejection is not None
-    potential_at, bends, frame_rate = composition.gravity.potential, composition.gravity.bends, composition.gravity.rate
+    gravity = composition.gravity
+    potential_at, bends, given, changes = gravity.potential, gravity.bends, gravity.given, gravity.given is not None
+    chaser_potential, target_potential = gravity.chaser_potential, gravity.target_potential
+    has_air = composition.air is not None
     node_plane = composition.memory.node_plane
 
     @kernel
@@ -44,7 +47,8 @@ def make_balance(composition: Any) -> Any:
 
     @kernel
     def energy_balance(p, work):
-        """Energy of all bodies now [J], with what contact, dashpots and breaks took and without what the winches gave.
+        """Energy of all bodies now [J], with what contact, dashpots, air and breaks took and without what the winches
+        gave, or gravity as it changed.
 
         Checked  tests/net_capture/test_energy_book.py
         """
@@ -66,12 +70,15 @@ def make_balance(composition: Any) -> Any:
             energy -= p.ejection_work
         if bends:
             potential = potential_of_nodes(p, work)
-            potential += p.chaser_mass * potential_at(p, p.chaser_place)
+            potential += chaser_potential(p)
             if has_target:
-                potential += p.target_mass * potential_at(p, p.target_place)
-                potential -= frame_rate(p) * p.target_spin[2]
+                potential += target_potential(p)
             p.energy_potential = potential
             energy += potential
+        if changes:
+            energy -= given(p, work)
+        if has_air:
+            energy += p.air_dissipated
         return energy
 
     return energy_balance

@@ -38,7 +38,7 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, spin, ejection, volume, pulls,
+    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, air, spin, ejection, volume, pulls,
     pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
@@ -65,10 +65,10 @@ class Composition:
         self.target = self._make("target")
         self.contact = self._make("contact")
         self.closing, self.tether = self._make("closing"), self._make("tether")
-        self.volume = self._make("volume")
+        self.volume, self.air = self._make("volume"), self._make("air")
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
-        self.pulls = _make_pulls(self.closing, self.tether, self.ejection)
+        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air)
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
 
@@ -92,18 +92,20 @@ class Composition:
         return tables.make_reader(self._tables, name)
 
 
-def _make_pulls(closing: Any, tether: Any, ejection: Any) -> Pulls:
-    """The pulls of cord and tether together, and bullets that are held."""
-    has_closing, has_tether, has_ejection = closing is not None, tether is not None, ejection is not None
+def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
+    """The pulls of cord, tether and air together, and bullets that are held."""
+    has_closing, has_tether = closing is not None, tether is not None
+    has_ejection, has_air = ejection is not None, air is not None
     wake_held = ejection.wake if has_ejection else None
     pull_mouth, pull_mouth_shown = (closing.pull, closing.pull_shown) if has_closing else (None, None)
     pull_vertex, pull_vertex_shown, book_impulse = (
         (tether.pull, tether.pull_shown, tether.book) if has_tether else [None] * 3
     )
+    drag, drag_shown = (air.pull, air.pull_shown) if has_air else (None, None)
 
     @kernel
     def pull(p, work):
-        """Pulls of the closing cord and of the tether, for a substep.
+        """Pulls of the closing cord, of the tether and of the air, for a substep.
 
         Checked  tests/net_capture/test_closing.py
         """
@@ -113,6 +115,8 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any) -> Pulls:
             pull_mouth(p, work)
         if has_tether:
             pull_vertex(p, work)
+        if has_air:
+            drag(p, work)
 
     @kernel
     def pull_shown(p, work):
@@ -124,10 +128,12 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any) -> Pulls:
             pull_mouth_shown(p, work)
         if has_tether:
             pull_vertex_shown(p, work)
+        if has_air:
+            drag_shown(p, work)
 
     @kernel
     def book(p, duration):
-        """What the cord's dashpots took in a time at their present power [J], and the tether's impulse.
+        """What the cord's dashpots and the air took in a time at their present power [J], and the tether's impulse.
 
         Checked  tests/net_capture/test_closing.py
         """
@@ -135,5 +141,7 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any) -> Pulls:
             p.cord_loss += duration * p.cord_power
         if has_tether:
             book_impulse(p, duration)
+        if has_air:
+            p.air_loss += duration * p.air_power
 
     return Pulls(pull, pull_shown, book)

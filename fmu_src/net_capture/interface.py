@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
-from fmu_src.net_capture import breaking, shot, tether, volume
+from fmu_src.net_capture import air, breaking, shot, tether, volume
 from fmu_src.net_capture.closing import closings
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
@@ -290,6 +290,7 @@ GROUPS = {
     "contact": Group(CONTACTS, optional=True),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
+    "air": Group({"quadratic": air.PART}, selector="drag", optional=True, follows=lambda terms, values: "quadratic"),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "volume": _plain(volume.PART),

@@ -3,7 +3,7 @@
 From grid time n h to (n + 1) h:
 
     target               kicked by gravity
-    nodes                forces of the threads, the closing cord and a tension at the vertex; the scheme's step;
+    nodes                forces of the threads, closing cord, air and a tension at the vertex; the scheme's step;
                          impulses on the nodes that ended below the target's surface, which they then have not done
     chaser               kicked by gravity and the tension
     both                 drift
@@ -27,9 +27,7 @@ from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES
 from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
 from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep, make_limit_way
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.kernel import entry, kernel
-from orbital.twobody import mean_motion
 
 ON_GRID = 1e-3
 """Share of a substep by which a communication point may miss the grid and still count as on it: masters add up
@@ -45,7 +43,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     has_target, has_contact = parts.target is not None, parts.contact is not None
     has_closing, has_tether = parts.closing is not None, parts.tether is not None
     hold, has_volume = parts.volume, parts.volume is not None
-    has_nodes, is_hill = "nodes" in terms, parts.gravity.bends
+    has_nodes, has_air = "nodes" in terms, parts.air is not None
     capacity = int(terms["nodes"]) if has_nodes else 0
     planes, per_double = parts.planes, parts.per_double
     node_plane, properties = parts.memory.node_plane, parts.memory.properties
@@ -61,6 +59,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
+    changes, watches, renew, watch = (
+        gravity.renew is not None,
+        gravity.watch is not None,
+        gravity.renew,
+        gravity.watch,
+    )
     can_stop, stopped_by = scheme.fault is not None, scheme.fault
 
     @kernel
@@ -91,14 +95,14 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         """
         h = p.solver_substep
         if has_target:
-            gravity.kick_body(p, p.target_place, p.target_drift, p.rest, h)
+            gravity.kick_target(p, p.target_place, p.target_drift, p.rest, h)
         scheme.step(p, work)
         if has_tether:
             tether.kick_chaser(p)
         before = p.scratch[0:3]
         for axis in range(3):
             before[axis] = p.chaser_drift[axis]
-        gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, h)
+        gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, h)
         if has_ejection:
             ejection.hold(p, work, before)
         for axis in range(3):
@@ -108,6 +112,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_target:
             target.drift(p, frame_rate(p), h)
         p.grid += 1
+        if changes:
+            renew(p)
         if has_ejection:
             ejection.carry(p, work)
             if ejection.count_due(p) > 0:
@@ -135,6 +141,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             touched = p.contact_first_time if has_contact else -1.0
             beyond = measures.beyond(p, work, p.target_place) if has_target else -math.inf
             closing.trigger(p, work, time, touched, beyond)
+        if watches:
+            watch(p, work)
         judge(p, work, time)
         return 0
 
@@ -158,6 +166,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 p.chaser_spin[axis] = p.chaser_turned[axis]
         if has_ejection:
             ejection.show(p, work)
+        if has_air:
+            p.air_dissipated = p.air_loss + late * p.air_power
         measures.measure_net(p, work)
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic
@@ -223,9 +233,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 p.target_velocity[axis] = p.target_drift[axis]
         if has_tether:
             tether.pull_chaser(p)
-        gravity.kick_body(p, p.chaser_place, p.chaser_velocity, p.pull, late)
+        gravity.kick_chaser(p, p.chaser_place, p.chaser_velocity, p.pull, late)
         if has_target:
-            gravity.kick_body(p, p.target_place, p.target_velocity, p.rest, late)
+            gravity.kick_target(p, p.target_place, p.target_velocity, p.rest, late)
 
     @kernel
     def write_nodes(p, work):
@@ -267,8 +277,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         fault = choose_substep(p)
         if fault != 0:
             return fault
-        if is_hill:
-            p.mean_motion = mean_motion(EARTH_EQUATORIAL_RADIUS + p.orbit_altitude, EARTH_MU)
+        gravity.start(p)
         if has_target:
             fault = target.place(p)
             if fault != 0:
@@ -301,7 +310,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             hold.start(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
+        if has_air:
+            p.air_loss = -lag * p.solver_substep * p.air_power
         start_bodies(p, work)
+        if watches:
+            watch(p, work)
         if has_contact:
             scheme.place(p, work)
             fault = contact.start(p, work)
@@ -331,11 +344,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             p.chaser_drift[axis] -= recoil / p.chaser_mass
         if has_tether:
             tether.pull_chaser(p)
-        gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, -late)
+        gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, -late)
         if has_ejection:
             ejection.start(p, work)
         if has_target:
-            gravity.kick_body(p, p.target_place, p.target_drift, p.rest, -late)
+            gravity.kick_target(p, p.target_place, p.target_drift, p.rest, -late)
 
     @kernel
     def set_pace(p, work, step):
@@ -351,13 +364,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             p.thread_loss += later * p.thread_power
             if has_closing:
                 p.cord_loss += later * p.cord_power
+            if has_air:
+                p.air_loss += later * p.air_power
             if has_tether:
                 tether.pull_chaser(p)
-            gravity.kick_body(p, p.chaser_place, p.chaser_drift, p.pull, later)
+            gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, later)
             if has_ejection:
                 ejection.hold(p, work, p.chaser_drift)
             if has_target:
-                gravity.kick_body(p, p.target_place, p.target_drift, p.rest, later)
+                gravity.kick_target(p, p.target_place, p.target_drift, p.rest, later)
             p.solver_substep = substep
         p.solver_substep_least = min(p.solver_substep_least, substep)
         p.solver_substep_most = max(p.solver_substep_most, substep)

@@ -146,7 +146,7 @@ def test_a_net_that_sags_as_in_a_published_code(layer, validated):
 
 
 def sagging(place, ends, rest, stiffness, mass, free, steps=4000, end=0.2):
-    """Depth of the lowest node [m] then, by the leapfrog: that code's implicit Euler comes to it as its step shrinks."""
+    """Depth of the lowest node [m] then, by the leapfrog: what that code comes to as its step shrinks."""
     step, moving = end / steps, np.zeros_like(place)
     for number in range(steps):
         along = place[ends[:, 1]] - place[ends[:, 0]]

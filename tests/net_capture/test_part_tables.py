@@ -34,7 +34,7 @@ def make_steady(composition):
         for i in range(3):
             velocity[i] += h * (pull[i] + rows[k, 1 + i])
 
-    return none.make(composition)._replace(kick_body=kick_body)
+    return none.make(composition)._replace(kick_chaser=kick_body)
 
 
 @pytest.fixture

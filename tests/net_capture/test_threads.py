@@ -85,7 +85,7 @@ class Strip:
         self.earlier = taut
         self.planes[X : X + 3] += self.h * self.planes[U : U + 3]
         for group in (A, B):
-            self.kick(self.work, group, SLOTS, self.h, 0.0)
+            self.kick(self.p, self.work, group, SLOTS, self.h, 0.0)
         return float(self.p.thread_tension_peak)
 
 

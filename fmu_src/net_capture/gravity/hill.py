@@ -8,11 +8,22 @@ from fmu_src.interface import Term
 from fmu_src.net_capture.gravity import Gravity
 from fmu_src.net_capture.planes import FX, INVERSE_MASS, P, U
 from fmu_src.rows import output, parameter, state
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.hill import hill_acceleration, hill_bend, hill_coefficients, hill_jacobi
 from orbital.kernel import kernel
+from orbital.twobody import mean_motion
 
 FLIGHT, RATE, HALF = 8, 8, 9
 """Numbers of `hill_coefficients`; behind them the frame's rate and half a substep."""
+
+
+@kernel
+def start(p):
+    """Mean motion of the target's orbit [rad/s].
+
+    Checked  tests/net_capture/test_free_flight.py
+    """
+    p.mean_motion = mean_motion(EARTH_EQUATORIAL_RADIUS + p.orbit_altitude, EARTH_MU)
 
 
 @kernel
@@ -40,7 +51,7 @@ def kick_body(p, place, velocity, pull, h):
 
 
 @kernel
-def begin_flight(p, flight, steps):
+def begin_flight(p, flight, first, steps):
     """Coefficients of Hill's free flight over so many substeps, the frame's rate and half a substep.
 
     Checked  tests/net_capture/test_sleep.py
@@ -80,13 +91,32 @@ def potential(p, position):
     return hill_jacobi(position, rest, p.mean_motion)
 
 
+@kernel
+def chaser_potential(p):
+    """Potential energy [J] of the chaser.
+
+    Checked  tests/net_capture/test_energy_book.py
+    """
+    return p.chaser_mass * potential(p, p.chaser_place)
+
+
+@kernel
+def target_potential(p):
+    """Potential energy [J] of the target, less the frame's rate times its spin about the orbit normal: a body that
+    turns has a Jacobi integral of its own.
+
+    Checked  tests/net_capture/test_energy_book.py
+    """
+    return p.target_mass * potential(p, p.target_place) - p.mean_motion * p.target_spin[2]
+
+
 def make(composition: Any) -> Gravity:
     """Kernels for lanes of the composition's precision."""
     lanes = composition.lanes
     load, store, splat = lanes.load, lanes.store, lanes.splat
 
     @kernel
-    def kick_group(reals, i, slots, h, n):
+    def kick_group(p, reals, i, slots, h, n):
         """Velocities half a substep on under forces and Hill's equations, and those predicted for the next instant.
 
             du/dt = F_x/m + 3 n^2 x + 2 n v,   dv/dt = F_y/m - 2 n u,   dw/dt = F_z/m - n^2 z
@@ -133,7 +163,7 @@ def make(composition: Any) -> Gravity:
         store(reals, i + 2 * slots, z + step * w)
 
     @kernel
-    def coast_group(reals, i, slots, h, n):
+    def coast_group(p, reals, i, slots, h, n):
         """v(t) = v(t - h/2) + h/2 a, of Hill's equations; the error of the Coriolis term is (n h)^2 of the velocity.
 
         Checked  tests/net_capture/test_sleep.py
@@ -184,7 +214,22 @@ def make(composition: Any) -> Gravity:
         store(reals, i + (back + 2) * slots, ww + half * (square * zz))
 
     return Gravity(
-        True, rate, kick_body, kick_group, coast_group, begin_flight, fly_group, stray, accelerate, potential
+        True,
+        start,
+        None,
+        rate,
+        kick_body,
+        kick_body,
+        kick_group,
+        coast_group,
+        begin_flight,
+        fly_group,
+        stray,
+        stray,
+        accelerate,
+        potential,
+        chaser_potential,
+        target_potential,
     )
 
 

@@ -11,6 +11,11 @@ from orbital.kernel import kernel
 
 
 @kernel
+def start(p):
+    """Nothing to do."""
+
+
+@kernel
 def rate(p):
     """The frame does not turn."""
     return 0.0
@@ -27,7 +32,7 @@ def kick_body(p, place, velocity, pull, h):
 
 
 @kernel
-def begin_flight(p, flight, steps):
+def begin_flight(p, flight, first, steps):
     """The time alone counts [s].
 
     Checked  tests/net_capture/test_sleep.py
@@ -57,13 +62,19 @@ def potential(p, position):
     return 0.0
 
 
+@kernel
+def body_potential(p):
+    """There is none [J]."""
+    return 0.0
+
+
 def make(composition: Any) -> Gravity:
     """Kernels for lanes of the composition's precision."""
     lanes = composition.lanes
     load, store, splat = lanes.load, lanes.store, lanes.splat
 
     @kernel
-    def kick_group(reals, i, slots, h, n):
+    def kick_group(p, reals, i, slots, h, n):
         """v(t + h/2) = v(t - h/2) + dv,   v(t + h) predicted as v(t + h/2) + dv/2,   dv = h F/m,
         and h dv to the positions, which have drifted by h v(t - h/2) already.
 
@@ -84,7 +95,7 @@ def make(composition: Any) -> Gravity:
             store(reals, at + X * slots, load(reals, at + X * slots) + step * change)
 
     @kernel
-    def coast_group(reals, i, slots, h, n):
+    def coast_group(p, reals, i, slots, h, n):
         """Free nodes keep their velocity.
 
         Checked  tests/net_capture/test_sleep.py
@@ -109,7 +120,22 @@ def make(composition: Any) -> Gravity:
                 store(reals, at + back * slots, velocity)
 
     return Gravity(
-        False, rate, kick_body, kick_group, coast_group, begin_flight, fly_group, stray, accelerate, potential
+        False,
+        start,
+        None,
+        rate,
+        kick_body,
+        kick_body,
+        kick_group,
+        coast_group,
+        begin_flight,
+        fly_group,
+        stray,
+        stray,
+        accelerate,
+        potential,
+        body_potential,
+        body_potential,
     )
 
 

@@ -37,7 +37,8 @@ class Asleep(NamedTuple):
 
     own_words(p)                       whole numbers that rows, strips and their lists take [1]
     find_neighbours(p, work)           list the strips of every row; all are awake
-    fly_row(p, reals, row, steps)      a row so many substeps on, through which nothing pulls it
+    fly_row(p, reals, row, first, steps)   a row so many substeps on from the one of that number, through which nothing
+                                       pulls it
     bring(p, reals, words, row)        a row to the present substep
     sleep(p, reals, a, b, lanes, length)   substeps for which a slack strip stays so [1]
     mark(p, words, row, node, lanes)   something pulls these lanes of a row: its turn is in this substep
@@ -58,7 +59,12 @@ def make_asleep(composition: Any) -> Asleep:
     memory, lanes, gravity = composition.memory, composition.lanes, composition.gravity
     load, splat, where, root, lane = lanes.load, lanes.splat, lanes.where, lanes.root, lanes.lane
     strips, own, width, ramp = memory.strips, memory.own, lanes.width, lanes.ramp
-    begin_flight, fly_group, stray, bends = gravity.begin_flight, gravity.fly_group, gravity.stray, gravity.bends
+    begin_flight, fly_group, bends, stray_apart = (
+        gravity.begin_flight,
+        gravity.fly_group,
+        gravity.bends,
+        gravity.stray_apart,
+    )
     from fmu_src.lanes import highest, peek, poke
 
     @kernel
@@ -119,12 +125,12 @@ def make_asleep(composition: Any) -> Asleep:
                 words[r + STRIPS_END] += 1
 
     @kernel
-    def fly_row(p, reals, row, steps):
-        """A row's positions so many substeps on, through which nothing pulls it.
+    def fly_row(p, reals, row, first, steps):
+        """A row's positions so many substeps on from the one of that number, through which nothing pulls it.
 
         Checked  tests/net_capture/test_sleep.py
         """
-        begin_flight(p, p.flight, steps)
+        begin_flight(p, p.flight, first, steps)
         for i in range(row * p.row_pitch, (row + 1) * p.row_pitch, width):
             fly_group(reals, i, p.node_slots, p.flight, X, P, U)
 
@@ -134,9 +140,9 @@ def make_asleep(composition: Any) -> Asleep:
 
         Checked  tests/net_capture/test_sleep.py
         """
-        late = p.grid - peek(words, ROW_WORDS * row + STAMP)
-        if late != 0:
-            fly_row(p, reals, row, late)
+        stamp = peek(words, ROW_WORDS * row + STAMP)
+        if stamp != p.grid:
+            fly_row(p, reals, row, stamp, p.grid - stamp)
             poke(words, ROW_WORDS * row + STAMP, p.grid)
 
     @kernel
@@ -168,7 +174,7 @@ def make_asleep(composition: Any) -> Asleep:
             largest = 0.0
             for i in range(width):
                 largest = max(largest, lane(fastest, np.int64(i)))
-            reach -= stray(p, length, math.sqrt(largest), LONGEST_SLEEP * p.solver_substep)
+            reach -= stray_apart(p, length, math.sqrt(largest), LONGEST_SLEEP * p.solver_substep)
             if reach <= 0.0:
                 return 1
         squared = splat(reach * reach)

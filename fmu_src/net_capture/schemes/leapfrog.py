@@ -202,14 +202,14 @@ def make(composition: Any) -> Scheme:
         first = row * pitch
         if bends:
             for i in range(first, first + pitch, width):
-                kick_group(reals, i, slots, substep, n)
+                kick_group(p, reals, i, slots, substep, n)
         else:
             drift(p, reals, first, first + pitch)
             here = lanes & (np.uint64(0xFFFFFFFFFFFFFFFF) >> np.uint64(64 - pitch))
             while here != np.uint64(0):
                 j = lowest(here) // np.uint64(width) * np.uint64(width)
                 here &= ~(group << j)
-                kick_group(reals, first + np.int64(j), slots, substep, n)
+                kick_group(p, reals, first + np.int64(j), slots, substep, n)
 
     @kernel
     def step(p, work):
@@ -261,11 +261,11 @@ def make(composition: Any) -> Scheme:
             elif words[r + KICKED] != 0:
                 bring(p, reals, words, row)
                 for j in range(0, p.row_pitch, width):
-                    coast_group(reals, row * p.row_pitch + j, p.node_slots, p.solver_substep, n)
+                    coast_group(p, reals, row * p.row_pitch + j, p.node_slots, p.solver_substep, n)
                 words[r + KICKED] = 0
             if has_contact and near:
                 if touched == 0:
-                    fly_row(p, reals, row, p.grid + 1 - words[r + STAMP])
+                    fly_row(p, reals, row, words[r + STAMP], p.grid + 1 - words[r + STAMP])
                     words[r + STAMP] = p.grid + 1
                 clear = 0
                 if words[r + CLEAR] > p.grid:
@@ -292,10 +292,10 @@ def make(composition: Any) -> Scheme:
         words = own(p, work)
         slots = p.node_slots
         for row in range(slots // p.row_pitch):
-            late = p.grid - words[ROW_WORDS * row + STAMP]
+            stamp = words[ROW_WORDS * row + STAMP]
             first = row * p.row_pitch
-            if late != 0:
-                begin_flight(p, p.flight, late)
+            if stamp != p.grid:
+                begin_flight(p, p.flight, stamp, p.grid - stamp)
                 for i in range(first, first + p.row_pitch, width):
                     fly_group(reals, i, slots, p.flight, SHOWN, SHOWN_RATE, SHOWN_BACK)
             else:

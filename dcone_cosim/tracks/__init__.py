@@ -1,0 +1,1 @@
+"""Measured tracks of a shot: read, laid over what was simulated, and values of the scene estimated from them."""

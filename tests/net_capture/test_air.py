@@ -1,0 +1,118 @@
+"""Drag of the air, against closed forms: a bullet alone, a flat net that falls, threads along their own way."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fmu_src.instance import Instance
+from fmu_src.net_capture.interface import MODEL
+from tests.conftest import FREE
+
+AIR = {**FREE, "gravity": "uniform", "air": "quadratic", "nodes": "169"}
+"""Of the scene breadboard-nylon."""
+WEIGHTLESS = {f"gravity.acceleration[{i}]": 0.0 for i in (1, 2, 3)}
+RHO, SPEED = 1.225, 20.0
+
+
+def shoot(parameters):
+    return Instance(MODEL, AIR, {"net.mesh": 2.0, **parameters}).initialise()
+
+
+LIGHT = {
+    **WEIGHTLESS,
+    "net.mass": 1e-7,
+    "vertex.mass": 0.0,
+    "bullets.angle": 0.0,
+    "bullets.speed": SPEED,
+    "bullets.mass": 0.5,
+    "air.thread_drag": 0.0,
+    "air.bullet_diameter": 0.3,
+    "air.bullet_drag": 0.47,
+}
+
+
+def test_a_bullet_alone_slows_as_the_closed_form(validated):
+    """v0 / (1 + v0 t / L), L = 2 m / (rho C A); one of 1 % more air does not."""
+    length = 2.0 * 0.5 / (RHO * 0.47 * math.pi * 0.15**2)
+    net = shoot(LIGHT)
+    for _ in range(4):
+        net.step(0.1)
+        expected = SPEED / (1.0 + SPEED * net.time / length)
+        assert net["bullet[1].velocity[2]"] == pytest.approx(expected, rel=2e-6)
+    assert net["bullet[1].velocity[2]"] < 0.8 * SPEED
+    kept = 0.5 * 4 * 0.5 * (SPEED**2 - expected**2)
+    assert net["air.dissipated"] == pytest.approx(kept, rel=1e-5)
+    thicker = SPEED / (1.0 + 1.01 * SPEED * net.time / length)
+    assert net["bullet[1].velocity[2]"] != pytest.approx(thicker, rel=1e-3)
+
+
+SHEET = {
+    "net.fold_side": 23.99,
+    "net.density": 1440.0,
+    "bullets.mass": 1e-9,
+    "bullets.speed": 0.0,
+    "vertex.mass": 0.0,
+    "air.bullet_drag": 0.0,
+    "air.thread_drag": 1.1,
+}
+"""The net spread out, with nothing on it: every knot has drag for its mass as every other."""
+
+
+def diameter(net):
+    """Of its threads [m], by mass and length."""
+    length = 2 * 13 * 24.0
+    return math.sqrt(4.0 * net["net.mass"] / (math.pi * 1440.0 * length))
+
+
+def test_a_spread_net_falls_at_its_terminal_velocity():
+    """v = v_t tanh(g t / v_t), v_t2 = pi rho_thread d g / (2 rho C)."""
+    net = shoot({**SHEET, "gravity.acceleration[1]": 0.0, "gravity.acceleration[2]": 9.81})
+    limit = math.sqrt(math.pi * 1440.0 * diameter(net) * 9.81 / (2.0 * RHO * 1.1))
+    for until in (0.2, 0.5, 2.5):
+        while net.time < until - 1e-9:
+            net.step(0.1)
+        assert net["catch.velocity[2]"] == pytest.approx(limit * math.tanh(9.81 * net.time / limit), rel=1e-4)
+    assert net["catch.velocity[2]"] == pytest.approx(limit, rel=2e-3)
+    assert limit != pytest.approx(math.sqrt(1.01) * net["catch.velocity[2]"], rel=2e-3)
+
+
+@pytest.mark.parametrize(("axis", "share"), [(2, 1.0), (1, 0.5)])
+def test_threads_along_their_own_way_have_no_drag(axis, share):
+    """Across its plane all threads of a flat net stand in the stream, within it every second."""
+    net = shoot({**SHEET, **WEIGHTLESS, f"chaser.start_velocity[{axis}]": 3.0})
+    power = 0.5 * RHO * 1.1 * diameter(net) * 624.0 * share * 3.0**3
+    mass, time = net["catch.mass"], 0.01
+    net.step(time)
+    left = 3.0 / (1.0 + power * time / (mass * 3.0**2))
+    assert net["air.dissipated"] == pytest.approx(0.5 * mass * (3.0**2 - left**2), rel=2e-3)
+
+
+def test_no_air_is_too_thick_for_the_substep():
+    """A net shot into something a million times as thick stops, and gains nothing on the way."""
+    net = shoot({**WEIGHTLESS, "air.density": 1e6, "bullets.speed": 30.0})
+    energy = net["energy.total"]
+    for _ in range(20):
+        net.step(0.01)
+        assert net["energy.total"] <= energy * (1.0 + 1e-9)
+        energy = net["energy.total"]
+    assert energy < 1e-6 * 0.5 * 2.0 * 30.0**2
+
+
+def test_the_book_of_a_net_in_air_closes():
+    """What the air took of a shot, within a hundredth; and which way it pushed."""
+    net = shoot({"gravity.acceleration[1]": -9.81, "bullets.speed": 10.0})
+    start = net.array("momentum").copy()
+    for _ in range(20):
+        net.step(0.1)
+    taken = net["air.dissipated"]
+    assert taken > 50.0
+    assert abs(net["energy.remainder"]) < 0.01 * taken
+    impulse = net.array("momentum") - start - net["catch.mass"] * np.array([-9.81, 0.0, 0.0]) * net.time
+    assert impulse[1] < -1.0, "drag against the shot"
+    assert impulse[0] > 1.0, "drag against the fall"
+
+
+def test_a_scene_without_air_has_nothing_of_it():
+    rows = {v.name for v in MODEL.interface(FREE).variables}
+    assert not any("air" in name.split(".")[0].split("_") for name in rows)
