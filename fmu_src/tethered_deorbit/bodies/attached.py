@@ -28,6 +28,9 @@ from orbital.vectors import Array, norm
 
 WIDEST = 1.0
 """By how much a body may turn in a step [rad]."""
+ACROSS = 10.0
+"""By how much velocities across a taut line may be off, as rates of the body that turns fastest, in tolerances of the
+separation: at 1 a target at 5 deg/s takes a quarter more steps, and its tugs come out half as far off."""
 OVERRUN = 1e-12
 """Share of its length by which a line may be longer at the start, by rounding of the attitude."""
 
@@ -49,6 +52,7 @@ STILL = Rigid(
     relief=zero,
     set_pivot=nothing,
     show_way=nothing,
+    ease=zero,
     pull=nothing,
     add_turning=nothing,
     turn_back=nothing,
@@ -424,17 +428,26 @@ def make_attached(
         chaser.carried.go_on(record, state, rate)
 
     @kernel
+    def fastest(state: Array) -> float:
+        """Rate of the body that turns fastest [rad/s].
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        rate = 0.0
+        for k in range(bodies):
+            first = PAIR + ATTITUDE * k + 4
+            rate = max(rate, norm(state[first : first + 3]))
+        return rate
+
+    @kernel
     def longest(record: Any, state: Array) -> float:
         """Longest step [s]: over which no body turns by more than the series of `evenly_turned` bear, and body and line
         not by more than lets its way be followed.
 
         Checked  tests/tethered_deorbit/test_rigid.py, test_wrapping.py
         """
-        apart, fastest = norm(state[6:9]), 0.0
-        for k in range(bodies):
-            first = PAIR + ATTITUDE * k + 4
-            fastest = max(fastest, norm(state[first : first + 3]))
-        step = WIDEST / fastest if fastest > 0.0 else math.inf
+        apart, rate = norm(state[6:9]), fastest(state)
+        step = WIDEST / rate if rate > 0.0 else math.inf
         turning = norm(state[PAIR + 4 : PAIR + 7])
         if apart > 0.0:
             turning += norm(state[9:12]) / apart
@@ -447,6 +460,31 @@ def make_attached(
         Checked  tests/tethered_deorbit/test_rigid.py
         """
         return float(target.squared_error(record, state, error) + chaser.squared_error(record, state, error))
+
+    @kernel
+    def pace(record: Any, state: Array) -> float:
+        """The environment's pace, or some times the rate of the body that turns fastest, up to that of the line [rad/s]:
+        what moves across the line goes round with it.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs, and the steps of a target that tumbles
+        """
+        r = record[0]
+        return max(r.state_pace, min(r.state_frequency, ACROSS * fastest(state)))
+
+    @kernel
+    def moved_mass(record: Any, state: Array) -> float:
+        """Mass that the line has to move along its direction [kg]; after `seen`.
+
+            1/m = 1/m_r + (a x n).I^-1 (a x n), of either body
+
+        Source   impulse on a free rigid body
+        Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
+        """
+        r = record[0]
+        vector = r.state_line[0]
+        if not norm(vector) > 0.0:
+            return float(r.state_effective_mass)
+        return 1.0 / (1.0 / r.state_reduced_mass + target.ease(record, vector) + chaser.ease(record, vector))
 
     @kernel
     def publish(record: Any, state: Array) -> None:
@@ -496,6 +534,8 @@ def make_attached(
         enter_rate=enter_rate,
         longest=longest,
         squared_error=squared_error,
+        pace=pace,
+        moved_mass=moved_mass,
         publish=publish,
         energy=energy,
         differentiate=differentiate,
