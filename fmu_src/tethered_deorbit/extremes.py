@@ -39,6 +39,7 @@ def make_extremes(events: Events) -> Extremes:
 
     Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
     """
+
     @kernel
     def begin_anew(record: Any) -> None:
         """Carry on from what is published: the state the steps carry becomes that of the last communication point.

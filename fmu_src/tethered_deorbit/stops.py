@@ -1,4 +1,4 @@
-"""Where a step ends early, exactly there: the line changes between slack and taut, comes over other edges, or a part acts.
+"""Where a step ends early: the line changes between slack and taut, comes over other edges, or a part acts.
 
 The signals at both ends of a step are worked out once and kept with it.
 """

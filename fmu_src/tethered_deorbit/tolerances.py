@@ -1,4 +1,4 @@
-"""How far a step may go: the size of its error in tolerances, and the reach of a scheme over a taut line's vibration."""
+"""How far a step may go: its error in tolerances, and the reach of a scheme over a taut line's vibration."""
 
 from __future__ import annotations
 
@@ -68,6 +68,8 @@ def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
 
             h omega <= reach(zeta),   zeta = c / (2 m omega),   omega = omega_most sqrt(m_least/m)
 
+        Where no damping lets the scheme reach farther, what is lost is not drowned by it: there omega is omega_most.
+
         mass          m      that the line has to move where it is   [kg]
 
         Valid    omega the frequency of the fastest motion, that of the dashpot when it is faster than the spring
@@ -77,7 +79,8 @@ def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
         r = record[0]
         frequency = r.state_frequency * math.sqrt(r.state_effective_mass / mass)
         damping = abs(r.state_damping) / (2.0 * mass * frequency)
-        longest: float = reach(damping) / frequency
+        allowed: float = reach(damping)
+        longest = allowed / (frequency if allowed > reach(0.0) else r.state_frequency)
         return longest
 
     return longest_taut_step

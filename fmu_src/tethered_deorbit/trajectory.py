@@ -62,7 +62,6 @@ def make_trajectory(
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
     begin_state, end_state, here_state, size = places.begin, places.end, places.here, places.size
-    slope_state = places.slope
     low, high, stages, last = places.low, places.high, places.stages, places.last
     dense_begin, work_end = places.dense, places.total
 

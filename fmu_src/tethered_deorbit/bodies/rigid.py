@@ -57,8 +57,8 @@ class Rigid(NamedTuple):
                                                 `reach`
     set_pivot(record, state, vector, velocity)  of the way: see `Wrapping`; after `reach`
     show_way(record, state, vector, velocity)   rates of what is shown of its way; after `reach`
-    ease(record, vector) -> 1/m                 what its turning adds to the inverse of the mass that a line along a vector
-                                                has to move [1/kg]; after `reach`
+    ease(record, vector) -> 1/m                 what its turning adds to the inverse of the mass that a line along this
+                                                vector has to move [1/kg]; after `reach`
     pull(record, state, rate, x, y, z)          add the torque of the line, a force [N] on the chaser; after `reach`
     add_turning, turn_back, squared_error, energy   as of `Bodies`
     carried                                     coordinates of a step
