@@ -80,7 +80,7 @@ def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
         frequency = r.state_frequency * math.sqrt(r.state_effective_mass / mass)
         damping = abs(r.state_damping) / (2.0 * mass * frequency)
         allowed: float = reach(damping)
-        longest = allowed / (frequency if allowed > reach(0.0) else r.state_frequency)
+        longest: float = allowed / (frequency if allowed > reach(0.0) else r.state_frequency)
         return longest
 
     return longest_taut_step

@@ -477,7 +477,7 @@ def make_attached(
         r = record[0]
         damping = abs(r.state_damping) / (2.0 * r.state_effective_mass * r.state_frequency)
         share = undamped + (damped - undamped) * min(1.0, damping / WELL_DAMPED)
-        return max(r.state_pace, min(r.state_frequency, share * fastest(state)))
+        return float(max(r.state_pace, min(r.state_frequency, share * fastest(state))))
 
     @kernel
     def moved_mass(record: Any, state: Array) -> float:
@@ -492,7 +492,7 @@ def make_attached(
         vector = r.state_line[0]
         if not norm(vector) > 0.0:
             return float(r.state_effective_mass)
-        return 1.0 / (1.0 / r.state_reduced_mass + target.ease(record, vector) + chaser.ease(record, vector))
+        return float(1.0 / (1.0 / r.state_reduced_mass + target.ease(record, vector) + chaser.ease(record, vector)))
 
     @kernel
     def publish(record: Any, state: Array) -> None:
