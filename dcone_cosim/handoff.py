@@ -3,7 +3,7 @@
 Net, bullets and vertex join the target inelastically: their masses, momenta, spins and inertias add. A removal whose
 target turns takes all of it over; one of two point masses drops the spin of the joined body, which is booked as dropped
 with its size: it is the level where `level` bounds by how little that changes the first tug. A removal that can only be
-of points is refused when the spin would move the tether's far end fast enough to change it.
+of points is refused where that bound is passed.
 
 Frames. Positions and velocities are given in the orbital frame of the target's initial centre of mass, velocities as
 seen in that turning frame; spins are relative to inertial space, along the orbital axes.
@@ -207,28 +207,19 @@ def spin_energy(body: Body) -> float:
 
 
 @dataclass(frozen=True)
-class SpinCheck:
-    """How much the dropped spin would have mattered.
+class SpinSpeeds:
+    """What is told of a spin that a point drops.
 
     attachment_speed   |H| / I_min times how far the target reaches: how fast it may carry the tether's end [m/s]
     tug_speed          estimate of the speed at which the line first comes taut [m/s]
     """
 
-    attachment_speed: float
-    tug_speed: float
-    tolerance: float
-
-    @property
-    def share(self) -> float:
-        return self.attachment_speed / self.tug_speed if self.tug_speed > 0.0 else math.inf
-
-    @property
-    def accepted(self) -> bool:
-        return self.attachment_speed <= self.tolerance * self.tug_speed
+    attachment_speed: float = 0.0
+    tug_speed: float = 0.0
 
 
-def check_spin(handed: Handoff, slack: float, thrust: float, tolerance: float) -> SpinCheck:
-    """Compare the speed the dropped spin gives the attachment with the relative speed of the first tug.
+def spin_speeds(handed: Handoff, slack: float, thrust: float) -> SpinSpeeds:
+    """The speed that the spin may give the attachment, and the relative speed of the first tug.
 
         v_tug^2 = v_rel^2 + 2 (|F|/m_chaser) s
 
@@ -242,7 +233,7 @@ def check_spin(handed: Handoff, slack: float, thrust: float, tolerance: float) -
     speed = float(np.linalg.norm(joint.spin)) / smallest * handed.reach if smallest > 0.0 else 0.0
     relative = joint.velocity - chaser.velocity
     tug = math.sqrt(float(relative @ relative) + 2.0 * abs(thrust) / chaser.mass * max(0.0, slack))
-    return SpinCheck(speed, tug, tolerance)
+    return SpinSpeeds(speed, tug)
 
 
 def without_recoil(handed: Handoff, start_velocity: Vector) -> dict[str, float]:

@@ -135,8 +135,19 @@ def needed(phase: PhaseScene, surface: str) -> PhaseScene | None:
     main = phase.main
     if main.fmu is not None or GROUP not in main.unnamed:
         return None
-    body = surface if surface in build.CATALOGUE[main.model].groups[GROUP].terms else RIGID
-    return replace(phase, main=with_term(main, GROUP, body))
+    return replace(phase, main=with_term(main, GROUP, carrying(main, surface)))
+
+
+def carrier(phase: PhaseScene, surface: str) -> str:
+    """What would carry what a point cannot, where the scene or its FMU leaves a point alone."""
+    if phase.main.model not in build.CATALOGUE:
+        return f"a removal FMU with {INERTIA[0]}, {ATTITUDE[0]}, {RATE[0]} and what else a target that turns has"
+    return f'[{phase.name}.target] body = "{carrying(phase.main, surface)}", or none,'
+
+
+def carrying(main: ComponentScene, surface: str) -> str:
+    """The target that turns, with the surface of the capture's where there is one like it."""
+    return surface if surface in build.CATALOGUE[main.model].groups[GROUP].terms else RIGID
 
 
 def with_term(main: ComponentScene, group: str, term: str) -> ComponentScene:

@@ -15,7 +15,7 @@ from dcone_cosim.contract import HANDED_OVER
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinCheck, check_spin, held_bodies, spin_energy
+from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinSpeeds, held_bodies, spin_energy, spin_speeds
 from dcone_cosim.ledger import LedgerRow, ledger
 from dcone_cosim.level import (
     GROUP,
@@ -24,6 +24,7 @@ from dcone_cosim.level import (
     TURNING_SETS,
     PointBound,
     body_rate,
+    carrier,
     carries_spin,
     held_turning,
     needed,
@@ -78,7 +79,7 @@ class HandoffRecord:
     phase: PhaseScene
     handed: Handoff
     line: Line
-    spin: SpinCheck = field(default_factory=lambda: SpinCheck(0.0, 0.0, 0.0))
+    spin: SpinSpeeds = field(default_factory=SpinSpeeds)
     bound: PointBound = field(default_factory=PointBound)
     shape: dict[str, float] = field(default_factory=dict)
     line_parameters: dict[str, float] = field(default_factory=dict)
@@ -147,7 +148,6 @@ class HandoffRecord:
                 "dropped": {"value": 0.0 if self.turns else float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
                 "attachment_speed": {"value": self.spin.attachment_speed, "unit": "m/s"},
                 "tug_speed": {"value": self.spin.tug_speed, "unit": "m/s"},
-                "tolerance": self.spin.tolerance,
             },
             "level": {
                 "target": self.level,
@@ -193,7 +193,7 @@ def check_before(record: HandoffRecord, options: HandoffOptions, surface: str) -
     length = commanded if elastic is None else elastic
     thrust = phase.setting("thrust.level") or 0.0
     slack = 0.0 if length is None else length + line.attachment - line.distance
-    record.spin = spin = check_spin(handed, slack, thrust, options.spin_tolerance)
+    record.spin = spin_speeds(handed, slack, thrust)
     between = 0.0 if length is None else length - line.reach
     record.bound = bound = point_bound(handed, line, between, thrust, options.point_tolerance)
     if elastic is not None and line.overrun:
@@ -201,21 +201,19 @@ def check_before(record: HandoffRecord, options: HandoffOptions, surface: str) -
             f"hand-off refused: at t = {record.time:.6g} s the chaser and the net's vertex are {line.reach:.6g} m "
             f"apart, the tether is {line.length:.6g} m long; give it more, or shoot from nearer"
         )
-    if record.turns:
+    if record.turns or bound.accepted:
         return
-    turning = None if bound.accepted else needed(phase, surface)
-    if turning is not None:
-        record.phase = turning
-        return
-    if not (bound.accepted or spin.accepted):
+    turning = needed(phase, surface)
+    if turning is None:
         raise HandoffError(
-            "hand-off refused: the removal's point target cannot carry the spin, and the spin would change the answer\n"
-            f"  spin of target and net {float(np.linalg.norm(handed.joint.spin)):.4g} N m s "
-            f"moves the tether's end at up to {spin.attachment_speed:.4g} m/s,\n"
-            f"  {spin.share:.3g} times the {spin.tug_speed:.4g} m/s of the first tug; "
-            f"handoff.spin_tolerance allows {spin.tolerance:g}\n"
-            "  a removal whose target is a rigid body would carry it"
+            "hand-off refused: the removal's point target cannot carry what the capture leaves\n"
+            f"  spin of target and net {float(np.linalg.norm(handed.joint.spin)):.4g} N m s, "
+            f"{record.spin.attachment_speed:.4g} m/s at the tether's end; "
+            f"the first tug at {record.spin.tug_speed:.4g} m/s\n"
+            f"  {record.reason}\n"
+            f"  {carrier(phase, surface)} would carry it"
         )
+    record.phase = turning
 
 
 def close_ledger(record: HandoffRecord, component: Steppable) -> None:

@@ -117,6 +117,7 @@ class Phase:
     alone          whether it can be the first of a scene
     keys           of its table that concern the master, beside `macro_step` and `duration`
     handoff_keys   of the table [handoff], how it takes over
+    handoff_gone   keys that it had, and what there is in their place
     examples       values of `macro_step` and `duration`, for advice
     wanted         variables that the master looks for in its FMU, by what they are needed for
     recognised_by  variables by which a component of a package is taken for the main one of such a phase
@@ -138,6 +139,7 @@ class Phase:
     alone = True
     keys: Mapping[str, Expected] = {}
     handoff_keys: Mapping[str, Expected] = {}
+    handoff_gone: Mapping[str, str] = {}
     examples = ("0.1 s", "30 s")
     wanted: Sequence[tuple[Need, Sequence[str]]] = ()
     recognised_by: Sequence[str] = ()

@@ -143,9 +143,12 @@ class Removal(Tow):
     name = "removal"
     follows: Sequence[str] = ("capture",)
     handoff_keys: Mapping[str, Expected] = {
-        "spin_tolerance": Expected("1", example="0.1", minimum=0.0),
         "point_tolerance": Expected("1", example="1 %", minimum=0.0, share=True),
         "compare_without_recoil": Expected("1", kind="Boolean"),
+    }
+    handoff_gone: Mapping[str, str] = {
+        "spin_tolerance": "is gone: point_tolerance bounds what a point changes of the first tug, its spin and all, "
+        'as in point_tolerance = "1 %"; that of a scene may have to be wider',
     }
     recognised_by: Sequence[str] = ("separation", *REMOVAL_SETS)
     takes: Sequence[str] = (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)

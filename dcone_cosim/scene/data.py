@@ -21,14 +21,11 @@ SHARED = "orbit"
 class HandoffOptions:
     """How a capture hands over.
 
-    spin_tolerance           speed of the tether's end by the spin that is dropped, over that of the first tug, where
-                             the target can only be a point                                                [1]
     point_tolerance          largest change of the first tug's time and peak, by a bound, with which the target is a
-                             point                                                                        [1]
+                             point; one that can only be a point is refused above it                      [1]
     compare_without_recoil   run the removal once more without the shot's recoil
     """
 
-    spin_tolerance: float = 0.1
     point_tolerance: float = 0.01
     compare_without_recoil: bool = True
 

@@ -44,6 +44,7 @@ from dcone_cosim.scenes.keys import (
     SOLVER,
     SOLVER_KEYS,
     TOP,
+    handoff_gone,
     handoff_keys,
     isolation,
     orbit_keys,
@@ -123,7 +124,11 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
     known = (*TOP, *kinds())
     mistakes += [unknown((key,), document[key], "unknown key", key, known) for key in document if key not in known]
     title = read_value(document["title"], read_title, ("title",), mistakes) if "title" in document else ""
-    handoff = read_table(table_in(document, ("handoff",), mistakes), handoff_keys(), ("handoff",), mistakes)
+    given = table_in(document, ("handoff",), mistakes)
+    gone = handoff_gone()
+    mistakes += [Mistake(("handoff", key), given[key], gone[key]) for key in given if key in gone]
+    given = {key: value for key, value in given.items() if key not in gone}
+    handoff = read_table(given, handoff_keys(), ("handoff",), mistakes)
     orbit = _orbit(document, mistakes)
     accuracy, materials = _accuracy(document, mistakes), read_own(document, mistakes)
     sizing = _sizing(document, mistakes)

@@ -51,6 +51,11 @@ def handoff_keys(taking_over: Iterable[str] | None = None) -> dict[str, Expected
     return {key: expected for phase in chosen for key, expected in kind_of(phase).handoff_keys.items()}
 
 
+def handoff_gone() -> dict[str, str]:
+    """Keys that there were for it, and what there is in their place."""
+    return {key: text for phase in kinds() for key, text in kind_of(phase).handoff_gone.items()}
+
+
 def phase_keys(phase: str) -> dict[str, Expected]:
     """What concerns a phase itself, not its components: its times, and what its kind has beside them."""
     kind = kind_of(phase)
@@ -119,9 +124,8 @@ MEANING: Mapping[str, str] = {
     "safety_horizon": "for how long the pair is followed from there",
     "after_capture": "go on for this long after the capture, when no phase follows",
     "snapshots": "when to keep the positions of the nodes; evenly spread if not given",
-    "spin_tolerance": "speed of the tether's end by the spin that is dropped, over that of the first tug, where the "
-    "target can only be a point",
-    "point_tolerance": "largest change of the first tug's time and peak, by a bound, with which the target is a point",
+    "point_tolerance": "largest change of the first tug's time and peak, by a bound, with which the target is a point; "
+    "one that can only be a point is refused above it",
     "compare_without_recoil": "run the removal once more without the shot's recoil",
     "fmu": "an FMI 2.0 co-simulation FMU that takes the place of our model; relative to the scene's file",
     "model": "a model of ours, built on demand",

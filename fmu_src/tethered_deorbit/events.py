@@ -22,6 +22,7 @@ INTERVALS = 8
 ROOT_ITERATIONS = 80
 CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, SEPARATION, RATE, RATE_SLOPE = range(7)
 """Signals: the crossing signal rises through zero when the line changes between slack and taut."""
+SIGNALS = 7
 Signals = tuple[float, float, float, float, float, float, float]
 
 

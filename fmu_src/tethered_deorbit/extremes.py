@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.events import RATE, RATE_SLOPE, SEPARATION, TENSION, TENSION_SLOPE, Events
-from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.outputs import note_pull
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -35,13 +34,11 @@ class Extremes(NamedTuple):
     publish: Callable[..., Any]
 
 
-def make_extremes(events: Events, places: Places) -> Extremes:
+def make_extremes(events: Events) -> Extremes:
     """The kernels for one law of the line and one integrator.
 
     Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
     """
-    begin_state, end_state, here_state, size = places.begin, places.end, places.here, places.size
-    begin_rate, end_rate = places.stages, places.last
 
     @kernel
     def begin_anew(record: Any) -> None:
@@ -158,8 +155,7 @@ def make_extremes(events: Events, places: Places) -> Extremes:
         r = record[0]
         if r.state_step == 0.0:
             return
-        begin = events.signals(record, work[begin_state:end_state], work[begin_rate : begin_rate + size], 0.0)
-        end = events.signals(record, work[end_state:here_state], work[end_rate : end_rate + size], r.state_step)
+        begin, end = r.state_at_begin, r.state_at_end
         last = 1.0 if until >= r.state_end else max(0.0, (until - r.state_begin) / r.state_step)
         first = min(last, max(0.0, (r.state_published - r.state_begin) / r.state_step))
         if r.state_taut:

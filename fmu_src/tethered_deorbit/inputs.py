@@ -16,7 +16,8 @@ from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.outputs import begin_tug
 from fmu_src.tethered_deorbit.thrust import Thrust
-from fmu_src.tethered_deorbit.trajectory import ROUNDING, Trajectory
+from fmu_src.tethered_deorbit.tolerances import ROUNDING
+from fmu_src.tethered_deorbit.trajectory import Trajectory
 from orbital.kernel import kernel
 from orbital.vectors import Array
 

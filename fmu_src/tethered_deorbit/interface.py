@@ -204,6 +204,8 @@ STATE = (
         "the current step ends in a change between slack and taut: 1, at a corner: 2, where a part acts: 3",
         kind="Integer",
     ),
+    state("state.at_begin[#]", "1", "signals at the begin of the current step: see `events`", shape=(7,)),
+    state("state.at_end[#]", "1", "and at its end", shape=(7,)),
     state("state.fresh", "1", "the derivative at the end of the step is yet to be computed", kind="Integer"),
     state("state.dense_ready", "1", "the dense output of the current step is in the work memory", kind="Integer"),
     state("state.start", "s", "time of the importer at which this instance began; all others count from there"),

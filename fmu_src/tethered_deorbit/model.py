@@ -29,8 +29,10 @@ from fmu_src.tethered_deorbit.reel_rows import INPUTS, LIMITED_OF_REELS
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.sights import Sights
 from fmu_src.tethered_deorbit.start import make_start
+from fmu_src.tethered_deorbit.stops import ACTS, EDGES, LINE
 from fmu_src.tethered_deorbit.thrust import DIRECTIONS, make_thrust
-from fmu_src.tethered_deorbit.trajectory import ACTS, EDGES, LINE, make_squared_error, make_trajectory
+from fmu_src.tethered_deorbit.tolerances import make_squared_error
+from fmu_src.tethered_deorbit.trajectory import make_trajectory
 from orbital.kernel import entry, kernel
 from orbital.oscillators import reduced_mass
 from orbital.vectors import Array
@@ -129,7 +131,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     )
     places = places_of(layout, scheme)
     events = make_events(reel, bodies, scheme, places)
-    extremes = make_extremes(events, places)
+    extremes = make_extremes(events)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, places)

@@ -32,7 +32,7 @@ def key(name: str = "table2-deorbit", *settings: str, fmus: dict[str, str] = FMU
         ("table2-deorbit", "removal.start.leading=chaser"),
         ("table2-deorbit", "orbit.altitude=801 km"),
         ("table2-deorbit", "removal.solver.tolerance_separation=1e-6 m"),
-        ("mission", "handoff.spin_tolerance=0.2"),
+        ("mission", "handoff.point_tolerance=0.3"),
         ("mission", "handoff.compare_without_recoil=false"),
         ("table1-capture", "capture.hand_over=none"),
         ("mission", 'phases=["capture"]'),

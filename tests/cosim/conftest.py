@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ Dcone = Callable[..., tuple[int, str, str]]
 
 
 def scene_of(*phases: str, **handoff: Any) -> Scene:
-    """A scene for the stand-ins, of the named phases."""
+    """A scene for the stand-ins, of the named phases; a point is taken whatever it changes, unless a tolerance says."""
     known = {
         "capture": PhaseScene("capture", ComponentScene("capture", "mock"), 0.5, 20.0, CaptureOptions()),
         "removal": PhaseScene(
@@ -33,7 +34,11 @@ def scene_of(*phases: str, **handoff: Any) -> Scene:
         ),
     }
     return Scene(
-        "mock", "A scene of stand-ins", "title = 'mock'\n", tuple(known[p] for p in phases), HandoffOptions(**handoff)
+        "mock",
+        "A scene of stand-ins",
+        "title = 'mock'\n",
+        tuple(known[p] for p in phases),
+        HandoffOptions(**{"point_tolerance": math.inf, **handoff}),
     )
 
 

@@ -59,6 +59,7 @@ def changed(scene: str, old: str, new: str) -> str:
         ("mission", '[capture.gravity]\nlaw = "hill"\n', "", ["capture.gravity missing", "none, hill"]),
         ("mission", 'law = "locked"', 'law = "linear"', ["removal.tether", '[removal.reel] law = "locked"']),
         ("mission", "[handoff]", "[handoff]\nspin = 3", ["handoff.spin", "unknown key"]),
+        ("mission", "[handoff]", "[handoff]\nspin_tolerance = 0.1", ["handoff.spin_tolerance", "point_tolerance"]),
         # what only makes sense together
         ("mission", "[handoff]", '[removal.chaser]\nmass = "1 kg"\n[handoff]', ["removal.chaser.mass", "hand-off"]),
         ("mission", "[handoff]", '[removal.start]\nseparation = "1 m"\n[handoff]', ["removal.start", "hand-off"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 import shutil
 import subprocess
@@ -105,7 +106,7 @@ def test_both_c_templates_fly_a_mission(kits: dict[str, Path], make_scene: Make)
                 archive = capture if phase == "capture" else removal
                 return IsolatedComponent(archive, name) if isolate else Component(archive, name)
 
-            scene = make_scene("capture", "removal", spin_tolerance=1e9)
+            scene = make_scene("capture", "removal", point_tolerance=math.inf)
             scene.phases[0].main.parameters["tether.length"] = 20.0  # type: ignore[index]
             result = run_scene(scene, instantiate, Progress())
             assert result.exit_code == SUCCESS, result.message

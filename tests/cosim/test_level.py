@@ -143,7 +143,7 @@ def test_the_level_that_is_needed_is_taken(which: str) -> None:
     )
     record = HandoffRecord(10.0, 10.0, "told", removal, found, line_of(found, LENGTH))
     if which == "a point":
-        with pytest.raises(HandoffError, match="cannot carry the spin"):
+        with pytest.raises(HandoffError, match=r'\[removal\.target\] body = "box", or none, would carry it'):
             check_before(record, scene.handoff, capture.main.terms["target"])
         return
     check_before(record, scene.handoff, capture.main.terms["target"])

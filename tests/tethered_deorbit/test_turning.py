@@ -18,7 +18,7 @@ from fmu_src.tethered_deorbit.environment.central import add_gravity
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.layout import state_layout
 from fmu_src.tethered_deorbit.thrust import make_thrust
-from fmu_src.tethered_deorbit.trajectory import make_longest_taut_step
+from fmu_src.tethered_deorbit.tolerances import make_longest_taut_step
 from orbital.kernel import kernel
 from orbital.oscillators import line_stiffness, natural_frequency, reduced_mass
 
@@ -176,11 +176,11 @@ def test_longest_step() -> None:
         record = taut_record()
         record["state_effective_mass"] = 1.0
         record["state_damping"] = 2.0 * zeta * FREQUENCY
-        longest = float(longest_taut_step(record)) * FREQUENCY
+        longest = float(longest_taut_step(record, 1.0)) * FREQUENCY
         assert longest == pytest.approx(reach, abs=1e-3)
         assert abs(excess(zeta, longest)) < 0.01
         assert abs(excess(zeta, 1.2 * longest)) > 0.01
     record["state_damping"] = 0.0
-    assert longest_taut_step(record) * FREQUENCY == pytest.approx(UNDAMPED_REACH, rel=1e-15)
+    assert longest_taut_step(record, 1.0) * FREQUENCY == pytest.approx(UNDAMPED_REACH, rel=1e-15)
     record["state_damping"] = 100.0
-    assert longest_taut_step(record) * FREQUENCY == DAMPED_REACH
+    assert longest_taut_step(record, 1.0) * FREQUENCY == DAMPED_REACH

@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from fmu_src.instance import Instance, ModelFault
+from fmu_src.tethered_deorbit.bodies import wrapping
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from tests.plain import PlainInstance, plain
 from tests.validation import Validated, closed_form, other_code
@@ -485,6 +486,59 @@ def test_a_taut_line_slips_off_a_corner() -> None:
         lost = i["tether.slip_loss"]
         assert i["energy.relative"] + lost == pytest.approx(energy, abs=1e-9)
     assert lost > 1e-2
+
+
+@uncompiled
+@pytest.mark.parametrize(("terms", "most", "time"), [(BOX, 2, 3.0), (CYLINDER, 4, 12.0)])
+def test_the_way_laid_out_flat_is_that_of_newton(
+    terms: dict[str, str], most: int, time: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over one edge and several: length, where the line leaves the body, and the bend of the length, at every stage."""
+    paths: list[Any] = []
+    edges, off = set(), np.zeros(3)
+
+    def made(polyhedron: Any) -> Any:
+        paths.append(make_path(polyhedron))
+        return paths[-1]
+
+    def seen(r: Any) -> tuple[float, np.ndarray, float]:
+        count = int(r.held_count)
+        return r.state_wrapped + r.path_lengths[count], r.state_departure.copy(), r.path_diagonal[max(0, count - 1)]
+
+    def both(record: Any) -> bool:
+        flat = follow_unfolded(record)
+        if flat and record[0].held_count > 0:
+            edges.add(int(record[0].held_count))
+            found = seen(record[0])
+            paths[-1].follow(record)
+            wanted = seen(record[0])
+            errors = (
+                found[0] - wanted[0],
+                float(np.abs(found[1] - wanted[1]).max()),
+                found[2] / wanted[2] - 1.0,
+            )
+            np.maximum(off, np.abs(errors), out=off)
+            follow_unfolded(record)
+        return bool(flat)
+
+    make_path, follow_unfolded = wrapping.make_path, wrapping.follow_unfolded
+    monkeypatch.setattr(wrapping, "make_path", made)
+    monkeypatch.setattr(wrapping, "follow_unfolded", both)
+    values: dict[str, Any] = {
+        "start.condition": HANDED_OVER,
+        "start_relative_position": [0.4, 12.0, 0.3],
+        "target_attachment": [0.3, 0.5 * SIZE[1], 0.2] if terms is BOX else [0.1, -0.4, 0.05],
+        "target_inertia": [1671.0, 924.0, 1788.0, 30.0, -20.0, 10.0],
+        "target_start_rate": [0.02, 0.05, 0.3],
+        "tether.rest_length": 13.0,
+        "thrust.level": -4.0,
+    }
+    shape = {"target_size": SIZE.tolist()} if terms is BOX else {"target.cylinder_radius": 1.0}
+    PlainInstance(MODEL, terms, values | shape).step(time)
+    assert max(edges) >= most, edges
+    assert off[0] < 1e-13
+    assert off[1] < 1e-12
+    assert off[2] < 1e-9
 
 
 @pytest.mark.parametrize("count", [4, pytest.param(100, marks=pytest.mark.evidence)])

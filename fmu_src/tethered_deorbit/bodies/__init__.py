@@ -37,6 +37,8 @@ class Bodies(NamedTuple):
     seen_rate(record, state, rate) -> rate      and its rate, after `seen`
     enter_rate(record, state, seen, rate)       the rate in the coordinates of the step, from that as it is
     squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
+    pace(record, state) -> n                    by which the tolerance of velocities across a taut line follows [rad/s]
+    moved_mass(record, state) -> m              that the line has to move where it is [kg]; after `seen`
     longest(record, state) -> h                 longest step [s] that these coordinates bear, and over which the way of
                                                 the line can be followed
     publish(record, state)                      outputs of their own
@@ -73,6 +75,8 @@ class Bodies(NamedTuple):
     enter_rate: Callable[..., Any]
     longest: Callable[..., Any]
     squared_error: Callable[..., Any]
+    pace: Callable[..., Any]
+    moved_mass: Callable[..., Any]
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]

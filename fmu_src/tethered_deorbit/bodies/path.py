@@ -95,6 +95,8 @@ def make_path(polyhedron: Polyhedron) -> Path:
         ways, lengths = r.path_ways, r.path_lengths
         diagonal, beside, change = r.path_diagonal, r.path_beside, r.path_change
         total = measure(record, count)
+        if count == 0:
+            return total
         for _ in range(ITERATIONS):
             for k in range(count):
                 direction = r.state_edges[r.path_edges[k]][3:6]

@@ -30,6 +30,26 @@ def begin(record: Any) -> int:
 
 
 @kernel
+def pace(record: Any, state: Array) -> float:
+    """The environment's pace [rad/s]: nothing else turns.
+
+    Checked  tests/tethered_deorbit/test_integrator.py
+    """
+    own: float = record[0].state_pace
+    return own
+
+
+@kernel
+def moved_mass(record: Any, state: Array) -> float:
+    """The pair's reduced mass [kg], wherever the line is.
+
+    Checked  tests/tethered_deorbit/test_snap.py
+    """
+    mass: float = record[0].state_effective_mass
+    return mass
+
+
+@kernel
 def line_length(record: Any, separation: float) -> float:
     """Length of the line between its attachments [m]; negative where the chaser is nearer than the target's.
 
@@ -158,6 +178,8 @@ def make_points(interface: Interface) -> Bodies:
         enter_rate=nothing,
         longest=no_end,
         squared_error=zero,
+        pace=pace,
+        moved_mass=moved_mass,
         publish=nothing,
         energy=zero,
         differentiate=zero,

@@ -57,6 +57,8 @@ class Rigid(NamedTuple):
                                                 `reach`
     set_pivot(record, state, vector, velocity)  of the way: see `Wrapping`; after `reach`
     show_way(record, state, vector, velocity)   rates of what is shown of its way; after `reach`
+    ease(record, vector) -> 1/m                 what its turning adds to the inverse of the mass that a line along this
+                                                vector has to move [1/kg]; after `reach`
     pull(record, state, rate, x, y, z)          add the torque of the line, a force [N] on the chaser; after `reach`
     add_turning, turn_back, squared_error, energy   as of `Bodies`
     carried                                     coordinates of a step
@@ -74,6 +76,7 @@ class Rigid(NamedTuple):
     relief: Callable[..., Any]
     set_pivot: Callable[..., Any]
     show_way: Callable[..., Any]
+    ease: Callable[..., Any]
     pull: Callable[..., Any]
     add_turning: Callable[..., Any]
     turn_back: Callable[..., Any]
@@ -284,6 +287,24 @@ def make_rigid(
         add_scaled(out, out, sign, r[arms][2])
 
     @kernel
+    def ease(record: Any, vector: Array) -> float:
+        """What the body's turning adds to the inverse of the mass that the line has to move [1/kg]; after `reach`.
+
+            (a x n).I^-1 (a x n)
+
+        vector      along the line, of any length but zero       (3,)
+
+        Source   impulse on a free rigid body
+        Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
+        """
+        r = record[0]
+        lever, turned_by = r[arms][2], r[arms][3]
+        transposed_matrix_vector(lever, r[turned], vector)
+        cross(lever, r[leaving], lever)
+        matrix_vector(turned_by, r[inverse], lever)
+        return dot(lever, turned_by) / dot(vector, vector)
+
+    @kernel
     def pull(record: Any, state: Array, rate: Array, x: float, y: float, z: float) -> None:
         """Add what a force at the attachment does to the body rate [rad/s^2]; `turned` must be that of the state.
 
@@ -410,6 +431,7 @@ def make_rigid(
         relief=relief,
         set_pivot=set_pivot,
         show_way=show_way,
+        ease=ease,
         pull=pull,
         add_turning=add_turning,
         turn_back=turn_back,

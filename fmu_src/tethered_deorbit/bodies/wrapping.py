@@ -27,6 +27,7 @@ from fmu_src.tethered_deorbit.bodies.polyhedron import (
     on_both,
     other_side,
 )
+from fmu_src.tethered_deorbit.bodies.unfolded import follow_unfolded, unfold
 from fmu_src.tethered_deorbit.idle import always, never, no_fault, nothing, zero
 from fmu_src.tethered_deorbit.interface import BODIES_MET, TOO_MANY_TURNS
 from fmu_src.tethered_deorbit.surfaces.surface import Surface
@@ -92,7 +93,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
     path = make_path(polyhedron)
     passes, between, met = polyhedron.passes, polyhedron.between, polyhedron.met
     tighten, leave, insert, sound = path.tighten, path.leave, path.insert, path.sound
-    follow_path, keep, show = path.follow, path.keep, path.show
+    follow_path, keep, show, show_way = path.follow, path.keep, path.show, path.publish
     run_at_corner, slip = make_corners(path, surface)
 
     @kernel
@@ -103,6 +104,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
         """
         r = record[0]
         r.held_count = 0
+        r.unfolded_usable = 0
         r.state_way_fault = 0
         r.tether_slip_loss = 0.0
         return int(lay_out(record))
@@ -123,7 +125,8 @@ def make_wrapping(surface: Surface) -> Wrapping:
         """
         for i in range(3):
             record[0].path_far[i] = point[i]
-        follow_path(record)
+        if not follow_unfolded(record):
+            follow_path(record)
 
     @kernel
     def round_by(
@@ -310,7 +313,26 @@ def make_wrapping(surface: Surface) -> Wrapping:
             if length < shortest * (1.0 - 1.0e-12):
                 shortest = length
                 keep(record)
+        unfold(record)
         follow_path(record)
+
+    @kernel
+    def hold_way(record: Any) -> None:
+        """The way last followed becomes that from which others are followed, with its points on all edges.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        follow_path(record)
+        keep(record)
+
+    @kernel
+    def publish(record: Any) -> None:
+        """What is shown of the way last followed, with its points on all edges.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        follow_path(record)
+        show_way(record)
 
     @kernel
     def holds(record: Any) -> bool:
@@ -323,6 +345,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
             return False
         if r.held_stuck == 1:
             return True
+        follow_path(record)
         return bool(sound(record) and run_at_corner(record)[0] == NONE)
 
     @kernel
@@ -341,6 +364,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
         keep(record)
         slip(record)
         r.held_stuck = 0 if holds(record) else 1
+        unfold(record)
 
     @kernel
     def retry(record: Any) -> bool:
@@ -363,6 +387,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
             r.held_edges[k] = r.kept_edges[k]
             r.held_along[k] = r.kept_along[k]
         r.state_way_fault = 0
+        unfold(record)
         follow_path(record)
         return found
 
@@ -381,12 +406,12 @@ def make_wrapping(surface: Surface) -> Wrapping:
         holds=holds,
         renew=renew,
         retry=retry,
-        keep=keep,
+        keep=hold_way,
         trouble=trouble,
         book=book,
         relief=path.relief,
         pivot=path.pivot,
-        publish=path.publish,
+        publish=publish,
         differentiate=path.differentiate,
         leaving="state_departure",
         on_body="state_wrapped",
