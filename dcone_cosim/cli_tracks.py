@@ -65,8 +65,9 @@ def fit(
 ) -> None:
     """Estimate values of a scene from measured tracks, with intervals.
 
-    Least squares over runs of the scene, which begin with its own values. The intervals hold 95 %, for measurements
-    that err alike and apart from one another; what a net's chaos adds is in them, what the model gets wrong is not.
+    Least squares over runs of the scene, which begin with its own values. The intervals are meant to hold 95 %, for
+    measurements that err alike and apart from one another, and do so on a straight line; on nets of known values one of
+    three missed, so there they are an indication. What the model gets wrong is not in them.
 
     Exit code: 0 done, 2 bad input, 5 a run of it failed, 6 interrupted.
     """

@@ -164,6 +164,9 @@ def _tables(model: build.Model) -> dict[str, Schema]:
             key = key_of(row)
             value = _value(key.expected, key.description, key.starts)
             known = tables.setdefault(row.section, {}).setdefault(row.key, value)
+            if "maxItems" in value and known is not value:  # as long as another term makes it
+                known["minItems"] = min(known["minItems"], value["minItems"])
+                known["maxItems"] = max(known["maxItems"], value["maxItems"])
             if key.description not in known["description"]:
                 known["description"] += f"; or {key.description}"  # it means something else with another term
     for line in build.lines(model.name, {}):

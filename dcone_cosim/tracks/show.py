@@ -18,7 +18,7 @@ def show(laid: Laid, console: Console) -> None:
 
     if laid.fit is not None:
         values = Table(box=None, pad_edge=False)
-        for head in ("value", "start", "found", "from", "to (95 %)"):
+        for head in ("value", "start", "found", "from", "to (about 95 %)"):
             values.add_column(head, justify="left" if head == "value" else "right")
         for one in laid.fit.estimates:
             values.add_row(one.name, *(f"{number:.6g}" for number in (one.start, one.value, one.low, one.high)))

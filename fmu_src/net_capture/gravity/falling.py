@@ -6,7 +6,6 @@ and contact, and fall only if asked to.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from fmu_src.interface import Variable
@@ -139,12 +138,6 @@ def target_potential(p):
     Checked  tests/net_capture/test_ground.py
     """
     return p.target_mass * potential(p, p.target_place) if p.gravity_on_target != 0 else 0.0
-
-
-@kernel
-def size(vector):
-    """Its length."""
-    return math.sqrt(dot(vector, vector))
 
 
 def make_falling(composition: Any, start: Any, renew: Any, begin_flight: Any, watch: Any, given: Any) -> Gravity:

@@ -6,9 +6,10 @@ from typing import Any
 
 from fmu_src.interface import Term
 from fmu_src.net_capture.gravity import Gravity
-from fmu_src.net_capture.gravity.falling import ROWS, begin_steady_flight, make_falling, size
+from fmu_src.net_capture.gravity.falling import ROWS, begin_steady_flight, make_falling
 from fmu_src.rows import vector
 from orbital.kernel import kernel
+from orbital.vectors import norm
 
 STANDARD = 9.80665
 """Standard acceleration of free fall [m/s2], exact by definition: 3rd CGPM (1901)."""
@@ -22,7 +23,7 @@ def start(p):
     """
     for i in range(3):
         p.gravity_now[i] = p.gravity_acceleration[i]
-    p.gravity_most = size(p.gravity_now)
+    p.gravity_most = norm(p.gravity_now)
 
 
 def make(composition: Any) -> Gravity:
