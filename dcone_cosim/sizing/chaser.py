@@ -90,6 +90,10 @@ def of_attitude(ground: Ground, run: Found, options: Options) -> Iterator[Asked]
             "torque of the hardest tug", worst[1] * offset, "N.m", f"its peak times the offset, for {lasts:.3g} s"
         )
         yield Asked(
+            "share of the authority, in it", worst[1] * offset / torque, "1",
+            "above 1 the chaser turns while it lasts, and wheels take up the momentum after",
+        )  # fmt: skip
+        yield Asked(
             "momentum it leaves", impulse * offset, "N.m.s", "m_r v (1 + e) times the offset: wheels take it up"
         )
         recovers = impulse * offset / torque

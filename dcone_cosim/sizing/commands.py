@@ -38,6 +38,7 @@ from dcone_cosim.scenes.reading import parse
 from dcone_cosim.sizing import bullets, closed_net, page, paper, plot, report, section, work
 from dcone_cosim.sizing.debris import read
 from dcone_cosim.sizing.ground import Ground
+from dcone_cosim.sizing.headline import headline
 from dcone_cosim.sizing.options import Options, options_of
 from dcone_cosim.sizing.proposal import propose, scene_text
 from dcone_cosim.sizing.result import Sizing
@@ -162,7 +163,7 @@ def _sized(
 ) -> Sizing:  # fmt: skip
     found = study(ground, others, options, runner, nets, progress)
     notes = [*ground.scene.notes, *found.notes]
-    return Sizing(f"Sizing: {ground.scene.title}", report.headline(found), report.sections(found), found, None, notes)
+    return Sizing(f"Sizing: {ground.scene.title}", headline(found), report.sections(found), found, None, notes)
 
 
 def write(

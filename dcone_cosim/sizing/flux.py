@@ -23,6 +23,8 @@ SOURCE = (
     "governs, "
     "give the flux of ORDEM or MASTER for the orbit in [sizing]"
 )
+OFF = 27.0
+"""Of the default: three factors left out, each within 3 of one."""
 THINNEST, THICKEST = 1e-6, 1.0
 """Between which a diameter is sought in a table [m]."""
 
@@ -33,6 +35,8 @@ class Flux:
 
         f(d) = value (d/size)^-exponent, or by the table, straight in logarithms between its points and beyond them
 
+    off    the factor by which it may be off either way; 1 for one that a scene gives
+
     value [1/(m2 s)], size [m];  sizes [m], values [1/(m2 s)] of a table, empty for none
     """
 
@@ -42,6 +46,7 @@ class Flux:
     sizes: Sequence[float] = ()
     values: Sequence[float] = ()
     source: str = SOURCE
+    off: float = OFF
 
     def of(self, size: float) -> float:
         """f(d) [1/(m2 s)]."""

@@ -90,7 +90,7 @@ def options_of(
     told["materials"] = tuple(materials)
     flux = {_FLUX[name]: told.pop(name) for name in list(told) if name in _FLUX}
     if flux:
-        told["flux"] = replace(chosen.flux, source="the scene, [sizing]", **flux)
+        told["flux"] = replace(chosen.flux, source="the scene, [sizing]", off=1.0, **flux)
     return replace(chosen, **told, told=frozenset(name for name, value in told.items() if value))
 
 

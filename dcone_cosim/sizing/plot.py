@@ -60,7 +60,7 @@ def _loads(study: Study, figure: Any) -> None:
     share = np.arange(1, len(peaks) + 1) / len(peaks)
     axes.step(peaks, share, where="post", color=style.CHASER, label="runs of what is uncertain")
     axes.axvline(study.nominal.peak, color=style.ACCENT, label="the scene as it is")
-    axes.axvline(study.bound.peak, color=style.MUTED, ls=":", label="without damping, a bound")
+    axes.axvline(study.bound.peak, color=style.MUTED, ls=":", label="as it is, without damping")
     allowed = study.breaking / study.options.factor_of_safety
     if allowed < 5.0 * max(peaks):
         axes.axvline(allowed, color=style.BULLET, ls="--", label="the scene's line allows")
@@ -77,7 +77,8 @@ def _spectrum(study: Study, figure: Any) -> None:
         [a for a, *_ in rows], [n for *_, n, _ in rows], width=[b - a for a, b, *_ in rows], align="edge",
         color=style.NET, edgecolor="white", label="tugs",
     )  # fmt: skip
-    axes.step([a for a, *_ in rows], [m for *_, m in rows], where="post", color=style.BULLET, label="as hard or harder")
+    edges, above = [*(a for a, *_ in rows), rows[-1][1]], [*(m for *_, m in rows), rows[-1][3]]
+    axes.step(edges, above, where="post", color=style.BULLET, label="as hard or harder")
     axes.set_xlabel("peak tension [N]")
     axes.set_ylabel("tugs")
     style.legend(axes)
@@ -87,10 +88,12 @@ def _required(study: Study, figure: Any) -> None:
     axes = _axes(figure, left=0.2)
     shown = [one for one in study.needed if math.isfinite(one.diameter)][:16][::-1]
     names = [f"{one.material.name} {one.material.form}" for one in shown]
-    axes.barh(names, [1e3 * one.diameter for one in shown], color=style.NET, label="simulated, at the fixed point")
+    axes.plot(
+        [1e3 * one.diameter for one in shown], names, "s", color=style.NET, ms=6, label="simulated, at the fixed point"
+    )
     axes.plot([1e3 * one.closed for one in shown], names, "o", color=style.ACCENT, ms=4, label="closed form")
     axes.plot(
-        [1e3 * one.fixed for one in shown], names, "x", color=style.BULLET, ms=5, label="from the scene's peak: wrong"
+        [1e3 * one.fixed for one in shown], names, "x", color=style.BULLET, ms=5, label="from the highest peak: wrong"
     )
     axes.axvline(1e3 * study.ground.values["tether.diameter"], color=style.MUTED, ls=":", label="the scene's line")
     axes.set_xlabel("diameter [mm]")

@@ -8,17 +8,19 @@ from collections.abc import Iterator, Sequence
 
 from dcone_cosim.sizing.chaser import Asked
 from dcone_cosim.sizing.flux import YEAR
-from dcone_cosim.sizing.ground import Found
+from dcone_cosim.sizing.headline import called
 from dcone_cosim.sizing.region import LASTS
 from dcone_cosim.sizing.section import ROW, Head, Section, text
 from dcone_cosim.sizing.sensitivity import REACH
 from dcone_cosim.sizing.spectrum import by_size, cycle_classes, cycles, turning_points
 from dcone_cosim.sizing.study import Study
+from dcone_cosim.sizing.uncertain import Sample
 from orbital.materials import margin_of_safety
-from orbital.tethers import DASHPOT_GOVERNS
 
 PICTURES = {"loads": "loads.png", "spectrum": "spectrum.png", "required": "required.png"}
 PICTURES |= {"sensitivities": "sensitivities.png", "region": "region.png"}
+LOST = 0.02
+"""Share of a beam on the debris from which on it is warned of [1]."""
 SHOWN = 12
 """Runs of the table of loads that are shown to a reader; the file has all."""
 
@@ -26,6 +28,7 @@ SHOWN = 12
 def sections(study: Study) -> list[Section]:
     """All parts, in the order in which a designer asks."""
     found = [
+        _asked("scene", "What is sized", "The tow as the scene has it: what all below follows from.", study.inputs()),
         _loads(study),
         _required(study),
         _governs(study),
@@ -37,81 +40,31 @@ def sections(study: Study) -> list[Section]:
         _region(study),
         _net(study),
         _asked(
-            "reel", "What the reel has to do", "Size drum, brake and motor by these, the largest of all runs.",
+            "reel", "What the reel has to do",
+            "Size drum, brake and motor by these: the largest of all runs of what is uncertain, force, rate and power "
+            "each by itself. A debris that tumbles asks for more: see the admissible region.",
             study.reel,
         ),
         _asked(
             "attitude", "What the pull asks of the chaser's attitude control",
             "A line that pulls beside the centre of mass turns the chaser. Size wheels and thrusters by these, or move "
-            "the line.", study.attitude,
+            "the line. The tug is the hardest of the scene as it is.", study.attitude,
         ),
         _ways(study),
     ]  # fmt: skip
     return [one for one in found if one.rows]
 
 
-def headline(study: Study) -> list[str]:
-    """The answer in sentences."""
-    sample, worst = study.worst
-    own = study.needed[0]
-    factor = study.options.factor_of_safety
-    whose = "given" if "factor_of_safety" in study.options.told else "by default"
-    line = 1e3 * study.ground.values["tether.diameter"]
-    margin = margin_of_safety(study.breaking, worst.peak, factor)
-    said = [
-        f"peak tension {study.nominal.peak:.4g} N in the scene as it is; {worst.peak:.4g} N at most over "
-        f"{len(study.all)} "
-        f"runs of what is uncertain ({sample.label})",
-        f"sustained tension {study.steady:.4g} N, without tugs",
-        f"the scene's line, {line:.4g} mm of {_name(study.chief)}, breaks at {study.breaking:.4g} N: margin of safety "
-        f"{margin:+.3g} with a factor of safety of {factor:g} ({whose}) on the highest tension"
-        + (": TOO WEAK" if margin < 0.0 else ""),
-    ]
-    governing = study.demands[0]
-    if math.isfinite(own.diameter):
-        said.append(
-            f"its peak asks for {1e3 * own.diameter:.4g} mm of {_name(own.material)} ({own.mass:.3g} kg), at the "
-            f"fixed point, by "
-            f"simulation; {1e3 * own.closed:.4g} mm in closed form"
-        )
-    said.append(
-        f"{governing.load} governs: {1e3 * governing.diameter:.4g} mm ({governing.how})"
-        if math.isfinite(governing.diameter)
-        else "no load governs"
-    )
-    said += _about_damping(study)
-    return said
-
-
-def _about_damping(study: Study) -> Iterator[str]:
-    zeta = study.ground.values["tether.damping_ratio"]
-    if zeta == 0.0:
-        yield "the scene has no damping: its tugs never die out, and its peaks are bounds, not predictions"
-    else:
-        yield f"without damping the peak would be {study.bound.peak:.4g} N: a bound, not a prediction"
-    if zeta >= DASHPOT_GOVERNS:
-        yield (
-            f"with a damping ratio of {zeta:g}, above {DASHPOT_GOVERNS:g}, the largest tension is the dashpot's jump "
-            f"as the "
-            "line goes taut: that is the model's, which damps by the rate of stretch, and no line's"
-        )
-
-
-def _name(material: object) -> str:
-    name, form = getattr(material, "name", ""), getattr(material, "form", "")
-    return f"{name} {form}".strip()
-
-
 def _loads(study: Study) -> Section:
     factor = study.options.factor_of_safety
-    runs: list[tuple[str, Found]] = [(sample.label, run) for sample, run in study.all]
-    first, rest = runs[0], sorted(runs[1:], key=lambda one: -one[1].peak)
+    first, *others = study.all
+    rest = sorted(others, key=lambda one: -one[1].peak)
     rows = [
         (
-            label, run.peak, run.figure("tension_mean"), run.figure("tension_largest"), len(run.tugs),
-            run.worst[2] if run.worst else None, margin_of_safety(study.breaking, run.peak, factor),
+            sample.label, run.peak, run.figure("tension_mean"), run.figure("tension_largest"), len(run.tugs),
+            run.worst[2] if run.worst else None, margin_of_safety(study.bears(sample), run.peak, factor),
         )
-        for label, run in (first, ("without damping, a bound", study.bound), *rest)
+        for sample, run in (first, (Sample("as it is, without damping", {}), study.bound), *rest)
     ]  # fmt: skip
     heads = (
         text("run", "run"), Head("peak", "peak tension", "N"), Head("mean", "mean, last orbit", "N"),
@@ -122,7 +75,7 @@ def _loads(study: Study) -> Section:
     purpose = (
         "Peak and sustained tension of the line: the first sizes it, the last orbit's tell what it holds for "
         "months. Each row "
-        "is a run; the margin is that of the scene's own line, strength over (factor of safety x peak) less one."
+        "is a run; the margin is that of the line of that run, strength over (factor of safety x peak) less one."
     )
     return Section("loads", "Loads of the line", purpose, heads, rows, PICTURES["loads"])
 
@@ -130,8 +83,8 @@ def _loads(study: Study) -> Section:
 def _required(study: Study) -> Section:
     rows = [
         (
-            _name(one.material), one.material.youngs_modulus, one.material.strength, one.closed, one.diameter, one.mass,
-            one.peak, one.margin, one.fixed, one.note or f"{one.runs} diameters tried",
+            called(one.material), one.material.youngs_modulus, one.material.strength, one.closed, one.diameter,
+            one.mass, one.peak, one.margin, one.fixed, one.note or f"{one.runs} diameters tried",
         )
         for one in study.needed
     ]  # fmt: skip
@@ -139,24 +92,26 @@ def _required(study: Study) -> Section:
         text("material", "material"), Head("youngs_modulus", "E", "Pa", "GPa"),
         Head("strength", "strength", "Pa", "GPa"),
         Head("closed", "diameter, closed form", "m", "mm"), Head("diameter", "diameter, simulated", "m", "mm"),
-        Head("mass", "mass of the line", "kg"), Head("peak", "peak at that diameter", "N"),
+        Head("mass", "mass of the line", "kg", "g"), Head("peak", "peak at that diameter", "N"),
         Head("margin", "margin left"),
-        Head("fixed", "from the scene's peak (wrong)", "m", "mm"), text("note", "how"),
+        Head("wrong_from_peak", "from the highest peak at the scene's diameter (wrong)", "m", "mm"),
+        text("note", "how"),
     )  # fmt: skip
     factor = study.options.factor_of_safety
     purpose = (
         f"The least diameter whose strength is {factor:g} times the peak tension of a line of that diameter. A "
         f"thicker line is "
-        "stiffer and snaps harder, so it is a fixed point: A = F^2 g^2 v^2 E m / (l sigma^2) + 2 F P / sigma in "
-        "closed form, "
+        "stiffer and snaps harder, so it is a fixed point: A = (S g v / sigma)^2 E m_r / l + 2 S P / sigma in closed "
+        "form, S the factor of safety, g the damped share of a snap, v the speed of the hardest tug, P the tension it "
+        "meets, "
         f"and by simulation with the scene as it is and its {min(3, len(study.made))} hardest neighbours, verified "
         f"by the run "
         "at that diameter, whose margin is told. The column marked wrong takes the peak of the scene's own line for "
-        "that of "
-        "any other. Diameters are of a solid round; a braid's figures count its gaps."
+        "that of any other. Closed form and simulation differ as the bounces do. Diameters are of a solid round; a "
+        "braid's figures count its gaps."
     )
     section = Section("required", "Required line", purpose, heads, rows, PICTURES["required"])
-    sources = {f"{_name(one.material)}: {src}" for one in study.needed[:1] for src in one.material.sources.values()}
+    sources = {f"{called(one.material)}: {src}" for one in study.needed[:1] for src in one.material.sources.values()}
     section.said = sorted(sources)
     return section
 
@@ -169,7 +124,7 @@ def _governs(study: Study) -> Section:
         text("how", "how"),
     )  # fmt: skip
     purpose = (
-        f"What each load by itself asks of a line of {_name(study.chief)}; the largest governs. The line is out for "
+        f"What each load by itself asks of a line of {called(study.chief)}; the largest governs. The line is out for "
         f"{study.time / YEAR:.3g} years: {study.time_from}."
     )
     section = Section("governs", "Which load governs", purpose, heads, rows)
@@ -191,10 +146,14 @@ def _tugs(study: Study) -> Section:
         Head("formula", "peak, closed form", "N"), Head("difference", "difference", "1", "%"),
     )  # fmt: skip
     purpose = (
-        "Whether the simulated peaks can be trusted: each hard tug beside the closed form of a damped snap at its "
-        "own speed, under the preload of tide and thrust at its own angle (without damping P + sqrt(P^2 + k m_r v^2))."
+        "Whether the integration can be trusted: each hard tug, as they came, beside the closed form of a damped snap "
+        "at its own speed, under the preload of tide and thrust at its own angle (without damping "
+        "P + sqrt(P^2 + k m_r v^2))."
     )
-    return Section("tugs", "Tugs beside their closed form", purpose, heads, rows)
+    part = Section("tugs", "Tugs beside their closed form", purpose, heads, rows)
+    if len(study.tugs) > SHOWN:
+        part.said = [f"the first {SHOWN} of {len(study.tugs)} hard tugs are shown; soft ones are left out"]
+    return part
 
 
 def _spectrum(study: Study) -> Section:
@@ -262,7 +221,23 @@ def _slopes(study: Study) -> Section:
         "as large as the slope the bounces are near chaos: only the error is known. None is told where a run so near "
         "could not begin."
     )
-    return Section("sensitivities", "Sensitivities", purpose, heads, rows, PICTURES["sensitivities"])
+    part = Section("sensitivities", "Sensitivities", purpose, heads, rows, PICTURES["sensitivities"])
+    part.said = [
+        f"{name}: the peak falls and rises again over its range, so neither of its ends need be the worst"
+        for name in _bent(study)
+    ]
+    return part
+
+
+def _bent(study: Study) -> Iterator[str]:
+    """Values over whose range the peak goes the other way than where the scene is."""
+    by_label = {sample.label: run.peak for sample, run in study.made}
+    slopes = {one.name: one for one in study.slopes}
+    for one in study.ranges:
+        slope = slopes.get(one.label)
+        low, high = (by_label.get(f"{one.label} {label}", math.nan) for label in one.labels)
+        if slope is not None and abs(slope.largest) > 2.0 * slope.largest_error and slope.largest * (high - low) < 0.0:
+            yield one.label
 
 
 def _region(study: Study) -> Section:
@@ -346,4 +321,12 @@ def _ways(study: Study) -> Section:
         "unless the "
         "scene says otherwise) that meets the debris at the line's length and pushes it back."
     )
-    return Section("disposal", "Bringing it down", purpose, heads, rows)
+    part = Section("disposal", "Bringing it down", purpose, heads, rows)
+    lost = max((way.beam for way in study.ways), default=0.0)
+    if lost > LOST:
+        part.said = [
+            f"time, propellant and tension are those of the whole thrust. With {100 * lost:.0f} % of a beam on the "
+            f"debris it would take {1.0 / (1.0 - lost):.2g} times as much of the first two: let the chaser lead, turn "
+            "its thrusters aside, or name [removal.plume]"
+        ]
+    return part

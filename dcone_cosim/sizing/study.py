@@ -24,6 +24,17 @@ WORST = 3
 """Hardest of all runs that the required line is made for, beside the scene as it is."""
 UNBREAKABLE = 1e12
 """Strength of a line that is to show its load, not to break [N]."""
+INPUTS = (
+    ("orbit.altitude", "altitude", "m"),
+    ("chaser.mass", "chaser", "kg"),
+    ("target.mass", "debris", "kg"),
+    ("tether.rest_length", "line, unloaded", "m"),
+    ("tether.diameter", "its diameter", "m"),
+    ("tether.youngs_modulus", "its E", "Pa"),
+    ("tether.damping_ratio", "its damping, of critical for two free bodies", "1"),
+    ("start.separation", "separation at the start", "m"),
+    ("thrust.level", "thrust", "N"),
+)
 FAR_BELOW = 0.05
 """Share of the hardest tug below which a tug is not held against its closed form [1]."""
 
@@ -84,6 +95,23 @@ class Study:
         """The scene as it is, and every run of what is uncertain that came to its end."""
         runs = [(Sample("the scene as it is"), self.nominal), *self.made, *self.captures]
         return [(sample, run) for sample, run in runs if math.isfinite(run.peak)]
+
+    def bears(self, sample: Sample) -> float:
+        """Load at which the line of a run breaks [N]: another diameter bears as its section does."""
+        own = self.ground.values["tether.diameter"]
+        return self.breaking * (sample.values.get("tether.diameter", own) / own) ** 2
+
+    def inputs(self) -> list[chaser.Asked]:
+        """What is sized: the values of the scene from which all else follows, SI."""
+        values = self.ground.values
+        told = [chaser.Asked(what, values[name], unit, name) for name, what, unit in INPUTS if name in values]
+        ends = self.nominal.figure("simulated")
+        return [
+            *told,
+            chaser.Asked("stiffness of the line", stiffness(values), "N/m", "E A / l"),
+            chaser.Asked("reduced mass", reduced(values), "kg", "of chaser and debris"),
+            *([] if ends is None else [chaser.Asked("duration of a run", ends, "s", "of the scene")]),
+        ]
 
     @property
     def worst(self) -> tuple[Sample, Found]:
