@@ -28,7 +28,7 @@ SHOWN = 12
 def sections(study: Study) -> list[Section]:
     """All parts, in the order in which a designer asks."""
     found = [
-        _asked("scene", "What is sized", "The tow as the scene has it: what all below follows from.", study.inputs()),
+        _asked("inputs", "What is sized", "The tow as the scene has it: what all below follows from.", study.inputs()),
         _loads(study),
         _required(study),
         _governs(study),

@@ -165,7 +165,6 @@ def test_the_estimate_of_the_first_tug_has_the_slack_handed_over(make_scene: Mak
     assert result.handovers["removal"].spin.tug_speed == pytest.approx(
         math.sqrt(speed**2 + 2.0 * 0.01 / 2000.0 * slack), rel=1e-12
     )
-    assert result.handovers["removal"].spin.tolerance == 0.1
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def test_a_sampled_law_is_designed_for_its_sample_time() -> None:
         (REGULATOR + 'gains = "best"\n', ('line 13: removal.reel.gains = "best"', "expected one of given, lqr, poles")),
         (
             REGULATOR + 'gains = "lqr"\nangle_gain = "1 N"\n',
-            ('line 14: removal.reel.angle_gain = "1 N"', "follows from what is asked of the gains"),
+            ('line 14: removal.reel.angle_gain = "1 N"', "follows from what this scene asks for"),
         ),
         (
             REGULATOR + 'gains = "poles"\npoles_imaginary = [1.0, 0.0, 0.0, 0.0]\n',

@@ -122,7 +122,7 @@ def test_a_tumbling_target_is_not_handed_to_a_point(dcone: Both, tmp_path: Path)
     code, written = dcone("run", variant(tmp_path, "mission", turning), "-o", "out", "--no-figures")
     assert code == 4
     assert "hand-off refused" in written
-    assert "rigid body" in written
+    assert '[removal.target] body = "box", or none, would carry it' in written
     assert (tmp_path / "out" / "capture.parquet").exists()
 
 

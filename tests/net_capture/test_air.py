@@ -32,7 +32,7 @@ LIGHT = {
 }
 
 
-def test_a_bullet_alone_slows_as_the_closed_form(validated):
+def test_a_bullet_alone_slows_as_the_closed_form():
     """v0 / (1 + v0 t / L), L = 2 m / (rho C A); one of 1 % more air does not."""
     length = 2.0 * 0.5 / (RHO * 0.47 * math.pi * 0.15**2)
     net = shoot(LIGHT)

@@ -186,7 +186,7 @@ def test_the_rim_goes_once_round_the_mouth(pair):
     assert len({tuple(np.sign(corner)) for corner in corners}) == 4
     assert np.all(np.diff(laid.graph.corners) > 0)
     sides = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
-    np.testing.assert_allclose(laid.p["mouth_side"], sides, rtol=1e-12)
+    np.testing.assert_allclose(laid.p["mouth_side"][:4], sides, rtol=1e-12)
     assert laid.p["mouth_flat_area"] == pytest.approx(MESH * MESH * columns * rows, rel=1e-14)
 
 

@@ -22,7 +22,7 @@ def test_a_parameter_a_duration_an_option_and_a_term() -> None:
         "capture.hand_over: was captured, is settled"
     }
     assert "removal.target: was point, is rigid" in told("removal.target.body=rigid")
-    assert told("handoff.point_tolerance=0.02") == {"handoff.point_tolerance: was 0.01, is 0.02"}
+    assert told("handoff.point_tolerance=0.02") == {"handoff.point_tolerance: was 0.2, is 0.02"}
 
 
 def test_a_key_that_reaches_two_phases() -> None:

@@ -21,6 +21,7 @@ from tests.sizing.conftest import SAFETY, SHORT
 __all__ = ["dcone"]
 
 PARTS = {
+    "inputs",
     *("loads", "required", "governs", "tugs", "spectrum", "rainflow", "ranges", "sensitivities", "region"),
     *("reel", "attitude", "disposal"),
 }

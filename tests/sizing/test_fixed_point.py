@@ -89,7 +89,7 @@ def test_closed_form_by_hand(done: Sizing, sought: required.Search) -> None:
     assert math.sqrt(4.0 * area / math.pi) == pytest.approx(sought.thick[0], rel=0.01)
     rows = done["required"].set_index("material")
     assert rows.diameter["Technora yarn"] >= rows.closed["Technora yarn"] * 0.9
-    assert (rows.fixed / rows.diameter).min() > 1.25
+    assert (rows.wrong_from_peak / rows.diameter).min() > 1.25
 
 
 def test_tugs_are_the_analytic_snap(done: Sizing) -> None:

@@ -56,7 +56,7 @@ def test_what_a_fixed_peak_would_say(done: Sizing) -> None:
 
 
 def test_what_is_sized_is_told(done: Sizing) -> None:
-    told = done["scene"].set_index("what").value
+    told = done["inputs"].set_index("what").value
     assert told["stiffness of the line"] == pytest.approx(60e9 * math.pi * 1e-6 / 4.0 / 12.0, rel=1e-12)
     assert told["reduced mass"] == pytest.approx(2000.0 / 3.0, rel=1e-12)
     assert told["altitude"] == 800e3
