@@ -42,10 +42,15 @@ def size(
     units in `attrs["units"]`, `sizing.keys()` the names of the parts.
     """
     given = as_scene(scene)
-    spans = [f"{key}={told(key, least)}..{told(key, most)}" for key, (least, most) in (ranges or {}).items()]
+    spans = [f"{key}={_end(key, least)}..{_end(key, most)}" for key, (least, most) in (ranges or {}).items()]
     with shown(progress) as showing:
         if folder is not None:
             asked = (quick, factor_of_safety, samples, spans, materials)
             return commands.size(given.source, Path(folder), showing, given.settings, *asked, jobs, isolate)
         options = options_of(given.checked, quick, factor_of_safety, samples, spans, materials)
         return commands.of_scene(given.source, options, showing, given.settings, jobs, isolate)
+
+
+def _end(key: str, value: Any) -> str:
+    """An end of a range as `--range` says it: without the quotes of a text."""
+    return told(key, value).strip('"')

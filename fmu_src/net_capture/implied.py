@@ -147,7 +147,7 @@ def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
         yield Implied("canister.volume", "volume of the canister", volume, "m3")
         solid = values["net.mass"] / values["net.density"]
         label = "share of it that the net's threads fill, were they solid"
-        yield Implied("canister.filled", label, solid / volume, "1")
+        yield Implied("canister.filled", label, solid / volume, "")
 
 
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:

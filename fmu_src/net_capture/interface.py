@@ -214,7 +214,7 @@ BULLETS = {
 
 def bullets_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
     """As many as the shape of the net asks for."""
-    return str(NETS[terms["net"]].checks.bullets or USUAL_BULLETS)
+    return str(NETS[terms["net"]].checks.bullets)
 
 
 def each_bullet(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
@@ -323,7 +323,7 @@ def _refuses_numbers(scene: Scene) -> Iterator[Refusal]:
     """Other bullets than the shape has corners, and more nodes than there are outputs for."""
     net = scene.parts["net"].checks
     bullets = scene.terms.get("bullets", str(USUAL_BULLETS))
-    if net.bullets and bullets != str(net.bullets):
+    if bullets != str(net.bullets):
         yield Refusal("bullets.number", bullets, f"must be {net.bullets}: a mouth of this shape has so many corners")
     nodes = net.nodes(scene.values) + sum(
         part.checks.nodes(scene.values, net) for part in rigged_of(scene.terms).values()

@@ -12,6 +12,7 @@ from fmu_src.implied import formula
 from fmu_src.instance import Instance
 from fmu_src.net_capture.folding.rolled import pitch, turned
 from fmu_src.net_capture.folding.zigzag import fold_width, zigzag
+from fmu_src.net_capture.implied import rows
 from fmu_src.net_capture.interface import MODEL, refusals
 from tests.conftest import FREE
 from tests.net_capture.laid import Layer
@@ -121,6 +122,12 @@ def test_a_shot_from_it_opens(pattern):
     assert abs(net["energy.remainder"]) < 0.01 * 9.0
 
 
+def starts_of(pattern):
+    """Every parameter of a net folded so, by FMI name."""
+    variables = [v for v in MODEL.interface(FREE | {"folding": pattern}).variables if v.causality == "parameter"]
+    return {name: start for v in variables for name, start in zip(v.element_names(), v.starts(), strict=True)}
+
+
 @pytest.mark.parametrize(
     ("pattern", "change", "told"),
     [
@@ -132,12 +139,21 @@ def test_a_shot_from_it_opens(pattern):
 )
 def test_a_canister_that_is_none_is_refused_before_and_by_the_kernel(pattern, change, told):
     terms = FREE | {"folding": pattern}
-    rows = [v for v in MODEL.interface(terms).variables if v.causality == "parameter"]
-    starts = {name: start for v in rows for name, start in zip(v.element_names(), v.starts(), strict=True)}
-    values = starts | NETS["square"] | SET[pattern]
+    values = starts_of(pattern) | NETS["square"] | SET[pattern]
     assert refusals(terms, values) == []
     assert [refusal.name for refusal in refusals(terms, values | change)] == [told]
     layer = layer_of("square", pattern)
     record = layer.counted(NETS["square"] | SET[pattern] | change)
     assert layer.check(record) != 0
     assert record[0]["fault_value"] == next(iter(change.values()))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "expected"), [("accordion", 0.25 * 0.25 * 0.3), ("rolled", math.pi * 0.12 * 0.12 * 0.3)]
+)
+def test_what_is_told_of_the_canister(pattern, expected):
+    terms = MODEL.interface(FREE | {"folding": pattern}).terms
+    told = {row.key: row for row in rows(starts_of(pattern) | NETS["square"] | SET[pattern], terms)}
+    assert told["canister.volume"].value == pytest.approx(expected, rel=1e-12)
+    assert told["canister.filled"].value == pytest.approx(0.33 / 1440.0 / expected, rel=1e-12)
+    assert told["canister.filled"].unit == "", "a share is no count"

@@ -107,7 +107,7 @@ def test_a_net_falls_onto_a_target_that_is_carried(falls, expected):
     advance(net, expected + 0.05, 0.05)
     assert net["contact.first_time"] == pytest.approx(expected, abs=2.0 * net["solver.substep"])
     fallen = -0.5 * 9.81 * net.time**2 if falls else 0.0
-    assert net["target.position[1]"] == pytest.approx(fallen, abs=0.01)
+    assert net["target.position[1]"] == pytest.approx(fallen, abs=0.003)
 
 
 def test_uniform_gravity_pulls_what_it_is_told_to():

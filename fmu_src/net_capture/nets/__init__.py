@@ -55,7 +55,7 @@ class Checks(NamedTuple):
                        is stiffest: the square root of the least sum of l over sum of 1/l at a knot  [m]
     hanging(values)    what hangs on its knots
     nodes(values)      with the inner nodes of all threads; 1 where there is no such net             [1]
-    bullets            how many the shape has; 0: as many as the scene says
+    bullets            how many the shape has
     drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
                        count them
     """
