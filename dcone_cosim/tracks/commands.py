@@ -121,7 +121,7 @@ def fit(
             found = compare(fly([one.value for one in answer.estimates], {}), measured)
     finally:
         fleet.close()
-    content = {"scene": scene.name, "tracks": str(file), **_of_fit(answer), **_told(found)}
+    content = {"scene": scene.name, "tracks": str(file), **_of_fit(answer, phase), **_told(found)}
     with atomic_folder(folder) as draft:
         _write(found, draft.path, f"{scene.title}: fitted")
         keep(scene, draft.path)
@@ -171,6 +171,14 @@ def _bounds(phase: PhaseScene, name: str) -> tuple[float, float]:
     return (-math.inf, math.inf) if row is None else (float(row.minimum), float(row.maximum))
 
 
+def _unit(phase: PhaseScene, name: str) -> str:
+    """SI unit of a value, "1" for a pure number; "" where its FMU does not tell."""
+    from dcone_cosim import build
+
+    row, _ = build.known_variables(phase.main.model).get(name, (None, None))
+    return "" if row is None else row.unit
+
+
 def _jitter(seed: int) -> dict[str, float]:
     return {f"solver.jitter[{axis}]": JITTER for axis in (1, 2, 3)} | {"solver.seed": float(seed)}
 
@@ -216,10 +224,16 @@ def _told(found: Sequence[Compared]) -> dict[str, Any]:
     return {"rms": overall(found), "unit": "m", "markers": [one.told() for one in found]}
 
 
-def _of_fit(answer: Fit) -> dict[str, Any]:
+def _of_fit(answer: Fit, phase: PhaseScene) -> dict[str, Any]:
     return {
         "values": {
-            one.name: {"start": one.start, "value": one.value, "low": one.low, "high": one.high}
+            one.name: {
+                "start": one.start,
+                "value": one.value,
+                "low": one.low,
+                "high": one.high,
+                "unit": _unit(phase, one.name),
+            }
             for one in answer.estimates
         },
         "confidence": CONFIDENCE,

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import math
+import re
+from io import StringIO
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from dcone_cosim.errors import InputError
 from dcone_cosim.tracks.comparing import compare, overall
+from dcone_cosim.tracks.fitting import Estimate
 from dcone_cosim.tracks.plot import draw
 from dcone_cosim.tracks.reading import Track, read_tracks
+from dcone_cosim.tracks.show import show
 from dcone_cosim.tracks.simulated import Flown, at_instants
 
 HEAD = "time,marker,x,y,z\n"
@@ -124,3 +130,17 @@ def test_the_picture_is_drawn(tmp_path):
     found = compare(flown(), [track("bullet 1", [0.0, 1.0]), track("vertex", [0.5])])
     draw(found, "tracks", tmp_path / "tracks.png")
     assert (tmp_path / "tracks.png").stat().st_size > 10_000
+
+
+def test_a_table_keeps_its_units():
+    """Brackets are no markup to be taken out; a value that was fitted has its unit beside it."""
+    found = [compare(flown(), [track("vertex", [0.3])])[0]]
+    estimate = Estimate("bullets.speed", 2.0, 3.0, 2.9, 3.1)
+    fit = SimpleNamespace(estimates=[estimate], before=0.1, after=0.01, scatter=0.001)
+    content = {"values": {"bullets.speed": {"unit": "m/s"}}}
+    console = Console(file=StringIO(), width=120)
+    show(SimpleNamespace(found=found, fit=fit, content=content), console)
+    told = console.file.getvalue()
+    assert "rms [m]" in told
+    assert "at [s]" in told
+    assert re.search(r"bullets.speed .* 3.1 +m/s", told)
