@@ -38,8 +38,8 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, air, spin, ejection, volume, pulls,
-    pace, breaking, scheme
+    gravity, net, rigging, graph, peaks, folding, target, contact, jam, closing, tether, air, spin, ejection, volume,
+    pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -64,6 +64,7 @@ class Composition:
         self.graph, self.peaks = make_graph(self), make_peaks(self)
         self.target = self._make("target")
         self.contact = self._make("contact")
+        self.jam = self._make("jam")
         self.closing, self.tether = self._make("closing"), self._make("tether")
         self.volume, self.air = self._make("volume"), self._make("air")
         self.spin = self._make("spin")

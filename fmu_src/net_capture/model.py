@@ -7,7 +7,7 @@ From grid time n h to (n + 1) h:
                          impulses on the nodes that ended below the target's surface, which they then have not done
     chaser               kicked by gravity and the tension
     both                 drift
-    winches, reel        the cord out and the work done at (n + 1) h
+    reels                the cord out and the work done at (n + 1) h
 
 The grid is counted in integers from the start, whatever the macro step, so a scene gives the same bits in every tool;
 and all times count from there, whatever the clock of the tool says.
@@ -22,6 +22,7 @@ from typing import Any
 from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.net_capture import outcome, quality
 from fmu_src.net_capture.book import make_balance
+from fmu_src.net_capture.closing.triggers import make_reached
 from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES
 from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
@@ -55,6 +56,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     shot, measures, limit_way = make_shot(parts), quality.make_quality(parts), make_limit_way(parts)
     choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
     judge = outcome.make_judge(parts, measures)
+    reached = make_reached(parts, measures) if has_closing else None
     not_finite, no_axis, too_many_nodes = (parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES))
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
@@ -139,8 +141,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             hold.watch(p, work)
         if has_closing:
             touched = p.contact_first_time if has_contact else -1.0
-            beyond = measures.beyond(p, work, p.target_place) if has_target else -math.inf
-            closing.trigger(p, work, time, touched, beyond)
+            closing.trigger(p, work, time, touched, reached(p, work))
         if watches:
             watch(p, work)
         judge(p, work, time)
