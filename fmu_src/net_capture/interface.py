@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
-from fmu_src.net_capture import air, breaking, shot, tether, volume
+from fmu_src.net_capture import air, breaking, capture_index, pull_off, shot, tether, volume
 from fmu_src.net_capture.closing import closings, jam
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
@@ -295,6 +295,8 @@ GROUPS = {
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "volume": _plain(volume.PART),
+    "quality": _plain(capture_index.PART),
+    "pull_off": _plain(pull_off.PART),
     "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=capacity_of),
 }
 

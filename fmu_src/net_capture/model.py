@@ -44,6 +44,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     has_target, has_contact = parts.target is not None, parts.contact is not None
     has_closing, has_tether = parts.closing is not None, parts.tether is not None
     hold, has_volume = parts.volume, parts.volume is not None
+    index, has_index = parts.index, parts.index is not None
+    pull_off, has_load = parts.pull_off, parts.pull_off is not None
     has_nodes, has_air = "nodes" in terms, parts.air is not None
     capacity = int(terms["nodes"]) if has_nodes else 0
     planes, per_double = parts.planes, parts.per_double
@@ -125,6 +127,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             closing.wind(p, work)
         if has_tether:
             tether.reel_in(p, work)
+        if has_load:
+            pull_off.go_on(p, work)
 
     @kernel
     def look(p, work):
@@ -145,6 +149,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if watches:
             watch(p, work)
         judge(p, work, time)
+        if has_load:
+            pull_off.look(p, work, time)
         return 0
 
     @kernel
@@ -186,6 +192,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 p.mouth_girth = p.girth
         if has_contact:
             contact.measure(p, work)
+        if has_load:
+            pull_off.show(p, work, late)
         balance = energy_balance(p, work)
         p.energy_remainder = p.energy_start - balance
         measures.measure_mouth(p, work)
@@ -199,6 +207,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             tether.measure(p)
         if has_nodes:
             write_nodes(p, work)
+        if has_index:
+            fault = index.measure(p, work)
+            if fault != 0:
+                return fault
         peaks.collect(p)
         if has_closing:
             if p.cord_tension_peak > p.cord_tension_max:
@@ -309,6 +321,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         measures.start_mouth(p)
         if has_volume:
             hold.start(p)
+        if has_index:
+            index.start(p)
+        if has_load:
+            pull_off.start(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         if has_air:
