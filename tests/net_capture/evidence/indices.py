@@ -1,4 +1,4 @@
-"""How often `captured` and the capture quality index disagree: shots of mixed aim, followed to 40 s.
+"""How often `captured` and the capture quality index disagree: shots of mixed aim, followed to 30 s.
 
     python -m tests.net_capture.evidence.indices [HOW_MANY]
 
@@ -24,7 +24,7 @@ from tests.net_capture.evidence.shots import SEED, draw
 RESULT = Path(__file__).with_name("indices.json")
 COMMAND = "python -m tests.net_capture.evidence.indices"
 SHOTS = 100
-END, LOOK = 40.0, 0.5
+END, LOOK = 30.0, 0.5
 """Seconds from the shot, and between two looks."""
 THRESHOLDS = (0.5, 0.6, 0.7, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0)
 
