@@ -52,7 +52,7 @@ def _step(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def entered(evidence: Evidence) -> Array:
-    """Energy [J] that shot, spin of the target, the closing's reels, the tether's and a test load brought in by then."""
+    """Energy [J] that the shot, the reels of mouth and tether, and a test load have brought in by then."""
     columns = evidence.columns
     energy = np.full(len(columns["time"]), columns["energy.kinetic"][0])
     for work in ("closing.work", "tether.work", "pull_off.work"):

@@ -2,8 +2,9 @@
 
     python -m tests.net_capture.evidence.indices [HOW_MANY]
 
-makes `indices.json` again. The shots are those of `shots`. No threshold of the index that others call a capture could
-be had from an open source, so all are tried: below a threshold the index says caught, above it not.
+makes `indices.json` again. The shots are those of `shots`, with meshes twice as wide. No threshold of the index that
+others call a capture could be had from an open source, so all are tried: below a threshold the index says caught, above
+it not.
 """
 
 from __future__ import annotations
@@ -32,7 +33,8 @@ THRESHOLDS = (0.5, 0.6, 0.7, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0)
 def follow(number: int) -> dict[str, Any]:
     """One shot to its end: what `captured` says of it then, and the index."""
     terms, values, row = draw(number)
-    shot = Instance(MODEL, {**terms, "quality": "plain"}, values).initialise()
+    mesh = 1.0 if row["scene"] == "mission" else 2.0
+    shot = Instance(MODEL, {**terms, "quality": "plain"}, {**values, "net.mesh": mesh}).initialise()
     index = []
     while shot.time < END - 1e-9:
         shot.step(LOOK)
