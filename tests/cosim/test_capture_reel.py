@@ -42,15 +42,15 @@ def test_a_reel_control_brakes_the_net_from_a_scene(tmp_path: Path) -> None:
     connections, components = CONNECTED.split("\n\n", 1)
     scene = tmp_path / "held-back.toml"
     scene.write_text(head[:begin] + connections.strip() + "\n\n" + head[begin:] + components)
-    settings = ['phases=["capture"]', "capture.duration=3 s", "capture.hand_over=none"]
+    settings = ['phases=["capture"]', "capture.duration=6 s", "capture.hand_over=none"]
     loaded = load(str(scene), settings)
     with SceneFmus(loaded, Progress()) as fmus:
         run = run_scene(loaded, fmus.instantiate, Progress())
-    (phase,) = run.phases
-    recorder = phase.recorder
+
+    recorder = run.phases["capture"].recorder
     assert recorder["tether.work"][-1] < -0.3
     out, rate = recorder["tether.paid_out"], recorder["tether.rate"]
-    assert np.diff(out) / np.diff(recorder["time"]) == pytest.approx(0.5 * (rate[1:] + rate[:-1]), rel=2e-2, abs=2e-2)
+    assert np.trapezoid(rate, recorder["time"]) == pytest.approx(out[-1] - out[0], rel=5e-3)
     asked = np.maximum(0.0, 0.05 * (out - 2.0) + 0.1 * rate)
     gained = np.cumsum(asked) * (recorder["time"][1] - recorder["time"][0])
     # the reel's impulse: what the chaser has beyond its recoil, along the shot
