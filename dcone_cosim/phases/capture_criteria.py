@@ -52,10 +52,10 @@ def _step(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def entered(evidence: Evidence) -> Array:
-    """Energy [J] that the shot, the spin of the target, the winches and the reel have brought in by then."""
+    """Energy [J] that the shot, the reels of mouth and tether, and a test load have brought in by then."""
     columns = evidence.columns
     energy = np.full(len(columns["time"]), columns["energy.kinetic"][0])
-    for work in ("closing.work", "tether.work"):
+    for work in ("closing.work", "tether.work", "pull_off.work"):
         if work in columns:
             energy = energy + np.maximum.accumulate(np.maximum(columns[work], 0.0))
     return energy
@@ -103,17 +103,24 @@ def _is_free(evidence: Evidence) -> bool:
 
 
 def _momentum(evidence: Evidence) -> Iterator[Criterion]:
-    """Of all bodies, in a frame that does not turn: as it was, whatever net, target, winches and reel do."""
+    """Of all bodies, in a frame that does not turn: as it was, whatever net, target and reels do, but for a test load's
+    impulse."""
     if not _is_free(evidence) or not evidence.has("momentum", "angular_momentum", CATCH + ".mass"):
         return
     accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
     size = shot_momentum(evidence)
     if not size > 0.0:
         return
-    change = np.linalg.norm(evidence.vector("momentum") - evidence.vector("momentum")[0], axis=1).max()
+    momentum, moment = evidence.vector("momentum"), evidence.vector("angular_momentum")
+    if evidence.has("pull_off.impulse"):
+        momentum, moment = (
+            momentum - evidence.vector("pull_off.impulse"),
+            moment - evidence.vector("pull_off.angular_impulse"),
+        )
+    change = np.linalg.norm(momentum - momentum[0], axis=1).max()
     yield Criterion("momentum", "momentum of all bodies", float(change) / size, "1", accurate, stable)
     arm = max(np.linalg.norm(evidence.vector("catch.position"), axis=1).max(), 1.0)
-    turned = np.linalg.norm(evidence.vector("angular_momentum") - evidence.vector("angular_momentum")[0], axis=1).max()
+    turned = np.linalg.norm(moment - moment[0], axis=1).max()
     label = "angular momentum of all bodies"
     yield Criterion("angular_momentum", label, float(turned) / (size * float(arm)), "1", accurate, stable)
 

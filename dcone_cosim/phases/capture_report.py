@@ -13,6 +13,7 @@ import numpy as np
 from dcone_cosim import build
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
+from dcone_cosim.phases import closed_report
 from dcone_cosim.phases.end import of_end
 from dcone_cosim.phases.phase import Figure
 from dcone_cosim.plots import net_view, style
@@ -26,13 +27,15 @@ _CAPTURE_ROWS = (
     ("mouth.area_max", "largest mouth area", "m2"),
     ("thread.tension_max", "largest tension of a thread", "N"),
     ("cord.tension_max", "largest tension of the closing cord", "N"),
-    ("closing.t_start", "winches started at", "s"),
+    ("closing.t_start", "reels started at", "s"),
     ("mouth.cord_length", "mouth cord still out at the end", "m"),
     ("mouth.girth", "girth it would have to pass", "m"),
     ("contact.loss", "energy lost in contact", "J"),
-    ("closing.work", "work of the winches", "J"),
+    ("closing.work", "work of the reels", "J"),
     ("thread.dissipated", "taken by the threads' dashpots", "J"),
     ("cord.dissipated", "taken by the cord's dashpots", "J"),
+    ("closing.spring_energy", "left in the reels' springs", "J"),
+    ("closing.braked", "taken by the reels' brakes, and by slack taken in", "J"),
     ("air.dissipated", "taken by the air", "J"),
     ("gravity.work", "given by the change of gravity", "J"),
     ("energy.remainder", "left over in the energy book", "J"),
@@ -55,6 +58,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
             value = int(last[name]) if whole else last[name]
             yield Finding("capture", name, label, value, unit)
     yield from _of_catch(last, result)
+    yield from closed_report.findings(last)
     parameters = run.parameters.get("capture", {})
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
@@ -105,11 +109,12 @@ def figures(run: RunResult, phase: PhaseScene, result: PhaseResult) -> Iterator[
         yield "capture_in_space.png", partial(net_view.draw, result, *shapes, asked, title)
     if "mouth.area" in result.recorder:
         yield "mouth_and_energies.png", partial(mouth_and_energy, result, title)
+    yield from closed_report.figures(result, title)
 
 
 EVENTS = (
     ("contact.first_time", "first touch", "--"),
-    ("closing.t_start", "winches start", "-."),
+    ("closing.t_start", "reels start", "-."),
     ("t_capture", "captured", "-"),
 )
 
@@ -145,7 +150,7 @@ def mouth_and_energy(result: PhaseResult, title: str, path: Path) -> None:
         ("energy.elastic", "elastic", style.ACCENT, {}),
         ("target.energy", "of the target", style.TARGET, {}),
         ("contact.loss", "lost in contact", style.BULLET, {}),
-        ("closing.work", "work of the winches", "#7d3c98", {}),
+        ("closing.work", "work of the reels", "#7d3c98", {}),
     )
     for name, label, colour, extra in series:
         if name in recorder:

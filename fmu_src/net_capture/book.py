@@ -26,7 +26,7 @@ def make_balance(composition: Any) -> Any:
     gravity = composition.gravity
     potential_at, bends, given, changes = gravity.potential, gravity.bends, gravity.given, gravity.given is not None
     chaser_potential, target_potential = gravity.chaser_potential, gravity.target_potential
-    has_air = composition.air is not None
+    has_air, has_load = composition.air is not None, composition.pull_off is not None
     node_plane = composition.memory.node_plane
 
     @kernel
@@ -64,6 +64,8 @@ def make_balance(composition: Any) -> Any:
             energy -= p.tether_work
         if drags:
             energy += p.tether_friction_loss
+        if has_load:
+            energy -= p.pull_off_work
         if has_break:
             energy += p.break_energy
         if has_ejection:

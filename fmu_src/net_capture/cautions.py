@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
 from fmu_src.net_capture.implied import open_loop, substeps
 from fmu_src.net_capture.interface import GROUPS, TARGETS
+from fmu_src.net_capture.pull_off import PULLED, WAITING
 from fmu_src.net_capture.schemes import Needs
 
 Values = Mapping[str, float]
@@ -59,6 +60,7 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     """From what came out."""
     yield from _unbalanced(values, terms, seen)
     yield from _taken_back(seen)
+    yield from _not_pulled(seen)
     yield from _unforeseen(seen)
 
 
@@ -70,10 +72,11 @@ def _needs(terms: Mapping[str, str]) -> Needs:
 
 def _unbalanced(values: Values, terms: Mapping[str, str], seen: Seen) -> Iterator[Caution]:
     """An energy book that leaves over more than a hundredth of what came in: the scheme's own error."""
-    left, kinetic, work = seen("energy.remainder"), seen("energy.kinetic"), seen("closing.work")
+    left, kinetic = seen("energy.remainder"), seen("energy.kinetic")
     if left is None or kinetic is None:
         return
-    entered = kinetic.first + (work.largest if work is not None else 0.0)
+    works = [work for work in (seen("closing.work"), seen("pull_off.work")) if work is not None]
+    entered = kinetic.first + sum(work.largest for work in works)
     size = max(abs(left.least), abs(left.largest))
     if size > LEFT_OVER * entered:
         yield Caution(
@@ -100,4 +103,15 @@ def _taken_back(seen: Seen) -> Iterator[Caution]:
     if captured is not None and lost is not None and lost.last >= 0.0:
         yield Caution(
             "t_lost", f"the target, captured at {captured.last:.4g} s, was out of the net at {lost.last:.4g} s"
+        )
+
+
+def _not_pulled(seen: Seen) -> Iterator[Caution]:
+    """A pull-off test that did not come to its end, though the target was captured."""
+    captured, stands = seen("captured"), seen("pull_off.stands")
+    if captured is not None and captured.last > 0.0 and stands is not None and stands.last in (WAITING, PULLED):
+        yield Caution(
+            "pull_off.stands",
+            f"the phase ended while the net was {'pulled' if stands.last == PULLED else 'still to be pulled'}: raise "
+            "duration or after_capture",
         )

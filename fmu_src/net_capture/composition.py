@@ -8,6 +8,7 @@ from typing import Any
 
 from fmu_src import tables
 from fmu_src.interface import Model, Term
+from fmu_src.net_capture.capture_index import SCRATCH_PLANES
 from fmu_src.net_capture.graph import make_graph
 from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
@@ -37,9 +38,10 @@ class Composition:
     memory       kernels that find what lies in the work memory
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
+    scratch_plane            the first of the node planes that the convex hull may scribble on, where there are any
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, air, spin, ejection, volume, pulls,
-    pace, breaking, scheme
+    gravity, net, rigging, graph, peaks, folding, target, contact, jam, closing, tether, air, spin, ejection, volume,
+    index, pull_off, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -52,9 +54,11 @@ class Composition:
         self.needs = needs = self._term("solver").checks
         self.traits = traits = self._term("substeps").checks
         self.clock = traits.clock
-        self.planes = NODE_PLANES + needs.planes + traits.planes
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
+        self.scratch_plane = NODE_PLANES + needs.planes + traits.planes
+        scratch = SCRATCH_PLANES * self.per_double if "quality" in terms else 0
+        self.planes = self.scratch_plane + scratch
         self.memory = make_memory(terms["precision"], self.planes)
         self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
@@ -64,11 +68,13 @@ class Composition:
         self.graph, self.peaks = make_graph(self), make_peaks(self)
         self.target = self._make("target")
         self.contact = self._make("contact")
+        self.jam = self._make("jam")
         self.closing, self.tether = self._make("closing"), self._make("tether")
         self.volume, self.air = self._make("volume"), self._make("air")
+        self.index, self.pull_off = self._make("quality"), self._make("pull_off")
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
-        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air)
+        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air, self.pull_off)
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
 
@@ -92,8 +98,8 @@ class Composition:
         return tables.make_reader(self._tables, name)
 
 
-def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
-    """The pulls of cord, tether and air together, and bullets that are held."""
+def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, pull_off: Any) -> Pulls:
+    """The pulls of cord, tether, air and test load together, and bullets that are held."""
     has_closing, has_tether = closing is not None, tether is not None
     has_ejection, has_air = ejection is not None, air is not None
     wake_held = ejection.wake if has_ejection else None
@@ -102,6 +108,8 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
         (tether.pull, tether.pull_shown, tether.book) if has_tether else [None] * 3
     )
     drag, drag_shown = (air.pull, air.pull_shown) if has_air else (None, None)
+    has_load = pull_off is not None
+    pull_load, pull_load_shown = (pull_off.pull, pull_off.pull_shown) if has_load else (None, None)
 
     @kernel
     def pull(p, work):
@@ -117,6 +125,8 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
             pull_vertex(p, work)
         if has_air:
             drag(p, work)
+        if has_load:
+            pull_load(p, work)
 
     @kernel
     def pull_shown(p, work):
@@ -130,6 +140,8 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
             pull_vertex_shown(p, work)
         if has_air:
             drag_shown(p, work)
+        if has_load:
+            pull_load_shown(p, work)
 
     @kernel
     def book(p, duration):

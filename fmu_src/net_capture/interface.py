@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
-from fmu_src.net_capture import air, breaking, shot, tether, volume
-from fmu_src.net_capture.closing import closings
+from fmu_src.net_capture import air, breaking, capture_index, pull_off, shot, tether, volume
+from fmu_src.net_capture.closing import closings, jam
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
 from fmu_src.net_capture.graph import WRONG_NUMBER
@@ -289,11 +289,14 @@ GROUPS = {
     "target": Group(TARGETS, selector="shape", optional=True),
     "contact": Group(CONTACTS, optional=True),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
+    "jam": _plain(jam.PART),
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
     "air": Group({"quadratic": air.PART}, selector="drag", optional=True, follows=lambda terms, values: "quadratic"),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "volume": _plain(volume.PART),
+    "quality": _plain(capture_index.PART),
+    "pull_off": _plain(pull_off.PART),
     "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=capacity_of),
 }
 

@@ -7,7 +7,7 @@ From grid time n h to (n + 1) h:
                          impulses on the nodes that ended below the target's surface, which they then have not done
     chaser               kicked by gravity and the tension
     both                 drift
-    winches, reel        the cord out and the work done at (n + 1) h
+    reels                the cord out and the work done at (n + 1) h
 
 The grid is counted in integers from the start, whatever the macro step, so a scene gives the same bits in every tool;
 and all times count from there, whatever the clock of the tool says.
@@ -22,6 +22,7 @@ from typing import Any
 from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.net_capture import outcome, quality
 from fmu_src.net_capture.book import make_balance
+from fmu_src.net_capture.closing.triggers import make_reached
 from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES
 from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
@@ -43,6 +44,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     has_target, has_contact = parts.target is not None, parts.contact is not None
     has_closing, has_tether = parts.closing is not None, parts.tether is not None
     hold, has_volume = parts.volume, parts.volume is not None
+    index, has_index = parts.index, parts.index is not None
+    pull_off, has_load = parts.pull_off, parts.pull_off is not None
     has_nodes, has_air = "nodes" in terms, parts.air is not None
     capacity = int(terms["nodes"]) if has_nodes else 0
     planes, per_double = parts.planes, parts.per_double
@@ -55,6 +58,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     shot, measures, limit_way = make_shot(parts), quality.make_quality(parts), make_limit_way(parts)
     choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
     judge = outcome.make_judge(parts, measures)
+    reached = make_reached(parts, measures) if has_closing else None
     not_finite, no_axis, too_many_nodes = (parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES))
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
@@ -123,6 +127,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             closing.wind(p, work)
         if has_tether:
             tether.reel_in(p, work)
+        if has_load:
+            pull_off.go_on(p, work)
 
     @kernel
     def look(p, work):
@@ -139,11 +145,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             hold.watch(p, work)
         if has_closing:
             touched = p.contact_first_time if has_contact else -1.0
-            beyond = measures.beyond(p, work, p.target_place) if has_target else -math.inf
-            closing.trigger(p, work, time, touched, beyond)
+            closing.trigger(p, work, time, touched, reached(p, work))
         if watches:
             watch(p, work)
         judge(p, work, time)
+        if has_load:
+            pull_off.look(p, work, time)
         return 0
 
     @kernel
@@ -185,6 +192,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 p.mouth_girth = p.girth
         if has_contact:
             contact.measure(p, work)
+        if has_load:
+            pull_off.show(p, work, late)
         balance = energy_balance(p, work)
         p.energy_remainder = p.energy_start - balance
         measures.measure_mouth(p, work)
@@ -198,6 +207,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             tether.measure(p)
         if has_nodes:
             write_nodes(p, work)
+        if has_index:
+            fault = index.measure(p, work)
+            if fault != 0:
+                return fault
         peaks.collect(p)
         if has_closing:
             if p.cord_tension_peak > p.cord_tension_max:
@@ -308,6 +321,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         measures.start_mouth(p)
         if has_volume:
             hold.start(p)
+        if has_index:
+            index.start(p)
+        if has_load:
+            pull_off.start(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         if has_air:

@@ -18,6 +18,7 @@ class Quality(NamedTuple):
     start_mouth(p)                     nothing measured yet
     mouth_area(p, work)                area of the polygon of the mouth's corners, on the plane normal to the shot [m2]
     watch_mouth(p, work, now, span)    follow the opening: largest area and when, first time above 80 %, time above
+    mouth_depth(p, work)               mean distance of the corners from the muzzle along the shot [m]
     measure_mouth(p, work)             present area and depth
     measure_net(p, work)               mass properties, kinetic energy and momenta of net, bullets and vertex
     show_points(p, work)               bullets and vertex
@@ -28,6 +29,7 @@ class Quality(NamedTuple):
     start_mouth: Any
     mouth_area: Any
     watch_mouth: Any
+    mouth_depth: Any
     measure_mouth: Any
     measure_net: Any
     show_points: Any
@@ -141,6 +143,17 @@ def make_quality(composition: Any) -> Quality:
             p.mouth_time_above_80 += span
 
     @kernel
+    def mouth_depth(p, work):
+        """Mean distance of the corners from the muzzle along the shot [m].
+
+        Checked  tests/net_capture/test_quality.py
+        """
+        depth = 0.0
+        for corner in range(p.net_corners):
+            depth += corner_depth(p, work, corner) / p.net_corners
+        return depth
+
+    @kernel
     def measure_mouth(p, work):
         """Present area [m2], its share of the flat mouth [1], and depth [m].
 
@@ -148,10 +161,7 @@ def make_quality(composition: Any) -> Quality:
         """
         p.mouth_area = mouth_area(p, work)
         p.mouth_area_ratio = p.mouth_area / p.mouth_flat_area
-        depth = 0.0
-        for corner in range(p.net_corners):
-            depth += corner_depth(p, work, corner) / p.net_corners
-        p.mouth_depth = depth
+        p.mouth_depth = mouth_depth(p, work)
 
     @kernel
     def measure_net(p, work):
@@ -245,4 +255,6 @@ def make_quality(composition: Any) -> Quality:
             for i in range(p.node_slots):
                 at[i] += ahead * onward[i]
 
-    return Quality(start_mouth, mouth_area, watch_mouth, measure_mouth, measure_net, show_points, carry, beyond)
+    return Quality(
+        start_mouth, mouth_area, watch_mouth, mouth_depth, measure_mouth, measure_net, show_points, carry, beyond
+    )

@@ -97,15 +97,18 @@ def pull_chaser(p):
 
 @kernel
 def measure(p):
-    """Length paid out, from the measured positions.
+    """Length paid out and its rate, from the measured positions and velocities.
 
-    Checked  tests/net_capture/test_energy_book.py
+    Checked  tests/net_capture/test_energy_book.py, tests/cosim/test_capture_reel.py
     """
     squared = 0.0
+    product = 0.0
     for axis in range(3):
         d = p.vertex_position[axis] - p.chaser_position[axis]
         squared += d * d
+        product += d * (p.vertex_velocity[axis] - p.chaser_velocity[axis])
     p.tether_paid_out = math.sqrt(squared)
+    p.tether_rate = product / p.tether_paid_out if squared > 0.0 else 0.0
 
 
 def make(composition: Any, drags: bool = False) -> Tether:
@@ -224,6 +227,7 @@ ROWS = (
     positive("tether.length", "m", "length that can be paid out", 100.0),
     Variable("tether.vertex_tension", "N", "input", "tension at the vertex, towards the chaser", nominal=1.0),
     output("tether.paid_out", "m", "distance from the chaser to the vertex"),
+    output("tether.rate", "m/s", "rate of that distance"),
     output("tether.work", "J", "work done by the tension signal so far"),
     state("tether_reach", "m", "distance from the chaser to the vertex at the begin of a substep that is pulled"),
     count("tether_grid", "which substep that is", "state"),

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fmu_src.net_capture.capture_index import SCRATCH_PLANES
 from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.planes import (
@@ -30,6 +31,8 @@ def planes_of(p, work, terms):
     needed = (MODEL.groups[group].terms[terms[group]].checks for group in ("solver", "substeps"))
     count = NODE_PLANES + sum(part.planes for part in needed)
     reals = work.view(np.float32 if terms["precision"] == "single" else np.float64)
+    if "quality" in terms:
+        count += SCRATCH_PLANES * 8 // reals.itemsize
     return reals[: count * slots].reshape(count, slots)
 
 

@@ -1,0 +1,70 @@
+"""The capture quality index: of a net in flight against scipy's Qhull and the formula written out again."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from fmu_src.net_capture.capture_index import cylinder_extent, quality_index, told_extent
+from fmu_src.net_capture.interface import GROUPS, MODEL
+from fmu_src.net_capture.refusal import Scene
+from tests.net_capture.holding import HOLDING
+from tests.net_capture.memory import shown
+
+
+def expected(points, offset, volume, surface, length):
+    hull = ConvexHull(points)
+    return 0.1 * abs(hull.volume / volume - 1.0) + 0.1 * abs(hull.area / surface - 1.0) + 0.8 * offset / length
+
+
+@pytest.mark.parametrize("flown", [0.5, 7.0])
+def test_the_index_is_that_of_qhull_and_the_formula(shoot, flown):
+    """Table 1's box, 4 x 8 x 4 m: 128 m3, 160 m2, and 16/3 m as the mean of its edges."""
+    net = shoot({"net.mesh": 2.0, "jam.time": 1e9}, HOLDING)
+    assert (net["quality.length"], net["quality.at_capture"]) == (pytest.approx(16.0 / 3.0), -1.0)
+    net.step(flown)
+    points = shown(net)
+    hull = ConvexHull(points)
+    assert net["quality.hull_volume"] == pytest.approx(hull.volume, rel=1e-9)
+    assert net["quality.hull_surface"] == pytest.approx(hull.area, rel=1e-9)
+    offset = math.dist(net.array("catch_position"), net.array("target_position"))
+    assert net["quality.index"] == pytest.approx(expected(points, offset, 128.0, 160.0, 16.0 / 3.0), rel=1e-9)
+
+
+def test_the_index_takes_the_scenes_own_figures(shoot):
+    own = {"quality.characteristic_length": 8.0, "quality.target_volume": 100.0, "quality.target_surface": 150.0}
+    net = shoot({"net.mesh": 2.0, "jam.time": 1e9} | own, HOLDING)
+    net.step(3.0)
+    offset = math.dist(net.array("catch_position"), net.array("target_position"))
+    assert net["quality.index"] == pytest.approx(expected(shown(net), offset, 100.0, 150.0, 8.0), rel=1e-9)
+
+
+def test_a_net_that_is_the_target_has_index_zero():
+    assert quality_index(128.0, 160.0, 0.0, 128.0, 160.0, 5.0) == 0.0
+    assert quality_index(256.0, 120.0, 2.5, 128.0, 160.0, 5.0) == pytest.approx(0.1 + 0.025 + 0.4)
+
+
+def test_cylinders_are_known_by_their_sizes():
+    record = MODEL.interface(HOLDING | {"target": "cylinder"}).make_record().view(np.recarray)[0]
+    record.target_radius, record.target_length = 2.0, 8.0
+    volume, surface = cylinder_extent.py_func(record)
+    assert (volume, surface) == (pytest.approx(32.0 * math.pi), pytest.approx(40.0 * math.pi))
+    record.quality_target_volume, record.quality_target_surface = 3.0, 7.0
+    assert told_extent.py_func(record) == (3.0, 7.0)
+
+
+@pytest.mark.parametrize(
+    ("target", "given", "blamed"),
+    [
+        ("box", (0.0, 0.0), []),
+        ("box", (5.0, 0.0), ["quality.target_surface"]),
+        ("blob", (0.0, 0.0), ["quality.target_volume", "quality.target_surface"]),
+        ("blob", (5.0, 9.0), []),
+    ],
+)
+def test_volumes_that_nobody_knows_are_refused(target, given, blamed):
+    values = {"quality.target_volume": given[0], "quality.target_surface": given[1]}
+    scene = Scene({"target": target}, values, 30.0, {})
+    refuses = GROUPS["quality"].terms["plain"].refuses
+    assert [refusal.name for refusal in refuses(scene)] == blamed
