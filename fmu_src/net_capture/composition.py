@@ -38,6 +38,7 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
+    contact_planes   the first node plane that is the contact's own
     gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, air, spin, ejection, volume, pulls,
     pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
@@ -52,7 +53,9 @@ class Composition:
         self.needs = needs = self._term("solver").checks
         self.traits = traits = self._term("substeps").checks
         self.clock = traits.clock
-        self.planes = NODE_PLANES + needs.planes + traits.planes
+        self.contact_planes = NODE_PLANES + needs.planes + traits.planes
+        law = self._term("contact").checks.planes if "contact" in terms else 0
+        self.planes = self.contact_planes + law
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
         self.memory = make_memory(terms["precision"], self.planes)

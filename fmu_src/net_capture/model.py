@@ -59,6 +59,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
+    presses = has_contact and contact.weigh is not None
     changes, watches, renew, watch = (
         gravity.renew is not None,
         gravity.watch is not None,
@@ -274,6 +275,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         p.t_capture = -1.0
         peaks.start(p)
         p.thread_loss = 0.0
+        if presses:
+            p.contact_stiffening = 0.0
         fault = choose_substep(p)
         if fault != 0:
             return fault
@@ -287,6 +290,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         graph.lay_out(p, work)
         complete_strips(p, properties(p, work))
         shot.load(p, work)
+        if presses:
+            contact.weigh(p, work)
+            fault = choose_substep(p)
+            if fault != 0:
+                return fault
+            limit_way(p)
         folding.fold(p, work)
         shot.jitter(p, work)
         shot.shoot(p, work)

@@ -27,7 +27,8 @@ def planes(net):
 def planes_of(p, work, terms):
     """The same of a record and its work memory."""
     slots = int(p["node_slots"])
-    needed = (MODEL.groups[group].terms[terms[group]].checks for group in ("solver", "substeps"))
+    planned = [group for group in ("solver", "substeps", "contact") if group in terms]
+    needed = (MODEL.groups[group].terms[terms[group]].checks for group in planned)
     count = NODE_PLANES + sum(part.planes for part in needed)
     reals = work.view(np.float32 if terms["precision"] == "single" else np.float64)
     return reals[: count * slots].reshape(count, slots)
