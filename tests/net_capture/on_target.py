@@ -2,14 +2,28 @@
 
 import numpy as np
 
-from fmu_src.net_capture.planes import FX, INVERSE_MASS, LANES, LENGTH, MASS, STIFFNESS, STRIP_NUMBERS, STRIP_WORDS, A
-from fmu_src.net_capture.planes import B, DAMPING, FIRST, P, U, X, complete_strips
+from fmu_src.net_capture.planes import (
+    DAMPING,
+    FIRST,
+    FX,
+    INVERSE_MASS,
+    LANES,
+    LENGTH,
+    MASS,
+    STIFFNESS,
+    STRIP_WORDS,
+    A,
+    B,
+    P,
+    U,
+    X,
+    complete_strips,
+)
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
 from tests.net_capture.memory import Bench, planes_of
 
 TERMS = {"net": "square", "gravity": "none", "target": "cylinder", "contact": "penalty"}
-ROOM = 64
 
 
 class Kernels:
@@ -31,7 +45,7 @@ class Kernels:
 
         @kernel
         def advance(record, work, pulls, steps, ways, speeds):
-            """Substeps with these forces on the nodes [N] (n, 3); places and velocities of the first node after each."""
+            """Substeps with these forces on the nodes [N] (n, 3); place and velocity of the first after each."""
             p = record[0]
             h = p.solver_substep
             for n in range(steps):
@@ -84,6 +98,16 @@ class Scene:
         self.planes[X : X + 3, :number] = np.transpose(places)
         for first in (U, P):
             self.planes[first : first + 3, :number] = np.transpose(velocities)
+        return self
+
+    def join(self, number, length, stiffness, damping):
+        """Threads between so many nodes, one after another."""
+        self.p["strips"] = 1
+        at = self.planes.nbytes // 8
+        words, numbers = self.work[at:].view(np.int64), self.work[at + STRIP_WORDS :]
+        words[[A, B, LANES, FIRST]] = 0, 1, (1 << number - 1) - 1, 0
+        numbers[[LENGTH, STIFFNESS, DAMPING]] = length, stiffness, damping
+        self.kernels._place(self.record, self.work)
         return self
 
     def go(self, substep, steps, pulls=((0.0, 0.0, 0.0),)):
