@@ -18,7 +18,7 @@ def make_balance(composition: Any) -> Any:
     """
     has_target = composition.target is not None
     has_contact = composition.contact is not None
-    presses = has_contact and composition.contact.weigh is not None
+    presses = composition.presses
     has_closing = composition.closing is not None
     has_tether = composition.tether is not None
     drags = composition.terms.get("tether") == "dragging"

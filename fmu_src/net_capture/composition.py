@@ -38,9 +38,10 @@ class Composition:
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
     traits, clock, meeting   of the pace, see `pace.Traits`
+    presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
-    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, air, spin, ejection, volume, pulls,
-    pace, breaking, scheme
+    gravity, net, rigging, graph, peaks, folding, target, contact, closing, tether, air, wrap, spin, ejection, volume,
+    pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -53,9 +54,10 @@ class Composition:
         self.needs = needs = self._term("solver").checks
         self.traits = traits = self._term("substeps").checks
         self.clock = traits.clock
+        law = self._term("contact").checks if "contact" in terms else None
+        self.presses = law is not None and law.stiffening is not None
         self.contact_planes = NODE_PLANES + needs.planes + traits.planes
-        law = self._term("contact").checks.planes if "contact" in terms else 0
-        self.planes = self.contact_planes + law
+        self.planes = self.contact_planes + (law.planes if law is not None else 0)
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
         self.memory = make_memory(terms["precision"], self.planes)
@@ -71,7 +73,8 @@ class Composition:
         self.volume, self.air = self._make("volume"), self._make("air")
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
-        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air)
+        self.wrap = self._make("wrap")
+        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air, self.wrap)
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
 
@@ -95,8 +98,8 @@ class Composition:
         return tables.make_reader(self._tables, name)
 
 
-def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
-    """The pulls of cord, tether and air together, and bullets that are held."""
+def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, wrap: Any) -> Pulls:
+    """The pulls of cord, tether, air and bent threads together, and bullets that are held."""
     has_closing, has_tether = closing is not None, tether is not None
     has_ejection, has_air = ejection is not None, air is not None
     wake_held = ejection.wake if has_ejection else None
@@ -105,6 +108,8 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
         (tether.pull, tether.pull_shown, tether.book) if has_tether else [None] * 3
     )
     drag, drag_shown = (air.pull, air.pull_shown) if has_air else (None, None)
+    has_wrap = wrap is not None
+    pull_bent, pull_bent_shown = (wrap.pull, wrap.pull_shown) if has_wrap else (None, None)
 
     @kernel
     def pull(p, work):
@@ -120,6 +125,8 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
             pull_vertex(p, work)
         if has_air:
             drag(p, work)
+        if has_wrap:
+            pull_bent(p, work)
 
     @kernel
     def pull_shown(p, work):
@@ -133,6 +140,8 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any) -> Pulls:
             pull_vertex_shown(p, work)
         if has_air:
             drag_shown(p, work)
+        if has_wrap:
+            pull_bent_shown(p, work)
 
     @kernel
     def book(p, duration):

@@ -59,7 +59,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
-    presses = has_contact and contact.weigh is not None
+    presses, wrap, has_wrap = parts.presses, parts.wrap, parts.wrap is not None
     changes, watches, renew, watch = (
         gravity.renew is not None,
         gravity.watch is not None,
@@ -85,7 +85,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if p.net_nodes > capacity:
                 p.fault_value = p.net_nodes
                 return too_many_nodes
-        p.work_size = work_size(p, planes, per_double, scheme.own_words(p) + masks * p.strips)
+        words = scheme.own_words(p) + masks * p.strips
+        if has_wrap:
+            words += wrap.words(p)
+        p.work_size = work_size(p, planes, per_double, words)
         return 0
 
     @kernel
@@ -157,6 +160,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         scheme.show(p, work)
         elastic = scheme.stored(p, work)
         p.thread_dissipated = p.thread_loss + late * p.thread_power
+        if has_wrap:
+            elastic += p.wrap_stored
         if has_closing:
             elastic += closing.stored(p, work)
             p.cord_dissipated = p.cord_loss + late * p.cord_power
@@ -317,6 +322,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         measures.start_mouth(p)
         if has_volume:
             hold.start(p)
+        if has_wrap:
+            wrap.start(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         if has_air:

@@ -32,7 +32,7 @@ def make_choose_substep(composition: Any) -> Any:
     Checked  tests/net_capture/test_step.py, tests/net_capture/test_formulas.py
     """
     has_closing = "closing" in composition.terms
-    presses = composition.contact is not None and composition.contact.weigh is not None
+    presses = composition.presses
     thread, needs, rates = composition.net.thread, composition.needs, composition.graph.rates
     has_rig, longest, accurate = rates is not None, needs.longest_step, needs.accurate_step
     substep_limits = formulas.make_substep_limits(needs.longest_step, needs.accurate_step)

@@ -19,6 +19,7 @@ from fmu_src.net_capture.planes import (
     X,
     complete_strips,
 )
+from fmu_src.net_capture.schemes.asleep import ROW_WORDS, STAMP
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
 from tests.net_capture.memory import Bench, planes_of
@@ -33,8 +34,9 @@ class Kernels:
         self.bench = Bench(terms)
         parts = self.parts = self.bench.parts
         self.terms = terms = parts.terms
-        node_plane, properties = parts.memory.node_plane, parts.memory.properties
+        node_plane, properties, own = parts.memory.node_plane, parts.memory.properties, parts.memory.own
         contact, target, pull_threads = parts.contact, parts.target, make_threads(parts, P, U).pull_now
+        bends, pull_bent = parts.wrap is not None, parts.wrap.pull if parts.wrap is not None else None
         begin, touch, put, drift = contact.begin_step, contact.touch_row, target.place, target.drift
 
         @kernel
@@ -49,6 +51,10 @@ class Kernels:
             p = record[0]
             h = p.solver_substep
             for n in range(steps):
+                if bends:
+                    for row in range(p.node_slots // p.row_pitch):
+                        own(p, work)[ROW_WORDS * row + STAMP] = p.grid  # awake
+                    pull_bent(p, work)
                 begin(p, 0.0)
                 pull_threads(p, work)
                 for i in range(p.node_slots):

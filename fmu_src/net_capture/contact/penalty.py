@@ -267,7 +267,7 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     values = scene.values
     for group, wanted, told in (("solver", SCHEME, "solver.scheme"), ("precision", PRECISION, "solver.precision")):
         if scene.terms[group] != wanted:
-            yield Refusal(told, scene.terms[group], f'must be "{wanted}" with contact by penalty')
+            yield Refusal(told, f'"{scene.terms[group]}"', f'must be "{wanted}" with contact by penalty')
     if values["contact.damping"] > 0.0 and values["contact.stiffness"] == 0.0:
         expected = "must come with contact.stiffness: a stiffness by the duration grows with the mass of a node"
         yield Refusal("contact.damping", f"{values['contact.damping']:g} N s/m", expected)
