@@ -31,6 +31,8 @@ _CAPTURE_ROWS = (
     ("mouth.cord_length", "mouth cord still out at the end", "m"),
     ("mouth.girth", "girth it would have to pass", "m"),
     ("contact.loss", "energy lost in contact", "J"),
+    ("contact.friction_loss", "of that, by friction", "J"),
+    ("contact.depth", "deepest that a node was pressed below the surface", "m"),
     ("closing.work", "work of the reels", "J"),
     ("thread.dissipated", "taken by the threads' dashpots", "J"),
     ("cord.dissipated", "taken by the cord's dashpots", "J"),

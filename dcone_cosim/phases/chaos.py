@@ -23,6 +23,8 @@ CAPTURE: Mapping[str, float] = {
     "cord.tension_max": 0.17,
     "mouth.cord_length": 0.07,
     "contact.loss": 0.1,
+    "contact.friction_loss": 0.2,
+    "contact.depth": 0.3,
     "closing.work": 0.13,
     "thread.dissipated": 0.1,
     "cord.dissipated": 0.46,

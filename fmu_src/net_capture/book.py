@@ -18,6 +18,7 @@ def make_balance(composition: Any) -> Any:
     """
     has_target = composition.target is not None
     has_contact = composition.contact is not None
+    presses = composition.presses
     has_closing = composition.closing is not None
     has_tether = composition.tether is not None
     drags = composition.terms.get("tether") == "dragging"
@@ -58,6 +59,8 @@ def make_balance(composition: Any) -> Any:
             energy += p.target_energy
         if has_contact:
             energy += p.contact_loss
+        if presses:
+            energy += p.contact_stored
         if has_closing:
             energy += p.cord_dissipated - p.closing_work
         if has_tether:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 from fmu_src import tables
@@ -40,8 +41,10 @@ class Composition:
     rouse        of the scheme, see `schemes.Needs`
     scratch_plane            the first of the node planes that the convex hull may scribble on, where there are any
     traits, clock, meeting   of the pace, see `pace.Traits`
-    gravity, net, rigging, graph, peaks, folding, target, contact, jam, closing, tether, air, spin, ejection, volume,
-    index, pull_off, pulls, pace, breaking, scheme
+    presses          whether the contact adds to the stiffness at a node, and stores energy
+    contact_planes   the first node plane that is the contact's own
+    gravity, net, rigging, graph, peaks, folding, target, contact, jam, closing, tether, air, wrap, spin, ejection,
+    volume, index, pull_off, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -54,9 +57,12 @@ class Composition:
         self.needs = needs = self._term("solver").checks
         self.traits = traits = self._term("substeps").checks
         self.clock = traits.clock
+        law = self._term("contact").checks if "contact" in terms else None
+        self.presses = law is not None and law.stiffening is not None
+        self.contact_planes = NODE_PLANES + needs.planes + traits.planes
+        self.scratch_plane = self.contact_planes + (law.planes if law is not None else 0)
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
-        self.scratch_plane = NODE_PLANES + needs.planes + traits.planes
         scratch = SCRATCH_PLANES * self.per_double if "quality" in terms else 0
         self.planes = self.scratch_plane + scratch
         self.memory = make_memory(terms["precision"], self.planes)
@@ -74,7 +80,8 @@ class Composition:
         self.index, self.pull_off = self._make("quality"), self._make("pull_off")
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
-        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air, self.pull_off)
+        self.wrap = self._make("wrap")
+        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air, self.pull_off, self.wrap)
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
 
@@ -98,50 +105,37 @@ class Composition:
         return tables.make_reader(self._tables, name)
 
 
-def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, pull_off: Any) -> Pulls:
-    """The pulls of cord, tether, air and test load together, and bullets that are held."""
-    has_closing, has_tether = closing is not None, tether is not None
-    has_ejection, has_air = ejection is not None, air is not None
-    wake_held = ejection.wake if has_ejection else None
-    pull_mouth, pull_mouth_shown = (closing.pull, closing.pull_shown) if has_closing else (None, None)
-    pull_vertex, pull_vertex_shown, book_impulse = (
-        (tether.pull, tether.pull_shown, tether.book) if has_tether else [None] * 3
-    )
-    drag, drag_shown = (air.pull, air.pull_shown) if has_air else (None, None)
-    has_load = pull_off is not None
-    pull_load, pull_load_shown = (pull_off.pull, pull_off.pull_shown) if has_load else (None, None)
+@kernel
+def _nothing(p, work):
+    """Pull nothing.
+
+    Checked  tests/net_capture/test_closing.py
+    """
+
+
+def _both(first: Any, second: Any) -> Any:
+    """Kernel that calls two, one after the other."""
 
     @kernel
-    def pull(p, work):
-        """Pulls of the closing cord, of the tether and of the air, for a substep.
+    def both(p, work):
+        """Call two kernels, one after the other.
 
         Checked  tests/net_capture/test_closing.py
         """
-        if has_ejection:
-            wake_held(p, work)
-        if has_closing:
-            pull_mouth(p, work)
-        if has_tether:
-            pull_vertex(p, work)
-        if has_air:
-            drag(p, work)
-        if has_load:
-            pull_load(p, work)
+        first(p, work)
+        second(p, work)
 
-    @kernel
-    def pull_shown(p, work):
-        """The same for the positions and velocities shown.
+    return both
 
-        Checked  tests/net_capture/test_closing.py
-        """
-        if has_closing:
-            pull_mouth_shown(p, work)
-        if has_tether:
-            pull_vertex_shown(p, work)
-        if has_air:
-            drag_shown(p, work)
-        if has_load:
-            pull_load_shown(p, work)
+
+def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, *others: Any) -> Pulls:
+    """The pulls of cord, tether, air and others together, and bullets that are held; None for what is left out."""
+    has_closing, has_tether, has_air = closing is not None, tether is not None, air is not None
+    book_impulse = tether.book if has_tether else None
+    parts = [part for part in (closing, tether, air, *others) if part is not None]
+    pulls = [part.pull for part in parts]
+    if ejection is not None:
+        pulls.insert(0, ejection.wake)
 
     @kernel
     def book(p, duration):
@@ -156,4 +150,4 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, pull_off: An
         if has_air:
             p.air_loss += duration * p.air_power
 
-    return Pulls(pull, pull_shown, book)
+    return Pulls(reduce(_both, pulls, _nothing), reduce(_both, (part.pull_shown for part in parts), _nothing), book)

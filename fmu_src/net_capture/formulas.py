@@ -171,6 +171,7 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
         cord_dashpot: float,
         bullet_mass: float,
         rings: int,
+        pressing: float,
     ) -> tuple[float, float]:
         """Stability bound of a net and the step that is accurate [s], the least of an inner node's, a bullet's and a
         ring's.
@@ -180,6 +181,7 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
         cord, cord_dashpot   of a closing cord at its lock length; 0 without one     [N/m], [N s/m]
         bullet_mass          of each, without the thread that hangs on it            [kg]
         rings                that each pair's cord runs through                      [1]
+        pressing             what a surface adds at every node, see `longest_step`; 0 without one   [1/s2]
 
         A cord of way s pulls its knots along ds/dx, of length 1 at a bullet and up to 2 at a ring, so through n rings a
         row of its matrix sums to 2 (n + 1) k at a bullet and twice that at a ring; half of it counts here. A stretch
@@ -188,21 +190,25 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
 
         Checked  tests/net_capture/test_formulas.py
         """
-        stiffness_rate, damping_rate = 4.0 * thread / node_mass, 4.0 * dashpot / node_mass
+        stiffness_rate, damping_rate = 4.0 * thread / node_mass + pressing, 4.0 * dashpot / node_mass
         bound, enough = longest(stiffness_rate, damping_rate), accurate(stiffness_rate, damping_rate)
         corner = bullet_mass + 0.5 * node_mass
         held = (rings + 1) * cord
         turning = held * BREAKING_STRAIN / RINGS_SHARE if rings > 0 else 0.0
         damped = (rings + 1) * cord_dashpot
-        stiffness_rate, damping_rate = 2.0 * (thread + held + turning) / corner, 2.0 * (dashpot + damped) / corner
+        stiffness_rate = 2.0 * (thread + held + turning) / corner + pressing
+        damping_rate = 2.0 * (dashpot + damped) / corner
         bound = min(bound, longest(stiffness_rate, damping_rate))
         enough = min(enough, accurate(stiffness_rate, damping_rate))
         if rings > 0 and cord > 0.0:
             edge = 0.75 * node_mass
-            stiffness_rate = (3.0 * thread + 2.0 * held + min(rings, 2) * turning) / edge
+            stiffness_rate = (3.0 * thread + 2.0 * held + min(rings, 2) * turning) / edge + pressing
             damping_rate = (3.0 * dashpot + 2.0 * damped) / edge
             bound = min(bound, longest(stiffness_rate, damping_rate))
             enough = min(enough, accurate(stiffness_rate, damping_rate))
+        if pressing > 0.0:
+            # a node that nothing but the surface holds
+            enough = min(enough, accurate(pressing, 0.0))
         return bound, enough
 
     return substep_limits

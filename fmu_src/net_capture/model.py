@@ -63,6 +63,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
+    presses, wrap, has_wrap = parts.presses, parts.wrap, parts.wrap is not None
     changes, watches, renew, watch = (
         gravity.renew is not None,
         gravity.watch is not None,
@@ -88,7 +89,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if p.net_nodes > capacity:
                 p.fault_value = p.net_nodes
                 return too_many_nodes
-        p.work_size = work_size(p, planes, per_double, scheme.own_words(p) + masks * p.strips)
+        words = scheme.own_words(p) + masks * p.strips
+        if has_wrap:
+            words += wrap.words(p)
+        p.work_size = work_size(p, planes, per_double, words)
         return 0
 
     @kernel
@@ -163,6 +167,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         scheme.show(p, work)
         elastic = scheme.stored(p, work)
         p.thread_dissipated = p.thread_loss + late * p.thread_power
+        if has_wrap:
+            elastic += p.wrap_stored
         if has_closing:
             elastic += closing.stored(p, work)
             p.cord_dissipated = p.cord_loss + late * p.cord_power
@@ -287,6 +293,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         p.t_capture = -1.0
         peaks.start(p)
         p.thread_loss = 0.0
+        if presses:
+            p.contact_stiffening = 0.0
         fault = choose_substep(p)
         if fault != 0:
             return fault
@@ -300,6 +308,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         graph.lay_out(p, work)
         complete_strips(p, properties(p, work))
         shot.load(p, work)
+        if presses:
+            contact.weigh(p, work)
+            fault = choose_substep(p)
+            if fault != 0:
+                return fault
+            limit_way(p)
         folding.fold(p, work)
         shot.jitter(p, work)
         shot.shoot(p, work)
@@ -325,6 +339,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             index.start(p)
         if has_load:
             pull_off.start(p)
+        if has_wrap:
+            wrap.start(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         if has_air:

@@ -10,7 +10,7 @@ from fmu_src.net_capture import formulas
 from fmu_src.net_capture.rigging import riggings
 
 Values = Mapping[str, float]
-COUNT = ("net", *riggings(), "solver", "closing")
+COUNT = ("net", *riggings(), "solver", "closing", "target", "contact")
 """Groups on which a substep hangs."""
 
 
@@ -33,6 +33,7 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
         moved = formula(formulas.cord_mass)(values["bullets.mass"], 1.5 * thread / pieces, rings)
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
         cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, moved)
+    pressing = _pressing(values, parts, 2.0 * thread / pieces)
     needs = parts["solver"].checks
     longest, accurate = formula(needs.longest_step), formula(needs.accurate_step)
     limits = formulas.make_substep_limits(longest, accurate)
@@ -43,9 +44,23 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
         cord_dashpot,
         values["bullets.mass"],
         rings,
+        pressing,
     )
     rigged = [parts[name].checks.rates(values, net, *of_net) for name in riggings() if name in parts]
     stiff, damped = (max(rates) for rates in zip((0.0, 0.0), *rigged, strict=True))
     if stiff > 0.0:
-        found = min(found[0], longest(stiff, damped)), min(found[1], accurate(stiff, damped))
+        found = min(found[0], longest(stiff + pressing, damped)), min(found[1], accurate(stiff + pressing, damped))
+    return found
+
+
+def _pressing(values: Values, parts: Mapping[str, Any], node: float) -> float:
+    """What a surface adds at every node, see `formulas.longest_step` [1/s2], of a node between two pieces [kg]."""
+    law = parts["contact"].checks.stiffening if "contact" in parts else None
+    if law is None:
+        return 0.0
+    net, rigged = parts["net"].checks, [parts[name].checks for name in riggings() if name in parts]
+    mass = values["net.mass"] + net.bullets * values["bullets.mass"] + values["vertex.mass"]
+    mass += sum(rig.mass(values, net) for rig in rigged)
+    nodes = net.nodes(values) + sum(rig.nodes(values, net) for rig in rigged)
+    found: float = law(values, node, mass, nodes, parts["target"].checks.radius(values))
     return found

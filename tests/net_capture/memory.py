@@ -28,7 +28,8 @@ def planes(net):
 def planes_of(p, work, terms):
     """The same of a record and its work memory."""
     slots = int(p["node_slots"])
-    needed = (MODEL.groups[group].terms[terms[group]].checks for group in ("solver", "substeps"))
+    planned = [group for group in ("solver", "substeps", "contact") if group in terms]
+    needed = (MODEL.groups[group].terms[terms[group]].checks for group in planned)
     count = NODE_PLANES + sum(part.planes for part in needed)
     reals = work.view(np.float32 if terms["precision"] == "single" else np.float64)
     if "quality" in terms:
@@ -56,6 +57,8 @@ class Bench:
         self.p = self.record[0]
         assert self.parts.graph.count(self.p, np.zeros(0)) == 0
         own = self.parts.scheme.own_words(self.p) + self.parts.traits.masks * self.p.strips
+        if self.parts.wrap is not None:
+            own += self.parts.wrap.words(self.p)
         self.work = np.zeros(work_size(self.p, self.parts.planes, self.parts.per_double, own))
         self.p.work_size = self.work.size
         self.parts.graph.lay_out(self.p, self.work)

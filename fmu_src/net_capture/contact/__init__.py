@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 
@@ -17,6 +18,8 @@ class Contact(NamedTuple):
     hurries(p)                            whether the target has become faster, or a thread tauter (`contact_force`),
                                           than `clear_steps` reckoned with
     measure(p, work)                      what is reported, of the positions shown
+    weigh(p, work)                        what it may add to the stiffness of a node, over its mass, half of it, into
+                                          `contact_stiffening` [1/s2]; None: nothing, and it stores no energy
     """
 
     start: Any
@@ -25,10 +28,23 @@ class Contact(NamedTuple):
     clear_steps: Any
     hurries: Any
     measure: Any
+    weigh: Any = None
+
+
+class Checks(NamedTuple):
+    """What is known of a law before it is made.
+
+    planes                    node planes of its own, behind those of scheme and pace
+    stiffening(values, node, mass, nodes, radius)   the same [1/s2] of values by FMI name, a node between two pieces of
+                              thread [kg], mass [kg] and number of all nodes, radius of the target [m]; None: nothing
+    """
+
+    planes: int = 0
+    stiffening: Callable[[Mapping[str, float], float, float, int, float], float] | None = None
 
 
 def contacts() -> dict[str, Any]:
     """Every law's term, by name."""
-    from fmu_src.net_capture.contact import inelastic
+    from fmu_src.net_capture.contact import inelastic, penalty
 
-    return {"inelastic": inelastic.PART}
+    return {"inelastic": inelastic.PART, "penalty": penalty.PART}

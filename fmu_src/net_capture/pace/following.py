@@ -6,9 +6,9 @@ the winches run, bounds the spectrum as it does in `formulas.longest_step`, wher
 
     omega^2 <= 2 max over the nodes of (sum k) / m
 
-A single thread always counts, for any may snap taut; and the substep is never shorter than the one for the net with
-every thread taut. Where nodes may reach the target in the interval, none moves further relative to its surface in a
-substep than `stepping.WAY_SHARE` of its least dimension.
+A single thread always counts, for any may snap taut, and so does a surface with a spring, which any node may meet; and
+the substep is never shorter than the one for the net with every thread taut. Where nodes may reach the target in the
+interval, none moves further relative to its surface in a substep than `stepping.WAY_SHARE` of its least dimension.
 
 No forecast is trusted. In every substep the threads that are taut are held against it; where one was not expected and
 the sum at its ends asks for a shorter substep, the rest of the interval is walked with that. And of the threads that
@@ -148,6 +148,7 @@ def make(composition: Any) -> Pace:
     allow, longest_step, meet_strip = composition.meeting.allow, needs.longest_step, composition.meeting.meet_strip
     first_plane = NODE_PLANES + needs.planes
     has_contact, has_closing = composition.contact is not None, composition.closing is not None
+    presses = composition.presses
     from fmu_src.lanes import highest, lowest, peek, poke
 
     stiffen = composition.closing.stiffen if has_closing else None
@@ -222,7 +223,8 @@ def make(composition: Any) -> Pace:
                 these &= these - np.uint64(1)
                 light = 0.5 * (np.float64(inverse[table[s + A] + i]) + np.float64(inverse[table[s + B] + i]))
                 stiffness, damping = numbers[q + STIFFNESS] * light, numbers[q + DAMPING] * light
-                p.pace_single_bound = min(p.pace_single_bound, longest_step(stiffness, damping))
+                pressing = p.contact_stiffening if presses else 0.0
+                p.pace_single_bound = min(p.pace_single_bound, longest_step(stiffness + pressing, damping))
                 p.pace_single = min(p.pace_single, allow(p, stiffness, damping))
 
     @kernel

@@ -1,0 +1,325 @@
+"""Threads between nodes that bend round the target.
+
+Nodes alone touch the target, and a thread between two of them that an edge lies across would cut it. A thread has no
+mass of its own here, half of it goes to each of its nodes; so it lies round the edge in equilibrium, without friction,
+and pulls both nodes along the shortest way (`contact/edges.py`):
+
+    T = max(0, k (l - L) + d dl/dt)   if l > L,   l the length of that way
+
+The target gets what is left of both pulls, at the bend. That is a potential, so nothing is lost: two nodes that fall
+with a thread across an edge swing round it. A contact point in the middle of a thread that stays straight would take
+all they have.
+
+Which threads are near is looked up now and then, ahead of how fast anything moves. In what is shown the pull round an
+edge counts up to the middle of the last substep, as that of contact by penalty does.
+
+Checked  tests/net_capture/test_wrapping.py
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fmu_src.interface import Term
+from fmu_src.net_capture.contact.edges import make_bend
+from fmu_src.net_capture.planes import (
+    DAMPING,
+    FIRST,
+    FX,
+    LANES,
+    LENGTH,
+    SHOWN,
+    SHOWN_RATE,
+    STIFFNESS,
+    STRIP_NUMBERS,
+    STRIP_WORDS,
+    A,
+    B,
+    P,
+    X,
+)
+from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.rows import count, output, peak, state
+from orbital.kernel import kernel
+from orbital.rotations import rotate, rotate_inverse
+from orbital.vectors import cross, dot
+
+SCHEME = "leapfrog"
+AHEAD = 0.05
+"""Metres that a node may move against the target before the threads near it are looked up again."""
+LONGEST_LOOK = 200
+"""Substeps after which they are in any case."""
+
+
+class Wrap(NamedTuple):
+    """Kernels of threads that bend.
+
+    words(p)              whole numbers of work memory, before those of the pace
+    start(p)              no thread bends yet
+    pull(p, work)         add the pull round edges in place of the straight one, for a substep, and book it
+    pull_shown(p, work)   take the straight pull from nodes as shown; energy stored in the bends
+    """
+
+    words: Any
+    start: Any
+    pull: Any
+    pull_shown: Any
+
+
+def make(composition: Any) -> Wrap:
+    """Kernels for the composition's net and target; ValueError with a scheme that asks for forces otherwise."""
+    scheme = composition.terms["solver"]
+    if scheme != SCHEME:
+        raise ValueError(f"threads bend round the target with {SCHEME}, not {scheme}")
+    # after the scheme's own parts are known, see `schemes.asleep`
+    from fmu_src.lanes import lowest
+    from fmu_src.net_capture.schemes.asleep import make_asleep
+
+    memory = composition.memory
+    node_plane, strips, properties, own = memory.node_plane, memory.strips, memory.properties, memory.own
+    reals_of, bring, rouse = memory.reals, make_asleep(composition).bring, composition.rouse
+    masks, bend, distance_to = composition.traits.masks, make_bend(composition), composition.target.shape.distance
+    begin_step, rate_of = composition.contact.begin_step, composition.gravity.rate
+    peaks, now = composition.peaks, composition.clock.now
+    so_far, note = peaks.so_far, peaks.note
+
+    @kernel
+    def words(p):
+        """A whole number for each thread.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        return p.thread_numbers
+
+    @kernel
+    def start(p):
+        """No thread bends yet.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        p.wrap_listed = 0
+        p.wrap_next = 0
+        p.wrap_threads = 0
+        p.wrap_impulse = 0.0
+        p.wrap_stored = 0.0
+
+    @kernel
+    def list_near(p, work):
+        """List the threads that may come to lie across the target before the next time, and say when that is.
+
+        A thread whose middle is further from the surface than half its length can not.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        words, table, numbers = own(p, work), strips(p, work), properties(p, work)
+        at = words.size - masks * p.strips - p.thread_numbers
+        for row in range(p.node_slots // p.row_pitch):
+            bring(p, reals_of(work), words, row)
+        fastest = 0.0
+        for node in range(p.node_slots):
+            speed = 0.0
+            for axis in range(3):
+                v = node_plane(p, work, P + axis)[node] - p.target_drift[axis]
+                speed += v * v
+            fastest = max(fastest, speed)
+        reach = p.envelope_radius + AHEAD
+        fastest = math.sqrt(fastest) + math.sqrt(dot(p.target_omega, p.target_omega)) * reach
+        steps = min(0.5 * AHEAD / (p.solver_substep * max(fastest, 1e-9)), 1.0 * LONGEST_LOOK)
+        p.wrap_next = p.grid + max(int(steps), 1)
+        p.wrap_listed = 0
+        middle, arm = p.wrap_a, p.wrap_b
+        for strip in range(p.strips):
+            s = STRIP_WORDS * strip
+            these = np.uint64(table[s + LANES])
+            while these != np.uint64(0):
+                lane = np.int64(lowest(these))
+                these &= these - np.uint64(1)
+                away = 0.0
+                for axis in range(3):
+                    x = node_plane(p, work, X + axis)
+                    arm[axis] = 0.5 * (x[table[s + A] + lane] + x[table[s + B] + lane]) - p.target_place[axis]
+                    away += arm[axis] * arm[axis]
+                # longer by a third than unstretched no thread is
+                half = 0.67 * numbers[STRIP_NUMBERS * strip + LENGTH] + AHEAD
+                if away < (p.envelope_radius + half) * (p.envelope_radius + half):
+                    rotate_inverse(middle, p.target_pose, arm)
+                    if distance_to(p, p.wrap_line, middle) < half:
+                        words[at + p.wrap_listed] = 64 * strip + lane
+                        p.wrap_listed += 1
+
+    @kernel
+    def look(p, work, code, place, rate):
+        """Whether a thread bends, with nodes at the places and rates in these planes; length and rate of its way and of
+        the straight one [m], [m/s].
+
+        Then directions from the bend to its ends are in `wrap_first` and `wrap_last`, and from end to end in
+        `wrap_line`, frame axes.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        s = STRIP_WORDS * (code // 64)
+        table = strips(p, work)
+        a = table[s + A] + code % 64
+        b = table[s + B] + code % 64
+        first, last, line, point = p.wrap_first, p.wrap_last, p.wrap_line, p.wrap_point
+        for axis in range(3):
+            x = node_plane(p, work, place + axis)
+            first[axis] = x[a] - p.target_place[axis]
+            last[axis] = x[b] - p.target_place[axis]
+        rotate_inverse(p.wrap_a, p.target_pose, first)
+        rotate_inverse(p.wrap_b, p.target_pose, last)
+        if not bend(p):
+            return False, 0.0, 0.0, 0.0, 0.0
+        rotate(point, p.target_pose, p.wrap_bend)
+        cross(p.wrap_moving, p.target_omega, point)
+        for axis in range(3):
+            x = node_plane(p, work, place + axis)
+            first[axis] = x[a] - p.target_place[axis] - point[axis]
+            last[axis] = x[b] - p.target_place[axis] - point[axis]
+            line[axis] = x[b] - x[a]
+        from_first = math.sqrt(dot(first, first))
+        from_last = math.sqrt(dot(last, last))
+        straight = math.sqrt(dot(line, line))
+        going = 0.0
+        closing = 0.0
+        for axis in range(3):
+            first[axis] /= from_first
+            last[axis] /= from_last
+            line[axis] /= straight
+            v = node_plane(p, work, rate + axis)
+            surface = p.target_drift[axis] + p.wrap_moving[axis]
+            going += first[axis] * (v[a] - surface) + last[axis] * (v[b] - surface)
+            closing += line[axis] * (v[b] - v[a])
+        return True, from_first + from_last, going, straight, closing
+
+    @kernel
+    def pull(p, work):
+        """For every thread that bends: the pull along its way in place of the straight one, node, node and target.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        begin_step(p, rate_of(p))
+        if p.grid >= p.wrap_next:
+            list_near(p, work)
+        words, table, numbers = own(p, work), strips(p, work), properties(p, work)
+        at = words.size - masks * p.strips - p.thread_numbers
+        h = p.solver_substep
+        for n in range(p.wrap_listed):
+            code = words[at + n]
+            strip = code // 64
+            a = table[STRIP_WORDS * strip + A] + code % 64
+            b = table[STRIP_WORDS * strip + B] + code % 64
+            bring(p, reals_of(work), words, a // p.row_pitch)
+            bring(p, reals_of(work), words, b // p.row_pitch)
+            bends, way, going, straight, closing = look(p, work, code, X, P)
+            q = STRIP_NUMBERS * strip
+            length = numbers[q + LENGTH]
+            if not bends or way <= length:
+                continue
+            rouse(p, work, a)
+            rouse(p, work, b)
+            stiffness, damping = numbers[q + STIFFNESS], numbers[q + DAMPING]
+            elastic = stiffness * (way - length)
+            tension = max(0.0, elastic + damping * going)
+            p.thread_loss += h * (tension - elastic) * going
+            chord = 0.0
+            if straight > length:
+                elastic = stiffness * (straight - length)
+                chord = max(0.0, elastic + damping * closing)
+                p.thread_loss -= h * (chord - elastic) * closing
+            squared = 0.0
+            for axis in range(3):
+                along = chord * p.wrap_line[axis]
+                node_plane(p, work, FX + axis)[a] -= tension * p.wrap_first[axis] + along
+                node_plane(p, work, FX + axis)[b] -= tension * p.wrap_last[axis] - along
+                push = h * tension * (p.wrap_first[axis] + p.wrap_last[axis])
+                p.wrap_moving[axis] = push
+                p.target_drift[axis] += push / p.target_mass
+                squared += push * push
+            cross(p.wrap_a, p.wrap_point, p.wrap_moving)
+            for axis in range(3):
+                p.target_spin[axis] += p.wrap_a[axis]
+            p.wrap_impulse += math.sqrt(squared)
+            number = table[STRIP_WORDS * strip + FIRST] + code % 64 + 1
+            if tension > so_far(p, number):
+                note(p, number, tension)
+            p.contact_force = max(p.contact_force, 2.0 * tension)
+            if p.contact_first_time < 0.0:
+                p.contact_first_time = now(p)
+
+    @kernel
+    def pull_shown(p, work):
+        """Take the straight pull of threads that bend from the nodes as shown, and sum what they store beyond it [J],
+        half a substep back.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        words, table, numbers = own(p, work), strips(p, work), properties(p, work)
+        at = words.size - masks * p.strips - p.thread_numbers
+        p.wrap_stored = 0.0
+        p.wrap_threads = 0
+        for n in range(p.wrap_listed):
+            code = words[at + n]
+            strip = code // 64
+            bends, way, going, straight, closing = look(p, work, code, SHOWN, SHOWN_RATE)
+            q = STRIP_NUMBERS * strip
+            length = numbers[q + LENGTH]
+            if not bends or way <= length:
+                continue
+            p.wrap_threads += 1
+            stretch = max(0.0, way - 0.5 * p.solver_substep * going - length)
+            p.wrap_stored += 0.5 * numbers[q + STIFFNESS] * stretch * stretch
+            if straight > length:
+                stretch = straight - length
+                elastic = numbers[q + STIFFNESS] * stretch
+                chord = max(0.0, elastic + numbers[q + DAMPING] * closing)
+                p.wrap_stored -= 0.5 * elastic * stretch
+                p.thread_power -= (chord - elastic) * closing
+                for axis in range(3):
+                    along = chord * p.wrap_line[axis]
+                    node_plane(p, work, FX + axis)[table[STRIP_WORDS * strip + A] + code % 64] -= along
+                    node_plane(p, work, FX + axis)[table[STRIP_WORDS * strip + B] + code % 64] += along
+
+    return Wrap(words, start, pull, pull_shown)
+
+
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """A scheme or a precision with which no thread bends."""
+    scheme, precision = scene.terms["solver"], scene.terms["precision"]
+    if scheme != SCHEME:
+        yield Refusal("solver.scheme", f'"{scheme}"', f'keeps all threads straight; [capture.wrap] needs "{SCHEME}"')
+    if precision != "double":
+        yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')
+
+
+PART = Term(
+    "threads between nodes bend round the edges of the target",
+    (
+        count("wrap.threads", "taut threads that bend round an edge now"),
+        peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
+        output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
+        count("wrap_listed", "threads near the target", "state"),
+        count("wrap_next", "substep at which they are looked up again", "state"),
+        *(
+            state(f"wrap_{name}[#]", unit, text, shape=(3,))
+            for name, unit, text in (
+                ("a", "m", "one end of a thread, body axes"),
+                ("b", "m", "the other end, body axes"),
+                ("bend", "m", "where it bends, body axes"),
+                ("point", "m", "the same from the target's centre of mass, frame axes"),
+                ("moving", "m/s", "velocity of the surface there, less that of the centre of mass; an impulse"),
+                ("first", "1", "direction from the bend to one end, or a normal"),
+                ("last", "1", "direction from the bend to the other end, or a normal"),
+                ("line", "1", "direction of the straight thread, or of the edge"),
+            )
+        ),
+    ),
+    needs=("target", "contact"),
+    excludes=("break",),
+    make=make,
+    refuses=refuses,
+)

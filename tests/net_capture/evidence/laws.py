@@ -1,0 +1,104 @@
+"""The same catch under both laws of contact: quality of the capture, impulse on the target, loss.
+
+    python -m tests.net_capture.evidence.laws [HOW_MANY]
+
+makes `laws.json` again, some seconds a pair on one core. Table 1's scene at a mesh of 2 m, starts jittered by 1 mm;
+of each start one shot under law A with a restitution, and one under law B without friction, whose damping ratio gives
+the same restitution in closed form. The quality index is that of the literature,
+
+    J = 0.1 |V_n - V_t|/V_t + 0.1 |S_n - S_t|/S_t + 0.8 |q|/L
+
+of the hull of all nodes and of the target, q from the target's centre to the net's centre of mass, L the target's
+longest edge; a second before the end, when the mouth is closed.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.spatial import ConvexHull
+
+from fmu_src.instance import Instance
+from fmu_src.net_capture.interface import MODEL
+from orbital.oscillators import snap_restitution
+from tests.conftest import CAPTURE
+from tests.net_capture.memory import shown
+
+RESULT = Path(__file__).with_name("laws.json")
+COMMAND = "python -m tests.net_capture.evidence.laws"
+SHOTS = 48
+RESTITUTION = 0.5
+END = 18.0
+LAWS = ("inelastic", "penalty")
+TOLD = ("contact.impulse", "contact.loss", "thread.tension_max", "t_capture", "energy.remainder", "closing.work")
+COMMON = {"net.mesh": 2.0, "closing.time": 11.2, "target.start_rate[1]": 0.02, "target.start_rate[3]": 0.03}
+
+
+def damping_ratio(restitution: float) -> float:
+    """Of a contact that gives this share of the speed back."""
+    return float(brentq(lambda zeta: snap_restitution(zeta) - restitution, 1e-9, 1.0 - 1e-9))
+
+
+def quality(net: Instance) -> float:
+    """The capture quality index [1]."""
+    hull, edges = ConvexHull(shown(net)), net.array("target_size")
+    volume, surface = edges.prod(), 2.0 * (edges.prod() / edges).sum()
+    away = np.linalg.norm(net.array("catch_position") - net.array("target_position")) / edges.max()
+    return float(0.1 * abs(hull.volume - volume) / volume + 0.1 * abs(hull.area - surface) / surface + 0.8 * away)
+
+
+def values(law: str, seed: int) -> dict[str, float]:
+    """Parameters of a shot."""
+    own = {"contact.restitution": RESTITUTION}
+    if law == "penalty":
+        own = {"contact.damping_ratio": damping_ratio(RESTITUTION), "contact.friction": 0.0}
+    return COMMON | own | {f"solver.jitter[{i}]": 1e-3 for i in (1, 2, 3)} | {"solver.seed": seed}
+
+
+def shoot(seed: int) -> list[dict[str, Any]]:
+    """A shot under each law, from the same start."""
+    shots = []
+    for law in LAWS:
+        net = Instance(MODEL, CAPTURE | {"contact": law}, values(law, seed)).initialise()
+        index = math.nan
+        while net.time < END - 1e-9:
+            net.step(0.5)
+            if abs(net.time - (END - 1.0)) < 1e-9:
+                index = quality(net)
+        shots.append({"law": law, "seed": seed, "quality": index} | {name: float(net[name]) for name in TOLD})
+    return shots
+
+
+def compared(shots: list[dict[str, Any]], name: str) -> dict[str, float]:
+    """Means under both laws, standard deviation of A's, difference of the means over the first, its standard error."""
+    a, b = (np.array([shot[name] for shot in shots if shot["law"] == law]) for law in LAWS)
+    error = math.sqrt(a.var(ddof=1) / len(a) + b.var(ddof=1) / len(b)) / abs(a.mean())
+    return {"a": a.mean(), "b": b.mean(), "spread": a.std(ddof=1), "apart": b.mean() / a.mean() - 1.0, "error": error}
+
+
+def main(arguments: list[str]) -> None:
+    number = int(arguments[0]) if arguments else SHOTS
+    with ProcessPoolExecutor(1) as pool:
+        shots = [shot for pair in pool.map(shoot, range(1, number + 1)) for shot in pair]
+    stored = {
+        "command": COMMAND,
+        "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")},
+        "restitution": RESTITUTION,
+        "end": END,
+        "shots": shots,
+    }
+    RESULT.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
+    for name in ("quality", *TOLD):
+        print(name, *(f"{key} {value:.4g}" for key, value in compared(shots, name).items()))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
