@@ -49,7 +49,8 @@ class Checks(NamedTuple):
 
 def shapes() -> dict[str, Any]:
     """The term of a free target of every shape, by name."""
-    from fmu_src.net_capture.shapes import box, cylinder
+    from fmu_src.net_capture.shapes import box, cylinder, frustum, sphere
     from fmu_src.net_capture.target import free_body
 
-    return {name: free_body(name, part) for name, part in (("box", box.PART), ("cylinder", cylinder.PART))}
+    parts = (("box", box.PART), ("cylinder", cylinder.PART), ("sphere", sphere.PART), ("frustum", frustum.PART))
+    return {name: free_body(name, part) for name, part in parts}
