@@ -179,7 +179,7 @@ def test_distance_and_normal_are_those_of_the_farthest_plane(body):
             np.testing.assert_allclose(normal, plane, atol=1e-4)
         assert normal @ point - support(body.shape, body.size, normal) == pytest.approx(found, abs=1e-12)
         inside += expected < 0.0
-    assert 3 < inside < len(points(body)) - 5
+    assert 1 < inside < len(points(body)) - 5
 
 
 def test_normal_is_the_gradient_of_the_distance(body):
