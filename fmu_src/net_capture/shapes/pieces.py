@@ -54,8 +54,8 @@ ENTRY: tuple[Variable, ...] = (
 """What a scene may say of a piece."""
 ROUND, TALL = 96, 24
 """Points on a circle of what spans a piece, and circles of a sphere."""
-FILLED = 7
-"""Points along each edge of the box round a piece, of which those inside it count."""
+STEPS = (-0.98, -0.8, -0.4, 0.0, 0.4, 0.8, 0.98)
+"""Points along each half edge of the box round a piece, of which those inside it count."""
 
 
 class Piece(NamedTuple):
@@ -176,8 +176,7 @@ def thickness_of(piece: Piece) -> float:
 
 def filling(piece: Piece) -> Array:
     """Points of a piece's own box in even rows, (n, 3) [m], design axes; for a shell they follow its wall."""
-    steps = np.linspace(-1.0, 1.0, FILLED)
-    grid = np.array(list(itertools.product(steps, steps, steps)))
+    grid = np.array(list(itertools.product(STEPS, repeat=3)))
     if piece.kind == SHELL:
         radius, length, thickness, angle = piece.sizes
         away, turn = radius - 0.5 * thickness * (1.0 - grid[:, 0]), 0.5 * angle * grid[:, 1]

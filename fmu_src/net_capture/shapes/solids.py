@@ -30,7 +30,7 @@ ALIGNED = 1e-9
 """Products of inertia, as a share of the largest moment, below which the design axes are principal axes."""
 WAYS, ANGLES, BEST = 300, 48, 3
 """Directions in which the girth is looked for, angles of each silhouette, and how many of the best are followed."""
-FALLING = 0.5
+FALLING = 0.2
 """Depth per way that leads a sample point inward: less than a box has along its diagonal, more than nothing."""
 
 
@@ -177,14 +177,17 @@ def _between(start: Array, end: Array) -> Array:
     return np.asarray(start + (end - start) * np.linspace(0.0, 1.0, 6)[1:, None])
 
 
-def samples(points: Array, depth: Callable[[Array], Array], surface: Array) -> Array:
+def samples(
+    points: Array, depth: Callable[[Array], Array], surface: Array, leads: Callable[[int], npt.NDArray[np.bool_]]
+) -> Array:
     """The table `samples`: where each sample point lies on the surface, and where it is led from there, (27, 6) [m].
 
     The first is the deepest point there is, the others are spread over the surface, each the farthest from those before.
 
     points    inside the body, (n, 3) [m]
     depth     of points below the surface [m]
-    surface   points on it, (m, 3) [m]
+    surface   points on it, (m, 3) [m]; each can be reached from one of `points` in a straight line
+    leads     which of `points` lie in the same part of the body as one of the surface, (n,)
 
     Checked  tests/net_capture/test_pieces.py
     """
@@ -196,8 +199,9 @@ def samples(points: Array, depth: Callable[[Array], Array], surface: Array) -> A
         apart = np.minimum(apart, np.linalg.norm(surface - surface[chosen[-1]], axis=1))
     middle = points[int(np.argmax(deep))]
     rows = [np.concatenate([middle, middle])]
-    for start in surface[chosen]:
-        worth = deep - FALLING * np.linalg.norm(points - start, axis=1)
-        ends = points[np.argsort(-worth, kind="stable")]
+    for number in chosen:
+        start, there = surface[number], leads(number)
+        worth = deep[there] - FALLING * np.linalg.norm(points[there] - start, axis=1)
+        ends = points[there][np.argsort(-worth, kind="stable")]
         rows.append(np.concatenate([start, next(end for end in ends if depth(_between(start, end)).min() > 0.0)]))
     return np.array(rows)

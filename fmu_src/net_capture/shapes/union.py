@@ -150,8 +150,18 @@ def _laid(content: bytes) -> Laid:
     depths = depth(points)
     out = points + depths[:, None] * normals
     near = NEAR * solid[solids.RADIUS]
-    within, surface = points[depths > near], out[np.abs(depth(out)) < near]
-    tables = {PIECES: table, "target.solid": solid, "target.samples": solids.samples(within, depth, surface)}
+    piece = np.repeat(np.arange(len(found)), len(points) // len(found))
+    inside = depths > near
+    on = inside & (np.abs(depth(out)) < near)
+
+    def leads(start: int) -> np.ndarray:
+        return np.asarray(piece[inside] == piece[on][start])
+
+    tables = {
+        PIECES: table,
+        "target.solid": solid,
+        "target.samples": solids.samples(points[inside], depth, out[on], leads),
+    }
     return Laid(tables, {"target.mass": body.mass})
 
 
