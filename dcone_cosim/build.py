@@ -190,6 +190,7 @@ def laid(model: str, values: Mapping[str, Any], sources: Mapping[str, Any], term
     """
     tables: dict[str, Any] = {}
     parameters: dict[str, float] = {}
+    shown: dict[str, Any] = {}
     groups = CATALOGUE[model].groups
     try:
         for group, name in terms.items():
@@ -198,9 +199,10 @@ def laid(model: str, values: Mapping[str, Any], sources: Mapping[str, Any], term
                 made = lay(values, sources)
                 tables |= made.tables
                 parameters |= made.parameters
+                shown |= made.shown
     except Undesigned as error:
         return Refusal(error.name, error.given, error.expected)
-    return Laid(tables, parameters)
+    return Laid(tables, parameters, shown)
 
 
 def lines(model: str, terms: Mapping[str, str]) -> list[Line]:

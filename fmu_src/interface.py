@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -169,10 +170,12 @@ class Laid(NamedTuple):
 
     tables       that its kernels read, by name
     parameters   that follow, SI by FMI name
+    shown        numbers that pictures and reports are made of, and no kernel reads, by name
     """
 
     tables: Mapping[str, npt.NDArray[np.float64]]
     parameters: Mapping[str, float]
+    shown: Mapping[str, npt.NDArray[np.float64]] = MappingProxyType({})
 
 
 @dataclass(frozen=True)

@@ -237,7 +237,7 @@ class Removal(Tow):
         held = run.parameters[stage.before.name]
         main = stage.before.main
         record.shape = {name: held[name] for name in SHAPE if name in held}
-        corners, record.shortfall = build.hull_corners({**held, **main.laid}, main.terms)
+        corners, record.shortfall = build.hull_corners({**held, **main.made}, main.terms)
         record.shape |= corners
         check_before(record, run.scene.handoff, build.towed_surface(main.terms.get(GROUP, "")))
         return record

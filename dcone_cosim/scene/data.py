@@ -112,6 +112,7 @@ class ComponentScene:
     lines        by table: what the scene says a line is made of
     sources      tables that only the scene knows, from which `laid` are made
     laid         tables of a model of ours that its parts make of them
+    shown        what they make of them for pictures and reports alone
     """
 
     name: str
@@ -132,11 +133,17 @@ class ComponentScene:
     lines: Mapping[str, LineScene] = field(default_factory=dict)
     sources: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     laid: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    shown: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def made(self) -> dict[str, Any]:
+        """All that its parts make of them."""
+        return {**self.laid, **self.shown}
 
     @property
     def values(self) -> dict[str, Any]:
         """Every parameter and input by FMI name, SI, and the tables that its parts make."""
-        return {**self.defaults, **self.parameters, **self.laid}
+        return {**self.defaults, **self.parameters, **self.made}
 
     @property
     def numbers(self) -> dict[str, Any]:

@@ -104,7 +104,8 @@ def laid(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistake]]:
             continue
         found += _said_too(answer.parameters, phase, document)
         parameters = {**main.parameters, **answer.parameters}
-        scene = scene.with_phase(replace(phase, main=replace(main, parameters=parameters, laid=answer.tables)))
+        main = replace(main, parameters=parameters, laid=answer.tables, shown=answer.shown)
+        scene = scene.with_phase(replace(phase, main=main))
     return scene, found
 
 

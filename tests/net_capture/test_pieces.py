@@ -144,7 +144,7 @@ def test_the_shell_is_a_piece_of_a_tube():
 
 def test_a_shell_weighs_where_its_slices_do():
     radius, length, thickness, angle = SHELL_SIZES
-    rows, made = laid([{"shape": SHELL, "radius": radius, "length": length, "thickness": thickness, "angle": angle,
+    _, made = laid([{"shape": SHELL, "radius": radius, "length": length, "thickness": thickness, "angle": angle,
                         "mass": 90.0}])  # fmt: skip
     away = radius - thickness + thickness * (np.arange(400) + 0.5) / 400
     turn = angle * ((np.arange(400) + 0.5) / 400 - 0.5)
@@ -178,7 +178,7 @@ def test_girth_is_that_of_the_closed_forms(entry, girth):
 
 
 def test_sample_points_are_as_deep_as_asked_or_as_there_is():
-    rows, made = laid(STAGE)
+    _, made = laid(STAGE)
     table, places = made.tables["target.pieces"], made.tables["target.samples"]
     distance, room = formula(union.union_distance), np.zeros((3, 3))
     at = [[distance(table, *room, row[3 * k : 3 * k + 3]) for k in (0, 1)] for row in places]
@@ -214,7 +214,7 @@ def test_what_is_no_piece_is_told(entry, text):
 
 def test_a_union_tumbles_as_its_tensor_says_and_is_caught_with_all_momenta_kept():
     """Before it is touched, against Euler's equations with the full tensor in the design axes."""
-    rows, made = laid(STAGE)
+    _, made = laid(STAGE)
     solid = made.tables["target.solid"]
     turn = Rotation.from_quat(solid[solids.TURN : solids.CENTER], scalar_first=True)
     tensor = made.parameters["target.mass"] * (turn.as_matrix() @ np.diag(solid[:3]) @ turn.as_matrix().T)

@@ -54,7 +54,7 @@ class Checks(NamedTuple):
 
 def shapes() -> dict[str, Any]:
     """The term of a free target of every shape, by name."""
-    from fmu_src.net_capture.shapes import box, cylinder, frustum, sphere, union
+    from fmu_src.net_capture.shapes import box, cylinder, frustum, mesh, sphere, union
     from fmu_src.net_capture.target import free_body
 
     parts = {
@@ -63,5 +63,6 @@ def shapes() -> dict[str, Any]:
         "sphere": sphere.PART,
         "frustum": frustum.PART,
         "union": union.PART,
+        "mesh": mesh.PART,
     }
     return {name: free_body(name, part) for name, part in parts.items()}

@@ -93,8 +93,8 @@ def directions(count: int) -> Array:
 
 
 def girth(points: Array, along: Array | None = None) -> tuple[float, Array]:
-    """Smallest girth [m] of the hull of some points [m] (n, 3), the shortest closed cord that can be passed over it, and
-    the direction (3,) along which it passes.
+    """Smallest girth [m] of the hull of some points [m] (n, 3), the shortest closed cord that can be passed over it,
+    and the direction (3,) along which it passes.
 
     A cord passes over a convex body along a direction when it goes round what is seen of it along that direction, so it
     is the least perimeter of a silhouette over all directions. First by Cauchy's formula on a sphere of directions,
@@ -137,7 +137,7 @@ def _across(ways: Array) -> tuple[Array, Array]:
 def table(body: Solid, inner: Array, outer: Array, thickness: float) -> Array:
     """The table `solid` of a body.
 
-    inner, outer   points whose hulls lie in its hull and around it [m] (n, 3), design axes: the same where it has none
+    inner, outer   points whose hulls lie in its hull and around it [m] (n, 3), body axes: the same where it has none
                    but flat faces
     thickness      the least of it [m]
     """
@@ -145,11 +145,10 @@ def table(body: Solid, inner: Array, outer: Array, thickness: float) -> Array:
     numbers[MOMENTS:TURN] = body.moments / body.mass
     numbers[TURN:CENTER] = quaternion(body.turn)
     numbers[CENTER:HALF] = body.center
-    around = body.to_body(outer)
-    numbers[HALF:RADIUS] = np.abs(around).max(axis=0)
-    numbers[RADIUS] = np.linalg.norm(around, axis=1).max()
+    numbers[HALF:RADIUS] = np.abs(outer).max(axis=0)
+    numbers[RADIUS] = np.linalg.norm(outer, axis=1).max()
     least, along = girth(inner)
-    most, _ = girth(outer, along)
+    most, _ = (least, along) if inner is outer else girth(outer, along)
     numbers[GIRTH], numbers[GIRTH_ERROR] = 0.5 * (least + most), 0.5 * (most - least)
     numbers[THICKNESS] = thickness
     return numbers
@@ -182,7 +181,8 @@ def samples(
 ) -> Array:
     """The table `samples`: where each sample point lies on the surface, and where it is led from there, (27, 6) [m].
 
-    The first is the deepest point there is, the others are spread over the surface, each the farthest from those before.
+    The first is the deepest point there is, the others are spread over the surface, each the farthest from those
+    before.
 
     points    inside the body, (n, 3) [m]
     depth     of points below the surface [m]

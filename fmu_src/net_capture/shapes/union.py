@@ -138,7 +138,9 @@ def lay(values: Mapping[str, float], sources: Mapping[str, np.ndarray]) -> Laid:
 def _laid(content: bytes) -> Laid:
     rows = np.frombuffer(content).reshape(-1, of.ROW)
     body, found = body_of(rows), of.pieces(rows)
-    inner, outer = (np.vstack([of.spanning(piece, around) for piece in found]) for around in (False, True))
+    inner, outer = (
+        body.to_body(np.vstack([of.spanning(piece, around) for piece in found])) for around in (False, True)
+    )
     solid = solids.table(body, inner, outer, min(of.thickness_of(piece) for piece in found))
     table = pieces_table(rows, body)
     points = body.to_body(np.vstack([of.filling(piece) for piece in found]))
@@ -174,7 +176,7 @@ def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:
     """Of every piece, whole."""
     corners: list[Point] = []
     faces: list[list[int]] = []
-    for row in values[PIECES]:  
+    for row in values[PIECES]:
         kind = int(row[0])
         sizes = 2.0 * row[1:5] if kind == of.BOX else row[1:5]
         own, sides = of.drawn(of.Piece(kind, [float(x) for x in sizes], 0.0, row[5:8], row[8:17].reshape(3, 3)))
