@@ -156,8 +156,10 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
         )
         mistakes = list(about_steps(scene, document))
         scene, unlaid = laid(scene, document)
+        if unlaid:
+            raise SceneError([*mistakes, *unlaid], places)
         scene, undesigned = designed(scene, document)
-        mistakes += unlaid + undesigned or about_values(scene, document)
+        mistakes += undesigned or about_values(scene, document)
         for before, own in pairs(scene):
             mistakes += kind_of(own.name).value_faults(before, own, document)
         if not mistakes:

@@ -256,3 +256,30 @@ def test_a_union_tumbles_as_its_tensor_says_and_is_caught_with_all_momenta_kept(
     assert net["contact.loss"] > 0.1
     assert OUTCOMES[int(net["outcome"])] == "captured"
     assert abs(net["energy.remainder"]) < 0.02 * (20.0 + net["closing.work"])
+
+
+def test_contact_moves_a_sphere_and_never_turns_it():
+    """Without friction every impulse goes through its centre, however askew the net meets it: its spin is kept to
+    rounding, and it gains no energy but of its speed."""
+    _, made = laid([{"shape": SPHERE, "radius": 1.5, "mass": 50.0}])
+    given = {
+        **made.parameters,
+        "closing.time": 100.0,
+        "net.side": 8.0,
+        "net.mesh": 1.0,
+        "net.mass": 0.5,
+        "chaser.start_position[1]": 0.6,
+        "chaser.start_position[2]": -8.0,
+        "shot.axis[2]": 1.0,
+        **{f"target.start_rate[{i}]": 0.01 * i for i in (1, 2, 3)},
+    }
+    net = Instance(MODEL, CAPTURE | {"target": "union"}, given, made.tables).initialise()
+    spin, energy = net.array("target_spin").copy(), net["target.energy"]
+    np.testing.assert_allclose(spin, 0.4 * 50.0 * 1.5**2 * np.array([0.01, 0.02, 0.03]), rtol=1e-14)
+    for _ in range(12):
+        net.step(0.5)
+    speed = float(np.linalg.norm(net.array("target_velocity")))
+    assert net["contact.impulse"] > 2.0
+    assert net.array("target_velocity")[0] < -1e-4
+    np.testing.assert_allclose(net.array("target_spin"), spin, atol=1e-13 * 50.0)
+    assert net["target.energy"] == pytest.approx(energy + 25.0 * speed**2, rel=1e-9)

@@ -37,7 +37,7 @@ WITHIN = {"quality": 0.05, "impulse": 0.02}
 """By how much the means may differ."""
 VALUES: Mapping[str, float] = {
     "net.side": 12.0,
-    "net.mesh": 0.5,
+    "net.mesh": 1.0,
     "net.mass": 0.84,
     "net.fold_side": 0.4,
     "bullets.mass": 1.27,
