@@ -114,7 +114,7 @@ def ours(scene: Scene, phase: PhaseScene) -> dict[str, build.Furnished]:
             c.terms,
             _numbers(c.parameters),
             experiment,
-            {name: table.numbers for name, table in c.tables.items()},
+            c.numbers,
         )
         for c in phase.components
         if c.fmu is None

@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.names import did_you_mean
@@ -20,7 +22,7 @@ from fmu_src.catalogue import MODELS as CATALOGUE
 from fmu_src.cautions import Caution, Range, Seen
 from fmu_src.extremes import Extreme
 from fmu_src.implied import Implied
-from fmu_src.interface import Group, Interface, Model, Term, Undesigned, Value, Variable
+from fmu_src.interface import Group, Interface, Laid, Model, Term, Undesigned, Value, Variable
 from fmu_src.lines import Line
 from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture import lines as net_capture_lines
@@ -37,7 +39,10 @@ from fmu_src.tethered_deorbit import lines as tethered_deorbit_lines
 from fmu_src.tethered_deorbit import stress as tethered_deorbit_stress
 from fmu_src.tethered_deorbit import trade as tethered_deorbit_trade
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
+from fmu_src.tethered_deorbit.surfaces import SURFACES
+from fmu_src.tethered_deorbit.surfaces.hull import CORNERS
 from fmu_src.trade import Rung
+from orbital.corners import few_corners
 
 __all__ = [
     "CATALOGUE",
@@ -129,7 +134,9 @@ def all_tables(model: Model) -> Iterator[Table]:
     """Every table the model can have."""
     for group in model.groups.values():
         for term in group.terms:
-            yield from group.terms[term].tables if term in group.terms else ()
+            if term in group.terms:
+                part = group.terms[term]
+                yield from (*part.sources, *(() if part.lay is not None else part.tables))
 
 
 def defaults(interface: Interface) -> dict[str, float]:
@@ -172,6 +179,30 @@ def designed(
     except Undesigned as error:
         return Refusal(error.name, error.given, error.expected)
     return found
+
+
+def laid(model: str, values: Mapping[str, Any], sources: Mapping[str, Any], terms: Mapping[str, str]) -> Laid | Refusal:
+    """Tables, and parameters that follow, that the parts of a model of ours make of what a scene gives them; or why
+    they make none.
+
+    values        every parameter and input by FMI name, SI, and every row that only the scene knows
+    sources       numbers of the tables that the scene gives, by name
+    """
+    tables: dict[str, Any] = {}
+    parameters: dict[str, float] = {}
+    shown: dict[str, Any] = {}
+    groups = CATALOGUE[model].groups
+    try:
+        for group, name in terms.items():
+            lay = groups[group].terms[name].lay
+            if lay is not None:
+                made = lay(values, sources)
+                tables |= made.tables
+                parameters |= made.parameters
+                shown |= made.shown
+    except Undesigned as error:
+        return Refusal(error.name, error.given, error.expected)
+    return Laid(tables, parameters, shown)
 
 
 def lines(model: str, terms: Mapping[str, str]) -> list[Line]:
@@ -318,8 +349,6 @@ def shot_frame(values: Mapping[str, float]) -> tuple[Any, Any]:
     """Muzzle [m] and axes as rows (two transverse, then the shot's own) of the frame that a shot is measured in."""
     from types import SimpleNamespace
 
-    import numpy as np
-
     from fmu_src.implied import formula
     from fmu_src.net_capture.shot import aim
 
@@ -346,6 +375,23 @@ def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Sur
     return None if part is None else part.checks.surface(values)
 
 
+def towed_surface(term: str) -> str:
+    """The surface that a target of ours with this shape has where it is towed: its own, or that of a hull."""
+    return term if term not in TARGETS or term in SURFACES else "hull"
+
+
+def hull_corners(values: Mapping[str, Any], terms: Mapping[str, str]) -> tuple[dict[str, float], float]:
+    """Corners of the hull that a target of ours is towed as, by the removal's names, body axes [m], and how far the
+    target reaches beyond that hull at most [m]; none for one that is towed with its own surface."""
+    surface = target_surface(values, terms) if towed_surface(terms.get("target", "")) == "hull" else None
+    if surface is None:
+        return {}, 0.0
+    corners, short = few_corners(np.array(surface[0], dtype=float), CORNERS)
+    filled = np.vstack([corners, np.repeat(corners[-1:], CORNERS - len(corners), axis=0)])
+    names = ((f"target.corner_{axis}[{k + 1}]", k, i) for i, axis in enumerate("xyz") for k in range(CORNERS))
+    return {name: float(filled[k, i]) for name, k, i in names}, short
+
+
 def _part(parts: Mapping[str, Term], term: str | None, values: Mapping[str, float]) -> Term | None:
     """The part that a scene names; of a capture FMU in a file, which names none, that with the most parameters of its
     own among those all of whose own it has."""
@@ -356,7 +402,7 @@ def _part(parts: Mapping[str, Term], term: str | None, values: Mapping[str, floa
         for key, part in parts.items()
     }
     shared = set.intersection(*names.values())
-    known = [key for key, wanted in names.items() if wanted - shared <= values.keys()]
+    known = [key for key, wanted in names.items() if wanted - shared <= values.keys() and parts[key].lay is None]
     return parts[max(known, key=lambda key: len(names[key]))] if known else None
 
 

@@ -91,6 +91,6 @@ def evidence_of(run: RunResult, phase: PhaseScene) -> Evidence:
         for at, positions in zip(result.snapshots.times, result.snapshots.nodes, strict=True)
     }
     tugs = [] if result.tugs is None else [result.tugs.rows[number] for number in sorted(result.tugs.rows)]
-    values = {**run.parameters.get(phase.name, {}), **run.inputs.get(phase.name, {})}
+    values = {**run.parameters.get(phase.name, {}), **run.inputs.get(phase.name, {}), **phase.main.made}
     columns = {name: recorder[name] for name in recorder.names}
     return Evidence(columns, values, phase.main.terms, phase.duration, tugs, nodes)

@@ -164,7 +164,7 @@ def turning_parameters(
     """What to set in a removal whose target turns: inertia, attitude, rate, attachment and surface, in the axes of the
     capture's target.
 
-    shape        parameters of the capture's target, of `SHAPE`
+    shape        parameters of the capture's target, of `SHAPE`, or the corners that a removal's hull has
     offered      parameters that the removal has
     inertial     value of the choice of `RATE_FRAME` by which rates are relative to inertial space
     """
@@ -181,7 +181,7 @@ def turning_parameters(
     )
     for names, vector in vectors:
         found |= {name: float(x) for name, x in zip(names, vector, strict=True)}
-    found |= {RATE_FRAME: inertial} | {SHAPE[name]: value for name, value in shape.items()}
+    found |= {RATE_FRAME: inertial} | {SHAPE.get(name, name): value for name, value in shape.items()}
     return {name: value for name, value in found.items() if name in offered}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -222,6 +223,7 @@ def fmus_of(scene: Scene) -> tuple[Any, ...]:
         (
             *(phase.name, c.name, c.model, tuple(c.terms.items()), c.fmu and c.fmu.absolute(), c.tolerance),
             tuple((name, table.sha256) for name, table in c.tables.items()),
+            tuple((name, hashlib.sha256(numbers.tobytes()).hexdigest()) for name, numbers in c.laid.items()),
         )
         for phase in scene.phases
         for c in phase.components
@@ -230,9 +232,9 @@ def fmus_of(scene: Scene) -> tuple[Any, ...]:
 
 def opened(path: Path, component: ComponentScene) -> Archive:
     """One of ours from the cache, with the component's tables."""
-    if not component.tables:
+    numbers = component.numbers
+    if not numbers:
         return Archive(path)
-    numbers = {name: table.numbers for name, table in component.tables.items()}
     scratch = Scratch.temporary()
     try:
         return Archive(build.with_tables(path, component.model, component.terms, numbers, scratch.path), within=scratch)

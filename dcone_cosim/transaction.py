@@ -44,6 +44,8 @@ from dcone_cosim.line import (
 )
 from dcone_cosim.scene.data import HandoffOptions, PhaseScene
 
+HULL = "hull"
+"""Level of a target that is towed as the hull of some of its corners."""
 CROSS_CHECK = 1e-4
 """Relative agreement asked of what the removal computes with what was handed over. It forms its outputs in the frame of
 the pair's centre of mass, turned and turning a little differently: by the offset over the radius, 3e-6 for 20 m."""
@@ -68,7 +70,8 @@ class HandoffRecord:
     start             the same, as time that the removal's FMU is told to begin at [s]
     phase             the removal, with the level of its target
     bound             by how much a point would err
-    shape             of the capture's target, `level.SHAPE`
+    shape             of the capture's target, `level.SHAPE`, or the corners of its hull
+    shortfall         by which the target reaches beyond that hull at most [m]
     line_parameters   what is set in the removal so that its line is the capture's
     turning           what is set in it so that its target turns as the capture's; empty for a point
     """
@@ -82,6 +85,7 @@ class HandoffRecord:
     spin: SpinSpeeds = field(default_factory=SpinSpeeds)
     bound: PointBound = field(default_factory=PointBound)
     shape: dict[str, float] = field(default_factory=dict)
+    shortfall: float = 0.0
     line_parameters: dict[str, float] = field(default_factory=dict)
     turning: dict[str, float] = field(default_factory=dict)
     rows: list[LedgerRow] = field(default_factory=list)
@@ -152,6 +156,7 @@ class HandoffRecord:
             "level": {
                 "target": self.level,
                 "reason": self.reason,
+                "beyond_hull": {"value": self.shortfall if self.level == HULL else 0.0, "unit": "m"},
                 "spin": {"value": float(np.linalg.norm(handed.joint.spin)), "unit": "N m s"},
                 "rate_relative_to_line": {"value": bound.rate, "unit": "rad/s"},
                 "angle_at_first_tug": {"value": bound.angle, "unit": "rad"},
@@ -295,6 +300,8 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
     )
     yield Finding("hand-off", "target", "target in the removal", record.level)
     yield Finding("hand-off", "target_reason", "since", record.reason)
+    if record.level == HULL and record.shortfall > 0.0:
+        yield Finding("hand-off", "beyond_hull", "it reaches beyond its hull there by at most", record.shortfall, "m")
     what = ("spin", "carried over") if record.turns else ("spin_dropped", "dropped (a point target has none)")
     yield Finding("hand-off", what[0], f"spin {what[1]}", spin, "N m s")
     what = ("spin_energy", "of it") if record.turns else ("spin_energy_dropped", "of the dropped spin")

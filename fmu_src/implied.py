@@ -7,7 +7,10 @@ and inputs by FMI name, SI.
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import FunctionType
 from typing import Any, NamedTuple, TypeVar
+
+from orbital.kernel import Kernel
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -22,6 +25,11 @@ class Implied(NamedTuple):
 
 
 def formula(kernel: Function) -> Function:
-    """The Python that a kernel was compiled from: the same formula, without compiling it for one number."""
-    written: Function = getattr(kernel, "py_func", kernel)
-    return written
+    """The Python that a kernel was compiled from: the same formula, without compiling it for one number, nor any kernel
+    that it calls by its name."""
+    written: Any = getattr(kernel, "py_func", kernel)
+    called = {name: written.__globals__.get(name) for name in written.__code__.co_names}
+    inner = {name: formula(value) for name, value in called.items() if isinstance(value, Kernel)}
+    if inner:
+        written = FunctionType(written.__code__, {**written.__globals__, **inner}, written.__name__)
+    return written  # type: ignore[no-any-return]

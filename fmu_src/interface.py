@@ -14,7 +14,8 @@ from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from types import MappingProxyType
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -164,6 +165,19 @@ def numbered(faults: Iterable[Fault]) -> tuple[Fault, ...]:
     return tuple(replace(f, code=code) for code, f in enumerate(unlike.values(), 1))
 
 
+class Laid(NamedTuple):
+    """What a part makes of the tables that a scene gives it.
+
+    tables       that its kernels read, by name
+    parameters   that follow, SI by FMI name
+    shown        numbers that pictures and reports are made of, and no kernel reads, by name
+    """
+
+    tables: Mapping[str, npt.NDArray[np.float64]]
+    parameters: Mapping[str, float]
+    shown: Mapping[str, npt.NDArray[np.float64]] = MappingProxyType({})
+
+
 @dataclass(frozen=True)
 class Term:
     """One physics term a scene may name: its variables, and a sentence on what it adds.
@@ -181,6 +195,8 @@ class Term:
     extremes cases at the ends of its range, on which schemes are tried
     asked    rows that a scene may say and no FMU has: from them `design` finds values of parameters
     design   `design(values, asked, terms)`: those values, SI by FMI name; `Undesigned` where there are none
+    sources  tables that a scene gives and no FMU has: from them `lay` makes all of `tables`
+    lay      `lay(values, sources)`: `Laid`; values with those of `asked` among them; `Undesigned` where it cannot
     """
 
     summary: str
@@ -197,6 +213,8 @@ class Term:
     extremes: tuple[Extreme, ...] = ()
     asked: tuple[Variable, ...] = ()
     design: Callable[[Mapping[str, float], Mapping[str, float], Mapping[str, str]], dict[str, float]] | None = None
+    sources: tuple[Table, ...] = ()
+    lay: Callable[[Mapping[str, float], Mapping[str, npt.NDArray[np.float64]]], Laid] | None = None
 
 
 class Undesigned(Exception):
@@ -391,6 +409,17 @@ class Interface:
         """Its tables as its kernels read them; ValueError if it has any, and was not given them."""
         self.demand_tables()
         return tables.block(self.tables, self.given)
+
+    @cached_property
+    def sources(self) -> tuple[Table, ...]:
+        """Tables that a scene gives and its FMUs have not."""
+        return tuple(t for group, term in self.terms.items() for t in self.model.groups[group].terms[term].sources)
+
+    @cached_property
+    def laid(self) -> frozenset[str]:
+        """Names of its tables that a part makes of others."""
+        parts = (self.model.groups[group].terms[term] for group, term in self.terms.items())
+        return frozenset(table.name for part in parts if part.lay is not None for table in part.tables)
 
     @property
     def tables_identity(self) -> int:

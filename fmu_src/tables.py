@@ -61,6 +61,8 @@ class Table:
     name    also what a scene says: key `knots` in `[capture.net]` is the table `net.knots`, its value a path of a file
     unit    FMI unit name of the SI values, "1" for pure numbers, or for columns of several units
     read    `read(path)`: the numbers of such a file; ValueError, with the line where there is one, for what is none
+    entry   rows that a scene may say of each of its entries, where it is no file but an array of tables
+    gather  `gather(entries)`: the numbers of such entries, each with what it says by key [SI]; ValueError as `read`
     """
 
     name: str
@@ -68,6 +70,8 @@ class Table:
     description: str
     dimensions: int = 1
     read: Callable[[Path], npt.ArrayLike] = read_rows
+    entry: tuple[Any, ...] = ()
+    gather: Callable[[Sequence[Mapping[str, Any]]], npt.ArrayLike] | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.dimensions <= MOST_DIMENSIONS:

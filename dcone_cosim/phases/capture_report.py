@@ -105,7 +105,7 @@ def figures(run: RunResult, phase: PhaseScene, result: PhaseResult) -> Iterator[
     if len(result.recorder) < 2:
         return
     if result.snapshots.times:
-        values = run.parameters.get(phase.name, {})
+        values = {**run.parameters.get(phase.name, {}), **phase.main.made}
         shapes = build.net_drawing(values, phase.main.terms), build.target_surface(values, phase.main.terms)
         asked = bool(phase.options.snapshots)
         yield "capture_in_space.png", partial(net_view.draw, result, *shapes, asked, title)

@@ -189,7 +189,7 @@ class Removal(Tow):
         if len(known) < len(start):
             return
         distance, speed = math.hypot(*known[:3]), math.hypot(*known[3:])
-        values = {**before.main.defaults, **before.main.parameters}
+        values = before.main.values
         corners, _ = build.target_surface(values, before.main.terms) or ([], [])
         nearest = distance - max((math.hypot(*corner) for corner in corners), default=0.0)
         if length <= nearest - speed * before.duration:
@@ -235,8 +235,11 @@ class Removal(Tow):
         record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line)
         run.handovers[self.name] = record
         held = run.parameters[stage.before.name]
+        main = stage.before.main
         record.shape = {name: held[name] for name in SHAPE if name in held}
-        check_before(record, run.scene.handoff, stage.before.main.terms.get(GROUP, ""))
+        corners, record.shortfall = build.hull_corners({**held, **main.made}, main.terms)
+        record.shape |= corners
+        check_before(record, run.scene.handoff, build.towed_surface(main.terms.get(GROUP, "")))
         return record
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:

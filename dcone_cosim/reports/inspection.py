@@ -85,7 +85,7 @@ def _ours(scene: Scene, phase: PhaseScene, component: ComponentScene, progress: 
         (path,) = build.ensure([(component.model, component.terms)], progress.say)
     about = About("", phase.name, component.name, component.model, list(_terms(component)))
     about.isolated = bool(component.isolate)
-    values = {**component.defaults, **component.parameters}
+    values = component.values
     if component is phase.main:
         place = scene.phases.index(phase)
         values |= kind_of(phase.name).values_taken(scene.phases[place - 1]) if place else {}

@@ -110,6 +110,9 @@ class ComponentScene:
     asked        of a model of ours: what only the scene knows, and parameters are designed by, as `defaults`
     designed     parameters that are
     lines        by table: what the scene says a line is made of
+    sources      tables that only the scene knows, from which `laid` are made
+    laid         tables of a model of ours that its parts make of them
+    shown        what they make of them for pictures and reports alone
     """
 
     name: str
@@ -128,6 +131,25 @@ class ComponentScene:
     asked: Mapping[str, float] = field(default_factory=dict)
     designed: tuple[str, ...] = ()
     lines: Mapping[str, LineScene] = field(default_factory=dict)
+    sources: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    laid: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    shown: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def made(self) -> dict[str, Any]:
+        """All that its parts make of them."""
+        return {**self.laid, **self.shown}
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """Every parameter and input by FMI name, SI, and the tables that its parts make."""
+        return {**self.defaults, **self.parameters, **self.made}
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Numbers of each table of its FMU, by name."""
+        given = {name: table.numbers for name, table in self.tables.items() if name not in self.sources}
+        return given | dict(self.laid)
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ from dcone_cosim.scenes.keys import (
     table_in,
 )
 from dcone_cosim.scenes.lines import read_own, set_apart
-from dcone_cosim.scenes.relations import about_steps, about_values, designed, pairs, phases_to_run
+from dcone_cosim.scenes.relations import about_steps, about_values, designed, laid, pairs, phases_to_run
 from orbital.materials import Material
 
 
@@ -89,6 +89,7 @@ class _Component:
             tuple(sorted(self.part.unnamed)),
             asked,
             lines=self.lines,
+            sources=self.part.sources,
         )
 
 
@@ -154,6 +155,9 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
             name, title, "", tuple(made), HandoffOptions(**handoff), places.source, places, notes, (), accuracy, sizing
         )
         mistakes = list(about_steps(scene, document))
+        scene, unlaid = laid(scene, document)
+        if unlaid:
+            raise SceneError([*mistakes, *unlaid], places)
         scene, undesigned = designed(scene, document)
         mistakes += undesigned or about_values(scene, document)
         for before, own in pairs(scene):
@@ -321,7 +325,7 @@ def _cautions(scene: Scene) -> dict[str, None]:
     for phase in scene.phases:
         main = phase.main
         if main.fmu is None:
-            values = {**main.defaults, **main.parameters}
+            values = main.values
             found += build.cautions(phase.name, main.model, values, main.parameters, main.terms)
     for before, own in pairs(scene):
         found += kind_of(own.name).cautions(before, own)

@@ -20,7 +20,7 @@ from dcone_cosim.scene.toml_lines import Path, dotted, given_at
 from dcone_cosim.scenes.fmus import Offer
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, Key, Slot, key_of, phase_keys, read_value
 from dcone_cosim.scenes.lines import keys_of, read_line
-from dcone_cosim.scenes.tables import EXAMPLE, table_of
+from dcone_cosim.scenes.tables import EXAMPLE, entries_of, table_of
 from dcone_cosim.units import by_name
 from orbital.materials import Material
 
@@ -43,8 +43,9 @@ class ReadComponent:
     given        where the value of each variable was given
     following    groups whose term follows from the values
     texts        that the scene gives to Strings, by variable
-    files        tables that our model reads, by name, which a scene gives as the path of a file
-    tables       those that it gives
+    files        tables that our model reads, by name, which a scene gives as the path of a file or entry by entry
+    tables       those that it gives as files
+    sources      those of which parts make what their kernels read
     lines        that it has, by the table of the scene that says what they are made of
     """
 
@@ -62,6 +63,7 @@ class ReadComponent:
     texts: dict[str, str] = field(default_factory=dict)
     files: dict[str, build.Table] = field(default_factory=dict)
     tables: dict[str, TableFile] = field(default_factory=dict)
+    sources: dict[str, Any] = field(default_factory=dict)
     unnamed: set[str] = field(default_factory=set)
     lines: dict[str, build.Line] = field(default_factory=dict)
 
@@ -145,7 +147,8 @@ def of_model(
         part.terms[group_name] = group.default or next(iter(group.terms))
     interface = model.interface(part.terms)
     part.keys = dict(_keys(model.name, tuple(part.terms.items())))
-    part.files = {table.name: table for table in interface.tables}
+    given = (table for table in interface.tables if table.name not in interface.laid)
+    part.files = {table.name: table for table in (*given, *interface.sources)}
     part.lines = {line.table: line for line in build.lines(model.name, part.terms)}
     _offer_slots(part, model)
     return part
@@ -200,9 +203,15 @@ def term_named(given: object) -> str:
 
 def read_files(part: ReadComponent, tables: Mapping[str, Any], folder: File, mistakes: list[Mistake]) -> None:
     """Read the files of tables that the scene names; one that it does not name is missing."""
+    sources = part.model.interface(part.terms).sources if part.model is not None and part.files else ()
     for name, table in part.files.items():
         path = (*part.path, *name.split("."))
         given = given_at(tables, path[len(part.path) :])
+        if table.entry:
+            numbers = entries_of(table, given, path, mistakes)
+            if numbers is not None:
+                part.sources[name] = numbers
+            continue
         if given is None:
             mistakes.append(
                 Mistake(path, None, f'expected the path of a file, such as "{EXAMPLE}": {table.description}')
@@ -211,6 +220,8 @@ def read_files(part: ReadComponent, tables: Mapping[str, Any], folder: File, mis
         read = read_value(given, partial(table_of, table, folder=folder, path=path), path, mistakes)
         if read is not None:
             part.tables[name] = read
+            if table in sources:
+                part.sources[name] = read.numbers
 
 
 def read_lines(

@@ -30,7 +30,7 @@ from dcone_cosim.scenes.keys import (
     phase_keys,
 )
 from dcone_cosim.scenes.lines import LINE_MEANING, OWN_KEYS, OWN_MEANING, keys_of
-from dcone_cosim.scenes.tables import EXAMPLE
+from dcone_cosim.scenes.tables import EXAMPLE, entry_keys
 
 WIDTH = 120
 RESERVED = ("components", "coupling", "parameters")
@@ -168,10 +168,12 @@ def _component(
             group = model.groups[name]
             yield _selection(group, terms[name], "" if group.selector in (given or {}) else "# ")
         selectors = {model.groups[name].selector for name in homes if homes[name] == section}
-        yield from _files(section, given or {}, interface.tables)
+        kept = [table for table in interface.tables if table.name not in interface.laid]
+        yield from _files(section, given or {}, (*kept, *interface.sources))
         for key, expected in made.get(section, {}).items():
             yield _said(key, (given or {}).get(key), expected, LINE_MEANING[key])
         yield from _table({key: value for key, value in (given or {}).items() if key not in selectors}, keys)
+        yield from _entries(f"{above}.{section}", given or {}, interface.sources)
     for name, group in model.groups.items():
         if name not in terms and name not in tables:
             yield from ("", *_left_out(above, name, group))
@@ -205,8 +207,30 @@ def _files(section: str, given: Mapping[str, Any], tables: Sequence[build.Table]
     """The keys of a section that name files, with what is given or an example."""
     for table in tables:
         home, _, key = table.name.partition(".")
-        if home == section:
+        if home == section and not table.entry:
             yield _line(key, _toml(given.get(key, EXAMPLE)), f"path of a file: {table.description}", mark)
+
+
+def _entries(path: str, given: Mapping[str, Any], tables: Sequence[build.Table]) -> Iterator[str]:
+    """The entries of tables that a section says one by one."""
+    for table in tables:
+        home, _, name = table.name.partition(".")
+        if table.entry and path.endswith(f".{home}"):
+            yield from ("", *textwrap.wrap(table.description, WIDTH, initial_indent="# ", subsequent_indent="#   "))
+            keys = entry_keys(table)
+            for place, entry in enumerate(given.get(name, ())):
+                yield f"[[{path}.{name}]]"
+                shown = keys if place == 0 else {key: keys[key] for key in entry}
+                yield from (_entry(key, entry.get(key), known) for key, known in shown.items())
+                yield ""
+
+
+def _entry(key: str, given: Any, known: Key) -> str:
+    """A key of an entry with what is said, or an example of it as a comment."""
+    text = _meaning(known.description, known.expected)
+    if given is not None:
+        return _line(key, _toml(given), text)
+    return _line(key, known.expected.written(known.starts), f"for example; {text}", "# ")
 
 
 def _described(row: build.Variable) -> Key:

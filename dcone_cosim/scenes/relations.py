@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -75,7 +75,7 @@ def about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
     for phase in scene.phases:
         if phase.main.fmu is not None:
             continue
-        values = {**phase.main.defaults, **phase.main.parameters}
+        values = phase.main.values
         handed_over = phase is not scene.phases[0]
         must_arrive_in = math.inf if kind_of(phase.name).hand_over(phase.options) == NEVER else phase.duration
         for refusal in build.cannot_work(phase.main.model, values, must_arrive_in, phase.main.terms, handed_over):
@@ -87,6 +87,35 @@ def about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
 def pairs(scene: Scene) -> Iterator[tuple[PhaseScene | None, PhaseScene]]:
     """Each phase with the one before it, None for the first."""
     return zip((None, *scene.phases), scene.phases, strict=False)
+
+
+def laid(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistake]]:
+    """The scene with the tables that parts make of what it gives them, and what parameters follow; mistakes where they
+    can make none, or it says such a parameter too."""
+    found: list[Mistake] = []
+    for phase in scene.phases:
+        main = phase.main
+        if not main.sources:
+            continue
+        answer = build.laid(main.model, {**main.values, **main.asked}, main.sources, main.terms)
+        if isinstance(answer, build.Refusal):
+            path: Path = (phase.name, *answer.variable.split("."))
+            found.append(Mistake(path, given_at(document, path), answer.expected, answer.given))
+            continue
+        found += _said_too(answer.parameters, phase, document)
+        parameters = {**main.parameters, **answer.parameters}
+        main = replace(main, parameters=parameters, laid=answer.tables, shown=answer.shown)
+        scene = scene.with_phase(replace(phase, main=main))
+    return scene, found
+
+
+def _said_too(names: Iterable[str], phase: PhaseScene, document: dict[str, Any]) -> Iterator[Mistake]:
+    """Parameters that follow, and that a scene says all the same."""
+    for name in names:
+        if name in phase.main.parameters:
+            path = (phase.name, *name.partition("[")[0].split("."))
+            text = "follows from what this scene asks for; leave one of them out"
+            yield Mistake(path, given_at(document, path), text)
 
 
 def designed(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistake]]:
@@ -102,11 +131,7 @@ def designed(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistak
             path: Path = (phase.name, *answer.variable.split("."))
             found.append(Mistake(path, given_at(document, path), answer.expected, answer.given))
             continue
-        for name in answer:
-            if name in main.parameters:
-                path = (phase.name, *name.partition("[")[0].split("."))
-                text = "follows from what this scene asks for; leave one of them out"
-                found.append(Mistake(path, given_at(document, path), text))
+        found += _said_too(answer, phase, document)
         parameters = {**main.parameters, **answer}
         scene = scene.with_phase(replace(phase, main=replace(main, parameters=parameters, designed=tuple(answer))))
     return scene, found

@@ -33,6 +33,7 @@ from dcone_cosim.scenes.keys import (
     phase_keys,
 )
 from dcone_cosim.scenes.lines import LINE_MEANING, MATERIAL, NEEDED, OWN_KEYS, OWN_MEANING, keys_of
+from dcone_cosim.scenes.tables import entry_keys
 from orbital.materials import ALSO, MATERIALS
 
 QUANTITY = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\d\s].*$"
@@ -176,7 +177,7 @@ def _tables(model: build.Model) -> dict[str, Schema]:
         of_line[MATERIAL] |= {"anyOf": [{"enum": [*MATERIALS, *ALSO]}, {"type": "string"}]}
     for table in build.all_tables(model):
         home, _, name = table.name.partition(".")
-        tables.setdefault(home, {})[name] = {"type": "string", "description": f"path of a file: {table.description}"}
+        tables.setdefault(home, {})[name] = _table_of(table)
     found = {}
     for name, properties in tables.items():
         described: Schema = {"type": "object", "properties": properties}
@@ -186,6 +187,14 @@ def _tables(model: build.Model) -> dict[str, Schema]:
             described["description"] = "; ".join(f"{term}: {text}" for term, text in _terms(model.groups[name]))
         found[name] = described
     return found
+
+
+def _table_of(table: build.Table) -> Schema:
+    """The path of a file, or the entries themselves."""
+    if not table.entry:
+        return {"type": "string", "description": f"path of a file: {table.description}"}
+    keys = {name: _value(key.expected, key.description) for name, key in entry_keys(table).items()}
+    return {"type": "array", "minItems": 1, "items": _table(keys, "an entry"), "description": table.description}
 
 
 def _terms(group: build.Group) -> list[tuple[str, str]]:

@@ -10,6 +10,7 @@ from fmu_src.net_capture import formulas
 from fmu_src.net_capture.interface import GROUPS, NETS, RIGGINGS, rigged_of
 from fmu_src.net_capture.nets import USUAL_BULLETS, Checks, Hanging
 from fmu_src.net_capture.release import ejection, ejector
+from fmu_src.net_capture.shapes import mesh, solids
 from fmu_src.net_capture.shot import opening_distance
 from fmu_src.net_capture.substeps import COUNT
 from fmu_src.net_capture.substeps import substeps as of_parts
@@ -98,6 +99,10 @@ def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     yield from ejector.rows(values, terms)
     if "closing" in terms:
         yield from _of_cord(values, terms)
+    if "target.solid" in values:
+        yield from solids.rows(values)
+    if "target.grid" in values:
+        yield from mesh.rows(values)
     if "orbit.altitude" in values:
         rate = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
         yield Implied("orbit.period", "period of the orbit", 2.0 * math.pi / rate, "s")

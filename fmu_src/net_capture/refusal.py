@@ -23,7 +23,7 @@ class Scene(NamedTuple):
     parts themselves by group."""
 
     terms: Mapping[str, str]
-    values: Mapping[str, float]
+    values: Mapping[str, Any]
     duration: float
     parts: Mapping[str, Any]
 

@@ -90,7 +90,7 @@ def make_limit_way(composition: Any) -> Any:
 
         v, v_c   of the bullets from the muzzle, of the muzzle                   [m/s]
         w, R     rate of the target, radius of its envelope                      [rad/s], [m]
-        d        least edge of the box that holds it                             [m]
+        d        least thickness: of a part, or of the box that holds it         [m]
 
         A node that passes an edge at a distance below half its way is taken for one that meets it: so far the target is
         too large.
@@ -100,7 +100,7 @@ def make_limit_way(composition: Any) -> Any:
         speed = fastest(p) if has_ejection else p.bullets_speed
         speed += math.sqrt(dot(p.chaser_start_velocity, p.chaser_start_velocity))
         speed += math.sqrt(dot(p.target_start_rate, p.target_start_rate)) * p.envelope_radius
-        way = WAY_SHARE * 2.0 * min(p.half_size[0], p.half_size[1], p.half_size[2])
+        way = WAY_SHARE * p.target_thickness
         if speed * p.solver_substep > way:
             p.measure_every = math.ceil(MEASURE_INTERVAL * speed / way - 1e-9)
             p.solver_substep = MEASURE_INTERVAL / p.measure_every

@@ -17,7 +17,7 @@ from fmu_src.interface import Term, Variable, fault
 from fmu_src.net_capture.refusal import Refusal, Scene, text
 from fmu_src.rows import at_least_zero, moving, output, parameter, positive, state, vector
 from orbital.kernel import kernel
-from orbital.rotations import normalise, rotate, rotate_inverse
+from orbital.rotations import multiply, normalise, rotate, rotate_inverse
 from orbital.vectors import dot
 
 BEYOND_REACH = 0.55
@@ -44,14 +44,14 @@ ROWS = (
     parameter(
         "target.start_attitude[#]",
         "1",
-        "quaternion from body to orbital frame, scalar first; zero: aligned",
+        "quaternion from body to orbital frame, scalar first; zero: aligned. Of a union, from its design axes",
         0.0,
         shape=(4,),
     ),
     parameter(
         "target.start_rate[#]",
         "rad/s",
-        "body rate in body axes, relative to inertial space",
+        "body rate in body axes, relative to inertial space; of a union, in its design axes",
         0.0,
         shape=(3,),
         display_unit="deg/s",
@@ -78,6 +78,7 @@ ROWS = (
     state("shape_half[#]", "m", "of the box that holds the sample points", shape=(3,)),
     state("envelope_radius", "m", "of the sphere around the target"),
     state("girth", "m", "smallest girth"),
+    state("target_thickness", "m", "least thickness: that of a part, or of the box around the target"),
     output("target.energy", "J", "kinetic energy of translation and spin of the target"),
 )
 
@@ -234,6 +235,7 @@ def make_target(composition: Any, part: Term) -> Target:
     assert part.make is not None
     shape = part.make(composition)
     uniform_inertia, measure_shape, shape_sample = shape.inertia, shape.measure, shape.sample
+    given_otherwise, axes = shape.axes is not None, shape.axes
     no_inertia, no_quaternion = composition.code(NO_INERTIA.name), composition.code(NO_QUATERNION.name)
 
     @kernel
@@ -264,14 +266,23 @@ def make_target(composition: Any, part: Term) -> Target:
             p.fault_value = p.target_start_attitude[0]
             return no_quaternion
         normalise(p.target_pose, p.target_pose)
+        if given_otherwise:
+            axes(p, p.target_middle)
+            multiply(p.target_pose, p.target_pose, p.target_middle)
         spin = p.target_turning[0:3]
         for i in range(3):
             p.target_place[i] = 0.0
             p.target_drift[i] = 0.0
             p.target_rate[i] = p.target_start_rate[i]
-            spin[i] = principal[i] * p.target_start_rate[i]
+        if given_otherwise:
+            rotate_inverse(p.target_rate, p.target_middle, p.target_rate)
+        for i in range(3):
+            spin[i] = principal[i] * p.target_rate[i]
         rotate(p.target_spin, p.target_pose, spin)
+        p.target_thickness = math.inf
         measure_shape(p)
+        for i in range(3):
+            p.target_thickness = min(p.target_thickness, 2.0 * p.half_size[i])
         p.target_reach = p.envelope_radius
         return 0
 

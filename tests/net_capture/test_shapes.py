@@ -1,10 +1,11 @@
-"""Box and cylinder: distances, girths, sample points and inertia against what is true of any convex body; capture of a
-cylinder."""
+"""Box, cylinder, sphere and frustum: distances, girths, sample points and inertia against what is true of any convex
+body; capture of a cylinder."""
 
 import math
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 from scipy.optimize import minimize
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
@@ -18,17 +19,38 @@ from tests.net_capture.memory import nodes, planes
 SIZES = {
     "box": [(4.0, 8.0, 4.0), (3.0, 1.0, 2.0), (1.0, 1.5, 6.0)],
     "cylinder": [(2.0, 8.0), (3.0, 1.0), (1.0, 1.3)],
+    "sphere": [(1.3,)],
+    "frustum": [(0.5, 1.5, 1.0), (1.0, 0.0, 2.0)],
 }
 CASES = [(shape, size) for shape, sizes in SIZES.items() for size in sizes]
 CYLINDER = CAPTURE | {"target": "cylinder"}
+
+
+NAMES = {
+    "box": [f"target.size[{i}]" for i in (1, 2, 3)],
+    "cylinder": ["target.radius", "target.length"],
+    "sphere": ["target.radius"],
+    "frustum": ["target.radius_bottom", "target.radius_top", "target.length"],
+}
 
 
 def support(shape, size, n):
     """How far a body reaches along unit vectors (..., 3) [m]."""
     if shape == "box":
         return np.abs(n) @ (0.5 * np.array(size))
-    radius, length = size
-    return radius * np.hypot(n[..., 0], n[..., 1]) + 0.5 * length * np.abs(n[..., 2])
+    if shape == "sphere":
+        return size[0] * np.linalg.norm(n, axis=-1)
+    bottom, top, low, high = ends(size)
+    across = np.hypot(n[..., 0], n[..., 1])
+    return np.maximum(bottom * across - low * n[..., 2], top * across + high * n[..., 2])
+
+
+def ends(size):
+    """Radii of both ends of a cylinder or frustum, and how far they are from its centre of mass [m]."""
+    bottom, top, length = size if len(size) == 3 else (size[0], *size)
+    section = Polynomial([bottom, top - bottom]) ** 2
+    low = length * float((section * Polynomial([0.0, 1.0])).integ()(1.0) / section.integ()(1.0))
+    return bottom, top, low, length - low
 
 
 def directions(count):
@@ -58,8 +80,7 @@ def far_plane(shape, size, point):
 
 
 def parameters(shape, size):
-    names = [f"target.size[{i}]" for i in (1, 2, 3)] if shape == "box" else ["target.radius", "target.length"]
-    return dict(zip(names, size, strict=True)) | {"target.mass": 700.0}
+    return dict(zip(NAMES[shape], size, strict=True)) | {"target.mass": 700.0}
 
 
 class Body:
@@ -119,9 +140,9 @@ def whole(function):
 
 
 def kernels_of(shape):
-    from fmu_src.net_capture.shapes import box, cylinder
+    from fmu_src.net_capture.shapes import box, cylinder, frustum, sphere
 
-    made = {"box": box, "cylinder": cylinder}[shape].PART.make(None)
+    made = {"box": box, "cylinder": cylinder, "sphere": sphere, "frustum": frustum}[shape].PART.make(None)
     return {name: whole(getattr(made, name))[name] for name in ("measure", "inertia", "distance", "sample")} | {
         "samples": made.samples
     }
@@ -137,7 +158,7 @@ def body(request):
     return made
 
 
-def points(body, count=40):
+def points(body, count=25):
     """Random points in and around it, and some on its axes."""
     rng = np.random.default_rng(5)
     half = np.array(body.checks.half(body.values))
@@ -158,12 +179,12 @@ def test_distance_and_normal_are_those_of_the_farthest_plane(body):
             np.testing.assert_allclose(normal, plane, atol=1e-4)
         assert normal @ point - support(body.shape, body.size, normal) == pytest.approx(found, abs=1e-12)
         inside += expected < 0.0
-    assert 5 < inside < len(points(body)) - 5
+    assert 1 < inside < len(points(body)) - 5
 
 
 def test_normal_is_the_gradient_of_the_distance(body):
     step = 1e-5
-    for point in points(body)[:40]:
+    for point in points(body)[:25]:
         _, normal = body.distance(point)
         slope = [(body.distance(point + d)[0] - body.distance(point - d)[0]) / (2.0 * step) for d in step * np.eye(3)]
         np.testing.assert_allclose(slope, normal, atol=1e-4)
@@ -180,11 +201,11 @@ def surface(body):
     """Points that span the body."""
     if body.shape == "box":
         return 0.5 * np.array(body.size) * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    if body.shape == "sphere":
+        return body.size[0] * np.vstack([directions(3000), np.eye(3), -np.eye(3)])
     angles = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
-    radius, length = body.size
-    return np.array(
-        [(radius * math.cos(a), radius * math.sin(a), z) for z in (-length / 2, length / 2) for a in angles]
-    )
+    bottom, top, low, high = ends(body.size)
+    return np.array([(r * math.cos(a), r * math.sin(a), z) for r, z in ((bottom, -low), (top, high)) for a in angles])
 
 
 def silhouette(spanning, along):
@@ -200,14 +221,15 @@ def test_girth_is_the_shortest_silhouette(body):
     """A cord passes over a convex body along a direction when it goes round what is seen along it."""
     spanning = surface(body)
     ways = np.vstack([np.eye(3), directions(300)])
-    shortest = min(silhouette(spanning, way) for way in ways)
-    assert body.p["girth"] == pytest.approx(shortest, rel=1e-5)
+    best = min(ways, key=lambda way: silhouette(spanning, way))
+    found = minimize(lambda way: silhouette(spanning, way), best, method="Nelder-Mead", options={"xatol": 1e-6})
+    assert body.p["girth"] == pytest.approx(found.fun, rel=1e-3 if body.shape == "sphere" else 2e-5)
     assert body.checks.girth(body.values) == pytest.approx(float(body.p["girth"]), rel=1e-15)
 
 
 def test_box_and_sphere_hold_it_tightly(body):
     spanning = surface(body)
-    np.testing.assert_allclose(body.p["half_size"], spanning.max(axis=0), rtol=1e-12)
+    np.testing.assert_allclose(body.p["half_size"], np.abs(spanning).max(axis=0), rtol=1e-12)
     assert body.p["envelope_radius"] == pytest.approx(np.linalg.norm(spanning, axis=1).max(), rel=1e-12)
     np.testing.assert_allclose(body.checks.half(body.values), body.p["half_size"], rtol=1e-15)
     assert body.checks.radius(body.values) == pytest.approx(float(body.p["envelope_radius"]), rel=1e-15)
@@ -220,7 +242,10 @@ def test_sample_points_are_as_deep_as_asked(body, share):
     found = np.array([body.sample(number, depth) for number in range(count)])
     distances = np.array([body.distance(point)[0] for point in found])
     assert distances.max() == pytest.approx(-depth, abs=1e-12)
-    assert len(np.unique(found.round(9), axis=0)) == count == 27
+    assert len(np.unique(found.round(9) + 0.0, axis=0)) == (count if min(body.size) > 0.0 else 19)
+    assert count == 27
+    if body.shape == "frustum":
+        return
     np.testing.assert_allclose(found.mean(axis=0), 0.0, atol=1e-14)
     # they reach as far as the body made smaller does, along every axis
     reach = np.array(body.checks.half(body.values)) - depth
@@ -229,19 +254,34 @@ def test_sample_points_are_as_deep_as_asked(body, share):
 
 
 def test_deeper_than_the_body_is_nothing(body):
+    """Or where a frustum is deepest: a ball there touches its wall and an end."""
+    deepest = np.zeros(3)
+    if body.shape == "frustum":
+        bottom, top, low, high = ends(body.size)
+        widest, narrow, length = max(bottom, top), min(bottom, top), low + high
+        ball = min(length / 2, widest * length / (math.hypot(length, widest - narrow) + widest - narrow))
+        deepest[2] = ball - low if bottom > top else high - ball
+        assert body.distance(deepest)[0] == pytest.approx(-ball, abs=1e-12)
     for number in range(body.kernels["samples"]):
-        np.testing.assert_array_equal(np.abs(body.sample(number, 100.0)), 0.0)
+        np.testing.assert_allclose(body.sample(number, 100.0), deepest, atol=1e-12)
 
 
 def test_inertia_is_that_of_a_uniform_body(body):
-    """Summed over the cells of a grid whose middles lie inside."""
-    half = np.array(body.checks.half(body.values))
-    axes = [h * (2.0 * (np.arange(100) + 0.5) / 100 - 1.0) for h in half]
-    x, y, z = np.meshgrid(*axes, indexing="ij")
-    inside = np.ones_like(x, dtype=bool) if body.shape == "box" else x * x + y * y < body.size[0] ** 2
-    squares = [float((each[inside] ** 2).mean()) for each in (x, y, z)]
+    """Summed over thin slices across the third axis."""
+    if body.shape == "box":
+        a, b, c = body.size
+        z = c * ((np.arange(1000) + 0.5) / 1000 - 0.5)
+        mass, squares = np.ones(1000), [a * a / 12.0, b * b / 12.0]
+    else:
+        bottom, top, low, high = (0.0, 0.0, *body.size, *body.size) if body.shape == "sphere" else ends(body.size)
+        z = (low + high) * (np.arange(1000) + 0.5) / 1000 - low
+        radii = bottom + (top - bottom) * (z + low) / (low + high)
+        mass = low * low - z * z if body.shape == "sphere" else radii**2
+        squares = [float((mass * mass).sum() / mass.sum()) / 4.0] * 2
+    assert float((mass * z).sum() / mass.sum()) == pytest.approx(0.0, abs=1e-5)
+    squares.append(float((mass * z * z).sum() / mass.sum()))
     expected = [700.0 * (sum(squares) - own) for own in squares]
-    np.testing.assert_allclose(body.inertia(), expected, rtol=1e-3)
+    np.testing.assert_allclose(body.inertia(), expected, rtol=1e-5)
 
 
 def test_what_is_drawn_is_the_body(body):
@@ -250,9 +290,12 @@ def test_what_is_drawn_is_the_body(body):
     for corner in corners:
         assert body.checks.distance(body.values, corner) == pytest.approx(0.0, abs=1e-12)
     hull = ConvexHull(corners)
-    radius, length = body.size[:2]
-    volume = math.prod(body.size) if body.shape == "box" else 12.0 * radius**2 * math.sin(math.pi / 12.0) * length
-    assert hull.volume == pytest.approx(volume, rel=1e-12)
+    if body.shape == "sphere":
+        assert hull.volume == pytest.approx(4.0 / 3.0 * math.pi * body.size[0] ** 3, rel=0.03)
+    else:
+        bottom, top, low, high = (0.0, 0.0, 0.0, 0.0) if body.shape == "box" else ends(body.size)
+        round_one = 4.0 * math.sin(math.pi / 12.0) * (bottom**2 + bottom * top + top**2) * (low + high)
+        assert hull.volume == pytest.approx(math.prod(body.size) if body.shape == "box" else round_one, rel=1e-12)
     # every edge belongs to two faces
     edges = [frozenset((face[i - 1], face[i])) for face in faces for i in range(len(face))]
     assert all(edges.count(edge) == 2 for edge in edges)

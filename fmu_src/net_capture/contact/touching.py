@@ -168,8 +168,11 @@ def make_contact(composition: Any, touch: Any) -> Contact:
 def refuses(scene: Scene) -> Iterator[Refusal]:
     """A muzzle inside the target."""
     chaser = scene.vector("chaser.start_position")
+    shape = scene.parts["target"].checks
     inside = in_body_axes(scene.vector("target.start_attitude", 4), chaser)
-    if any(chaser) and scene.parts["target"].checks.distance(scene.values, inside) < 0.0:
+    if shape.turn is not None:
+        inside = in_body_axes(shape.turn(scene.values), inside)
+    if any(chaser) and shape.distance(scene.values, inside) < 0.0:
         expected = "must be outside the target: the folded net would begin inside it"
         yield Refusal("chaser.start_position", text(chaser, " m"), expected)
 

@@ -277,7 +277,7 @@ def make(composition: Any) -> Pace:
         p.pace_finest = MEASURE_INTERVAL / p.measure_every
         if has_contact:
             speed = fastest(p, work)
-            way = WAY_SHARE * 2.0 * min(p.half_size[0], p.half_size[1], p.half_size[2])
+            way = WAY_SHARE * p.target_thickness
             if speed * p.pace_finest > way:
                 p.pace_finest = way / speed
             if speed * p.pace_wanted > way:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-Values = Mapping[str, float]
+Values = Mapping[str, Any]
 Point = Sequence[float]
 
 
@@ -21,6 +21,8 @@ class Shape(NamedTuple):
     inertia(p, out)                 principal moments of a uniform body [kg m2], (3,)
     distance(p, normal, point)      signed distance from its surface [m], negative inside; outward normal into `normal`
     sample(p, out, number, depth)   out = a sample point so far below the surface [m]
+    axes(p, out)                    quaternion from the body axes, which are principal, to those in which its attitude
+                                    and rate are given at the start; None: the same
     """
 
     samples: int
@@ -28,16 +30,18 @@ class Shape(NamedTuple):
     inertia: Any
     distance: Any
     sample: Any
+    axes: Any = None
 
 
 class Checks(NamedTuple):
-    """What a shape says of a scene's values, by FMI name [SI].
+    """What a shape says of a scene's values, by FMI name [SI]; tables of its part are among them.
 
     half(values)              half the edges of the box around it [m], (3,)
     radius(values)            of the sphere around it [m]
     girth(values)             the shortest closed cord that can be passed over it [m]
     distance(values, point)   from its surface, negative inside [m]
     surface(values)           corners [m] (n, 3) and faces, as numbers of their corners, to draw it by
+    turn(values)              `axes` of `Shape`; None: the same
     """
 
     half: Callable[[Values], list[float]]
@@ -45,11 +49,20 @@ class Checks(NamedTuple):
     girth: Callable[[Values], float]
     distance: Callable[[Values, Point], float]
     surface: Callable[[Values], tuple[list[Point], list[list[int]]]]
+    turn: Callable[[Values], list[float]] | None = None
 
 
 def shapes() -> dict[str, Any]:
     """The term of a free target of every shape, by name."""
-    from fmu_src.net_capture.shapes import box, cylinder
+    from fmu_src.net_capture.shapes import box, cylinder, frustum, mesh, sphere, union
     from fmu_src.net_capture.target import free_body
 
-    return {name: free_body(name, part) for name, part in (("box", box.PART), ("cylinder", cylinder.PART))}
+    parts = {
+        "box": box.PART,
+        "cylinder": cylinder.PART,
+        "sphere": sphere.PART,
+        "frustum": frustum.PART,
+        "union": union.PART,
+        "mesh": mesh.PART,
+    }
+    return {name: free_body(name, part) for name, part in parts.items()}

@@ -1,0 +1,218 @@
+"""The union of pieces: boxes, cylinders, spheres, frusta and shells, each with its mass, place and attitude.
+
+Outside, the distance from it is the least of the distances from its pieces, exactly. Inside, the depth in the piece
+that the point is deepest in is a lower bound: where pieces overlap, faces that lie within another piece count for it.
+Masses add, also where pieces overlap. It moves about its principal axes, see `solids`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from fmu_src.implied import formula
+from fmu_src.interface import Laid, Term
+from fmu_src.net_capture.shapes import Checks, Point, Shape, Values, samples, solids
+from fmu_src.net_capture.shapes import pieces as of
+from fmu_src.net_capture.shapes.box import box_distance
+from fmu_src.net_capture.shapes.cylinder import cylinder_distance
+from fmu_src.net_capture.shapes.frustum import frustum_distance
+from fmu_src.net_capture.shapes.shell import shell_distance
+from fmu_src.net_capture.shapes.sphere import sphere_distance
+from fmu_src.rows import state
+from fmu_src.tables import Table
+from orbital.kernel import kernel
+
+PARTS, PIECES = "target.parts", "target.pieces"
+WORDS = 18
+"""Numbers of a piece in the FMU: kind, four sizes (of a box half its edges), place of its middle, matrix from its axes
+to the body's by rows, and radius of the sphere about its middle."""
+NEAR = 1e-6
+"""Distance from the surface, as a share of the body's radius, within which a point lies on it."""
+
+
+@kernel
+def piece_distance(row, normal, local):
+    """Signed distance [m] of a point from a piece, and outward normal, in the piece's axes.
+
+    Checked  tests/net_capture/test_pieces.py
+    """
+    kind = row[0]
+    if kind == 0.0:
+        return box_distance(normal, local, row[1:4])
+    if kind == 1.0:
+        return cylinder_distance(normal, local, row[1], 0.5 * row[2])
+    if kind == 2.0:
+        return sphere_distance(normal, local, row[1])
+    if kind == 3.0:
+        return frustum_distance(normal, local, row[1], row[2], row[3])
+    return shell_distance(normal, local, row[1], row[2], row[3], row[4])
+
+
+@kernel
+def union_distance(rows, normal, own, local, point):
+    """Signed distance [m] of a point from a union, negative inside; outward normal into `normal`.
+
+        min over the pieces
+
+    rows         its pieces, see `WORDS`                       (n, 18)
+    point        in body axes                             [m]  (3,)
+    normal       unit vector, body axes                   [1]  (3,)
+    own, local   room for vectors                              (3,)
+
+    Valid    exact outside; inside a lower bound of the depth, exact where the nearest face lies in no other piece
+    Checked  tests/net_capture/test_pieces.py
+    """
+    nearest = math.inf
+    for k in range(rows.shape[0]):
+        row = rows[k]
+        x = point[0] - row[5]
+        y = point[1] - row[6]
+        z = point[2] - row[7]
+        if math.sqrt(x * x + y * y + z * z) - row[17] >= nearest:
+            continue
+        for i in range(3):
+            local[i] = row[8 + i] * x + row[11 + i] * y + row[14 + i] * z
+        distance = piece_distance(row, own, local)
+        if distance < nearest:
+            nearest = distance
+            for i in range(3):
+                normal[i] = row[8 + 3 * i] * own[0] + row[9 + 3 * i] * own[1] + row[10 + 3 * i] * own[2]
+    return nearest
+
+
+def make(composition: Any) -> Shape:
+    """Kernels of a union."""
+    pieces_of = composition.table(PIECES)
+
+    @kernel
+    def distance(p, normal, point):
+        """Signed distance [m] and outward normal, see `union_distance`.
+
+        Checked  tests/net_capture/test_pieces.py
+        """
+        return union_distance(pieces_of(p), normal, p.piece_normal, p.piece_point, point)
+
+    return samples.make_solid(composition, distance)
+
+
+def body_of(rows: np.ndarray) -> solids.Solid:
+    """Mass, centre of mass and inertia of pieces together, by the theorem of parallel axes.
+
+    Checked  tests/net_capture/test_pieces.py
+    """
+    found = [(piece.mass, *of.mass_of(piece)) for piece in of.pieces(rows)]
+    mass = sum(each for each, _, _ in found)
+    center = sum(each * place for each, place, _ in found) / mass
+    tensor = np.zeros((3, 3))
+    for each, place, own in found:
+        d = place - center
+        tensor += own + each * (float(d @ d) * np.eye(3) - np.outer(d, d))
+    return solids.solid_of(mass, center, tensor)
+
+
+def pieces_table(rows: np.ndarray, body: solids.Solid) -> np.ndarray:
+    """The table `pieces`, in body axes."""
+    found = np.empty((len(rows), WORDS))
+    for row, piece in zip(found, of.pieces(rows), strict=True):
+        half = of.half_of(piece)
+        row[0], row[1:5] = piece.kind, piece.sizes
+        if piece.kind == of.BOX:
+            row[1:4] = half
+        row[5:8] = body.to_body(piece.place)
+        row[8:17] = (body.turn.T @ piece.turn).ravel()
+        row[17] = np.linalg.norm(half)
+    return found
+
+
+def lay(values: Mapping[str, float], sources: Mapping[str, np.ndarray]) -> Laid:
+    """Tables of the FMU, and the mass, from what a scene says of the pieces."""
+    return _laid(sources[PARTS].tobytes())
+
+
+@lru_cache(maxsize=8)
+def _laid(content: bytes) -> Laid:
+    rows = np.frombuffer(content).reshape(-1, of.ROW)
+    body, found = body_of(rows), of.pieces(rows)
+    inner, outer = (
+        body.to_body(np.vstack([of.spanning(piece, around) for piece in found])) for around in (False, True)
+    )
+    solid = solids.table(body, inner, outer, min(of.thickness_of(piece) for piece in found))
+    table = pieces_table(rows, body)
+    points = body.to_body(np.vstack([of.filling(piece) for piece in found]))
+    normals, room, distance = np.empty_like(points), np.empty((2, 3)), formula(union_distance)
+
+    def depth(at: np.ndarray) -> np.ndarray:
+        return np.array([-distance(table, normal, *room, point) for normal, point in zip(normals, at, strict=False)])
+
+    depths = depth(points)
+    out = points + depths[:, None] * normals
+    near = NEAR * solid[solids.RADIUS]
+    piece = np.repeat(np.arange(len(found)), len(points) // len(found))
+    inside = depths > near
+    on = inside & (np.abs(depth(out)) < near)
+
+    def leads(start: int) -> np.ndarray:
+        return np.asarray(piece[inside] == piece[on][start])
+
+    tables = {
+        PIECES: table,
+        "target.solid": solid,
+        "target.samples": solids.samples(points[inside], depth, out[on], leads),
+    }
+    return Laid(tables, {"target.mass": body.mass})
+
+
+def _distance(values: Values, point: Point) -> float:
+    room = np.empty((3, 3))
+    return float(formula(union_distance)(values[PIECES], *room, point))
+
+
+def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:
+    """Of every piece, whole."""
+    corners: list[Point] = []
+    faces: list[list[int]] = []
+    for row in values[PIECES]:
+        kind = int(row[0])
+        sizes = 2.0 * row[1:5] if kind == of.BOX else row[1:5]
+        own, sides = of.drawn(of.Piece(kind, [float(x) for x in sizes], 0.0, row[5:8], row[8:17].reshape(3, 3)))
+        faces += [[len(corners) + number for number in side] for side in sides]
+        corners += own
+    return corners, faces
+
+
+CHECKS = Checks(
+    lambda values: list(values["target.solid"][solids.HALF : solids.RADIUS]),
+    lambda values: float(values["target.solid"][solids.RADIUS]),
+    lambda values: float(values["target.solid"][solids.GIRTH]),
+    _distance,
+    _surface,
+    lambda values: [float(x) for x in values["target.solid"][solids.TURN : solids.CENTER]],
+)
+
+PART = Term(
+    "union of boxes, cylinders, spheres, frusta and shells",
+    (
+        state("piece_normal[#]", "1", "outward normal of a piece, its axes", shape=(3,)),
+        state("piece_point[#]", "m", "a point in the axes of a piece", shape=(3,)),
+        *samples.ROWS,
+    ),
+    tables=(Table(PIECES, "1", "pieces of the target in its body axes", dimensions=2), *samples.TABLES),
+    sources=(
+        Table(
+            PARTS,
+            "1",
+            "pieces of the target: shape, sizes, mass or density, position and attitude in its design axes",
+            dimensions=2,
+            entry=of.ENTRY,
+            gather=of.gather,
+        ),
+    ),
+    lay=lay,
+    make=make,
+    checks=CHECKS,
+)
