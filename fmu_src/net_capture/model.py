@@ -23,10 +23,11 @@ from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.net_capture import outcome, quality
 from fmu_src.net_capture.book import make_balance
 from fmu_src.net_capture.composition import Composition
-from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES
+from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES, TOO_MANY_THREADS
 from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
 from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep, make_limit_way
+from fmu_src.net_capture.tensions import make_tensions
 from orbital.kernel import entry, kernel
 
 ON_GRID = 1e-3
@@ -45,6 +46,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     hold, has_volume = parts.volume, parts.volume is not None
     has_nodes, has_air = "nodes" in terms, parts.air is not None
     capacity = int(terms["nodes"]) if has_nodes else 0
+    has_threads = "threads" in terms
+    thread_capacity = int(terms["threads"]) if has_threads else 0
+    tensions = make_tensions(parts) if has_threads else None
     planes, per_double = parts.planes, parts.per_double
     node_plane, properties = parts.memory.node_plane, parts.memory.properties
 
@@ -55,7 +59,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     shot, measures, limit_way = make_shot(parts), quality.make_quality(parts), make_limit_way(parts)
     choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
     judge = outcome.make_judge(parts, measures)
-    not_finite, no_axis, too_many_nodes = (parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES))
+    not_finite, no_axis, too_many_nodes, too_many_threads = (
+        parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES, TOO_MANY_THREADS)
+    )
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
@@ -84,6 +90,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if p.net_nodes > capacity:
                 p.fault_value = p.net_nodes
                 return too_many_nodes
+        if has_threads:
+            if p.net_threads > thread_capacity:
+                p.fault_value = p.net_threads
+                return too_many_threads
         p.work_size = work_size(p, planes, per_double, scheme.own_words(p) + masks * p.strips)
         return 0
 
@@ -198,6 +208,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             tether.measure(p)
         if has_nodes:
             write_nodes(p, work)
+        if has_threads:
+            tensions.write(p, work)
         peaks.collect(p)
         if has_closing:
             if p.cord_tension_peak > p.cord_tension_max:
@@ -287,6 +299,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         graph.lay_out(p, work)
         complete_strips(p, properties(p, work))
         shot.load(p, work)
+        if has_threads:
+            tensions.list_threads(p, work)
         folding.fold(p, work)
         shot.jitter(p, work)
         shot.shoot(p, work)
