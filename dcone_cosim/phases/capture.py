@@ -15,7 +15,7 @@ from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS
-from dcone_cosim.phases import capture_criteria, capture_quantities, capture_report, chaos
+from dcone_cosim.phases import capture_clip, capture_criteria, capture_quantities, capture_report, chaos
 from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage
 from dcone_cosim.quantities import Quantity
@@ -23,6 +23,7 @@ from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scene.mistakes import Mistake
+from dcone_cosim.scenery import Chart, Clip
 
 OPENING = "shot.opening"
 """Key of how far bullets fly until they alone would have spread the net."""
@@ -39,11 +40,13 @@ class CaptureOptions:
     hand_over      one of `contract.HAND_OVER`
     after_capture  go on for this long after the capture, when no phase follows [s]
     snapshots      when to keep the positions of the nodes [s]; empty: evenly spread
+    replay_every   from frame to frame of a replay [s]; infinite: none is kept
     """
 
     hand_over: str = "captured"
     after_capture: float = math.inf
     snapshots: Sequence[float] = ()
+    replay_every: float = math.inf
 
 
 class Capture(Phase):
@@ -53,6 +56,7 @@ class Capture(Phase):
         "hand_over": Expected("1", choices=HAND_OVER),
         "after_capture": Expected("s", example="1 s", minimum=0.0),
         "snapshots": Expected("s", example="5.32 s", minimum=0.0, size=ANY),
+        "replay_every": Expected("s", example="40 ms", minimum=1e-6),
     }
     examples = ("0.02 s", "30 s")
     begins_at_zero = True
@@ -95,6 +99,9 @@ class Capture(Phase):
         group = NEEDED_FOR.get(given) if isinstance(given, str) else None
         if part.fmu is None and group is not None and group not in part.terms:
             yield Mistake(path, given, f"needs the table [capture.{group}], which this scene lacks")
+        every = document.tables["capture"].get("replay_every")
+        if every is not None and part.fmu is None and "nodes" not in part.terms:
+            yield Mistake(("capture", "replay_every"), every, "needs the table [capture.nodes], which this scene lacks")
         following = document.after("capture")
         if not following:
             return
@@ -167,6 +174,13 @@ class Capture(Phase):
     def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
         phase = next(phase for phase in run.scene.phases if phase.name == self.name)
         return capture_report.figures(run, phase, result)
+
+    def clip(self, run: RunResult, result: PhaseResult) -> Clip | None:
+        phase = next(phase for phase in run.scene.phases if phase.name == self.name)
+        return capture_clip.clip(run, phase, result, self.marks(result))
+
+    def charts(self, run: RunResult, result: PhaseResult) -> Iterator[Chart]:
+        return capture_clip.charts(result, self.marks(result))
 
     def without_figure(self, scene: Scene, result: PhaseResult) -> Iterator[str]:
         if not result.snapshots.times:
