@@ -129,8 +129,10 @@ def make_attached(
         return 0
 
     @kernel
-    def span(record: Any, state: Array) -> None:
+    def span(record: Any, state: Array, whole: bool) -> None:
         """The line's vector and its rate, from the chaser's attachment to where it meets the target, in `state.line`.
+
+        whole         as of `Wrapping.follow`
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
@@ -138,8 +140,8 @@ def make_attached(
         for i in range(3):
             vector[i] = state[6 + i]
             velocity[i] = state[9 + i]
-        chaser.reach(record, state, vector, velocity)
-        target.reach(record, state, vector, velocity)
+        chaser.reach(record, state, vector, velocity, whole)
+        target.reach(record, state, vector, velocity, whole)
 
     @kernel
     def measure(record: Any, state: Array) -> tuple[float, float, float]:
@@ -160,7 +162,7 @@ def make_attached(
         """
         target.stand(record, state)
         chaser.stand(record, state)
-        span(record, state)
+        span(record, state, True)
 
     @kernel
     def line(record: Any, state: Array) -> tuple[float, float, float]:
@@ -174,7 +176,7 @@ def make_attached(
 
     @kernel
     def leave(record: Any, state: Array, elapsed: float) -> None:
-        """The state of a step as it is, in `state.seen`.
+        """The state of a step as it is, in `state.seen`, without the line.
 
         Checked  tests/tethered_deorbit/test_rigid.py: three tugs
         """
@@ -184,12 +186,23 @@ def make_attached(
             there[i] = state[i]
         target.carried.leave(record, elapsed, state, there)
         chaser.carried.leave(record, elapsed, state, there)
+
+    @kernel
+    def find_line(record: Any, state: Array, whole: bool) -> None:
+        """The line's vector and its rate, in `state.line`; after `leave`.
+
+        state         in the coordinates of the step: those of a straight taut line hold it
+        whole         as of `Wrapping.follow`
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        r = record[0]
         if straight and r.state_carried == 1:
             for i in range(3):
                 r.state_line[0][i] = state[6 + i]
                 r.state_line[1][i] = state[9 + i]
         else:
-            span(record, there)
+            span(record, r.state_seen, whole)
 
     @view
     def seen(record: Any, state: Array, elapsed: float) -> Array:
@@ -198,6 +211,28 @@ def make_attached(
         Checked  tests/tethered_deorbit/test_rigid.py: three tugs
         """
         leave(record, state, elapsed)
+        find_line(record, state, True)
+        there: Array = record[0].state_seen
+        return there
+
+    @view
+    def felt(record: Any, state: Array, elapsed: float) -> Array:
+        """The same for the equations: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
+        leave(record, state, elapsed)
+        if record[0].state_taut:
+            find_line(record, state, False)
+        there: Array = record[0].state_seen
+        return there
+
+    @view
+    def last_seen(record: Any, state: Array) -> Array:
+        """What `seen` has left: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
+        """
         there: Array = record[0].state_seen
         return there
 
@@ -244,6 +279,7 @@ def make_attached(
         """
         r = record[0]
         leave(record, state, 0.0)
+        find_line(record, state, True)
         keep(record)
         target.set_pivot(record, r.state_seen, r.state_line[0], r.state_line[1])
 
@@ -538,6 +574,8 @@ def make_attached(
         enter=enter,
         go_on=go_on,
         seen=seen,
+        felt=felt,
+        last_seen=last_seen,
         seen_rate=seen_rate,
         enter_rate=enter_rate,
         longest=longest,

@@ -50,8 +50,9 @@ class Rigid(NamedTuple):
     stand(record, state)                        the matrix of the attitude; of what follows all but `energy` and
                                                 `squared_error` come after it
     move(record, state, rate)                   attitude and rate without the line
-    reach(record, state, vector, velocity)      add what the attachment adds to the line's vector, from the chaser's
-                                                attachment to the target's [m], and to its rate [m/s]
+    reach(record, state, vector, velocity, whole)   add what the attachment adds to the line's vector, from the
+                                                chaser's attachment to the target's [m], and to its rate [m/s]; `whole`
+                                                as of `Wrapping.follow`
     reach_acceleration(record, state, rate, out)   and to the rate of that, inertial [m/s^2]; after `reach`
     relief(record, state, vector, velocity) -> l''   what a line that slides over the body takes off l'' [m/s^2]; after
                                                 `reach`
@@ -247,7 +248,7 @@ def make_rigid(
         to_matrix_of_any_length(record[0][turned], state[first:middle])
 
     @kernel
-    def seek(record: Any, vector: Array) -> None:
+    def seek(record: Any, vector: Array, whole: bool) -> None:
         """The way of the line round the body to the other's end, from that of its vector which is the other's [m].
 
         Checked  tests/tethered_deorbit/test_wrapping.py
@@ -257,12 +258,12 @@ def make_rigid(
         transposed_matrix_vector(room, r[turned], vector)
         for i in range(3):
             room[i] *= -sign
-        follow(record, room)
+        follow(record, room, whole)
 
     seek_way = seek if wrapping.leaving else nothing
 
     @kernel
-    def reach(record: Any, state: Array, vector: Array, velocity: Array) -> None:
+    def reach(record: Any, state: Array, vector: Array, velocity: Array, whole: bool) -> None:
         """Add where the line leaves the body, and its rate, from the centre of mass; after `stand`: see `Rigid`.
 
             b = A a,   b' = A (w x a),   a the attachment, or where a line that wraps round the body leaves it
@@ -270,7 +271,7 @@ def make_rigid(
         Checked  tests/tethered_deorbit/test_rigid.py
         """
         r = record[0]
-        seek_way(record, vector)
+        seek_way(record, vector, whole)
         matrix_vector(r[arms][0], r[turned], r[leaving])
         point_velocity(r[arms][1], r[turned], state[middle:last], r[leaving])
         add_scaled(vector, vector, sign, r[arms][0])

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 from fmu_src.tethered_deorbit.bodies.corners import make_corners
 from fmu_src.tethered_deorbit.bodies.path import make_path
 from fmu_src.tethered_deorbit.bodies.polyhedron import (
+    DEPTH,
     NONE,
     crossing,
     crosswise,
@@ -47,9 +48,9 @@ OPPOSITE = 0.01
 class Wrapping(NamedTuple):
     """Kernels of the line round a body; as it stands, of one that goes straight to where it is made fast.
 
-    follow(record, point)            the way over the edges that are held, to where it ends at the other body, in axes
+    follow(record, point, whole)     the way over the edges that are held, to where it ends at the other body, in axes
                                      of this one [m] (3,): fills `state.departure` and `state.wrapped`, the length on
-                                     the body [m], and what all others ask
+                                     the body [m], and, if the whole is asked for, what all others ask
     begin(record) -> fault           faces and edges from the parameters; no edge is held
     start(record)                    the shortest way, to be followed from then on
     holds(record) -> bool            whether the edges hold for the way last followed
@@ -107,7 +108,15 @@ def make_wrapping(surface: Surface) -> Wrapping:
         r.unfolded_usable = 0
         r.state_way_fault = 0
         r.tether_slip_loss = 0.0
-        return int(lay_out(record))
+        fault = lay_out(record)
+        r.state_own_face = 0
+        highest = -math.inf
+        for f in range(faces):
+            height = dot(r.state_faces[f][0:3], r.target_attachment) - r.state_faces[f][3]
+            if height > highest:
+                highest = height
+                r.state_own_face = f
+        return int(fault)
 
     @kernel
     def trouble(record: Any) -> int:
@@ -118,14 +127,14 @@ def make_wrapping(surface: Surface) -> Wrapping:
         return int(record[0].state_way_fault)
 
     @kernel
-    def follow(record: Any, point: Array) -> None:
+    def follow(record: Any, point: Array, whole: bool) -> None:
         """The way to a point over the edges that are held: see `Wrapping`.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
         for i in range(3):
             record[0].path_far[i] = point[i]
-        if not follow_unfolded(record):
+        if not follow_unfolded(record, whole):
             follow_path(record)
 
     @kernel
@@ -317,12 +326,34 @@ def make_wrapping(surface: Surface) -> Wrapping:
         follow_path(record)
 
     @kernel
+    def complete(record: Any) -> None:
+        """Points on all edges of the way last followed: over one edge or none they are there.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        if record[0].held_count > 1:
+            follow_path(record)
+
+    @kernel
+    def beyond_its_face(record: Any) -> bool:
+        """Whether the far end lies above the face on which the line is made fast: then a straight line meets no other.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py: against all faces
+        """
+        r = record[0]
+        face = r.state_faces[r.state_own_face]
+        depth = DEPTH * r.state_extent
+        return bool(
+            dot(face[0:3], r.target_attachment) - face[3] >= -depth and dot(face[0:3], r.path_far) - face[3] > 0.0
+        )
+
+    @kernel
     def hold_way(record: Any) -> None:
         """The way last followed becomes that from which others are followed, with its points on all edges.
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        follow_path(record)
+        complete(record)
         keep(record)
 
     @kernel
@@ -331,7 +362,7 @@ def make_wrapping(surface: Surface) -> Wrapping:
 
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
-        follow_path(record)
+        complete(record)
         show_way(record)
 
     @kernel
@@ -341,11 +372,13 @@ def make_wrapping(surface: Surface) -> Wrapping:
         Checked  tests/tethered_deorbit/test_wrapping.py
         """
         r = record[0]
+        if r.held_count == 0 and beyond_its_face(record):
+            return True
         if met(record, r.path_far):
             return False
         if r.held_stuck == 1:
             return True
-        follow_path(record)
+        complete(record)
         return bool(sound(record) and run_at_corner(record)[0] == NONE)
 
     @kernel
