@@ -118,7 +118,7 @@ def margin_of_safety(strength: float, stress: float, factor: float = 1.0) -> flo
 
 
 DUPONT = (
-    "DuPont, Kevlar technical guide, table II-1: typical properties of yarns, as others cite it: the table itself could "
+    "DuPont, Kevlar technical guide, table II-1: typical properties of yarns, as others cite it: the table could "
     "not be read"
 )
 TEIJIN = "Teijin, Technora, table 3: tensile properties of industrial fibres"

@@ -19,8 +19,8 @@ CUTS = 3.0
 SOURCE = (
     "1.05e-5 (d/cm)^-2.5 per m2 and year, the small particles of Kessler, Reynolds and Anz-Meador, NASA TM 100471 "
     "(1989), as others cite it (it could not be read), without its factors for altitude, inclination and year, each "
-    "within 3 of one in low orbit; where this load governs, give the flux of ORDEM or MASTER for the orbit in [sizing]: "
-    "ECSS-E-ST-10-04C, table J-3, has MASTER's at 800 km and 98 deg"
+    "within 3 of one in low orbit; where this load governs, give the flux of ORDEM or MASTER for the orbit in "
+    "[sizing]: ECSS-E-ST-10-04C, table J-3, has MASTER's at 800 km and 98 deg"
 )
 OFF = 27.0
 """Of the default: three factors left out, each within 3 of one."""

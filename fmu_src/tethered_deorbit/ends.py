@@ -215,6 +215,7 @@ def make_ends(terms: Mapping[str, str], line: Callable[..., Any], interface: Int
 
         Checked  tests/tethered_deorbit/test_ends.py
         """
+        record[0].ends_time = 0.0
         fault, slot, value = met(record, state)
         return blame(record, ENDS_AT_START, slot, value) if fault != 0 else 0
 
@@ -251,6 +252,9 @@ def make_ends(terms: Mapping[str, str], line: Callable[..., Any], interface: Int
         Checked  tests/tethered_deorbit/test_ends.py
         """
         fault, _, value = met(record, state)
-        return blame(record, fault, 0, value) if fault != 0 else 0
+        if fault == 0:
+            return 0
+        record[0].ends_time = time
+        return blame(record, fault, 0, value)
 
     return Acting(begin=begin, longest=longest, holds=holds, act=act)
