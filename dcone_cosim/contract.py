@@ -34,6 +34,10 @@ FLOWN = "flown"
 ENDED = "ended"
 """Outcome of a phase whose FMU came to an end of its own, by fmi2Discard and fmi2Terminated."""
 
+END_TIMES = ("ends.time", "break.time")
+"""Outputs that tell when an FMU has ended itself, since its start [s]: one that tells so has the outputs of that
+instant, any other those of its last communication point."""
+
 HANDED_OVER = "handed_over"
 """Name of the choice of `start.condition` under which the removal takes the state it is given."""
 

@@ -54,8 +54,8 @@ class PhaseResult:
     frames: Frames | None = None
 
     def ended(self, end: Terminated) -> None:
-        """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:
-        the last row stays that of the communication point before."""
+        """Note the FMU's own end, which is no failure. Unless it tells that its outputs are of that instant, the last
+        row stays that of the communication point before."""
         self.outcome, self.ended_by, self.ended_at = ENDED, end.said, end.time - self.origin
 
     @property

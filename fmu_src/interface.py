@@ -140,7 +140,7 @@ class Fault:
     """A reason for which a kernel may stop: its status code, FMI severity and text (what went wrong, what to try).
 
     severity        error; discard (a step may be tried again otherwise); end (the model's own end: nothing is wrong,
-                    `fault_time` is when, and the outputs are those of the last communication point)
+                    `fault_time` is when; where a part ends the run, the outputs are those of that instant)
     names_variable  `fault_index` is the value reference of the variable at fault; else it is zero or what the text says
     name            by which a part's kernels find the code that the model gave it
     blames          the variable it names, or its first component

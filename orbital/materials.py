@@ -117,9 +117,15 @@ def margin_of_safety(strength: float, stress: float, factor: float = 1.0) -> flo
     return strength / (factor * stress) - 1.0 if stress > 0.0 else math.inf
 
 
-DUPONT = "DuPont, Kevlar technical guide, table II-1: typical properties of yarns"
+DUPONT = (
+    "DuPont, Kevlar technical guide, table II-1: typical properties of yarns, as others cite it: the table could "
+    "not be read"
+)
 TEIJIN = "Teijin, Technora, table 3: tensile properties of industrial fibres"
-TOYOBO = "Toyobo, Zylon technical information (2005), section 1: basic properties"
+TOYOBO = (
+    "Toyobo, Zylon technical information (2005), section 1: basic properties, as others cite it; read was Imattec, "
+    "Zylon: 37 cN/dtex, 1150 (AS) and 1720 cN/dtex (HM), 3.5 and 2.5 %, 1540 and 1560 kg/m3, within 2 % of these"
+)
 DSM = "DSM Dyneema, fact sheet CIS YA100 (2010), fibre types SK75 and SK78"
 TTI = "Tension Technology International, deepwater fibre moorings, table 1: synthetic fibre yarn properties"
 

@@ -16,17 +16,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
+from types import MappingProxyType
 
-from dcone_cosim.cases.case import Begins, Case, code, content, digest
+from dcone_cosim.cases.case import Begins, Case, code, content, digest, identities
 from dcone_cosim.drafts import PROVENANCE, atomic_folder
 from dcone_cosim.errors import InputError
+from dcone_cosim.loading import load
 from dcone_cosim.results import Begun, RunResult
 from dcone_cosim.run_folder import fill
-from dcone_cosim.run_reading import read_run
+from dcone_cosim.run_reading import provenance_of, read_run
 from dcone_cosim.running import Ran
 from dcone_cosim.scene.data import Scene
 
 FOLDER = "beginnings"
+NOWHERE: Mapping[str, Path] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -77,11 +80,32 @@ def key_of_beginning(scene: Scene, fmus: Mapping[str, str], count: int) -> str:
     return digest("beginning", found["phases"][:count], between, scene.phases[count].name, parts, code())
 
 
-def shared(cases: Sequence[tuple[Case, Mapping[str, str]]], folder: Path) -> dict[str, Beginning]:
-    """The longest beginning that a case has in common with another, by the key of the case.
+def kept_of(folder: Path) -> dict[str, Path]:
+    """The beginnings that a run has left in its folder, by their keys; `InputError` where it is not the folder of one.
+
+    A run that another version made, or whose accuracy was chosen, has none.
+
+    Checked  tests/cases/test_beginnings.py: a sweep of a run
+    """
+    told, scene = provenance_of(folder), load(str(folder))
+    if scene.accuracy is not None or told["packages"]["dcone-cosim"] != code()["dcone-cosim"]:
+        return {}
+    fmus, found = identities(told["phases"]), {}
+    for count, phase in enumerate(scene.phases[:-1], start=1):
+        if not told["phases"].get(phase.name, {}).get("left"):
+            break
+        found[key_of_beginning(scene, fmus, count)] = folder
+    return found
+
+
+def shared(
+    cases: Sequence[tuple[Case, Mapping[str, str]]], folder: Path, kept: Mapping[str, Path] = NOWHERE
+) -> dict[str, Beginning]:
+    """The longest beginning that a case has in common with another, or with a run that is there, by the case's key.
 
     cases     with what their FMUs are
     folder    in which beginnings are kept
+    kept      folders of others, by the keys of the beginnings there
     """
     keys = {
         case.key: [key_of_beginning(case.scene, fmus, count) for count in range(1, len(case.scene.phases))]
@@ -93,11 +117,12 @@ def shared(cases: Sequence[tuple[Case, Mapping[str, str]]], folder: Path) -> dic
     for case, _ in cases:
         names, before = [phase.name for phase in case.scene.phases], None
         for place, key in enumerate(keys[case.key], start=1):
-            if often[key] < 2:
+            if often[key] < 2 and key not in kept:
                 break
             if key not in made:
                 over = tuple(names[:place])
-                made[key] = Beginning(key, case.scene, over, names[place], folder / FOLDER / key, before)
+                where = kept.get(key, folder / FOLDER / key)
+                made[key] = Beginning(key, case.scene, over, names[place], where, before)
             before = made[key]
         if before is not None:
             found[case.key] = before
@@ -125,7 +150,8 @@ def write(beginning: Beginning, ran: Ran) -> None:
 def begun(begins: Begins, scene: Scene) -> Begun | None:
     """What is gone on from; None where it is not there or damaged: the case is then run from its beginning."""
     try:
-        before: RunResult = read_run(begins.folder, scene)
+        following = [phase.name for phase in scene.phases][len(begins.over)]
+        before: RunResult = read_run(begins.folder, scene, following)
     except InputError:
         return None
     return Begun(before, begins.over) if tuple(before.phases) == begins.over else None

@@ -23,6 +23,7 @@ from dcone_cosim import interrupts, placed
 from dcone_cosim.cases import ensemble as ensembles
 from dcone_cosim.cases import show, vary
 from dcone_cosim.cases.alone import Fmus
+from dcone_cosim.cases.beginnings import kept_of
 from dcone_cosim.cases.case import Case, Value, code, content, digest, identities, key_of
 from dcone_cosim.cases.early import Early, begun_together
 from dcone_cosim.cases.pace import Pace
@@ -143,12 +144,23 @@ def sweep_over(
         of_base = fmus.of(base)
         firsts = [] if len(base.phases) == 1 else vary.first_two(name, keys, settings)
         firsts = [scene.isolating(isolate) for scene in firsts]
-        early = Early([(scene, fmus.of(scene)) for scene in firsts], folder, workers)
+        early = Early([(scene, fmus.of(scene)) for scene in firsts], folder, workers, _kept(name, progress))
         last.callback(early.close)  # once no worker writes there any more
         for _ in range(count):
             workers.submit(make_ready, base)
         plan = _planned(name, base, keys, settings, isolate, progress, fmus, of_base)
         return _carry_out(plan, folder, progress, workers, 2 * count, with_figures, early)
+
+
+def _kept(name: str, progress: Progress) -> Mapping[str, Path]:
+    """The beginnings there are, where the scene is the folder of a run."""
+    folder = Path(name)
+    if not (folder / PROVENANCE).is_file():
+        return {}
+    found = kept_of(folder)
+    if found:
+        progress.say(f"cases that begin as {folder} did go on from what it has left")
+    return found
 
 
 def _planned(

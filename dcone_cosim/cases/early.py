@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from dcone_cosim import interrupts
-from dcone_cosim.cases.beginnings import Beginning, in_order, shared
+from dcone_cosim.cases.beginnings import NOWHERE, Beginning, in_order, shared
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.runner import LOOK
 from dcone_cosim.cases.store import Store
@@ -29,11 +29,19 @@ class Early:
 
     firsts   the first two cases: their scenes, and what their FMUs are
     place    folder of the sweep, which need not be there yet
+    kept     of `beginnings.shared`
     """
 
-    def __init__(self, firsts: Sequence[tuple[Scene, Mapping[str, str]]], place: Path, workers: Executor) -> None:
+    def __init__(
+        self,
+        firsts: Sequence[tuple[Scene, Mapping[str, str]]],
+        place: Path,
+        workers: Executor,
+        kept: Mapping[str, Path] = NOWHERE,
+    ) -> None:
+        self.kept = kept
         cases = [(Case(str(number), scene), fmus) for number, (scene, fmus) in enumerate(firsts)]
-        found = shared(cases, place)
+        found = shared(cases, place, kept)
         self._going: Future[None] | None = None
         if not found:
             return
@@ -76,7 +84,8 @@ def begun_together(
 
     identified    what the FMUs of a case are, by its key, of those that may have something in common
     """
-    of = shared([(case, identified[case.key]) for case in cases if case.key in identified], store.folder)
+    kept = NOWHERE if early is None else early.kept
+    of = shared([(case, identified[case.key]) for case in cases if case.key in identified], store.folder, kept)
     missing = [case for case in cases if (row := store.get(case.key)) is None or not row.lasting]
     wanted = [of[case.key] for case in missing if case.key in of]
     if early is not None:

@@ -47,8 +47,9 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     """All lines of a tow, which is the phase of that name."""
     recorder = result.recorder
     elapsed = result.end - result.start
-    # what an FMU went on beyond its last whole step is not recorded
-    told = "recorded, in whole steps" if result.ended_by else "simulated"
+    # what an FMU went on beyond its last whole step may not be recorded
+    whole = result.ended_by and result.end < result.ended_at
+    told = "recorded, in whole steps" if whole else "simulated"
     yield Finding(phase, "simulated", told, elapsed, "s")
     yield from of_end(phase, result)
     begin = " the hand-over" if phase in run.handovers else ""

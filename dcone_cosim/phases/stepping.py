@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from dcone_cosim import interrupts
-from dcone_cosim.contract import NODE_PREFIX, THREAD_PREFIX, TUG_PREFIX
+from dcone_cosim.contract import END_TIMES, NODE_PREFIX, THREAD_PREFIX, TUG_PREFIX
 from dcone_cosim.errors import FmuError, Interrupted
 from dcone_cosim.fmu.component import Readable, Steppable, Terminated, output_names
 from dcone_cosim.fmu.restoring import differing
@@ -25,6 +25,9 @@ from dcone_cosim.states import Keeper, KeptState
 
 SAME = 1e-6
 """Relative difference up to which two steps are of one length: at t = 1e6 s a step of 1 ms has lost six digits."""
+
+SAME_INSTANT = 1e-9
+"""Relative difference up to which two tellings of an instant are of the same."""
 
 COMPLETED = "completed"
 """Outcome of a phase that was stepped to its end."""
@@ -156,13 +159,27 @@ class PhaseLoop:
             interrupts.check(result.name, start + i * self.macro_step)
             end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
             begun = origin + (start + i * self.macro_step)
-            component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
+            try:
+                component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
+            except Terminated as own:
+                self._record_end(own.time)
+                raise
             result.steps += 1
             self._record(end)
             if end == start + (i + 1) * self.macro_step:
                 self._offer(i + 1, end)
             self.progress.at(end)
         result.outcome = COMPLETED
+
+    def _record_end(self, time: float) -> None:
+        """A row of the instant [s] at which the FMU has ended itself, if it says that its outputs are of that."""
+        names = [name for name in END_TIMES if name in self.component.variables]
+        result = self.result
+        since = time - (result.origin + result.start)
+        if since > result.end - result.start and any(
+            math.isclose(told, since, rel_tol=SAME_INSTANT) for told in self.component.get(names).values()
+        ):
+            self._record(time - result.origin)
 
     def _offer(self, following: int, time: float) -> None:
         """The state here may be kept: it is on the grid of all runs with this macro step, however long they are."""

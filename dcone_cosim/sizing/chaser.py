@@ -114,7 +114,8 @@ class Way:
 
     thrust [N], impulse   specific [s], speed   change of it [m/s], propellant [kg], time [s], power [W]
     tension    that the thrust keeps in the line [N]
-    beam       share of the beam on the target at the line's length, which is lost [1]
+    beam       share of the beam on the target at the line's length, which is lost [1]: where the scene names a plume,
+               it is taken off the thrust of the pair, and added to what the line has to bear
     """
 
     name: str
@@ -159,15 +160,18 @@ def _way(ground: Ground, name: str, engine: tuple[float, float, float], slow: bo
         how = f"one short burn to a perigee of {1e-3 * PERIGEE:g} km (vis-viva); a long one takes more"
     span = values["tether.rest_length"] + values.get("target.attachment_distance", 0.0)
     beam = disposal.beam_share(span, values.get("plume.half_angle", HALF_ANGLE), values.get("plume.face", FACE))
+    # what of the thrust moves the pair: what meets the debris pushes it back, through the line
+    lost = beam if "plume" in ground.phase.main.terms else 0.0
+    need = speed / (1.0 - lost) if lost < 1.0 else math.inf
     return Way(
         name,
         thrust,
         impulse,
         speed,
-        disposal.propellant(mass, speed, impulse),
-        disposal.thrust_time(mass, speed, impulse, thrust),
+        disposal.propellant(mass, need, impulse),
+        disposal.thrust_time(mass, need, impulse, thrust),
         disposal.jet_power(thrust, impulse, efficiency) if slow else math.nan,
-        thrust * values["target.mass"] / mass,
+        thrust * ((1.0 - lost) * values["target.mass"] / mass + lost),
         beam,
         how,
     )

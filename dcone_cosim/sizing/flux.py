@@ -18,10 +18,9 @@ CUTS = 3.0
 """Diameter of a line over that of the least particle that cuts it [1]."""
 SOURCE = (
     "1.05e-5 (d/cm)^-2.5 per m2 and year, the small particles of Kessler, Reynolds and Anz-Meador, NASA TM 100471 "
-    "(1989), "
-    "without its factors for altitude, inclination and year, each within 3 of one in low orbit; where this load "
-    "governs, "
-    "give the flux of ORDEM or MASTER for the orbit in [sizing]"
+    "(1989), as others cite it (it could not be read), without its factors for altitude, inclination and year, each "
+    "within 3 of one in low orbit; where this load governs, give the flux of ORDEM or MASTER for the orbit in "
+    "[sizing]: ECSS-E-ST-10-04C, table J-3, has MASTER's at 800 km and 98 deg"
 )
 OFF = 27.0
 """Of the default: three factors left out, each within 3 of one."""

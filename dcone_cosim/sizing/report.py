@@ -31,6 +31,7 @@ def sections(study: Study) -> list[Section]:
         _asked("inputs", "What is sized", "The tow as the scene has it: what all below follows from.", study.inputs()),
         _loads(study),
         _required(study),
+        _closed(study),
         _governs(study),
         _tugs(study),
         _spectrum(study),
@@ -116,9 +117,27 @@ def _required(study: Study) -> Section:
     return section
 
 
+def _closed(study: Study) -> Section:
+    own = next(one for one in study.needed if one.material == study.chief)
+    strength = study.chief.strength or math.nan
+    told = [] if own.snap is None else own.snap.told(study.options.factor_of_safety, strength)
+    return _asked(
+        "closed", "Numbers of the closed form",
+        f"What the diameter of {called(study.chief)} in closed form is made of, to be worked out again by hand: of the "
+        "runs that the line is made for, the one that asks most.", told,
+    )  # fmt: skip
+
+
 def _governs(study: Study) -> Section:
     options = study.options
     rows = [(one.load, one.size if math.isfinite(one.size) else None, one.diameter, one.how) for one in study.demands]
+    if study.governing is not None:
+        peak, margin = study.governing
+        of = min(3, len(study.made))
+        how = (
+            f"largest of the scene and its {of} hardest neighbours on that line, which leaves a margin of {margin:+.3g}"
+        )
+        rows.append(("run at the diameter that governs", peak, study.demands[0].diameter, how))
     heads = (
         text("load", "load"), Head("size", "size", "N"), Head("diameter", "diameter it asks for", "m", "mm"),
         text("how", "how"),
@@ -325,7 +344,9 @@ def _ways(study: Study) -> Section:
     lost = max((way.beam for way in study.ways), default=0.0)
     if lost > LOST:
         part.said = [
-            f"time, propellant and tension are those of the whole thrust. With {100 * lost:.0f} % of a beam on the "
+            f"[removal.plume] is taken off: {100 * lost:.0f} % of a beam on the debris is lost, and pushes it back"
+            if "plume" in study.ground.phase.main.terms
+            else f"time, propellant and tension are those of the whole thrust. With {100 * lost:.0f} % of a beam on the "
             f"debris it would take {1.0 / (1.0 - lost):.2g} times as much of the first two: let the chaser lead, turn "
             "its thrusters aside, or name [removal.plume]"
         ]

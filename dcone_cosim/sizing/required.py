@@ -15,6 +15,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from dcone_cosim.sizing.chaser import Asked
 from dcone_cosim.sizing.ground import Ground, Values, why
 from orbital import tethers
 from orbital.materials import Material, section
@@ -97,6 +98,35 @@ class Search:
 
 
 @dataclass(frozen=True)
+class Snap:
+    """A tug as the closed form takes it, SI: of which run, the speed at impact, the mass that it moves, the preload,
+    the damped share of a snap, the line's length and E, and the diameter that bears it."""
+
+    run: str
+    speed: float
+    mass: float
+    preload: float
+    share: float
+    length: float
+    youngs_modulus: float
+    diameter: float
+
+    def told(self, factor: float, strength: float) -> list[Asked]:
+        """Each number of the closed form, and what it is for."""
+        return [
+            Asked("factor of safety, S", factor, "1", "[sizing] factor_of_safety"),
+            Asked("strength of the line, sigma", strength, "Pa", "of the scene's material"),
+            Asked("speed at impact, v", self.speed, "m/s", f"hardest tug of: {self.run}"),
+            Asked("mass that it moves, m_r", self.mass, "kg", "from peak and speed of that tug"),
+            Asked("tension it meets, P", self.preload, "N", "without tugs"),
+            Asked("damped share of a snap, g", self.share, "1", "from tether.damping_ratio"),
+            Asked("length of the line, l", self.length, "m", "tether.rest_length of that run"),
+            Asked("stiffness of the line, E", self.youngs_modulus, "Pa", "of that run"),
+            Asked("diameter", self.diameter, "m", "A = (S g v / sigma)^2 E m_r / l + 2 S P / sigma, pi d^2/4 = A"),
+        ]
+
+
+@dataclass(frozen=True)
 class Required:
     """What a material needs.
 
@@ -106,6 +136,7 @@ class Required:
     margin     of the run at that diameter, over the factor of safety [1]
     fixed      diameter that the peak of the scene's own line would ask for [m]: wrong, as the peak is not that of this
                line
+    snap       what the closed form was made of, None where there is no tug
     """
 
     material: Material
@@ -117,13 +148,19 @@ class Required:
     fixed: float
     runs: int
     note: str = ""
+    snap: Snap | None = None
 
 
 def in_closed_form(
-    own: Values, sample: Values, tug: tuple[float, float, float], steady: float, material: Material, safety: float
-) -> float:
-    """Diameter [m] of a line of a material that bears this tug: time [s], peak [N] and speed [m/s] on the line of a
-    run.
+    own: Values,
+    sample: Values,
+    tug: tuple[float, float, float],
+    steady: float,
+    material: Material,
+    safety: float,
+    label: str = "",
+) -> Snap:
+    """A line of a material that bears this tug: time [s], peak [N] and speed [m/s] on the line of a run of that label.
 
     own, sample    values of the scene, and of the run beside them; its shares of diameter and stiffness apply to the
                    material's line too
@@ -140,7 +177,19 @@ def in_closed_form(
     mass = impact / (k * (share * speed) ** 2) if speed else 0.0
     softer = material.youngs_modulus * values[MODULUS] / own[MODULUS] * (values[LINE] / own[LINE]) ** 2
     area = tethers.snap_section(abs(speed), mass, length, softer, material.strength, safety, steady, share)
-    return tethers.diameter_of(area)
+    return Snap(label, abs(speed), mass, steady, share, length, softer, tethers.diameter_of(area))
+
+
+def at(
+    ground: Ground, material: Material, diameter: float, samples: Sequence[Values], safety: float
+) -> tuple[float, float]:
+    """Largest tension [N] of these runs on a line of a diameter [m], and the margin of safety it leaves; NaN where one
+    does not come to its end."""
+    runs = list(ground.run([ground.case(_values(ground, material, diameter, s)) for s in samples], "what governs"))
+    peak = math.nan if any(math.isnan(run.peak) for run in runs) else max(run.peak for run in runs)
+    load = material.breaking_load(diameter)
+    assert load is not None
+    return peak, load / (safety * peak) - 1.0
 
 
 def search(
@@ -185,15 +234,15 @@ def _values(ground: Ground, material: Material, diameter: float, sample: Values)
     }
 
 
-def result(one: Search, closed: float, fixed: float, length: float, safety: float) -> Required:
+def result(one: Search, snap: Snap | None, fixed: float, length: float, safety: float) -> Required:
     """What a search came to."""
-    material = one.material
+    material, closed = one.material, math.nan if snap is None else snap.diameter
     if one.failed or one.thick is None:
         nan = math.nan
-        return Required(material, closed, nan, nan, nan, nan, fixed, len(one.tried), one.failed or "not found")
+        return Required(material, closed, nan, nan, nan, nan, fixed, len(one.tried), one.failed or "not found", snap)
     diameter = one.thick[0]
     load = material.breaking_load(diameter)
     assert load is not None
     mass, margin = material.mass_per_metre(diameter) * length, load / (safety * one.peak) - 1.0
     note = "the peak jumps here with the diameter" if margin > JUMP else ""
-    return Required(material, closed, diameter, one.peak, mass, margin, fixed, len(one.tried), note)
+    return Required(material, closed, diameter, one.peak, mass, margin, fixed, len(one.tried), note, snap)

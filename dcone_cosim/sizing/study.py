@@ -62,6 +62,7 @@ class Study:
     tugs               hard tugs beside their closed forms, where the target is a point
     needed             required line of each material
     demands            of the chief material: what each load asks of it
+    governing          largest tension [N] of the hardest runs at the diameter that governs, and the margin it leaves
     steady             tension without tugs [N];  time   that the line is out [s], and from what that follows
     captures           runs begun by other shots: label, what they found
     failed             runs that came to nothing
@@ -78,6 +79,7 @@ class Study:
     chief: Material
     breaking: float
     demands: list[governs.Demand]
+    governing: tuple[float, float] | None
     steady: float
     time: float
     time_from: str
@@ -153,11 +155,15 @@ def study(
     notes = [f"{one.label}: left out: {why(run.row)}" for one, run in (*made, *captures) if math.isnan(run.peak)]
     chief, breaking = chief_material(ground)
     still = _still(ground, nominal)
-    needed = _needed(ground, nominal, made, options, still)
+    hardest = _hardest(nominal, made)
+    needed = _needed(ground, hardest, options, still)
     down = chaser.time_down(ground)
     time, whence = _mission(options, down)
     own = next(one for one in needed if one.material == chief)
     length = ground.values["tether.rest_length"]
+    demands = governs.demands(own, ground.values["tether.damping_ratio"], still, length, time, options)
+    governing = [one.diameter for one in demands if math.isfinite(one.diameter)]
+    samples = [sample.values for sample, _ in hardest]
     found = Study(
         ground,
         options,
@@ -169,7 +175,8 @@ def study(
         needed,
         chief,
         breaking,
-        governs.demands(own, ground.values["tether.damping_ratio"], still, length, time, options),
+        demands,
+        required.at(ground, chief, governing[0], samples, options.factor_of_safety) if governing else None,
         still,
         time,
         whence,
@@ -256,27 +263,31 @@ def _still(ground: Ground, run: Found) -> float:
     return max(least, largest) if quiet and largest is not None else least
 
 
+def _hardest(nominal: Found, made: Sequence[tuple[Sample, Found]]) -> list[tuple[Sample, Found]]:
+    """The scene as it is, and the hardest of all runs: those that a line is made for."""
+    others = sorted((one for one in made if math.isfinite(one[1].peak)), key=lambda one: -one[1].peak)
+    return [(Sample("the scene as it is"), nominal), *others[:WORST]]
+
+
 def _needed(
-    ground: Ground, nominal: Found, made: Sequence[tuple[Sample, Found]], options: Options, still: float
+    ground: Ground, runs: Sequence[tuple[Sample, Found]], options: Options, still: float
 ) -> list[required.Required]:
     """The required line of every material, for the hardest runs."""
     safety, length = options.factor_of_safety, ground.values["tether.rest_length"]
-    hardest = sorted((one for one in made if math.isfinite(one[1].peak)), key=lambda one: -one[1].peak)[:WORST]
-    runs = [(Sample("the scene as it is"), nominal), *hardest]
     chief, _ = chief_material(ground)
     chosen = materials(chief, options)
     closed, fixed = [], []
     for material in chosen:
         assert material.strength is not None
-        diameters = []
-        for sample, run in runs:
-            worst = run.worst
-            if worst is not None:
-                diameters.append(required.in_closed_form(ground.values, sample.values, worst, still, material, safety))
-        closed.append(max(diameters, default=math.nan))
+        snaps = [
+            required.in_closed_form(ground.values, sample.values, run.worst, still, material, safety, sample.label)
+            for sample, run in runs
+            if run.worst is not None
+        ]
+        closed.append(max(snaps, key=lambda snap: snap.diameter, default=None))
         load = max(run.peak for _, run in runs)
         fixed.append(tethers.diameter_of(tethers.load_section(load, material.strength, safety)))
-    begin = [(m, d if math.isfinite(d) else f) for m, d, f in zip(chosen, closed, fixed, strict=True)]
+    begin = [(m, f if s is None else s.diameter) for m, s, f in zip(chosen, closed, fixed, strict=True)]
     searches = required.search(ground, begin, [sample.values for sample, _ in runs], safety)
     return [
         required.result(one, c, f, length, safety) for one, c, f in zip(searches, closed, fixed, strict=True)

@@ -52,6 +52,15 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
             "and yet the masses are held constant: towards the end the pair would be that much lighter; with an engine "
             "they fall",
         )
+    limited, off = seen("aocs.limited"), seen("aocs.deviation")
+    if limited is not None and off is not None and limited.largest > 0.0:
+        most = 180.0 / math.pi * off.largest
+        yield Caution(
+            "aocs.limited",
+            "the wheels had not the torque or the momentum that was asked of them; the attitude was off by up to "
+            f"{most:.3g} deg. Nothing desaturates them: once they are full, a pull beside the centre of mass turns the "
+            "chaser",
+        )
     if altitude is not None and not any(low(altitude.first)):
         for sentence in low(altitude.least):
             yield Caution("altitude", f"the pair came down: {sentence}")

@@ -9,6 +9,7 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.thrust import Thrust
+from orbital.hill import hill_jacobi
 from orbital.kernel import kernel
 from orbital.vectors import Array, matrix_vector
 
@@ -69,6 +70,8 @@ def make_differentiate(
             r.rate_target_velocity[i] = rate[3 + i] + r.state_chaser_share * rate[9 + i]
         thrust.lose(record, state, rate, 1.0)
         environment.differentiate(record, state, rate)
+        lost = thrust.shed(record, rate)
+        r.rate_energy_orbital += lost * r.energy_orbital / r.state_total_mass
         environment.frame(record, center, velocity)
         room, other = r.state_vector[0], r.state_vector[1]
         # rate[0:6] has been read: from here on it is room.
@@ -87,6 +90,10 @@ def make_differentiate(
         kinetic = u * rate[0] + v * rate[1] + w * rate[2]
         tidal = n * n * (z * rate[5] - 3.0 * x * rate[3]) + n * change * (z * z - 3.0 * x * x)
         r.rate_energy_relative = r.state_reduced_mass * (kinetic + tidal) + line
+        # m_r = m_c m_t/(m_c + m_t): what the chaser loses takes of it the square of the target's share
+        other[0], other[1], other[2] = u, v, w
+        r.rate_energy_relative += lost * r.state_target_share * r.state_target_share * hill_jacobi(room, other, n)
         r.rate_energy_relative += bodies.differentiate(record, state, rate, n, change)
+        r.rate_energy_relative += thrust.lighten(record, state, rate, n)
 
     return differentiate

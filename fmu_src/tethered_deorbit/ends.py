@@ -10,6 +10,7 @@ from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import (
+    BROKE,
     CAME_CLOSE,
     CAME_DOWN,
     ENDS_AT_START,
@@ -23,6 +24,8 @@ from orbital.kernel import kernel
 from orbital.rotations import rotate_inverse
 from orbital.vectors import Array, cross, dot, norm
 
+ENDS = (CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE)
+"""Faults with which a part ends a run: the outputs are then those of that instant."""
 FLAT = 1e-12
 """Share of a body's size within which a point lies in a face."""
 CLOSEST_LOOK = 0.02
@@ -212,6 +215,7 @@ def make_ends(terms: Mapping[str, str], line: Callable[..., Any], interface: Int
 
         Checked  tests/tethered_deorbit/test_ends.py
         """
+        record[0].ends_time = 0.0
         fault, slot, value = met(record, state)
         return blame(record, ENDS_AT_START, slot, value) if fault != 0 else 0
 
@@ -248,6 +252,9 @@ def make_ends(terms: Mapping[str, str], line: Callable[..., Any], interface: Int
         Checked  tests/tethered_deorbit/test_ends.py
         """
         fault, _, value = met(record, state)
-        return blame(record, fault, 0, value) if fault != 0 else 0
+        if fault == 0:
+            return 0
+        record[0].ends_time = time
+        return blame(record, fault, 0, value)
 
     return Acting(begin=begin, longest=longest, holds=holds, act=act)

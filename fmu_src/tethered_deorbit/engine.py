@@ -8,13 +8,14 @@ from typing import Any, NamedTuple
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.faults import blame
-from fmu_src.tethered_deorbit.idle import no_fault, nothing
-from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
-from fmu_src.tethered_deorbit.layout import StateLayout
+from fmu_src.tethered_deorbit.idle import no_fault, nothing, zero
+from fmu_src.tethered_deorbit.interface import BAD_INERTIA, BAD_PARAMETER
+from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, StateLayout
 from orbital.constants import STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.oscillators import reduced_mass
-from orbital.vectors import Array
+from orbital.rigid import extreme_moments, inertia_matrix, invert_symmetric
+from orbital.vectors import Array, dot, matrix_vector
 
 
 @kernel
@@ -34,6 +35,9 @@ class Engine(NamedTuple):
     limited(record, force) -> force   what it gives of what is asked [N]
     weigh(record, state)              masses, shares and reduced mass of the pair in a state
     lose(record, state, rate, sign)   what the loss of mass does to the rate of the centre of mass; -1 undoes it
+    shed(record, rate) -> M'          how fast the pair's mass changes [kg/s]
+    lighten(record, state, rate, n) -> power   what the loss of inertia adds to the rates of the chaser's spin, and to
+                                      that of the energy of its turning in a frame of rate n [W]
     publish(record, force, change)    its outputs, for the force in use [N] and its rate [N/s]
     acting                            what it does by itself
     """
@@ -43,6 +47,8 @@ class Engine(NamedTuple):
     limited: Callable[..., Any] = unlimited
     weigh: Callable[..., Any] = nothing
     lose: Callable[..., Any] = nothing
+    shed: Callable[..., Any] = zero
+    lighten: Callable[..., Any] = zero
     publish: Callable[..., Any] = nothing
     acting: Acting = IDLE
 
@@ -62,14 +68,18 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
 
         R' += (|m'|/M) (m_t/M) rho,   V' += (|m'|/M) (m_t/M) rho'
 
-    Valid    a chaser that turns keeps its inertia and its centre of mass as the tank empties
+    The inertia of a chaser that turns falls by k^2 of the propellant's mass about any axis, k engine.tank_radius.
+
+    Valid    propellant about the centre of mass, which stays where it is; what leaves takes its own spin with it
     Source   Newton's second law for a body that sheds mass at its own velocity; jet power F v_e/2
     Checked  tests/tethered_deorbit/test_engine.py
     """
     if "engine" not in terms:
         return IDEAL
     spent, electric = layout.spent, terms["engine"] == "electric"
-    tank_slot = interface.references["engine.propellant"]
+    tank_slot, radius_slot = (interface.references[f"engine.{name}"] for name in ("propellant", "tank_radius"))
+    turns = terms["chaser"] != "point"
+    w_at = PAIR + (ATTITUDE if terms["target"] != "point" else 0) + 4
 
     @kernel
     def exhaust_speed(record: Any) -> float:
@@ -81,6 +91,38 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
         return speed
 
     @kernel
+    def empty_is_a_body(record: Any) -> int:
+        """The inertia without propellant is one that a body can have.
+
+        Checked  tests/tethered_deorbit/test_engine.py
+        """
+        r = record[0]
+        taken = r.engine_propellant * r.engine_tank_radius * r.engine_tank_radius
+        least, greatest = extreme_moments(r.state_chaser_inertia)
+        trace = r.chaser_inertia[0] + r.chaser_inertia[1] + r.chaser_inertia[2]
+        if not (least > taken and greatest + 0.5 * taken <= 0.5 * trace):
+            return blame(record, BAD_INERTIA, radius_slot, r.engine_tank_radius)
+        return 0
+
+    check_empty = empty_is_a_body if turns else no_fault
+
+    @kernel
+    def take_inertia(record: Any, spent_mass: float) -> None:
+        """Inertia of the chaser, and its inverse, without the propellant that is spent [kg].
+
+        Checked  tests/tethered_deorbit/test_engine.py: a thruster beside the centre of mass
+        """
+        r = record[0]
+        if r.engine_tank_radius == 0.0:
+            return
+        inertia_matrix(r.state_chaser_inertia, r.chaser_inertia)
+        for i in range(3):
+            r.state_chaser_inertia[i, i] -= spent_mass * r.engine_tank_radius * r.engine_tank_radius
+        invert_symmetric(r.state_chaser_inverse, r.state_chaser_inertia)
+
+    take = take_inertia if turns else nothing
+
+    @kernel
     def check(record: Any) -> int:
         """A full tank is part of the chaser's mass.
 
@@ -90,6 +132,10 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
         r.state_empty = 0
         if not r.engine_propellant < r.chaser_mass:
             return blame(record, BAD_PARAMETER, tank_slot, r.engine_propellant)
+        if r.engine_tank_radius > 0.0:
+            if not turns:
+                return blame(record, BAD_PARAMETER, radius_slot, r.engine_tank_radius)
+            return int(check_empty(record))
         return 0
 
     @kernel
@@ -119,6 +165,7 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
         r.state_chaser_share = left / r.state_total_mass
         r.state_target_share = r.target_mass / r.state_total_mass
         r.state_reduced_mass = reduced_mass(left, r.target_mass)
+        take(record, state[spent])
 
     @kernel
     def lose(record: Any, state: Array, rate: Array, sign: float) -> None:
@@ -130,6 +177,34 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
         factor = sign * rate[spent] / r.state_total_mass * r.state_target_share
         for i in range(6):
             rate[i] += factor * state[6 + i]
+
+    @kernel
+    def shed(record: Any, rate: Array) -> float:
+        """Rate of the pair's mass [kg/s].
+
+        Checked  tests/tethered_deorbit/test_engine.py: rates of what masses move
+        """
+        return float(-rate[spent])
+
+    @kernel
+    def lighten_chaser(record: Any, state: Array, rate: Array, n: float) -> float:
+        """What the loss of inertia adds: see `Engine`; after `differentiate` of the bodies.
+
+            H' -= c A w,   E' -= c w^2/2,   power = -c (w^2/2 - n o.A w),   c = |m'| k^2, o axis 3 of the frame
+
+        Checked  tests/tethered_deorbit/test_engine.py: rates of what masses move
+        """
+        r = record[0]
+        c = rate[spent] * r.engine_tank_radius * r.engine_tank_radius
+        w, along = state[w_at : w_at + 3], r.state_chaser_arms[0]
+        matrix_vector(along, r.state_chaser_turned, w)
+        for i in range(3):
+            r.rate_chaser_spin[i] -= c * along[i]
+        turning = 0.5 * dot(w, w)
+        r.rate_chaser_spin_energy -= c * turning
+        return float(-c * (turning - n * dot(r.state_basis[2], along)))
+
+    lighten = lighten_chaser if turns else zero
 
     @kernel
     def publish(record: Any, force: float, change: float) -> None:
@@ -167,4 +242,4 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
             r.state_empty = 1
         return 0
 
-    return Engine(True, check, limited, weigh, lose, publish, Acting(holds=holds, act=act))
+    return Engine(True, check, limited, weigh, lose, shed, lighten, publish, Acting(holds=holds, act=act))

@@ -20,7 +20,7 @@ def make_equations(
     environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, aocs: Aocs, layout: StateLayout
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The kernels `inertial(record, state, rate, since, elapsed)` and `derivative(record, state, rate, elapsed)`."""
-    impulse, seen = layout.impulse, bodies.seen
+    impulse, felt = layout.impulse, bodies.felt
 
     # `derivative` is where the time goes: as a call of its own, which a second caller would make it, it costs 10 %.
     @view
@@ -61,7 +61,7 @@ def make_equations(
 
         Checked  tests/consistency/test_table2.py, tests/tethered_deorbit/test_turning.py
         """
-        as_it_is = seen(record, state, elapsed)
+        as_it_is = felt(record, state, elapsed)
         inertial(record, as_it_is, rate, record[0].state_since + elapsed, elapsed)
         bodies.enter_rate(record, state, as_it_is, rate)
         if record[0].state_taut:

@@ -13,7 +13,7 @@ from fmu_src.tethered_deorbit.aocs import make_aocs
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
 from fmu_src.tethered_deorbit.breaking import breakable
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
-from fmu_src.tethered_deorbit.ends import make_ends
+from fmu_src.tethered_deorbit.ends import ENDS, make_ends
 from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
 from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
@@ -23,9 +23,10 @@ from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
+from fmu_src.tethered_deorbit.minded import LIMITED
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
-from fmu_src.tethered_deorbit.reel_rows import INPUTS, LIMITED_OF_REELS
+from fmu_src.tethered_deorbit.reel_rows import INPUTS
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.sights import Sights
 from fmu_src.tethered_deorbit.start import make_start
@@ -43,50 +44,6 @@ SLICE = 4096
 GAP, GAP_SHARE = 16.0 * 2.220446049250313e-16, 1e-6
 """By how much a communication point may miss the end of the last macro step, of the times and of the step: the rounding
 of times that a master adds up."""
-
-LIMITED = (
-    "chaser.mass",
-    "target.mass",
-    "target.attachment_distance",
-    "target.rate_frame",
-    "chaser.rate_frame",
-    "solver.tolerance_orbit",
-    "solver.tolerance_separation",
-    "solver.tolerance_stretch",
-    "start.condition",
-    "start.leading",
-    "tether.youngs_modulus",
-    "tether.diameter",
-    "tether.damping_ratio",
-    "reel.proportional_gain",
-    "reel.derivative_gain",
-    *LIMITED_OF_REELS,
-    "thrust.level",
-    "thrust.specific_impulse",
-    "burn.start",
-    "burn.duration",
-    "burn.interval",
-    "burn.rise",
-    "burn.half_width",
-    "engine.propellant",
-    "engine.power_limit",
-    "engine.efficiency",
-    "plume.half_angle",
-    "plume.face",
-    "aocs.frequency",
-    "aocs.damping_ratio",
-    "aocs.torque_limit",
-    "aocs.momentum_limit",
-    "ends.altitude",
-    "ends.perigee",
-    "ends.raised_perigee",
-    "ends.chaser_extent",
-    "ends.target_extent",
-    "ends.clearance",
-    "ends.wrapped",
-    "break.strength",
-)
-"""Parameters whose limits the kernel minds too; out of theirs, others end in a fault of their own."""
 
 IMPLEMENTED = {
     "reel": (*LAWS, *WINCHES),
@@ -253,6 +210,30 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         trajectory.restart(record, work, r.state_end)
 
     @kernel
+    def show(record: Any, work: Array, time: float) -> int:
+        """Publish what the pair is at a time within the current step, or at its end; returns 0 or a fault.
+
+        Checked  tests/tethered_deorbit/test_macro_step.py; test_ends.py: the outputs of an end are those of its instant
+        """
+        r = record[0]
+        extremes.note(record, work, time)
+        here = work[here_state:slope_state]
+        separation, length, speed = trajectory.state_at(record, work, time, here)
+        if not finite(here):
+            return fail(record, blame(record, NOT_FINITE, 0, 0.0), time)
+        radius = environment.fallen(here[0:3])
+        if radius >= 0.0:
+            return fail(record, blame(record, GROUND, 0, radius), time)
+        thrust.weigh(record, here)
+        publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin))
+        thrust.publish(record, here, time)
+        aocs.publish(record, here)
+        r.state_published = time
+        r.state_changes = 0
+        extremes.publish(record)
+        return 0
+
+    @kernel
     def step_to(record: Any, work: Array, time: float, step: float, anew: bool) -> int:
         """Take a macro step, or go on with it; it is left after a slice of steps, and nothing is then half done.
 
@@ -298,6 +279,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                     change_line(record, work)
             if acts and (event == ACTS or acting.due(record) <= r.state_end):
                 code = inputs.act(record, work, target, event == ACTS)
+                if code in ENDS:
+                    show(record, work, r.state_end)
                 if code != 0:
                     return code
             # A moving input is known up to the communication point only: there the last step ends.
@@ -309,21 +292,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             code = trajectory.advance(record, work, longest)
             if code != 0:
                 return fail(record, code, r.state_begin)
-        extremes.note(record, work, target)
-        here = work[here_state:slope_state]
-        separation, length, speed = trajectory.state_at(record, work, target, here)
-        if not finite(here):
-            return fail(record, blame(record, NOT_FINITE, 0, 0.0), target)
-        radius = environment.fallen(here[0:3])
-        if radius >= 0.0:
-            return fail(record, blame(record, GROUND, 0, radius), target)
-        thrust.weigh(record, here)
-        publish(record, here, separation, length, speed, r.state_since + (target - r.state_begin))
-        thrust.publish(record, here, target)
-        aocs.publish(record, here)
-        r.state_published = target
-        r.state_changes = 0
-        extremes.publish(record)
+        code = show(record, work, target)
+        if code != 0:
+            return code
         if moving:
             return int(inputs.leave(record, work, duration))
         return 0

@@ -44,6 +44,7 @@ ENDS = Group(
                 at_least_zero("ends.clearance", "m", "the run ends where the two come nearer to each other", 0.0, 1e5),
                 at_least_zero("ends.wrapped", "m", "the run ends where more of the line lies on a target that "
                               "has a surface", EVERYWHERE, EVERYWHERE),
+                output("ends.time", "s", "when the run has ended itself, since the start; zero before", 1000.0),
             ),
         ),
     },
@@ -124,6 +125,8 @@ BURN = Group(
 _ENGINE = (
     positive("engine.propellant", "kg", "in the tank at the start, part of chaser.mass; the masses fall as it is used",
              50.0, 1e6),
+    at_least_zero("engine.tank_radius", "m", "radius of gyration of the propellant about the chaser's centre of mass, "
+                  "which it leaves where it is: by so much the inertia of a chaser that turns falls", 0.0, 1e3),
     output("engine.propellant_left", "kg", "in the tank", 10.0, "rate.propellant_left"),
     *_FORCE,
     rate("propellant_left", "kg/s"),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
 from fmu_src.tethered_deorbit.reel_refusals import of_reel
 
@@ -33,9 +35,28 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
     if "engine" in terms and values["engine.propellant"] >= values["chaser.mass"]:
         text = f"must be less than chaser.mass, {values['chaser.mass']:g} kg, of which it is a part"
         yield "engine.propellant", f"{values['engine.propellant']:g} kg", text
+    if "engine" in terms and values["engine.tank_radius"] > 0.0:
+        yield from _of_tank(terms, values)
     if "burn" in terms:
         yield from _of_burns(terms, values)
     yield from of_reel(values, terms)
+
+
+def _of_tank(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
+    given = f"{values['engine.tank_radius']:g} m"
+    if terms.get("chaser") == "point":
+        yield "engine.tank_radius", given, "needs a chaser that turns, chaser.body = rigid"
+        return
+    moments = [values[f"chaser.inertia[{i}]"] for i in range(1, 7)]
+    inertia = np.diag(moments[:3])
+    inertia[0, 1], inertia[0, 2], inertia[1, 2] = moments[3:]
+    least = 0.5 * sum(moments[:3]) - float(np.linalg.eigvalsh(inertia, UPLO="U")[-1])
+    taken = values["engine.propellant"] * values["engine.tank_radius"] ** 2
+    if not 0.5 * taken < least:
+        text = (
+            f"the empty chaser would be no body: at most {math.sqrt(2.0 * least / values['engine.propellant']):.4g} m"
+        )
+        yield "engine.tank_radius", given, text
 
 
 def _of_burns(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:

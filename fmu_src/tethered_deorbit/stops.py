@@ -48,8 +48,9 @@ def make_stop(
     events: Events,
     acting: Acting,
     places: Places,
-) -> Callable[..., Any]:
-    """The kernel `stop(record, work, longest)` that ends the step just taken where it has to end.
+) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """The kernels `begin(record, work)`, to be called at the begin of a step, and `stop(record, work, longest)`, which
+    ends the step just taken where it has to end.
 
     attempt(record, work, step)   takes it anew, of another size [s]
 
@@ -60,7 +61,7 @@ def make_stop(
     dense_begin, work_end = places.dense, places.total
     acts = acting is not IDLE
     watches = acts or bodies.holds is not always
-    seen = bodies.seen
+    seen, last_seen = bodies.seen, bodies.last_seen
 
     @kernel
     def keep_end(record: Any, work: Array) -> None:
@@ -140,14 +141,13 @@ def make_stop(
         r.state_event = LINE if max(there[CROSSING], there[CROSSING_SLOPE]) > 0.0 else 0
 
     @kernel
-    def ceased(record: Any, state: Array, elapsed: float) -> int:
+    def ceased(record: Any, there: Array, elapsed: float) -> int:
         """What has ceased to hold `elapsed` [s] after the begin of the step, as a number of `state.event`, or 0.
 
-        state         in the coordinates of the step, of `layout`
+        there         as it is, of `layout`; after `Bodies.seen`
 
         Checked  tests/tethered_deorbit/test_wrapping.py, test_ends.py
         """
-        there = seen(record, state, elapsed)
         if not bodies.holds(record, there):
             return EDGES
         if acts and not acting.holds(record, there, record[0].state_since + elapsed):
@@ -155,30 +155,23 @@ def make_stop(
         return 0
 
     @kernel
-    def retry(record: Any, work: Array) -> bool:
-        """Whether a way of the line that holds has been found where there was none.
-
-        Checked  tests/tethered_deorbit/test_wrapping.py
-        """
-        there = seen(record, work[end_state:here_state], record[0].state_step)
-        return bool(bodies.retry(record, there))
-
-    @kernel
-    def stop_where_ceased(record: Any, work: Array) -> None:
+    def stop_where_ceased(record: Any, work: Array, event: int) -> None:
         """Redo the step so that it ends where the line's way over edges, or what a part goes by, has just ceased to
         hold, by halving.
+
+        event         what has ceased by its end, as a number of `state.event`
 
         Checked  tests/tethered_deorbit/test_wrapping.py, test_ends.py
         """
         r = record[0]
         low, high = 0.0, 1.0
-        event = ceased(record, work[end_state:here_state], r.state_step)
         here = work[here_state:slope_state]
         events.ensure_dense(record, work)
         while high - low > EDGE:
             middle = 0.5 * (low + high)
             scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], middle, 0, size, here)
-            there = ceased(record, here, middle * r.state_step)
+            elapsed = middle * r.state_step
+            there = ceased(record, seen(record, here, elapsed), elapsed)
             if there == 0:
                 low = middle
             else:
@@ -208,25 +201,31 @@ def make_stop(
 
     @kernel
     def stop(record: Any, work: Array, longest: float) -> None:
-        """End the step where it has to end.
+        """End the step where it has to end; after `begin`.
 
         longest       longest step allowed                           [s]
 
         Checked  tests/tethered_deorbit/test_tugs.py, test_macro_step.py, test_ends.py
         """
         r = record[0]
-        keep_begin(record, work)
         keep_end(record, work)
-        if not quiet(record):
+        looked = not quiet(record)
+        if looked:
             fraction = events.find_change(record, work)
             # Where moving inputs end a step, a change in its last digit is for the next to judge: they may turn round.
             if fraction >= 0.0 and not (fraction >= LAST and longest < math.inf):
                 land(record, work, fraction)
         if acts:
             stop_at_limit(record, work)
-        if watches and ceased(record, work[end_state:here_state], r.state_step) != 0:
-            stop_where_ceased(record, work)
-        elif watches and r.state_event == 0 and retry(record, work):
-            r.state_event = EDGES
+        if watches:
+            end = work[end_state:here_state]
+            if looked or acts:
+                seen(record, end, r.state_step)
+            there = last_seen(record, end)
+            event = ceased(record, there, r.state_step)
+            if event != 0:
+                stop_where_ceased(record, work, event)
+            elif r.state_event == 0 and bodies.retry(record, there):
+                r.state_event = EDGES
 
-    return stop
+    return keep_begin, stop

@@ -11,7 +11,7 @@ from fmu_src.tethered_deorbit.acting import IDLE, Acting, together
 from fmu_src.tethered_deorbit.burn import STEADY, make_burn
 from fmu_src.tethered_deorbit.engine import make_engine
 from fmu_src.tethered_deorbit.faults import blame
-from fmu_src.tethered_deorbit.idle import no_fault, nothing
+from fmu_src.tethered_deorbit.idle import no_fault, nothing, zero
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, StateLayout
 from fmu_src.tethered_deorbit.plume import make_plume
@@ -34,6 +34,8 @@ class Thrust(NamedTuple):
     add(record, state, rate, since)   add the thrust to the rate of the state, `since` [s] after its force was set
     weigh(record, state)              masses of the pair in a state
     lose(record, state, rate, sign)   what their loss does to the rate of the centre of mass, with a sign
+    shed(record, rate) -> M'          how fast the pair's mass changes, from the rate of the state [kg/s]
+    lighten(record, state, rate, n) -> power   what the loss of its inertia adds: see `engine.Engine`
     asked(record) -> (force, rate)    what level and input say [N], [N/s]
     leave(record, duration)           write the value the input has reached after a time back to it
     check(record) -> fault            whether the input can be
@@ -49,6 +51,8 @@ class Thrust(NamedTuple):
     add: Callable[..., Any] = nothing
     weigh: Callable[..., Any] = nothing
     lose: Callable[..., Any] = nothing
+    shed: Callable[..., Any] = zero
+    lighten: Callable[..., Any] = zero
     asked: Callable[..., Any] = no_force
     leave: Callable[..., Any] = nothing
     check: Callable[..., Any] = no_fault
@@ -314,6 +318,8 @@ def make_thrust(
         add=add,
         weigh=engine.weigh,
         lose=engine.lose,
+        shed=engine.shed,
+        lighten=engine.lighten,
         asked=asked,
         leave=leave,
         check=check,

@@ -67,7 +67,7 @@ def make_trajectory(
 
     longest_taut_step = make_longest_taut_step(scheme.reach)
     acts = acting is not IDLE
-    moving, seen = places.moving, bodies.seen
+    moving, seen, last_seen = places.moving, bodies.seen, bodies.last_seen
 
     @kernel
     def restart(record: Any, work: Array, time: float) -> None:
@@ -110,7 +110,7 @@ def make_trajectory(
         r.state_end = r.state_begin + step
         r.state_dense_ready = 0
 
-    stop = make_stop(attempt, bodies, scheme, events, acting, places)
+    begin_step, stop = make_stop(attempt, bodies, scheme, events, acting, places)
 
     @kernel
     def advance(record: Any, work: Array, longest: float) -> int:
@@ -151,10 +151,11 @@ def make_trajectory(
         r.solver_steps += 1
         step = min(r.state_next_step, max(longest, SHORTEST * abs(r.state_begin)))
         step = min(step, bodies.longest(record, begin))
+        begin_step(record, work)
         if acts:
-            step = min(step, acting.longest(record, seen(record, begin, 0.0)))
+            step = min(step, acting.longest(record, last_seen(record, begin)))
         if r.state_taut:
-            step = min(step, longest_taut_step(record, bodies.moved_mass(record, seen(record, begin, 0.0))))
+            step = min(step, longest_taut_step(record, bodies.moved_mass(record, last_seen(record, begin))))
             turn = norm(r.state_turning)
             if turn > 0.0:
                 step = min(step, WIDEST_TURN / turn)

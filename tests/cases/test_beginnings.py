@@ -11,7 +11,7 @@ import pytest
 
 from dcone_cosim.cases import commands
 from dcone_cosim.cases.alone import Fmus
-from dcone_cosim.cases.beginnings import FOLDER, key_of_beginning, shared
+from dcone_cosim.cases.beginnings import FOLDER, kept_of, key_of_beginning, shared
 from dcone_cosim.cases.case import Case, key_of
 from dcone_cosim.cases.work import Fleet
 from dcone_cosim.loading import load
@@ -19,7 +19,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
 from tests.cases.conftest import dcone
 from tests.cosim.conftest import Dcone
-from tests.runs import COARSE
+from tests.runs import COARSE, put
 
 __all__ = ["dcone"]
 
@@ -147,6 +147,20 @@ def test_what_is_damaged_counts_as_not_there(swept: Path, dcone: Dcone, tmp_path
         assert code == 0, err
         assert (copy / "table.parquet").read_bytes() == before
     assert len(beginnings(copy)) == 1
+
+
+def test_a_sweep_of_a_run_goes_on_from_what_it_left(fmus: Fmus, tmp_path: Path) -> None:
+    """No capture is run, and the figures are those of whole runs; one that begins otherwise has its own."""
+    run = put("mission", tmp_path / "run", COARSE)
+    done = commands.sweep(str(run), (DIAMETERS,), tmp_path / "tows", Progress(), (), 1, False)
+    assert done.exit_code == 0
+    assert not (tmp_path / "tows" / FOLDER).exists()
+    assert all(entry.row.timings["capture.wall"] == 0.0 for entry in done.entries)
+    whole = Fleet().row(case(load("mission", [*COARSE, "removal.tether.diameter=2 mm"]), fmus))
+    assert dict(done.entries[-1].row.figures) == dict(whole.figures)
+    found = kept_of(run)
+    assert list(found) == [keys(COARSE, fmus)]
+    assert keys((*COARSE, "capture.bullets.speed=3 m/s"), fmus) not in found
 
 
 def test_bad_input_leaves_nothing_of_what_was_begun_early(dcone: Dcone, tmp_path: Path) -> None:

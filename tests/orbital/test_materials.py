@@ -42,6 +42,15 @@ def test_the_sheets(name: str) -> None:
     assert found.strain_at_break == pytest.approx(strain / 100, rel=1e-12)
 
 
+def test_zylon_is_what_a_maker_of_cords_says_of_it() -> None:
+    """Imattec, read in place of Toyobo's own sheet: 37 cN/dtex, 1150 and 1720 cN/dtex; 1 cN/dtex is 1e5 J/kg."""
+    for name, modulus in (("Zylon AS", 1150.0), ("Zylon HM", 1720.0)):
+        found = MATERIALS[name]
+        assert found.strength is not None
+        assert found.strength / found.density == pytest.approx(37.0e5, rel=0.02)
+        assert found.youngs_modulus / found.density == pytest.approx(modulus * 1e5, rel=0.02)
+
+
 def test_all_of_them_are_there() -> None:
     assert set(MATERIALS) == set(SHEETS)
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
+from dcone_cosim.sizing.chaser import ways
 from dcone_cosim.sizing.result import Sizing
 
 
@@ -40,6 +42,28 @@ def test_attitude(done: Sizing) -> None:
     assert found["momentum it leaves"] == pytest.approx(0.1 * given, rel=2e-3)
     assert found["torque of the hardest tug"] == pytest.approx(0.1 * tug[1])
     assert found["time to take that up"] == pytest.approx(found["momentum it leaves"] / 0.2)
+
+
+def test_a_plume_that_the_scene_names_is_taken_off() -> None:
+    """Newton for both: m_c a = F - T and m_t a = T - b F; the rocket equation with what is left of the thrust."""
+    values = {
+        "orbit.altitude": 800e3, "chaser.mass": 2000.0, "target.mass": 1000.0, "tether.rest_length": 12.0,
+        "plume.half_angle": 0.26, "plume.face": 4.0, "thrust.level": -0.25, "thrust.specific_impulse": 3000.0,
+    }  # fmt: skip
+    found = {}
+    for terms in ({}, {"plume": "beam"}):
+        phase = SimpleNamespace(main=SimpleNamespace(terms=terms))
+        found[len(terms)] = ways(SimpleNamespace(values=values, phase=phase))[0]  # type: ignore[arg-type]
+    plain, plumed = found[0], found[1]
+    b, force = plumed.beam, 0.25
+    assert 0.1 < b < 0.9
+    speed_up = (force - plumed.tension) / 2000.0
+    assert speed_up == pytest.approx((plumed.tension - b * force) / 1000.0, rel=1e-12)
+    exhaust = 3000.0 * 9.80665
+    assert (1.0 - b) * exhaust * math.log(3000.0 / (3000.0 - plumed.propellant)) == pytest.approx(plumed.speed)
+    assert plumed.time == pytest.approx(plumed.propellant * exhaust / force)
+    assert (plain.beam, plain.tension) == (b, pytest.approx(force / 3.0))
+    assert plumed.propellant > 1.1 * plain.propellant
 
 
 def test_disposal_is_that_of_the_scenes(done: Sizing) -> None:

@@ -55,6 +55,26 @@ def test_what_a_fixed_peak_would_say(done: Sizing) -> None:
     )
 
 
+def test_the_closed_form_can_be_worked_out_again(done: Sizing) -> None:
+    """By its own numbers alone, and as the table of required lines has it."""
+    told = done["closed"].set_index("what")["value"]
+    factor, strength, speed, mass, preload, share, length, modulus, diameter = told
+    assert factor == SAFETY
+    area = (factor * share * speed / strength) ** 2 * modulus * mass / length + 2.0 * factor * preload / strength
+    assert diameter == pytest.approx(math.sqrt(4.0 * area / math.pi), rel=1e-9)
+    assert diameter == pytest.approx(done["required"].iloc[0]["closed"], rel=1e-12)
+
+
+def test_the_diameter_that_governs_has_a_run(done: Sizing) -> None:
+    """What it is for: the line of that diameter holds its own largest tension."""
+    *loads, run = done["governs"].to_dict("records")
+    assert run["diameter"] == max(row["diameter"] for row in loads)
+    strength = done["closed"].set_index("what")["value"].iloc[1]
+    margin = strength * math.pi * run["diameter"] ** 2 / 4.0 / (SAFETY * run["size"]) - 1.0
+    assert f"margin of {margin:+.3g}" in run["how"]
+    assert margin >= 0.0
+
+
 def test_what_is_sized_is_told(done: Sizing) -> None:
     told = done["inputs"].set_index("what").value
     assert told["stiffness of the line"] == pytest.approx(60e9 * math.pi * 1e-6 / 4.0 / 12.0, rel=1e-12)

@@ -98,6 +98,10 @@ def test_a_break_ends_the_run_unless_both_fly_on() -> None:
     with ends_by(BROKE):
         i.step(5.0)
     assert i.record[0].fault_time == pytest.approx(1.0 + math.asin(0.5) / OMEGA, abs=1e-8)
+    # and its outputs are those of that instant
+    assert i["tether.tension"] == pytest.approx(0.5 * SNAP, rel=1e-6)
+    assert i["tether.tension_peak"] == pytest.approx(0.5 * SNAP, rel=1e-6)
+    assert i["tether.length_rate"] == pytest.approx(SPEED * math.sqrt(0.75), rel=1e-6)
 
 
 def meeting(speed: float, aside: float, **more: Any) -> PlainInstance:
@@ -125,6 +129,8 @@ def test_bodies_that_come_close_end_the_run(speed: float, aside: float) -> None:
         i.step(200.0 / speed)
     expected = (100.0 - math.sqrt(3.5**2 - aside**2)) / speed
     assert i.record[0].fault_time == pytest.approx(expected, rel=1e-8)
+    assert i["separation"] == pytest.approx(3.5, rel=1e-8)
+    assert (i["approach.distance"], i["approach.time"]) == (i["separation"], i.record[0].fault_time)
 
 
 def test_the_end_is_exact_in_the_shortest_of_steps() -> None:

@@ -138,6 +138,81 @@ def test_rates_of_what_an_engine_shows() -> None:
         assert slopes[1] < 0.0
 
 
+def turning(**more: Any) -> PlainInstance:
+    """A chaser of 800 kg m2 about every axis, 72 of them in the tank, whose thruster stands 0.1 m beside its centre."""
+    return PlainInstance(
+        MODEL,
+        {"reel": "commanded", "environment": "none", "thrust": "along_track", "engine": "chemical", "chaser": "rigid"},
+        {
+            "start.condition": HANDED_OVER,
+            "start_relative_position": (0.0, -50.0, 0.0),
+            "thrust.level": FORCE,
+            "engine.propellant": 200.0,
+            "engine.tank_radius": 0.6,
+            "thrust.specific_impulse": IMPULSE,
+            "chaser_inertia": (800.0, 800.0, 800.0, 0.0, 0.0, 0.0),
+            "chaser_thruster": (0.001, 0.0, 0.0),
+            **more,
+        },
+    )
+
+
+def test_the_inertia_falls_as_the_tank_empties() -> None:
+    """About one axis, in scipy: angle'' = F p cos(angle)/(I - m' t k^2)."""
+    i = turning()
+    time = 300.0
+    i.step(time)
+
+    def turned(t: float, y: Any) -> Any:
+        return y[1], FORCE * 1e-3 * math.cos(y[0]) / (800.0 - FLOW * t * 0.36)
+
+    found = solve_ivp(turned, (0.0, time), (0.0, 0.0), rtol=1e-11, atol=1e-13).y[:, -1]
+    assert i["chaser.rate[3]"] == pytest.approx(found[1], rel=1e-8)
+    assert 2.0 * math.atan2(i["chaser.attitude[4]"], i["chaser.attitude[1]"]) == pytest.approx(found[0], rel=1e-8)
+    whole = turning(**{"engine.tank_radius": 0.0})
+    whole.step(time)
+    assert i["chaser.rate[3]"] > 1.004 * whole["chaser.rate[3]"]
+
+
+def test_an_empty_chaser_is_a_body() -> None:
+    with pytest.raises(ModelFault, match="inertia"):
+        turning(**{"engine.tank_radius": 2.1})
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_rates_of_what_masses_move(turns: bool) -> None:
+    """Against central differences, on an orbit, where propellant is a hundredth of the pair in a minute."""
+    terms = {"reel": "commanded", "thrust": "along_track", "engine": "chemical"}
+    terms |= {"chaser": "rigid"} if turns else {}
+    more: dict[str, Any] = {"chaser_inertia": (800.0, 900.0, 700.0, 0.0, 0.0, 0.0), "engine.tank_radius": 0.6,
+                            "chaser_start_rate": (0.02, -0.01, 0.05)} if turns else {}  # fmt: skip
+    i = PlainInstance(
+        MODEL,
+        terms,
+        {
+            "thrust.level": 2000.0,
+            "thrust.specific_impulse": 100.0,
+            "engine.propellant": 900.0,
+            "start.condition": HANDED_OVER,
+            "start_relative_position": (-300.0, 100.0, 50.0),
+            **more,
+        },
+    )
+    names = ["energy.orbital", "energy.relative", "altitude", "center.semi_major_axis"]
+    names += ["chaser.spin_energy", "chaser.spin[1]", "chaser.spin[3]"] if turns else []
+    h = 0.02
+    i.step(20.0 - h)
+    before = [i[name] for name in names]
+    i.step(h)
+    i.differentiate()
+    slopes = [i.rate(name) for name in names]
+    values = [i[name] for name in names]
+    i.step(h)
+    for name, first, value, slope in zip(names, before, values, slopes, strict=True):
+        noise = 1e-14 * abs(value) / h
+        assert (i[name] - first) / (2.0 * h) == pytest.approx(slope, rel=1e-6, abs=noise + 1e-9), name
+
+
 def test_a_tank_is_part_of_the_chaser() -> None:
     with pytest.raises(ModelFault, match="out of its bounds"):
         free("chemical", **{"engine.propellant": CHASER})

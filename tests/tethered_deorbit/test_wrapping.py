@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from fmu_src.instance import Instance, ModelFault
-from fmu_src.tethered_deorbit.bodies import wrapping
+from fmu_src.tethered_deorbit.bodies import attached, wrapping
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from tests.plain import PlainInstance, plain
 from tests.validation import Validated, closed_form, other_code
@@ -505,11 +505,15 @@ def test_the_way_laid_out_flat_is_that_of_newton(
         count = int(r.held_count)
         return r.state_wrapped + r.path_lengths[count], r.state_departure.copy(), r.path_diagonal[max(0, count - 1)]
 
-    def both(record: Any) -> bool:
-        flat = follow_unfolded(record)
+    def both(record: Any, whole: bool) -> bool:
+        flat = follow_unfolded(record, False)
+        least = record[0].state_wrapped, *record[0].state_departure
+        follow_unfolded(record, True)
         if flat and record[0].held_count > 0:
             edges.add(int(record[0].held_count))
             found = seen(record[0])
+            assert least == (record[0].state_wrapped, *record[0].state_departure)
+            first = np.array([record[0].path_lengths[0], *record[0].path_ways[0]])
             paths[-1].follow(record)
             wanted = seen(record[0])
             errors = (
@@ -518,7 +522,9 @@ def test_the_way_laid_out_flat_is_that_of_newton(
                 found[2] / wanted[2] - 1.0,
             )
             np.maximum(off, np.abs(errors), out=off)
-            follow_unfolded(record)
+            if record[0].held_count == 1:
+                np.testing.assert_allclose(first, [record[0].path_lengths[0], *record[0].path_ways[0]], atol=1e-12)
+            follow_unfolded(record, whole)
         return bool(flat)
 
     make_path, follow_unfolded = wrapping.make_path, wrapping.follow_unfolded
@@ -539,6 +545,37 @@ def test_the_way_laid_out_flat_is_that_of_newton(
     assert off[0] < 1e-13
     assert off[1] < 1e-12
     assert off[2] < 1e-9
+
+
+@uncompiled
+def test_a_straight_line_beyond_its_face_meets_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether it holds, at 500 ends all round the body, against the body's thousand points of a line; at both answers
+    of the face alone."""
+    made: list[Any] = []
+    make_wrapping = attached.make_wrapping
+    monkeypatch.setattr(attached, "make_wrapping", lambda surface: made.append(make_wrapping(surface)) or made[-1])
+    place = [0.3, 0.5 * SIZE[1], 0.2]
+    i = PlainInstance(
+        MODEL,
+        BOX,
+        {
+            "start.condition": HANDED_OVER,
+            "start_relative_position": [0.0, -12.0, 0.0],
+            "target_size": SIZE.tolist(),
+            "target_attachment": place,
+            "tether.rest_length": 13.0,
+        },
+    )
+    assert i.record[0].held_count == 0
+    found = set()
+    for far in np.random.default_rng(3).uniform(-4.0, 4.0, (500, 3)):
+        if (np.abs(far) < 0.5 * SIZE).all():
+            continue
+        made[-1].follow(i.record, far, True)
+        held = bool(made[-1].holds(i.record))
+        assert held is not passes_through(np.array(place), far, SIZE), far
+        found.add((held, bool(far[1] > place[1])))
+    assert {(True, True), (False, False)} <= found
 
 
 @pytest.mark.parametrize("count", [4, pytest.param(100, marks=pytest.mark.evidence)])

@@ -34,6 +34,8 @@ class Bodies(NamedTuple):
     go_on(record, time, state, rate)            from the end of a step of a time [s] to the begin of the next; attitudes
                                                 have no rate there but for what turning axes add
     seen(record, state, elapsed) -> state       as it is, from the coordinates of a step, `elapsed` [s] after its begin
+    felt(record, state, elapsed) -> state       the same for the equations alone: nothing of a slack line is sought
+    last_seen(record, state) -> state           what `seen` made of it, if that was the last that was asked
     seen_rate(record, state, rate) -> rate      and its rate, after `seen`
     enter_rate(record, state, seen, rate)       the rate in the coordinates of the step, from that as it is
     squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
@@ -71,6 +73,8 @@ class Bodies(NamedTuple):
     enter: Callable[..., Any]
     go_on: Callable[..., Any]
     seen: Callable[..., Any]
+    felt: Callable[..., Any]
+    last_seen: Callable[..., Any]
     seen_rate: Callable[..., Any]
     enter_rate: Callable[..., Any]
     longest: Callable[..., Any]

@@ -7,14 +7,15 @@ A body that does not turn has its attachment at its centre of mass; a point targ
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.bodies.bounds import make_bounds
 from fmu_src.tethered_deorbit.bodies.carried import Carried
 from fmu_src.tethered_deorbit.bodies.rigid import Rigid, make_rigid
+from fmu_src.tethered_deorbit.bodies.stepping import make_stepping
 from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping, make_wrapping
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.idle import no_fault, nothing, zero
@@ -22,20 +23,9 @@ from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR
 from fmu_src.tethered_deorbit.surfaces import SURFACES
-from orbital.kernel import kernel, view
-from orbital.rotations import normalise
+from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
-WIDEST = 1.0
-"""By how much a body may turn in a step [rad]."""
-ACROSS, DAMPED_ACROSS = (0.25, 0.0), (10.0, 1.0)
-"""By how much velocities across a taut line may be off, as shares of the rate of the body that turns fastest, in
-tolerances of the separation: of a straight line and of one that wraps, without damping and well damped. At 1 an
-undamped pair without a field lost 1.4e-11 of its energy in two tugs, at a quarter 5e-12; a box that slips off its line
-undamped kept its energy to 1.4e-9 J at a quarter. What a dashpot takes drowns such losses; at 10 in place of 1 the tugs
-of a damped target at 5 deg/s come out twice as far off, with a quarter fewer steps."""
-WELL_DAMPED = 0.05
-"""Damping ratio from which on it is."""
 OVERRUN = 1e-12
 """Share of its length by which a line may be longer at the start, by rounding of the attitude."""
 
@@ -88,11 +78,10 @@ def make_attached(
     Checked  tests/tethered_deorbit/test_rigid.py
     """
     straight = surface not in SURFACES
-    undamped, damped = (shares[0 if straight else 1] for shares in (ACROSS, DAMPED_ACROSS))
     wrapping = Wrapping() if straight else make_wrapping(SURFACES[surface])
     show, keep, trouble = wrapping.publish, wrapping.keep, wrapping.trouble
     way_holds, renew_way, retry_way, on_body = wrapping.holds, wrapping.renew, wrapping.retry, wrapping.on_body
-    lay_out, start_way, followed = wrapping.begin, wrapping.start, wrapping.turning
+    lay_out, start_way = wrapping.begin, wrapping.start
     wrappings = {"target": wrapping, "chaser": Wrapping()}
     signs = {"target": 1.0, "chaser": -1.0}
     made = {
@@ -101,6 +90,7 @@ def make_attached(
     }
     bodies = len(turning)
     target, chaser = made.get("target", STILL), made.get("chaser", STILL)
+    bounds = make_bounds(target, chaser, straight, wrapping.turning, bodies)
     separation_slot = interface.references["start.separation"]
     shorter = "target_attachment_distance" if "target" not in turning else "state_no_length"
 
@@ -129,8 +119,10 @@ def make_attached(
         return 0
 
     @kernel
-    def span(record: Any, state: Array) -> None:
+    def span(record: Any, state: Array, whole: bool) -> None:
         """The line's vector and its rate, from the chaser's attachment to where it meets the target, in `state.line`.
+
+        whole         as of `Wrapping.follow`
 
         Checked  tests/tethered_deorbit/test_rigid.py
         """
@@ -138,8 +130,10 @@ def make_attached(
         for i in range(3):
             vector[i] = state[6 + i]
             velocity[i] = state[9 + i]
-        chaser.reach(record, state, vector, velocity)
-        target.reach(record, state, vector, velocity)
+        chaser.reach(record, state, vector, velocity, whole)
+        target.reach(record, state, vector, velocity, whole)
+
+    stepping = make_stepping(target, chaser, span, keep, straight, bodies, size)
 
     @kernel
     def measure(record: Any, state: Array) -> tuple[float, float, float]:
@@ -160,7 +154,7 @@ def make_attached(
         """
         target.stand(record, state)
         chaser.stand(record, state)
-        span(record, state)
+        span(record, state, True)
 
     @kernel
     def line(record: Any, state: Array) -> tuple[float, float, float]:
@@ -171,35 +165,6 @@ def make_attached(
         stand(record, state)
         found: tuple[float, float, float] = measure(record, state)
         return found
-
-    @kernel
-    def leave(record: Any, state: Array, elapsed: float) -> None:
-        """The state of a step as it is, in `state.seen`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
-        """
-        r = record[0]
-        there = r.state_seen
-        for i in range(size):
-            there[i] = state[i]
-        target.carried.leave(record, elapsed, state, there)
-        chaser.carried.leave(record, elapsed, state, there)
-        if straight and r.state_carried == 1:
-            for i in range(3):
-                r.state_line[0][i] = state[6 + i]
-                r.state_line[1][i] = state[9 + i]
-        else:
-            span(record, there)
-
-    @view
-    def seen(record: Any, state: Array, elapsed: float) -> Array:
-        """The state of a step as it is: see `Bodies`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
-        """
-        leave(record, state, elapsed)
-        there: Array = record[0].state_seen
-        return there
 
     @kernel
     def holds(record: Any, state: Array) -> bool:
@@ -235,19 +200,6 @@ def make_attached(
         stand(record, state)
         keep(record)
         target.set_pivot(record, state, record[0].state_line[0], record[0].state_line[1])
-
-    @kernel
-    def hold_at_begin(record: Any, state: Array) -> None:
-        """The same at the begin of a step, its attitudes being as they are.
-
-        Checked  tests/tethered_deorbit/test_wrapping.py
-        """
-        r = record[0]
-        leave(record, state, 0.0)
-        keep(record)
-        target.set_pivot(record, r.state_seen, r.state_line[0], r.state_line[1])
-
-    hold_way = nothing if straight else hold_at_begin
 
     @kernel
     def along(record: Any, state: Array) -> tuple[float, float, float]:
@@ -357,144 +309,6 @@ def make_attached(
         chaser.turn_back(record, time, vector)
 
     @kernel
-    def rest(record: Any) -> None:
-        """A step of no length.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: macro steps change nothing
-        """
-        record[0].state_carried = 0
-        target.carried.rest(record)
-        chaser.carried.rest(record)
-
-    @kernel
-    def enter(record: Any, state: Array) -> None:
-        """Into the coordinates of a step: see `carried`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
-        """
-        settle(state)
-        record[0].state_carried = record[0].state_taut
-        target.carried.enter(record, state)
-        chaser.carried.enter(record, state)
-
-    @kernel
-    def settle(state: Array) -> None:
-        """Attitudes back to unit length.
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        for k in range(bodies):
-            first = PAIR + ATTITUDE * k
-            normalise(state[first : first + 4], state[first : first + 4])
-
-    @kernel
-    def leave_rate(record: Any, state: Array, rate: Array) -> None:
-        """The rate of that state, in `state.seen_rate`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
-        """
-        there = record[0].state_seen_rate
-        for i in range(size):
-            there[i] = rate[i]
-        target.carried.leave_rate(record, state, there)
-        chaser.carried.leave_rate(record, state, there)
-
-    @view
-    def seen_rate(record: Any, state: Array, rate: Array) -> Array:
-        """The rate of that state: see `Bodies`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
-        """
-        leave_rate(record, state, rate)
-        there: Array = record[0].state_seen_rate
-        return there
-
-    @kernel
-    def enter_rate(record: Any, state: Array, there: Array, rate: Array) -> None:
-        """The rate in the coordinates of the step: see `Bodies`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
-        """
-        target.carried.enter_rate(record, there, rate)
-        chaser.carried.enter_rate(record, there, rate)
-        for i in range(3):
-            rate[6 + i] = state[9 + i]
-
-    @kernel
-    def go_on(record: Any, time: float, state: Array, rate: Array) -> None:
-        """From one step to the next: see `Bodies`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs
-        """
-        target.carried.stay(record, time, state)
-        chaser.carried.stay(record, time, state)
-        settle(state)
-        hold_way(record, state)
-        target.carried.go_on(record, state, rate)
-        chaser.carried.go_on(record, state, rate)
-
-    @kernel
-    def fastest(state: Array) -> float:
-        """Rate of the body that turns fastest [rad/s].
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        rate = 0.0
-        for k in range(bodies):
-            first = PAIR + ATTITUDE * k + 4
-            rate = max(rate, norm(state[first : first + 3]))
-        return rate
-
-    @kernel
-    def longest(record: Any, state: Array) -> float:
-        """Longest step [s]: over which no body turns by more than the series of `evenly_turned` bear, and body and line
-        not by more than lets its way be followed.
-
-        Checked  tests/tethered_deorbit/test_rigid.py, test_wrapping.py
-        """
-        apart, rate = norm(state[6:9]), fastest(state)
-        step = WIDEST / rate if rate > 0.0 else math.inf
-        turning = norm(state[PAIR + 4 : PAIR + 7])
-        if apart > 0.0:
-            turning += norm(state[9:12]) / apart
-        return min(step, followed / turning) if turning > 0.0 else step
-
-    @kernel
-    def squared_error(record: Any, state: Array, error: Array) -> float:
-        """Square of the size of the errors of the attitudes [-].
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        return float(target.squared_error(record, state, error) + chaser.squared_error(record, state, error))
-
-    @kernel
-    def pace(record: Any, state: Array) -> float:
-        """The environment's pace, or a share of the rate of the body that turns fastest, up to the line's [rad/s]: what
-        moves across the line goes round with it.
-
-        Checked  tests/tethered_deorbit/test_rigid.py: three tugs, and the steps of a target that tumbles
-        """
-        r = record[0]
-        damping = abs(r.state_damping) / (2.0 * r.state_effective_mass * r.state_frequency)
-        share = undamped + (damped - undamped) * min(1.0, damping / WELL_DAMPED)
-        return float(max(r.state_pace, min(r.state_frequency, share * fastest(state))))
-
-    @kernel
-    def moved_mass(record: Any, state: Array) -> float:
-        """Mass that the line has to move along its direction [kg]; after `seen`.
-
-            1/m = 1/m_r + (a x n).I^-1 (a x n), of either body
-
-        Source   impulse on a free rigid body
-        Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
-        """
-        r = record[0]
-        vector = r.state_line[0]
-        if not norm(vector) > 0.0:
-            return float(r.state_effective_mass)
-        return float(1.0 / (1.0 / r.state_reduced_mass + target.ease(record, vector) + chaser.ease(record, vector)))
-
-    @kernel
     def publish(record: Any, state: Array) -> None:
         """Outputs of both, after `stand`.
 
@@ -534,16 +348,18 @@ def make_attached(
         pull=pull,
         add_turning=add_turning,
         turn_back=turn_back,
-        rest=rest,
-        enter=enter,
-        go_on=go_on,
-        seen=seen,
-        seen_rate=seen_rate,
-        enter_rate=enter_rate,
-        longest=longest,
-        squared_error=squared_error,
-        pace=pace,
-        moved_mass=moved_mass,
+        rest=stepping.rest,
+        enter=stepping.enter,
+        go_on=stepping.go_on,
+        seen=stepping.seen,
+        felt=stepping.felt,
+        last_seen=stepping.last_seen,
+        seen_rate=stepping.seen_rate,
+        enter_rate=stepping.enter_rate,
+        longest=bounds.longest,
+        squared_error=bounds.squared_error,
+        pace=bounds.pace,
+        moved_mass=bounds.moved_mass,
         publish=publish,
         energy=energy,
         differentiate=differentiate,

@@ -135,10 +135,11 @@ def make_carried(role: str, first: int, sign: float, leaving: str) -> Carried:
         for i in range(middle, last):
             seen[i] = state[i]
         to_matrix_of_any_length(r[turned], seen[first:middle])
-        matrix_vector(r[room][0], r[turned], r[point])
-        point_velocity(r[room][1], r[turned], seen[middle:last], r[point])
-        add_scaled(seen[6:9], seen[6:9], -sign, r[room][0])
-        add_scaled(seen[9:12], seen[9:12], -sign, r[room][1])
+        if r.state_carried == 1:
+            matrix_vector(r[room][0], r[turned], r[point])
+            point_velocity(r[room][1], r[turned], seen[middle:last], r[point])
+            add_scaled(seen[6:9], seen[6:9], -sign, r[room][0])
+            add_scaled(seen[9:12], seen[9:12], -sign, r[room][1])
 
     @kernel
     def enter_rate(record: Any, seen: Array, rate: Array) -> None:
@@ -149,10 +150,11 @@ def make_carried(role: str, first: int, sign: float, leaving: str) -> Carried:
         Checked  tests/tethered_deorbit/test_rigid.py: three tugs
         """
         r = record[0]
-        spare = r[room][0]
-        point_acceleration(spare, r[turned], seen[middle:last], rate[middle:last], r[point])
-        add_scaled(rate[6:9], rate[6:9], sign, r[room][1])
-        add_scaled(rate[9:12], rate[9:12], sign, spare)
+        if r.state_carried == 1:
+            spare = r[room][0]
+            point_acceleration(spare, r[turned], seen[middle:last], rate[middle:last], r[point])
+            add_scaled(rate[6:9], rate[6:9], sign, r[room][1])
+            add_scaled(rate[9:12], rate[9:12], sign, spare)
         a, b, c, d = seen[first], seen[first + 1], seen[first + 2], seen[first + 3]
         x = 0.5 * (seen[middle] - r[spin][0])
         y = 0.5 * (seen[middle + 1] - r[spin][1])
@@ -173,10 +175,11 @@ def make_carried(role: str, first: int, sign: float, leaving: str) -> Carried:
         Checked  tests/tethered_deorbit/test_rigid.py: three tugs
         """
         r = record[0]
-        spare = r[room][0]
-        point_acceleration(spare, r[turned], seen[middle:last], rate[middle:last], r[point])
-        add_scaled(rate[9:12], rate[9:12], -sign, spare)
-        cross(spare, r.state_turning, r[room][1])
-        add_scaled(rate[9:12], rate[9:12], sign, spare)
+        if r.state_carried == 1:
+            spare = r[room][0]
+            point_acceleration(spare, r[turned], seen[middle:last], rate[middle:last], r[point])
+            add_scaled(rate[9:12], rate[9:12], -sign, spare)
+            cross(spare, r.state_turning, r[room][1])
+            add_scaled(rate[9:12], rate[9:12], sign, spare)
 
     return Carried(rest, enter, stay, go_on, leave, enter_rate, leave_rate)

@@ -132,6 +132,15 @@ def as_it_is(record: Any, state: Array, elapsed: float) -> Array:
 
 
 @view
+def as_it_was(record: Any, state: Array) -> Array:
+    """The same.
+
+    Checked  tests/tethered_deorbit/test_macro_step.py
+    """
+    return state
+
+
+@view
 def rate_as_it_is(record: Any, state: Array, rate: Array) -> Array:
     """And its rate.
 
@@ -174,6 +183,8 @@ def make_points(interface: Interface) -> Bodies:
         enter=nothing,
         go_on=nothing,
         seen=as_it_is,
+        felt=as_it_is,
+        last_seen=as_it_was,
         seen_rate=rate_as_it_is,
         enter_rate=nothing,
         longest=no_end,

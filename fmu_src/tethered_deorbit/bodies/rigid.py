@@ -11,12 +11,12 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
+from fmu_src.tethered_deorbit.bodies.arm import make_arm
 from fmu_src.tethered_deorbit.bodies.carried import Carried, make_carried
 from fmu_src.tethered_deorbit.bodies.shown import make_shown
 from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping
 from fmu_src.tethered_deorbit.body_rows import RATE_FRAMES
 from fmu_src.tethered_deorbit.faults import blame
-from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.interface import BAD_ATTITUDE, BAD_INERTIA, BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import ATTITUDE
 from orbital.kernel import kernel
@@ -26,11 +26,9 @@ from orbital.rigid import (
     gradient_torque,
     inertia_matrix,
     invert_symmetric,
-    point_acceleration,
-    point_velocity,
 )
 from orbital.rotations import evenly_turned, from_matrix, multiply, normalise, to_matrix_of_any_length
-from orbital.vectors import Array, add_scaled, cross, dot, matrix_vector, norm, transposed_matrix_vector
+from orbital.vectors import Array, cross, dot, norm, transposed_matrix_vector
 
 INERTIAL, ORBITAL, LINE = range(len(RATE_FRAMES))
 SHARE, TAUT_SHARE = 5e-3, 0.1
@@ -50,8 +48,9 @@ class Rigid(NamedTuple):
     stand(record, state)                        the matrix of the attitude; of what follows all but `energy` and
                                                 `squared_error` come after it
     move(record, state, rate)                   attitude and rate without the line
-    reach(record, state, vector, velocity)      add what the attachment adds to the line's vector, from the chaser's
-                                                attachment to the target's [m], and to its rate [m/s]
+    reach(record, state, vector, velocity, whole)   add what the attachment adds to the line's vector, from the
+                                                chaser's attachment to the target's [m], and to its rate [m/s]; `whole`
+                                                as of `Wrapping.follow`
     reach_acceleration(record, state, rate, out)   and to the rate of that, inertial [m/s^2]; after `reach`
     relief(record, state, vector, velocity) -> l''   what a line that slides over the body takes off l'' [m/s^2]; after
                                                 `reach`
@@ -132,8 +131,7 @@ def make_rigid(
     )
     mass, share = f"{role}_mass", "state_chaser_share" if role == "target" else "state_target_share"
     moments, attachment = f"{role}_inertia", f"{role}_attachment"
-    leaving, follow = wrapping.leaving or attachment, wrapping.follow
-    slide, show_rates, pivot = wrapping.relief, wrapping.differentiate, wrapping.pivot
+    arm = make_arm(role, first, sign, wrapping)
     carried_point = "state_pivot" if wrapping.leaving else attachment
     start_attitude, start_rate, rate_frame = (
         f"{role}_{name}" for name in ("start_attitude", "start_rate", "rate_frame")
@@ -247,85 +245,6 @@ def make_rigid(
         to_matrix_of_any_length(record[0][turned], state[first:middle])
 
     @kernel
-    def seek(record: Any, vector: Array) -> None:
-        """The way of the line round the body to the other's end, from that of its vector which is the other's [m].
-
-        Checked  tests/tethered_deorbit/test_wrapping.py
-        """
-        r = record[0]
-        room = r[arms][2]
-        transposed_matrix_vector(room, r[turned], vector)
-        for i in range(3):
-            room[i] *= -sign
-        follow(record, room)
-
-    seek_way = seek if wrapping.leaving else nothing
-
-    @kernel
-    def reach(record: Any, state: Array, vector: Array, velocity: Array) -> None:
-        """Add where the line leaves the body, and its rate, from the centre of mass; after `stand`: see `Rigid`.
-
-            b = A a,   b' = A (w x a),   a the attachment, or where a line that wraps round the body leaves it
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        r = record[0]
-        seek_way(record, vector)
-        matrix_vector(r[arms][0], r[turned], r[leaving])
-        point_velocity(r[arms][1], r[turned], state[middle:last], r[leaving])
-        add_scaled(vector, vector, sign, r[arms][0])
-        add_scaled(velocity, velocity, sign, r[arms][1])
-
-    @kernel
-    def reach_acceleration(record: Any, state: Array, rate: Array, out: Array) -> None:
-        """Add the second derivative of the attachment, inertial [m/s^2]; after `reach`.
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        r = record[0]
-        point_acceleration(r[arms][2], r[turned], state[middle:last], rate[middle:last], r[leaving])
-        add_scaled(out, out, sign, r[arms][2])
-
-    @kernel
-    def ease(record: Any, vector: Array) -> float:
-        """What the body's turning adds to the inverse of the mass that the line has to move [1/kg]; after `reach`.
-
-            (a x n).I^-1 (a x n)
-
-        vector      along the line, of any length but zero       (3,)
-
-        Source   impulse on a free rigid body
-        Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
-        """
-        r = record[0]
-        lever, turned_by = r[arms][2], r[arms][3]
-        transposed_matrix_vector(lever, r[turned], vector)
-        cross(lever, r[leaving], lever)
-        matrix_vector(turned_by, r[inverse], lever)
-        return dot(lever, turned_by) / dot(vector, vector)
-
-    @kernel
-    def pull(record: Any, state: Array, rate: Array, x: float, y: float, z: float) -> None:
-        """Add what a force at the attachment does to the body rate [rad/s^2]; `turned` must be that of the state.
-
-            w' += I^-1 (a x A^T F),   F the force on this body
-
-        x, y, z     the force on the chaser                      [N]
-
-        Checked  tests/tethered_deorbit/test_rigid.py
-        """
-        r = record[0]
-        room = r[arms][2]
-        room[0] = -sign * x
-        room[1] = -sign * y
-        room[2] = -sign * z
-        transposed_matrix_vector(room, r[turned], room)
-        cross(room, r[leaving], room)
-        matrix_vector(room, r[inverse], room)
-        for i in range(3):
-            rate[middle + i] += room[i]
-
-    @kernel
     def add_turning(record: Any, state: Array, rate: Array, spin_sign: float) -> None:
         """Add what the turning of the axes adds to the rate of the attitude [1/s].
 
@@ -371,68 +290,19 @@ def make_rigid(
         size = r[scale] / (share * r.solver_tolerance_separation)
         return float(size * size * square)
 
-    @kernel
-    def parts(record: Any, state: Array, vector: Array, velocity: Array) -> None:
-        """The rate of the line's far end as the body sees it, after `reach`: the part along the line, in `arms[2]`, and
-        that across it, in `arms[3]`.
-
-            w = -A^T d' + w_b x A^T d
-
-        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
-        """
-        r = record[0]
-        along, across = r[arms][2], r[arms][3]
-        transposed_matrix_vector(along, r[turned], vector)
-        transposed_matrix_vector(r[arms][4], r[turned], velocity)
-        cross(across, state[middle:last], along)
-        add_scaled(across, across, -1.0, r[arms][4])
-        square = dot(along, along)
-        part = dot(across, along) / square if square > 0.0 else 0.0
-        for i in range(3):
-            along[i] *= part
-            across[i] -= along[i]
-
-    @kernel
-    def relief(record: Any, state: Array, vector: Array, velocity: Array) -> float:
-        """What the line's sliding over the body takes off the second derivative of its length [m/s^2]; after `reach`.
-
-        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
-        """
-        parts(record, state, vector, velocity)
-        return float(slide(record, record[0][arms][3]))
-
-    @kernel
-    def set_pivot(record: Any, state: Array, vector: Array, velocity: Array) -> None:
-        """The point about which the line turns; after `reach`.
-
-        Checked  tests/tethered_deorbit/test_wrapping.py: steps of a line that slides
-        """
-        parts(record, state, vector, velocity)
-        pivot(record, record[0][arms][3])
-
-    @kernel
-    def show_way(record: Any, state: Array, vector: Array, velocity: Array) -> None:
-        """Rates of what is shown of the way; after `reach`.
-
-        Checked  tests/tethered_deorbit/test_wrapping.py, against differences
-        """
-        r = record[0]
-        parts(record, state, vector, velocity)
-        show_rates(record, r[arms][2], r[arms][3])
-
     return Rigid(
         begin=begin,
         arm_length=arm_length,
         place=place,
         move=move,
         stand=stand,
-        reach=reach,
-        reach_acceleration=reach_acceleration,
-        relief=relief,
-        set_pivot=set_pivot,
-        show_way=show_way,
-        ease=ease,
-        pull=pull,
+        reach=arm.reach,
+        reach_acceleration=arm.reach_acceleration,
+        relief=arm.relief,
+        set_pivot=arm.set_pivot,
+        show_way=arm.show_way,
+        ease=arm.ease,
+        pull=arm.pull,
         add_turning=add_turning,
         turn_back=turn_back,
         squared_error=squared_error,

@@ -24,7 +24,7 @@ def make_shown(role: str, first: int) -> Shown:
 
     Checked  tests/tethered_deorbit/test_rigid.py
     """
-    moments, gradient = f"{role}_inertia", f"{role}_gravity_gradient"
+    gradient = f"{role}_gravity_gradient"
     inertia, turned, arms = (f"state_{role}_{name}" for name in ("inertia", "turned", "arms"))
     shown, shown_rate, spin, spin_energy = (f"{role}_{name}" for name in ("attitude", "rate", "spin", "spin_energy"))
     rates = tuple(f"rate_{role}_{name}" for name in ("attitude", "rate", "spin", "spin_energy"))
@@ -64,7 +64,7 @@ def make_shown(role: str, first: int) -> Shown:
         transposed_matrix_vector(room, r[turned], r.state_basis[0])
         other = r[arms][4]
         matrix_vector(other, r[inertia], room)
-        trace = r[moments][0] + r[moments][1] + r[moments][2]
+        trace = r[inertia][0, 0] + r[inertia][1, 1] + r[inertia][2, 2]
         tide = r[gradient] * 1.5 * rate_of_frame * rate_of_frame * (dot(room, other) - trace / 3.0)
         matrix_vector(other, r[inertia], state[middle:last])
         turning = 0.5 * dot(other, state[middle:last])
@@ -104,7 +104,7 @@ def make_shown(role: str, first: int) -> Shown:
         for i in range(3):
             other[i] += n * torque[i]
         matrix_vector(momentum, r[inertia], axis)
-        trace = r[moments][0] + r[moments][1] + r[moments][2]
+        trace = r[inertia][0, 0] + r[inertia][1, 1] + r[inertia][2, 2]
         size = dot(axis, momentum) - trace / 3.0
         power += r[gradient] * (3.0 * n * change * size + 3.0 * n * n * dot(other, momentum))
         return float(power)

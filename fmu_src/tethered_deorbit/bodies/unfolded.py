@@ -139,17 +139,23 @@ def straight(record: Any) -> None:
 
 
 @kernel
-def follow_unfolded(record: Any) -> bool:
+def follow_unfolded(record: Any, whole: bool) -> bool:
     """The way to `path.far` over the edges held; false where it cannot be had so.
 
-    Fills all that is asked of a way but for its points on edges before the last.
+    whole    fill all that is asked of a way, over several edges but for its points on those before the last; else only
+             where it leaves the body, and its length there
 
     Checked  tests/tethered_deorbit/test_wrapping.py, against `path`
     """
     r = record[0]
     count = r.held_count
     if count == 0:
-        straight(record)
+        if whole:
+            straight(record)
+        else:
+            for i in range(3):
+                r.state_departure[i] = r.target_attachment[i]
+            r.state_wrapped = 0.0
         return True
     if r.unfolded_usable == 0:
         return False
@@ -186,17 +192,23 @@ def follow_unfolded(record: Any) -> bool:
         total += soft * inverses
         t -= soft * slope / bend
         free = math.sqrt((b - t) * (b - t) + q * q)
+    r.state_wrapped = total - free
+    at_edge(record, r.state_departure, edge, t)
+    if not whole:
+        return True
     r.path_count = count
     r.path_edges[last] = edge
     r.path_along[last] = t
     r.path_held[last] = 0
     r.path_diagonal[last] = bend
     r.path_lengths[count] = free
-    at_edge(record, r.path_points[count], edge, t)
     for i in range(3):
+        r.path_points[count][i] = r.state_departure[i]
         r.path_points[0][i] = r.target_attachment[i]
         r.path_points[count + 1][i] = r.path_far[i]
         r.path_ways[count][i] = (r.path_far[i] - r.path_points[count][i]) / free
-        r.state_departure[i] = r.path_points[count][i]
-    r.state_wrapped = total - free
+    if count == 1:
+        r.path_lengths[0] = on_body
+        for i in range(3):
+            r.path_ways[0][i] = (r.path_points[1][i] - r.path_points[0][i]) / on_body
     return True

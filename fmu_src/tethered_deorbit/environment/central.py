@@ -257,7 +257,9 @@ def relative_rates(
 def differentiate(record: Any, state: Array, rate: Array) -> None:
     """Rates of what `publish` fills, at one instant.
 
-        a' = 2 a^2/mu V.(A - g),   E' = M V.(A - g),   g = -mu R/|R|^3
+        e' = V.(A - g) - g.(R' - V),   a' = 2 a^2/mu e',   E' = M e',   g = -mu R/|R|^3,   e the energy per mass
+
+    R' differs from V where mass leaves; E' is that of the mass that stays.
 
     state, rate   R, V, rho, rho'  of `layout`, inertial         (12,)
 
@@ -276,11 +278,13 @@ def differentiate(record: Any, state: Array, rate: Array) -> None:
         room[i] = center[i] + r.state_chaser_share * state[6 + i]
         other[i] = velocity[i] + r.state_chaser_share * state[9 + i]
     r.rate_target_radius = rate_of_radius(room, other)
-    r.rate_altitude = rate_of_radius(center, velocity)
+    r.rate_altitude = rate_of_radius(center, rate[0:3])
     two_body_acceleration(room, center, EARTH_MU)
+    fallen_by = 0.0
     for i in range(3):
+        fallen_by += room[i] * (rate[i] - velocity[i])
         room[i] = rate[3 + i] - room[i]
-    power = dot(velocity, room)
+    power = dot(velocity, room) - fallen_by
     semi = semi_major_axis(center, velocity, EARTH_MU)
     r.rate_semi_major_axis = 2.0 * semi * semi / EARTH_MU * power
     r.rate_energy_orbital = r.state_total_mass * power

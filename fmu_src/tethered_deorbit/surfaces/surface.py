@@ -56,6 +56,7 @@ class Surface(NamedTuple):
             state("state.sides[#][#]", "1", "the two faces of each edge", kind="Integer", shape=(self.edges, 2)),
             vector("state.middle", "m", "of the body's shape", "state"),
             state("state.extent", "m", "size of the body"),
+            state("state.own_face", "1", "face on which the line is made fast", kind="Integer"),
             vector("state.departure", "m", "where the line leaves the body, body axes", "state"),
             vector("state.pivot", "m", "about which the line's far end turns, body axes", "state"),
             state("state.wrapped", "m", "length of the line on the body"),

@@ -1,0 +1,107 @@
+"""How far a step of a pair of which a body turns may go, and how large its errors are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from fmu_src.tethered_deorbit.bodies.rigid import Rigid
+from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR
+from orbital.kernel import kernel
+from orbital.vectors import Array, norm
+
+WIDEST = 1.0
+"""By how much a body may turn in a step [rad]."""
+ACROSS, DAMPED_ACROSS = (0.25, 0.0), (10.0, 1.0)
+"""By how much velocities across a taut line may be off, as shares of the rate of the body that turns fastest, in
+tolerances of the separation: of a straight line and of one that wraps, without damping and well damped. At 1 an
+undamped pair without a field lost 1.4e-11 of its energy in two tugs, at a quarter 5e-12; a box that slips off its line
+undamped kept its energy to 1.4e-9 J at a quarter. What a dashpot takes drowns such losses; at 10 in place of 1 the tugs
+of a damped target at 5 deg/s come out twice as far off, with a quarter fewer steps."""
+WELL_DAMPED = 0.05
+"""Damping ratio from which on it is."""
+
+
+class Bounds(NamedTuple):
+    """Kernels of the same names as in `Bodies`."""
+
+    longest: Callable[..., Any]
+    squared_error: Callable[..., Any]
+    pace: Callable[..., Any]
+    moved_mass: Callable[..., Any]
+
+
+def make_bounds(target: Rigid, chaser: Rigid, straight: bool, followed: float, bodies: int) -> Bounds:
+    """The kernels for two bodies.
+
+    straight      whether the line never wraps
+    followed      by how much body and line may turn for its way to be followed [rad]
+    bodies        how many of them turn
+
+    Checked  tests/tethered_deorbit/test_rigid.py, test_wrapping.py
+    """
+    undamped, damped = (shares[0 if straight else 1] for shares in (ACROSS, DAMPED_ACROSS))
+
+    @kernel
+    def fastest(state: Array) -> float:
+        """Rate of the body that turns fastest [rad/s].
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        rate = 0.0
+        for k in range(bodies):
+            first = PAIR + ATTITUDE * k + 4
+            rate = max(rate, norm(state[first : first + 3]))
+        return rate
+
+    @kernel
+    def longest(record: Any, state: Array) -> float:
+        """Longest step [s]: over which no body turns by more than the series of `evenly_turned` bear, and body and line
+        not by more than lets its way be followed.
+
+        Checked  tests/tethered_deorbit/test_rigid.py, test_wrapping.py
+        """
+        apart, rate = norm(state[6:9]), fastest(state)
+        step = WIDEST / rate if rate > 0.0 else math.inf
+        turning = norm(state[PAIR + 4 : PAIR + 7])
+        if apart > 0.0:
+            turning += norm(state[9:12]) / apart
+        return min(step, followed / turning) if turning > 0.0 else step
+
+    @kernel
+    def squared_error(record: Any, state: Array, error: Array) -> float:
+        """Square of the size of the errors of the attitudes [-].
+
+        Checked  tests/tethered_deorbit/test_rigid.py
+        """
+        return float(target.squared_error(record, state, error) + chaser.squared_error(record, state, error))
+
+    @kernel
+    def pace(record: Any, state: Array) -> float:
+        """The environment's pace, or a share of the rate of the body that turns fastest, up to the line's [rad/s]: what
+        moves across the line goes round with it.
+
+        Checked  tests/tethered_deorbit/test_rigid.py: three tugs, and the steps of a target that tumbles
+        """
+        r = record[0]
+        damping = abs(r.state_damping) / (2.0 * r.state_effective_mass * r.state_frequency)
+        share = undamped + (damped - undamped) * min(1.0, damping / WELL_DAMPED)
+        return float(max(r.state_pace, min(r.state_frequency, share * fastest(state))))
+
+    @kernel
+    def moved_mass(record: Any, state: Array) -> float:
+        """Mass that the line has to move along its direction [kg]; after `seen`.
+
+            1/m = 1/m_r + (a x n).I^-1 (a x n), of either body
+
+        Source   impulse on a free rigid body
+        Checked  tests/tethered_deorbit/test_rigid.py: an off-centre snap
+        """
+        r = record[0]
+        vector = r.state_line[0]
+        if not norm(vector) > 0.0:
+            return float(r.state_effective_mass)
+        return float(1.0 / (1.0 / r.state_reduced_mass + target.ease(record, vector) + chaser.ease(record, vector)))
+
+    return Bounds(longest, squared_error, pace, moved_mass)
