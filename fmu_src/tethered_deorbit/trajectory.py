@@ -30,6 +30,8 @@ FIRST_FREE_STEP = 0.05
 """First step after a change: in radians of the line's, or of the orbit's motion."""
 WIDEST_TURN = 0.25
 """Greatest angle by which the axes of a step may turn [rad]: inside the series of `turn_back`."""
+CAREFUL = 0.9
+"""Share of the growth that what a settled step has missed allows, which falls with its fourth power."""
 SHORTEST = 32.0 * ROUNDING
 """Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
 
@@ -174,7 +176,7 @@ def make_trajectory(
             if not step > 0.5 * SHORTEST * abs(r.state_begin):
                 code = NOT_FINITE if not math.isfinite(r.state_error) else STEP_NOT_MET
                 return blame(record, code, 0, r.state_error)
-            level.prepare(record, work, step)
+            step = level.prepare(record, work, step, cap)
             attempt(record, work, step)
             error = scheme.error(
                 record,
@@ -184,17 +186,21 @@ def make_trajectory(
                 work[low:high],
                 work[high:stages],
             )
-            error = max(error, level.missed(record, work))
             code = bodies.trouble(record)
             if code != 0:
                 return blame(record, code, 0, 0.0)
-            if error <= 1.0:
+            missed = level.missed(record, work)
+            if error <= 1.0 and missed <= 1.0:
                 break
+            if missed > error:
+                error = missed
             r.state_error = error
             r.solver_rejected += 1
-            step = scheme.shorter_step(step, error)
-            level.leave(record, work, step, cap)
+            step = level.leave(record, work, scheme.shorter_step(step, error), cap)
         r.state_next_step = scheme.next_step(step, error, r.state_error if math.isfinite(r.state_error) else 1.0)
+        if missed > 0.0:
+            grown = max(1.0, CAREFUL / math.sqrt(math.sqrt(missed)))
+            r.state_next_step = min(r.state_next_step, grown * step)
         r.state_error = error
         stop(record, work, longest)
         return 0

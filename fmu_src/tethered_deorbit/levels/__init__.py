@@ -27,6 +27,12 @@ def as_meant(record: Any, work: Any, step: float, limit: float, cap: float) -> f
     return step
 
 
+@kernel
+def as_said(record: Any, work: Any, step: float, cap: float) -> float:
+    """The step that is meant [s]."""
+    return step
+
+
 class Held(NamedTuple):
     """Kernels of a line whose length is prescribed over a step, its tension being what holds it so. As it stands, those
     of a tow all of whose steps are resolved.
@@ -50,9 +56,9 @@ class Level(NamedTuple):
     look(record, work, step, limit, cap) -> step   at the begin of a taut step: whether its vibration has died, and the
                                        step to try [s]; of those given one is meant, one allowed, and one as long as it
                                        may be while the line vibrates
-    prepare(record, work, step)        before a settled step is taken
+    prepare(record, work, step, cap) -> step   before a settled step is taken: the one to take [s]
     missed(record, work) -> e          after it: by how much the line was held wrongly, in tolerances
-    leave(record, work, step, cap)     go back to resolved steps where those that are left gain nothing
+    leave(record, work, step, cap) -> step   go back to resolved steps where a shorter one gains nothing [s]
     place(record, state, tension, elapsed, length, speed) -> (l, l')   put a state within a settled step where the line
                                        is [m], [m/s]; in place
     put(record, settled)               whether the line is held
@@ -62,9 +68,9 @@ class Level(NamedTuple):
     begin: Callable[..., Any] = nothing
     restart: Callable[..., Any] = nothing
     look: Callable[..., Any] = as_meant
-    prepare: Callable[..., Any] = nothing
+    prepare: Callable[..., Any] = as_said
     missed: Callable[..., Any] = zero
-    leave: Callable[..., Any] = nothing
+    leave: Callable[..., Any] = as_said
     place: Callable[..., Any] = no_place
     put: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing

@@ -41,6 +41,8 @@ from orbital.vectors import Array, norm
 
 GAIN = 8.0
 """A settled step is at least so many times as long as a resolved one, or it is not worth its preparation."""
+SURE = 0.25
+"""Share of what may be neglected that a line neglects at most as it settles, so that it does not go to and fro."""
 NEXT_LOOK = 30.0
 """Radians of the vibration after which the line is looked at, at the earliest."""
 SPAN = 0.01
@@ -303,7 +305,7 @@ def make_settled(
         longer, faster = off_course(record, work)
         amplitude = math.sqrt(longer * longer + mass / stiffness * faster * faster)
         least = tolerance(record)
-        if amplitude <= least and neglected(record, mass) <= least:
+        if amplitude <= least and neglected(record, mass) <= SURE * least:
             r.state_settled_since = r.state_begin
             r.state_times_settled += 1
             return float(GAIN * cap)
@@ -314,22 +316,22 @@ def make_settled(
         return step
 
     @kernel
-    def prepare(record: Any, work: Array, step: float) -> None:
-        """Draw the course of a settled step [s], put its begin there, axes at rest, and renew the rate of the begin.
+    def leave(record: Any, work: Array, step: float, cap: float) -> float:
+        """Go back to resolved steps where one [s] would be no longer than `GAIN` of them: the line is on its slow
+        solution, and the next look is `NEXT_LOOK` away.
 
-        Checked  tests/tethered_deorbit/test_settled.py
+        cap           longest step of a line that vibrates       [s]
+
+        Returns the step to take [s].
+
+        Checked  tests/tethered_deorbit/test_settled.py: a load that sways
         """
         r = record[0]
-        if r.state_settled == 0:
-            return
-        for i in range(3):
-            r.state_turning[i] = 0.0
-        r.state_moved_mass = draw(record, work, span_of(record, step))
-        longer, faster = off_course(record, work)
-        start = work[begin_state:end_state]
-        x, y, z = bodies.along(record, seen(record, start, 0.0))
-        shift(start, x, y, z, longer, faster)
-        derivative(record, start, work[stages : stages + size], 0.0)
+        if r.state_settled == 0 or step >= GAIN * cap:
+            return step
+        restart(record, r.state_begin)
+        derivative(record, work[begin_state:end_state], work[stages : stages + size], 0.0)
+        return cap
 
     @kernel
     def shift(state: Array, x: float, y: float, z: float, longer: float, faster: float) -> None:
@@ -351,9 +353,34 @@ def make_settled(
             state[11] -= rate * z
 
     @kernel
+    def prepare(record: Any, work: Array, step: float, cap: float) -> float:
+        """Draw the course of a settled step [s], put its begin there, axes at rest, and renew the rate of the begin.
+
+        cap           longest step of a line that vibrates       [s]
+
+        Returns the step to take [s]. Where the slow solution neglects too much, the line vibrates from here on.
+
+        Checked  tests/tethered_deorbit/test_settled.py
+        """
+        r = record[0]
+        if r.state_settled == 0:
+            return step
+        for i in range(3):
+            r.state_turning[i] = 0.0
+        r.state_moved_mass = draw(record, work, span_of(record, step))
+        longer, faster = off_course(record, work)
+        start = work[begin_state:end_state]
+        x, y, z = bodies.along(record, seen(record, start, 0.0))
+        shift(start, x, y, z, longer, faster)
+        if neglected(record, r.state_moved_mass) > tolerance(record):
+            return float(leave(record, work, 0.0, cap))
+        derivative(record, start, work[stages : stages + size], 0.0)
+        return step
+
+    @kernel
     def missed(record: Any, work: Array) -> float:
-        """By how much the course was wrong, in tolerances [-]: where the step ended, between its points, in what the
-        slow solution neglects.
+        """By how much the course was wrong, in tolerances of the separation [-]: where the step ended, and between its
+        points.
 
         Checked  tests/tethered_deorbit/test_settled.py: a load that sways
         """
@@ -366,21 +393,7 @@ def make_settled(
         span = r.state_course_span
         left = abs(length - rest - stretch) + LEFT_BY_CUBIC * abs(r.state_course[3]) * span * span * span
         apart = r.solver_tolerance_separation + ROUNDING * norm(work[end_state + 6 : end_state + 9])
-        return float(max(left / apart, neglected(record, r.state_moved_mass) / tolerance(record)))
-
-    @kernel
-    def leave(record: Any, work: Array, step: float, cap: float) -> None:
-        """Go back to resolved steps where one [s] would be no longer than `GAIN` of them: the line is on its slow
-        solution, and the next look is `NEXT_LOOK` away.
-
-        cap           longest step of a line that vibrates       [s]
-
-        Checked  tests/tethered_deorbit/test_settled.py: a load that sways
-        """
-        r = record[0]
-        if r.state_settled == 1 and step < GAIN * cap:
-            restart(record, r.state_begin)
-            derivative(record, work[begin_state:end_state], work[stages : stages + size], 0.0)
+        return float(left / apart)
 
     @kernel
     def place(
