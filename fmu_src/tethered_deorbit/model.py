@@ -25,6 +25,7 @@ from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
 from fmu_src.tethered_deorbit.levels import RESOLVED, UNHELD
 from fmu_src.tethered_deorbit.levels.settled import make_held, make_settled
+from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEMES
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS, LIMITED_OF_REELS
@@ -128,7 +129,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
-    settles = "level" in terms
+    if "level" in terms and terms["reel"] not in SETTLING_LAWS:
+        raise ValueError(f"{MODEL.name}: no line settles with reel = {terms['reel']!r}")
+    settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
     held = make_held(reel, bodies) if settles else UNHELD
     inertial, derivative = make_equations(environment, reel, thrust, bodies, aocs, held, layout)
     scheme = SCHEMES[terms["solver"]](

@@ -210,6 +210,10 @@ AOCS = Group(
     follows=lambda terms, values: "wheels",
 )  # fmt: skip
 
+SETTLING_LAWS, SETTLING_SCHEMES = ("locked",), ("dop853",)
+"""Laws of the line whose vibration can be stepped over once it has died, and schemes that do: `radau` needs not, and
+`gauss` is there as a second opinion."""
+
 LEVELS = Group(
     {
         "settled": Term(

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
+from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS
 from fmu_src.tethered_deorbit.reel_refusals import of_reel
 
 Refusal = tuple[str, str, str]
@@ -35,6 +36,9 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         yield "engine.propellant", f"{values['engine.propellant']:g} kg", text
     if "burn" in terms:
         yield from _of_burns(terms, values)
+    if "level" in terms and terms["reel"] not in SETTLING_LAWS:
+        text = f"a line settles with reel.law = {' or '.join(SETTLING_LAWS)} alone; leave the table out, or take that"
+        yield "level.detail", terms["level"], text
     yield from of_reel(values, terms)
 
 

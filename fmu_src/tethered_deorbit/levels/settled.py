@@ -77,6 +77,30 @@ def course(record: Any, elapsed: float) -> tuple[float, float, float]:
     )
 
 
+@kernel
+def slow_solution(
+    out: Array, load: float, slope: float, bend: float, turn: float, mass: float, damping: float, stiffness: float
+) -> None:
+    """Stretch of an oscillator under a load that is a cubic in time, by powers of the time [m], [m/s], ...
+
+        x = P/k - c P'/k^2 - (m/k - c^2/k^2) P''/k,   P = p_0 + p_1 t + p_2 t^2 + p_3 t^3
+
+    out                  of x                                    (4,)
+    load, slope, bend, turn   p  of the load                     [N], [N/s], [N/s^2], [N/s^3]
+    mass, damping, stiffness  m, c, k                            [kg], [N s/m], [N/m]
+
+    Valid    what P''' adds is left out: (2 m c/k^2 - (c/k)^3) P'''/k, see `neglected`
+    Source   powers of d/dt in 1/(k + c d/dt + m d^2/dt^2)
+    Checked  tests/tethered_deorbit/test_settled.py: put into the equation of motion
+    """
+    lag = damping / stiffness
+    inertia = mass / stiffness - lag * lag
+    out[0] = (load - lag * slope - 2.0 * inertia * bend) / stiffness
+    out[1] = (slope - 2.0 * lag * bend - 6.0 * inertia * turn) / stiffness
+    out[2] = (bend - 3.0 * lag * turn) / stiffness
+    out[3] = turn / stiffness
+
+
 def make_held(reel: Reel, bodies: Bodies) -> Held:
     """The kernels for one elastic law of the line, `reel.at_rest`, and two bodies.
 
@@ -225,11 +249,7 @@ def make_settled(
         here = seen(record, start, 0.0)
         mass = float(bodies.moved_mass(record, here))
         _, _, _, stiffness, damping = line(record, 0.0)
-        lag, inertia = damping / stiffness, mass / stiffness - damping * damping / (stiffness * stiffness)
-        r.state_course[0] = (load - lag * slope_load - 2.0 * inertia * bend_load) / stiffness
-        r.state_course[1] = (slope_load - 2.0 * lag * bend_load - 6.0 * inertia * turn_load) / stiffness
-        r.state_course[2] = (bend_load - 3.0 * lag * turn_load) / stiffness
-        r.state_course[3] = turn_load / stiffness
+        slow_solution(r.state_course, load, slope_load, bend_load, turn_load, mass, damping, stiffness)
         r.state_course_span = span
         return mass
 
