@@ -49,9 +49,7 @@ class Events(NamedTuple):
     nearest: Callable[..., Any]
 
 
-def make_events(
-    reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, places: Places, impulse: int
-) -> Events:
+def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, places: Places, impulse: int) -> Events:
     """The kernels for one law of the line, two bodies and one integrator.
 
     impulse       its place in the state

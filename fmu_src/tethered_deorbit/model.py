@@ -143,9 +143,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     extremes = make_extremes(events)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
-    trajectory = make_trajectory(
-        derivative, bodies, scheme, events, acting, held, level, places, layout.impulse
-    )
+    trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places, layout.impulse)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)
     publish = make_publish(reel, environment, bodies, layout)

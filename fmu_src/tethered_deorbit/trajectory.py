@@ -216,9 +216,7 @@ def make_trajectory(
         if time >= r.state_end or r.state_step == 0.0:
             return float(work[last + impulse])
         fraction = max(0.0, (time - r.state_begin) / r.state_step)
-        scheme.dense_rate(
-            work[dense_begin:work_end], fraction, r.state_step, impulse, 1, rate[impulse : impulse + 1]
-        )
+        scheme.dense_rate(work[dense_begin:work_end], fraction, r.state_step, impulse, 1, rate[impulse : impulse + 1])
         return float(rate[impulse])
 
     @kernel

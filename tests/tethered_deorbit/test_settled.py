@@ -40,7 +40,9 @@ def test_a_day_is_that_of_a_line_whose_vibration_is_followed() -> None:
     beside = np.abs(rows(stepped_over, 86400.0, 600.0) - rows(followed, 86400.0, 600.0)).max(axis=0)
     assert (beside < [3e-9, 3e-9, 3e-10, 1e-6, 5e-8]).all(), beside
     assert stepped_over["tether.tug_count"] == followed["tether.tug_count"] == 38
-    assert [stepped_over[f"tug[1].{x}"] for x in ("time", "speed")] == [followed[f"tug[1].{x}"] for x in ("time", "speed")]
+    assert [stepped_over[f"tug[1].{x}"] for x in ("time", "speed")] == [
+        followed[f"tug[1].{x}"] for x in ("time", "speed")
+    ]
     assert stepped_over["tether.impulse"] == pytest.approx(followed["tether.impulse"], rel=1e-9)
     assert 30 * stepped_over["solver.steps"] < followed["solver.steps"]
     assert stepped_over["level.settled"] and stepped_over["level.times_settled"] == 1
@@ -83,12 +85,10 @@ def test_a_changed_thrust_shakes_the_line_again() -> None:
         i.step(60.0)
         if terms is SETTLED:
             assert not i["level.settled"] and i["level.times_settled"] == 1
-        i.step(1000.0)
-        i["thrust.offset"] = 0.0
-        i.step(3000.0)
+        i.step(940.0)
         ends.append([*(i[name] for name in SEEN), i["tether.tug_count"]])
-    assert i["level.settled"] and i["level.times_settled"] > 1
-    assert np.abs(np.subtract(*ends)) == pytest.approx(0.0, abs=1e-6)
+    assert i["level.settled"] and i["level.times_settled"] == 2
+    assert np.abs(np.subtract(*ends)) == pytest.approx(0.0, abs=1e-7)
 
 
 def test_derivatives_of_a_settled_line() -> None:
@@ -101,7 +101,8 @@ def test_derivatives_of_a_settled_line() -> None:
     i.step(0.5)
     later = i["tether.tension"]
     i.differentiate()
-    assert (later - before) / 0.5 == pytest.approx(0.5 * (told + i.rate("tether.tension")), rel=1e-6)
+    assert (later - before) / 0.5 == pytest.approx(0.5 * (told + i.rate("tether.tension")), abs=2e-9)
+    assert abs(told) > 1e-5
     load = i["tether.tension"] / STIFFNESS
     assert i["tether.length"] - 12.0 == pytest.approx(load, rel=1e-3)
 
