@@ -10,7 +10,7 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import StateLayout
-from fmu_src.tethered_deorbit.levels import Held
+from fmu_src.tethered_deorbit.level import Held
 from fmu_src.tethered_deorbit.thrust import Thrust
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.kernel import kernel, view

@@ -15,7 +15,7 @@ from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
-from fmu_src.tethered_deorbit.levels import Held
+from fmu_src.tethered_deorbit.level import Held
 from orbital.kernel import kernel
 from orbital.vectors import Array
 

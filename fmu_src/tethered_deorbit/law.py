@@ -43,8 +43,8 @@ class Reel(NamedTuple):
                                                             or no longer has, in the state; `state.taut` is anew
     publish(record, state, length, speed)                   outputs of its own
     differentiate(record, length, speed, acceleration)      and their rates, at since = 0
-    at_rest(record, since) -> (l0, l0', l0'', k, c)         of an elastic line whose ends are fixed while its input stands
-                                                            still: then it may settle (`levels.settled`). None of others
+    at_rest(record, since) -> (l0, l0', l0'', k, c)         of an elastic line with fixed ends, which may settle while
+                                                            its input stands still: see `levels.settled`
     """
 
     asked: Callable[..., Any]
@@ -67,4 +67,4 @@ class Reel(NamedTuple):
     turn: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
-    at_rest: Callable[..., Any] | None = None
+    at_rest: Callable[..., Any] = nothing

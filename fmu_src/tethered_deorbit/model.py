@@ -23,12 +23,14 @@ from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
-from fmu_src.tethered_deorbit.levels import RESOLVED, UNHELD
-from fmu_src.tethered_deorbit.levels.settled import make_held, make_settled
+from fmu_src.tethered_deorbit.level import RESOLVED, UNHELD
+from fmu_src.tethered_deorbit.levels.course import make_held
+from fmu_src.tethered_deorbit.levels.settled import make_settled
+from fmu_src.tethered_deorbit.limited import LIMITED
 from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEMES
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
-from fmu_src.tethered_deorbit.reel_rows import INPUTS, LIMITED_OF_REELS
+from fmu_src.tethered_deorbit.reel_rows import INPUTS
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.sights import Sights
 from fmu_src.tethered_deorbit.start import make_start
@@ -46,50 +48,6 @@ SLICE = 4096
 GAP, GAP_SHARE = 16.0 * 2.220446049250313e-16, 1e-6
 """By how much a communication point may miss the end of the last macro step, of the times and of the step: the rounding
 of times that a master adds up."""
-
-LIMITED = (
-    "chaser.mass",
-    "target.mass",
-    "target.attachment_distance",
-    "target.rate_frame",
-    "chaser.rate_frame",
-    "solver.tolerance_orbit",
-    "solver.tolerance_separation",
-    "solver.tolerance_stretch",
-    "start.condition",
-    "start.leading",
-    "tether.youngs_modulus",
-    "tether.diameter",
-    "tether.damping_ratio",
-    "reel.proportional_gain",
-    "reel.derivative_gain",
-    *LIMITED_OF_REELS,
-    "thrust.level",
-    "thrust.specific_impulse",
-    "burn.start",
-    "burn.duration",
-    "burn.interval",
-    "burn.rise",
-    "burn.half_width",
-    "engine.propellant",
-    "engine.power_limit",
-    "engine.efficiency",
-    "plume.half_angle",
-    "plume.face",
-    "aocs.frequency",
-    "aocs.damping_ratio",
-    "aocs.torque_limit",
-    "aocs.momentum_limit",
-    "ends.altitude",
-    "ends.perigee",
-    "ends.raised_perigee",
-    "ends.chaser_extent",
-    "ends.target_extent",
-    "ends.clearance",
-    "ends.wrapped",
-    "break.strength",
-)
-"""Parameters whose limits the kernel minds too; out of theirs, others end in a fault of their own."""
 
 IMPLEMENTED = {
     "reel": (*LAWS, *WINCHES),
@@ -138,12 +96,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         derivative, make_squared_error(bodies, held), layout.moving, layout.size - layout.moving
     )
     places = places_of(layout, scheme)
-    level = make_settled(derivative, reel, bodies, held, places, layout.impulse) if settles else RESOLVED
-    events = make_events(reel, bodies, held, scheme, places, layout.impulse)
+    level = make_settled(derivative, reel, bodies, held, places) if settles else RESOLVED
+    events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
-    trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places, layout.impulse)
+    trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)
     publish = make_publish(reel, environment, bodies, layout)

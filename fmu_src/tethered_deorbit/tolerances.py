@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.bodies import Bodies
-from fmu_src.tethered_deorbit.levels import Held
+from fmu_src.tethered_deorbit.level import Held
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
@@ -23,8 +23,8 @@ def make_squared_error(bodies: Bodies, held: Held) -> Callable[..., Any]:
         """Square of the error's size [-].
 
             sum of (e_R/tol_o)^2, (e_V/(tol_o n))^2, (e_rho/tol_s)^2, (e_rho'/(tol_s n))^2,
-            and while taut, unless it is held, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2, that of e_rho' across
-            it by the pace p of the bodies, (e'_x/(tol_s p))^2,
+            and while taut, unless it is held, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2,
+            that of e_rho' across it by the pace p of the bodies, (e'_x/(tol_s p))^2,
             and what the bodies add for their attitudes
 
         Each tolerance is at least a few units in the last place of what it bounds.

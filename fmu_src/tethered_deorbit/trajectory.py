@@ -18,7 +18,7 @@ from fmu_src.tethered_deorbit.events import Events
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
 from fmu_src.tethered_deorbit.layout import Places
-from fmu_src.tethered_deorbit.levels import Held, Level
+from fmu_src.tethered_deorbit.level import Held, Level
 from fmu_src.tethered_deorbit.stops import make_stop
 from fmu_src.tethered_deorbit.tolerances import ROUNDING, make_longest_taut_step
 from fmu_src.tethered_deorbit.turning import add_turning, set_turning, turn_back

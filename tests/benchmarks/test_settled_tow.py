@@ -1,4 +1,4 @@
-"""A damped day of Table 2, its vibration followed and stepped over: `pytest -m bench -n 0 tests/benchmarks/test_settled_tow.py`."""
+"""A damped day of Table 2, its vibration followed and stepped over: `pytest -m bench -n 0 -s` with this file."""
 
 import time
 
