@@ -73,6 +73,19 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_lowering(phase, result)
     yield from _of_safety(run, phase, result)
     yield from _of_reel(run, phase, last)
+    if "level.settled" in last:
+        yield from _of_level(phase, result, last)
+
+
+def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:
+    """When the line had come to rest, so that its vibration was stepped over; the rows tell when else."""
+    times = round(last["level.times_settled"])
+    yield Finding(phase, "times_settled", "times the line came to rest", times)
+    if last["level.settled"]:
+        yield Finding(phase, "settled_since", "at rest until the end, from", last["level.settled_since"], "s")
+    if times and len(result.recorder) > 1:
+        share = float(np.mean(result.recorder["level.settled"]))
+        yield Finding(phase, "settled_share", "share of the rows at rest", share)
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:

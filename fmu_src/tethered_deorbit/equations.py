@@ -10,6 +10,7 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import StateLayout
+from fmu_src.tethered_deorbit.level import Held
 from fmu_src.tethered_deorbit.thrust import Thrust
 from fmu_src.tethered_deorbit.turning import add_turning
 from orbital.kernel import kernel, view
@@ -17,7 +18,7 @@ from orbital.vectors import Array
 
 
 def make_equations(
-    environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, aocs: Aocs, layout: StateLayout
+    environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, aocs: Aocs, held: Held, layout: StateLayout
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The kernels `inertial(record, state, rate, since, elapsed)` and `derivative(record, state, rate, elapsed)`."""
     impulse, felt = layout.impulse, bodies.felt
@@ -45,7 +46,10 @@ def make_equations(
         reel.see(record, state)
         if record[0].state_taut:
             separation, length, speed = bodies.measure(record, state)
-            tension = reel.tension(record, length, speed, since)
+            if held.settled(record):
+                tension = held.tension(record, state, rate, separation, length, speed, elapsed)
+            else:
+                tension = reel.tension(record, length, speed, since)
             bodies.pull(record, state, rate, tension, separation)
             rate[impulse] = tension
             reel.drive(record, state, rate, length, speed, tension)

@@ -15,6 +15,7 @@ from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
+from fmu_src.tethered_deorbit.level import Held
 from orbital.kernel import kernel
 from orbital.vectors import Array
 
@@ -48,8 +49,10 @@ class Events(NamedTuple):
     nearest: Callable[..., Any]
 
 
-def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Places) -> Events:
+def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, places: Places, impulse: int) -> Events:
     """The kernels for one law of the line, two bodies and one integrator.
+
+    impulse       its place in the state
 
     Valid    steps in which the signals turn at most once in an eighth of the step
     Checked  tests/tethered_deorbit/test_robust.py
@@ -73,6 +76,8 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
         separation, length, speed = bodies.measure(record, there)
         slopes = rate_seen(record, there, rate)
         change, apart, slope = bodies.second(record, there, slopes, separation, length, speed, 1.0)
+        if held.settled(record):
+            length, speed, change = held.along(record, rate[impulse], elapsed)
         since = record[0].state_since + elapsed
         reel.see(record, there)
         reel.see_change(record, there, slopes, 1.0)
@@ -115,6 +120,8 @@ def make_events(reel: Reel, bodies: Bodies, scheme: AdaptiveScheme, places: Plac
         scheme.dense_value(work[begin_state:end_state], dense, fraction, first, seen, here[first : first + seen])
         step = record[0].state_step
         scheme.dense_rate(dense, fraction, step, first, seen, slope[first : first + seen])
+        if held.settled(record):
+            scheme.dense_rate(dense, fraction, step, impulse, 1, slope[impulse : impulse + 1])
         return signals(record, here, slope, fraction * step)
 
     @kernel

@@ -25,7 +25,7 @@ from fmu_src.rows import (
 )
 from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
-from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, PLUME
+from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME
 from fmu_src.tethered_deorbit.reel_rows import REELS
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.surface import NO_BODY
@@ -392,6 +392,7 @@ MODEL = Model(
         "aocs": AOCS,
         "ends": ENDS,
         "break": BREAKING,
+        "level": LEVELS,
         "solver": SCHEMES,
     },
     faults=FAULTS,

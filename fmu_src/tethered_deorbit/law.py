@@ -43,6 +43,8 @@ class Reel(NamedTuple):
                                                             or no longer has, in the state; `state.taut` is anew
     publish(record, state, length, speed)                   outputs of its own
     differentiate(record, length, speed, acceleration)      and their rates, at since = 0
+    at_rest(record, since) -> (l0, l0', l0'', k, c)         of an elastic line with fixed ends, which may settle while
+                                                            its input stands still: see `levels.settled`
     """
 
     asked: Callable[..., Any]
@@ -65,3 +67,4 @@ class Reel(NamedTuple):
     turn: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
+    at_rest: Callable[..., Any] = nothing

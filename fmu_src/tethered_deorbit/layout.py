@@ -66,6 +66,7 @@ class Places(NamedTuple):
 
     size        components of a state
     moving      how many of them the equations depend on
+    impulse     place of J among them
     begin       state at the begin of the current step
     end         state at its end
     here        state at the point last asked of the dense output
@@ -79,6 +80,7 @@ class Places(NamedTuple):
 
     size: int
     moving: int
+    impulse: int
     begin: int
     end: int
     here: int
@@ -97,5 +99,17 @@ def places_of(state: StateLayout, scheme: AdaptiveScheme) -> Places:
     dense = stages + scheme.stages
     total = dense + scheme.dense
     return Places(
-        state.size, state.moving, begin, end, here, slope, low, high, stages, stages + scheme.last, dense, total
+        state.size,
+        state.moving,
+        state.impulse,
+        begin,
+        end,
+        here,
+        slope,
+        low,
+        high,
+        stages,
+        stages + scheme.last,
+        dense,
+        total,
     )

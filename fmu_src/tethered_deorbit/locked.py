@@ -109,4 +109,5 @@ def make_locked(interface: Interface) -> Reel:
         **elastic._asdict(),
         partials=partials,
         start_limit=unstretched,
+        at_rest=line,
     )

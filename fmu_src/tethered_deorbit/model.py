@@ -23,7 +23,11 @@ from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
+from fmu_src.tethered_deorbit.level import RESOLVED, UNHELD
+from fmu_src.tethered_deorbit.levels.course import make_held
+from fmu_src.tethered_deorbit.levels.settled import make_settled
 from fmu_src.tethered_deorbit.minded import LIMITED
+from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEMES
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
@@ -56,6 +60,7 @@ IMPLEMENTED = {
     "aocs": ("wheels",),
     "ends": ("watched",),
     "break": ("breaks",),
+    "level": ("settled",),
     **KINDS,
 }
 """Terms that are composed here."""
@@ -82,16 +87,21 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
-    inertial, derivative = make_equations(environment, reel, thrust, bodies, aocs, layout)
+    if "level" in terms and terms["reel"] not in SETTLING_LAWS:
+        raise ValueError(f"{MODEL.name}: no line settles with reel = {terms['reel']!r}")
+    settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
+    held = make_held(reel, bodies) if settles else UNHELD
+    inertial, derivative = make_equations(environment, reel, thrust, bodies, aocs, held, layout)
     scheme = SCHEMES[terms["solver"]](
-        derivative, make_squared_error(bodies), layout.moving, layout.size - layout.moving
+        derivative, make_squared_error(bodies, held), layout.moving, layout.size - layout.moving
     )
     places = places_of(layout, scheme)
-    events = make_events(reel, bodies, scheme, places)
+    level = make_settled(derivative, reel, bodies, held, places) if settles else RESOLVED
+    events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
-    trajectory = make_trajectory(derivative, bodies, scheme, events, acting, places)
+    trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)
     publish = make_publish(reel, environment, bodies, layout)
@@ -163,6 +173,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         clear_tugs(record)
         speed = inputs.judge_line(record, end)
         r.state_step = 0.0
+        level.begin(record)
         trajectory.restart(record, work, 0.0)
         r.state_since = 0.0
         separation, length, _ = bodies.line(record, end)
@@ -227,6 +238,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         thrust.weigh(record, here)
         publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin))
         thrust.publish(record, here, time)
+        level.publish(record)
         aocs.publish(record, here)
         r.state_published = time
         r.state_changes = 0
@@ -316,6 +328,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         thrust.weigh(record, here)
         command, command_rate, taut = r.state_command, r.state_command_rate, r.state_taut
         force, force_rate = r.state_thrust, r.state_thrust_rate
+        settled = held.settled(record)
+        level.put(record, False)  # the state lies where its stretch gives its tension
         asked, asked_rate = reel.asked(record)
         if asked == command and asked_rate == 0.0:
             asked_rate = command_rate
@@ -339,6 +353,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             publish(record, here, separation, length, speed, 0.0)
         reel.prepare(record, command, command_rate, 0.0)
         r.state_taut = taut
+        level.put(record, settled)
         return 0
 
     @entry(interface.dtype)

@@ -212,3 +212,31 @@ AOCS = Group(
     optional=True,
     follows=lambda terms, values: "wheels",
 )  # fmt: skip
+
+SETTLING_LAWS, SETTLING_SCHEMES = ("locked",), ("dop853",)
+"""Laws of the line whose vibration can be stepped over once it has died, and schemes that do: `radau` needs not, and
+`gauss` is there as a second opinion."""
+
+LEVELS = Group(
+    {
+        "settled": Term(
+            "every tug is resolved, and a damped line that has come to rest is held where the load has it: its "
+            "vibration is stepped over once it has died",
+            (
+                flag("level.settled", "the vibration of the line has died, and steps go over it"),
+                peak("level.settled_since", "s", "from when on; zero while it is not so"),
+                count("level.times_settled", "how often the line has settled"),
+                state("state.settled", "1", "the line is held on its course", kind="Integer"),
+                state("state.settled_since", "s", "when it last settled"),
+                state("state.times_settled", "1", "how often it has", kind="Integer"),
+                state("state.next_look", "s", "when it may have settled, at the earliest"),
+                state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(4,)),
+                state("state.course_span", "s", "over which that is drawn"),
+                state("state.moved_mass", "kg", "that the line moves at the begin of a settled step"),
+            ),
+        ),
+    },
+    selector="detail",
+    optional=True,
+    follows=lambda terms, values: "settled",
+)  # fmt: skip

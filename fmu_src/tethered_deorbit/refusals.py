@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
+from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS
 from fmu_src.tethered_deorbit.reel_refusals import of_reel
 
 Refusal = tuple[str, str, str]
@@ -39,6 +40,9 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         yield from _of_tank(terms, values)
     if "burn" in terms:
         yield from _of_burns(terms, values)
+    if "level" in terms and terms["reel"] not in SETTLING_LAWS:
+        text = f"a line settles with reel.law = {' or '.join(SETTLING_LAWS)} alone; leave the table out, or take that"
+        yield "level.detail", terms["level"], text
     yield from of_reel(values, terms)
 
 

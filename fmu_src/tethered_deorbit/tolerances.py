@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.level import Held
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
@@ -14,7 +15,7 @@ ROUNDING = 4.0 * 2.220446049250313e-16
 """Share of what is bounded below which no tolerance goes."""
 
 
-def make_squared_error(bodies: Bodies) -> Callable[..., Any]:
+def make_squared_error(bodies: Bodies, held: Held) -> Callable[..., Any]:
     """Size of an error of the state in units of the tolerances."""
 
     @kernel
@@ -22,8 +23,8 @@ def make_squared_error(bodies: Bodies) -> Callable[..., Any]:
         """Square of the error's size [-].
 
             sum of (e_R/tol_o)^2, (e_V/(tol_o n))^2, (e_rho/tol_s)^2, (e_rho'/(tol_s n))^2,
-            and while taut, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2, that of e_rho' across
-            it by the pace p of the bodies, (e'_x/(tol_s p))^2,
+            and while taut, unless it is held, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2,
+            that of e_rho' across it by the pace p of the bodies, (e'_x/(tol_s p))^2,
             and what the bodies add for their attitudes
 
         Each tolerance is at least a few units in the last place of what it bounds.
@@ -44,7 +45,7 @@ def make_squared_error(bodies: Bodies) -> Callable[..., Any]:
         square = dot(error[0:3], error[0:3]) / (orbit * orbit)
         square += dot(error[3:6], error[3:6]) / (orbit_rate * orbit_rate)
         square += dot(error[6:9], error[6:9]) / (apart * apart)
-        if r.state_taut and length > 0.0:
+        if r.state_taut and length > 0.0 and not held.settled(record):
             taut = r.state_taut_tolerance + ROUNDING * length
             taut_rate = taut * r.state_frequency
             along, along_rate = dot(error[6:9], state[6:9]) / length, dot(error[9:12], state[6:9]) / length

@@ -18,6 +18,7 @@ from fmu_src.tethered_deorbit.events import Events
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import NOT_FINITE, STEP_NOT_MET
 from fmu_src.tethered_deorbit.layout import Places
+from fmu_src.tethered_deorbit.level import Held, Level
 from fmu_src.tethered_deorbit.stops import make_stop
 from fmu_src.tethered_deorbit.tolerances import ROUNDING, make_longest_taut_step
 from fmu_src.tethered_deorbit.turning import add_turning, set_turning, turn_back
@@ -29,6 +30,8 @@ FIRST_FREE_STEP = 0.05
 """First step after a change: in radians of the line's, or of the orbit's motion."""
 WIDEST_TURN = 0.25
 """Greatest angle by which the axes of a step may turn [rad]: inside the series of `turn_back`."""
+CAREFUL = 0.9
+"""Share of the growth that what a settled step has missed allows, which falls with its fourth power."""
 SHORTEST = 32.0 * ROUNDING
 """Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
 
@@ -54,14 +57,20 @@ def make_trajectory(
     scheme: AdaptiveScheme,
     events: Events,
     acting: Acting,
+    held: Held,
+    level: Level,
     places: Places,
+    impulse: int,
 ) -> Trajectory:
     """The kernels for one set of equations, two bodies, an integrator, events, and parts that act by themselves.
+
+    impulse       its place in the state
 
     Valid    tolerances that rounding can meet
     Checked  tests/tethered_deorbit/test_macro_step.py
     """
     begin_state, end_state, here_state, size = places.begin, places.end, places.here, places.size
+    slope_state = places.slope
     low, high, stages, last = places.low, places.high, places.stages, places.last
     dense_begin, work_end = places.dense, places.total
 
@@ -81,6 +90,7 @@ def make_trajectory(
         bodies.rest(record)
         for i in range(3):
             r.state_turning[i] = 0.0
+        level.restart(record, time)
         r.state_begin = time
         r.state_end = time
         r.state_since += r.state_step
@@ -149,20 +159,25 @@ def make_trajectory(
         r.state_begin = r.state_end
         r.state_event = 0
         r.solver_steps += 1
-        step = min(r.state_next_step, max(longest, SHORTEST * abs(r.state_begin)))
-        step = min(step, bodies.longest(record, begin))
+        limit = min(max(longest, SHORTEST * abs(r.state_begin)), bodies.longest(record, begin))
         begin_step(record, work)
         if acts:
-            step = min(step, acting.longest(record, last_seen(record, begin)))
+            limit = min(limit, acting.longest(record, last_seen(record, begin)))
+        step = min(r.state_next_step, limit)
+        cap = math.inf
         if r.state_taut:
-            step = min(step, longest_taut_step(record, bodies.moved_mass(record, last_seen(record, begin))))
-            turn = norm(r.state_turning)
-            if turn > 0.0:
-                step = min(step, WIDEST_TURN / turn)
+            cap = longest_taut_step(record, bodies.moved_mass(record, last_seen(record, begin)))
+            step = level.look(record, work, step, limit, cap)
+            if not held.settled(record):
+                step = min(step, cap)
+                turn = norm(r.state_turning)
+                if turn > 0.0:
+                    step = min(step, WIDEST_TURN / turn)
         while True:
             if not step > 0.5 * SHORTEST * abs(r.state_begin):
                 code = NOT_FINITE if not math.isfinite(r.state_error) else STEP_NOT_MET
                 return blame(record, code, 0, r.state_error)
+            step = level.prepare(record, work, step, cap)
             attempt(record, work, step)
             error = scheme.error(
                 record,
@@ -175,15 +190,35 @@ def make_trajectory(
             code = bodies.trouble(record)
             if code != 0:
                 return blame(record, code, 0, 0.0)
-            if error <= 1.0:
+            missed = level.missed(record, work)
+            if error <= 1.0 and missed <= 1.0:
                 break
+            if missed > error:
+                error = missed
             r.state_error = error
             r.solver_rejected += 1
-            step = scheme.shorter_step(step, error)
+            step = level.leave(record, work, scheme.shorter_step(step, error), cap)
         r.state_next_step = scheme.next_step(step, error, r.state_error if math.isfinite(r.state_error) else 1.0)
+        if missed > 0.0:
+            grown = max(1.0, CAREFUL / math.sqrt(math.sqrt(missed)))
+            r.state_next_step = min(r.state_next_step, grown * step)
         r.state_error = error
         stop(record, work, longest)
         return 0
+
+    @kernel
+    def tension_at(record: Any, work: Array, time: float) -> float:
+        """Tension [N] of a settled line at a time [s] within the current step: the rate of its impulse.
+
+        Checked  tests/tethered_deorbit/test_settled.py
+        """
+        r = record[0]
+        rate = work[slope_state:low]
+        if time >= r.state_end or r.state_step == 0.0:
+            return float(work[last + impulse])
+        fraction = max(0.0, (time - r.state_begin) / r.state_step)
+        scheme.dense_rate(work[dense_begin:work_end], fraction, r.state_step, impulse, 1, rate[impulse : impulse + 1])
+        return float(rate[impulse])
 
     @kernel
     def state_at(record: Any, work: Array, time: float, out: Array) -> tuple[float, float, float]:
@@ -206,6 +241,8 @@ def make_trajectory(
             scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], fraction, 0, size, out)
         there = seen(record, out, since)
         separation, length, speed = bodies.measure(record, there)
+        if held.settled(record):
+            length, speed = level.place(record, there, tension_at(record, work, time), since, length, speed)
         for i in range(moving):
             out[i] = there[i]
         turn_back(record, since, out)
