@@ -49,10 +49,8 @@ class Events(NamedTuple):
     nearest: Callable[..., Any]
 
 
-def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, places: Places, impulse: int) -> Events:
+def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, places: Places) -> Events:
     """The kernels for one law of the line, two bodies and one integrator.
-
-    impulse       its place in the state
 
     Valid    steps in which the signals turn at most once in an eighth of the step
     Checked  tests/tethered_deorbit/test_robust.py
@@ -60,7 +58,7 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
     begin_state, end_state, here_state, slope_state = places.begin, places.end, places.here, places.slope
     low_error, high_error, stages, dense_begin = places.low, places.high, places.stages, places.dense
     first, seen = reel.first, places.moving - reel.first
-    work_end = places.total
+    work_end, impulse = places.total, places.impulse
     state_seen, rate_seen = bodies.seen, bodies.seen_rate
 
     @kernel

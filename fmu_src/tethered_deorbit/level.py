@@ -23,13 +23,19 @@ def no_place(*arguments: Any) -> tuple[float, float]:
 
 @kernel
 def as_meant(record: Any, work: Any, step: float, limit: float, cap: float) -> float:
-    """The step that is meant [s]: nothing ever settles."""
+    """The step that is meant [s]: nothing ever settles.
+
+    Checked  tests/tethered_deorbit/test_settled.py: where nothing can settle
+    """
     return step
 
 
 @kernel
 def as_said(record: Any, work: Any, step: float, cap: float) -> float:
-    """The step that is meant [s]."""
+    """The step that is meant [s].
+
+    Checked  tests/tethered_deorbit/test_settled.py: where nothing can settle
+    """
     return step
 
 

@@ -60,11 +60,8 @@ def make_trajectory(
     held: Held,
     level: Level,
     places: Places,
-    impulse: int,
 ) -> Trajectory:
     """The kernels for one set of equations, two bodies, an integrator, events, and parts that act by themselves.
-
-    impulse       its place in the state
 
     Valid    tolerances that rounding can meet
     Checked  tests/tethered_deorbit/test_macro_step.py
@@ -72,7 +69,7 @@ def make_trajectory(
     begin_state, end_state, here_state, size = places.begin, places.end, places.here, places.size
     slope_state = places.slope
     low, high, stages, last = places.low, places.high, places.stages, places.last
-    dense_begin, work_end = places.dense, places.total
+    dense_begin, work_end, impulse = places.dense, places.total, places.impulse
 
     longest_taut_step = make_longest_taut_step(scheme.reach)
     acts = acting is not IDLE

@@ -32,12 +32,21 @@ RIGID = '[removal.chaser]\nbody = "rigid"\nmass = "2000 kg"'
             ["removal.burn.half_width", "20 deg", "need an orbit"],
             ('[removal.environment]\nfield = "none"', ""),
         ),
+        (
+            '[removal.level]\ndetail = "settled"',
+            ["removal.level.detail", "settled", "reel.law = locked alone"],
+            ('law = "commanded"', 'law = "locked"'),
+        ),
     ],
 )  # fmt: skip
 def test_what_does_not_go_together(tables: str, said: Sequence[str], mended: tuple[str, str]) -> None:
     text = TABLE_2 + "\n" + tables + "\n"
     if "field" in tables:
         text = text.replace('condition = "same_orbit"', 'condition = "equal_velocity"')
+    if "level" in tables:
+        line = text.index("[removal.tether]")
+        text = text.replace('law = "locked"', 'law = "commanded"')
+        text = text[: line + 3] + text[text.index("[removal.thrust]") :]
     with pytest.raises(InputError) as caught:
         parse(text, "wrong", "wrong.toml")
     assert all(word in str(caught.value) for word in said)

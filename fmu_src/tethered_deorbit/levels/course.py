@@ -102,17 +102,14 @@ def make_held(reel: Reel, bodies: Bodies) -> Held:
     return Held(settled, tension, along)
 
 
-def make_draw(
-    derivative: Callable[..., Any], reel: Reel, bodies: Bodies, places: Places, impulse: int
-) -> Callable[..., Any]:
+def make_draw(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, places: Places) -> Callable[..., Any]:
     """The kernel `draw(record, work, span) -> m` for one set of equations, whose rate of the impulse is the tension.
-
-    impulse       its place in the state
 
     Checked  tests/tethered_deorbit/test_settled.py
     """
     begin_state, end_state, here_state, slope_state = places.begin, places.end, places.here, places.slope
     low, high, stages, size, moving = places.low, places.high, places.stages, places.size, places.moving
+    impulse = places.impulse
     line, seen = reel.at_rest, bodies.seen
 
     @kernel

@@ -53,19 +53,15 @@ LEFT_BY_CUBIC = 0.004
 more, where the curve does not turn within the step."""
 
 
-def make_settled(
-    derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places, impulse: int
-) -> Level:
+def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places) -> Level:
     """The kernels of the level for one set of equations, whose rate of the impulse is the tension.
-
-    impulse       its place in the state
 
     Checked  tests/tethered_deorbit/test_settled.py
     """
-    begin_state, end_state, here_state = places.begin, places.end, places.here
-    stages, size, last = places.stages, places.size, places.last
+    begin_state, end_state = places.begin, places.end
+    stages, size, last, impulse = places.stages, places.size, places.last, places.impulse
     line, seen = reel.at_rest, bodies.seen
-    draw = make_draw(derivative, reel, bodies, places, impulse)
+    draw = make_draw(derivative, reel, bodies, places)
 
     @kernel
     def put(record: Any, on: bool) -> None:
