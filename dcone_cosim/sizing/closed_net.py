@@ -3,8 +3,8 @@ does.
 
 The capture FMU goes on after its capture with the tow's load as its input `tether.vertex_tension`: first a light pull
 that draws the net together, then a pulse of the tug's height, one half-wave of the line's own period. Told is what
-threads and target bear, and whether the net stays on. Each run starts a micrometre elsewhere: a net is chaotic, and one
-is a sample.
+threads and target bear, how far the net slides about the target, and whether it stays on. Each run starts a micrometre
+elsewhere: a net is chaotic, and one is a sample.
 
 The load is given, not that of two bodies on a line: the chaser is pulled by it, but the line's own stretch is not
 computed.
@@ -15,8 +15,10 @@ Checked  tests/sizing/test_closed_net.py
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from dcone_cosim.cases import ensemble
 from dcone_cosim.cases.alone import Alone, Fmus
@@ -25,6 +27,7 @@ from dcone_cosim.cases.rows import Row
 from dcone_cosim.contract import OUTCOMES
 from dcone_cosim.errors import FAILED_AFTER, DconeError, InputError
 from dcone_cosim.fmu.steppable import Steppable, Terminated
+from dcone_cosim.handoff import Vector, rotation_matrix
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene_fmus import SceneFmus
 
@@ -35,6 +38,11 @@ SETTLE, AFTER = 6.0, 1.0
 """How long the net is drawn together before the pulse, and watched after it [s]."""
 DRAWN = 0.02
 """Light pull over the pulse's height [1]."""
+PLACES = (
+    *(f"{body}.position[{i}]" for body in ("catch", "target") for i in (1, 2, 3)),
+    *(f"target.attitude[{i}]" for i in (1, 2, 3, 4)),
+)
+"""Where net and target are, and how the target lies."""
 STEPS = 40
 """Of the pulse at least."""
 RUNS, QUICK_RUNS = 4, 1
@@ -62,6 +70,7 @@ class Borne:
     tug          height of the pulse [N]
     drawn, thread   largest tension of a thread while the net is drawn together, and in the pulse [N]
     contact      largest force on the target, the mean of a macro step [N]
+    slip         way of the net's centre of mass about the target from the pulse on, at most [m]
     held         share of the target inside the net at the end [1]
     outcome      of the capture at the end
     """
@@ -70,6 +79,7 @@ class Borne:
     drawn: float
     thread: float
     contact: float
+    slip: float
     held: float
     outcome: str
     failure: str = ""
@@ -126,7 +136,8 @@ def _pulled(case: Pull, component: Steppable) -> dict[str, float]:
             raise InputError(f"no capture within {time - phase.start:.4g} s")
         component.step(time, step)
         time += step
-    found = {"drawn": 0.0, "thread": 0.0, "contact": 0.0}
+    found = {"drawn": 0.0, "thread": 0.0, "contact": 0.0, "slip": 0.0}
+    begun: Vector | None = None
     begin = time
     fine = min(step, case.lasts / STEPS)
     before = read(["contact.impulse"])["contact.impulse"]
@@ -142,11 +153,22 @@ def _pulled(case: Pull, component: Steppable) -> dict[str, float]:
             found[part] = max(found[part], now["thread.tension_peak"])
             if at >= 0.0:
                 found["contact"] = max(found["contact"], (now["contact.impulse"] - before) / size)
+                stands = _about_target(read)
+                begun = stands if begun is None else begun
+                found["slip"] = max(found["slip"], float(np.linalg.norm(stands - begun)))
             before = now["contact.impulse"]
     except Terminated:
         pass
     last = read(["enclosure.share", "outcome"])
     return {**found, "held": last["enclosure.share"], "outcome": last["outcome"]}
+
+
+def _about_target(read: Callable[[Sequence[str]], Mapping[str, float]]) -> Vector:
+    """The net's centre of mass from the target's, in the target's axes [m]."""
+    told = read(PLACES)
+    net, target, attitude = np.array([told[name] for name in PLACES[:3]]), PLACES[3:6], PLACES[6:]
+    way = net - np.array([told[name] for name in target])
+    return np.asarray(rotation_matrix(np.array([told[name] for name in attitude])).T @ way)
 
 
 def _failed(outcome: Mapping[str, float]) -> bool:
@@ -169,9 +191,15 @@ def borne(cases: Sequence[Pull], rows: Mapping[str, Row]) -> Iterator[Borne]:
         row = rows[case.key]
         if not row.samples:
             nan = math.nan
-            yield Borne(case.tug, nan, nan, nan, nan, row.status, row.message.splitlines()[-1].strip())
+            yield Borne(case.tug, nan, nan, nan, nan, nan, row.status, row.message.splitlines()[-1].strip())
             continue
         told = row.samples
         yield Borne(
-            case.tug, told["drawn"], told["thread"], told["contact"], told["held"], OUTCOMES[int(told["outcome"])]
+            case.tug,
+            told["drawn"],
+            told["thread"],
+            told["contact"],
+            told["slip"],
+            told["held"],
+            OUTCOMES[int(told["outcome"])],
         )

@@ -278,13 +278,23 @@ def _region(study: Study) -> Section:
 
 def _net(study: Study) -> Section:
     rows = [
-        (f"start {i // 2 + 1}", one.tug, one.drawn, one.thread, one.contact, one.held, one.failure or one.outcome)
+        (
+            f"start {i // 2 + 1}",
+            one.tug,
+            one.drawn,
+            one.thread,
+            one.contact,
+            one.slip,
+            one.held,
+            one.failure or one.outcome,
+        )
         for i, one in enumerate(study.net)
     ]
     heads = (
         text("run", "run"), Head("tug", "tug at the vertex", "N"), Head("drawn", "thread, before it", "N"),
         Head("thread", "thread, in it", "N"), Head("contact", "force on the debris", "N"),
-        Head("held", "debris inside, at the end", "1", "%"), text("outcome", "the net is then"),
+        Head("slip", "net slides by", "m"), Head("held", "debris inside, at the end", "1", "%"),
+        text("outcome", "the net is then"),
     )  # fmt: skip
     purpose = (
         "What the tow's hardest tug does to threads and debris: the net, just closed, is drawn together by a light "

@@ -5,9 +5,9 @@
 Vn, Sn are volume and surface of the convex hull of net, bullets and vertex; Vt, St those of the target; qn goes from
 the target's centre of mass to theirs; Lc is a characteristic length of the target.
 
-Vt and St of a box or a cylinder follow from its sizes; of any other shape the scene gives them. Lc is by default the
-mean of the three edges of the box that holds the target, the characteristic length of debris in NASA's breakup model
-(Johnson and others, Advances in Space Research 28 (2001) 1377): publications take lengths of their own.
+Vt and St of a box, cylinder, sphere or frustum follow from its sizes; of any other shape the scene gives them. Lc is by
+default the mean of the three edges of the box that holds the target, the characteristic length of debris in NASA's
+breakup model (Johnson and others, Advances in Space Research 28 (2001) 1377): publications take lengths of their own.
 
 Valid    looked at at communication points; the hull knows neither mouth nor holes, so a net that lies beside the target
          with its middle near it counts as good: see `captured`
@@ -28,8 +28,6 @@ from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import at_least_zero, output, peak
 from orbital.kernel import kernel, view
 
-KNOWN = ("box", "cylinder")
-"""Shapes whose volume and surface follow from their sizes."""
 SCRATCH_PLANES = 4 * FACE_WORDS + 2 * POINT_WORDS
 """Planes of doubles that the hull may scribble on: it has at most twice as many faces as points, and some to spare."""
 
@@ -78,6 +76,32 @@ def cylinder_extent(p):
 
 
 @kernel
+def sphere_extent(p):
+    """Volume [m3] and surface [m2] of a sphere.
+
+    Checked  tests/net_capture/test_capture_index.py
+    """
+    r = p.target_radius
+    return 4.0 / 3.0 * math.pi * r * r * r, 4.0 * math.pi * r * r
+
+
+@kernel
+def frustum_extent(p):
+    """Volume [m3] and surface [m2] of a frustum.
+
+    Checked  tests/net_capture/test_capture_index.py
+    """
+    a, b, length = p.target_radius_bottom, p.target_radius_top, p.target_length
+    slant = math.sqrt(length * length + (a - b) * (a - b))
+    volume = math.pi * length * (a * a + a * b + b * b) / 3.0
+    return volume, math.pi * (a * a + b * b + (a + b) * slant)
+
+
+KNOWN = {"box": box_extent, "cylinder": cylinder_extent, "sphere": sphere_extent, "frustum": frustum_extent}
+"""Shapes whose volume and surface follow from their sizes, each with the kernel that tells them."""
+
+
+@kernel
 def told_extent(p):
     """Volume [m3] and surface [m2] as the scene gives them.
 
@@ -90,7 +114,7 @@ def make(composition: Any) -> Index:
     """Kernels for the composition's net and target."""
     memory, per_double = composition.memory, composition.per_double
     node_plane, first = memory.node_plane, composition.scratch_plane
-    extent = {"box": box_extent, "cylinder": cylinder_extent}.get(composition.terms["target"], told_extent)
+    extent = KNOWN.get(composition.terms["target"], told_extent)
     hull, no_room = make_hull(), composition.code(NO_ROOM.name)
 
     @view
@@ -154,7 +178,7 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
             if scene.values[f"quality.{other}"] > 0.0:
                 yield Refusal(f"quality.{name}", "0", f"must be given with quality.{other}, and greater than 0")
             elif scene.terms["target"] not in KNOWN:
-                expected = f"must be greater than 0: it follows from the sizes of {' and '.join(KNOWN)} alone"
+                expected = f"must be greater than 0: it follows from the sizes of {', '.join(KNOWN)} alone"
                 yield Refusal(f"quality.{name}", "0", expected)
 
 

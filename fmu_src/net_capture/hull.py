@@ -27,7 +27,10 @@ DIRECTIONS = 13
 
 @view
 def _part(scratch, at, size):
-    """So many numbers of the scratch, from there on."""
+    """So many numbers of the scratch, from there on.
+
+    Checked  tests/net_capture/test_hull.py
+    """
     return scratch[at : at + size]
 
 

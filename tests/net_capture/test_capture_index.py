@@ -1,12 +1,13 @@
 """The capture quality index: of a net in flight against scipy's Qhull and the formula written out again."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from fmu_src.net_capture.capture_index import cylinder_extent, quality_index, told_extent
+from fmu_src.net_capture.capture_index import KNOWN, quality_index, told_extent
 from fmu_src.net_capture.interface import GROUPS, MODEL
 from fmu_src.net_capture.refusal import Scene
 from tests.net_capture.holding import HOLDING
@@ -45,11 +46,28 @@ def test_a_net_that_is_the_target_has_index_zero():
     assert quality_index(256.0, 120.0, 2.5, 128.0, 160.0, 5.0) == pytest.approx(0.1 + 0.025 + 0.4)
 
 
-def test_cylinders_are_known_by_their_sizes():
-    record = MODEL.interface(HOLDING | {"target": "cylinder"}).make_record().view(np.recarray)[0]
-    record.target_radius, record.target_length = 2.0, 8.0
-    volume, surface = cylinder_extent.py_func(record)
-    assert (volume, surface) == (pytest.approx(32.0 * math.pi), pytest.approx(40.0 * math.pi))
+@pytest.mark.parametrize("name", KNOWN)
+def test_solids_are_known_by_their_sizes(name):
+    """Against the hull of what pictures draw: facets of a round body lie within it, and are short of it by little."""
+    part = GROUPS["target"].terms[name]
+    record = MODEL.interface(HOLDING | {"target": name}).make_record().view(np.recarray)[0]
+    values = {key: start for v in part.variables for key, start in zip(v.element_names(), v.starts(), strict=True)}
+    corners, _ = part.checks.surface(values)
+    drawn = ConvexHull(np.array(corners))
+    found = KNOWN[name].py_func(record)
+    for known, short in zip(found, (drawn.volume, drawn.area), strict=True):
+        assert short <= known * (1.0 + 1e-12)
+        assert short == pytest.approx(known, rel=1e-12 if name == "box" else 0.05)
+
+
+def test_round_solids_by_heart():
+    radius, length = 2.0, 8.0
+    record = SimpleNamespace(
+        target_radius=radius, target_length=length, target_radius_bottom=3.0, target_radius_top=0.0
+    )
+    assert KNOWN["cylinder"].py_func(record) == pytest.approx((32.0 * math.pi, 40.0 * math.pi))
+    assert KNOWN["sphere"].py_func(record) == pytest.approx((32.0 / 3.0 * math.pi, 16.0 * math.pi))
+    assert KNOWN["frustum"].py_func(record) == pytest.approx((24.0 * math.pi, math.pi * (9.0 + 3.0 * math.sqrt(73.0))))
     record.quality_target_volume, record.quality_target_surface = 3.0, 7.0
     assert told_extent.py_func(record) == (3.0, 7.0)
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.closing.winches import cord_tension
+from fmu_src.net_capture.closing.reels import cord_tension
 from fmu_src.net_capture.planes import MASS, U
 from tests.net_capture.memory import nodes, planes, shown
 from tests.validation import closed_form, other_code
@@ -272,9 +272,11 @@ def test_what_a_shorter_cord_would_do(shoot):
 def test_tension_and_winch_are_solved_together():
     for function in (cord_tension, cord_tension.py_func):
         # k = 100, d = 2, stretched 0.01 m, bullets at rest: T = (1 + 2 * 5) / (1 + 2 * 5 / 10)
-        assert function(100.0, 2.0, 0.01, 0.0, 5.0, 10.0) == pytest.approx(5.5)
+        assert function(100.0, 2.0, 0.01, 0.0, 5.0, 10.0, False) == pytest.approx(5.5)
         # beyond the stall force the winch stands still
-        assert function(100.0, 2.0, 0.2, 0.0, 5.0, 10.0) == pytest.approx(20.0)
+        assert function(100.0, 2.0, 0.2, 0.0, 5.0, 10.0, False) == pytest.approx(20.0)
         # locked, the cord is a thread
-        assert function(100.0, 2.0, 0.01, 0.25, 0.0, 10.0) == pytest.approx(1.5)
-        assert function(100.0, 2.0, 0.01, -4.0, 0.0, 10.0) == 0.0
+        assert function(100.0, 2.0, 0.01, 0.25, 0.0, 10.0, False) == pytest.approx(1.5)
+        assert function(100.0, 2.0, 0.01, -4.0, 0.0, 10.0, False) == 0.0
+        # a reel that yields is solved with the same law beyond the force too: T = (20 + 2 * 5) / (1 + 2 * 5 / 10)
+        assert function(100.0, 2.0, 0.2, 0.0, 5.0, 10.0, True) == pytest.approx(15.0)
