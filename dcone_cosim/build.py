@@ -26,6 +26,7 @@ from fmu_src.net_capture import cautions as net_capture_cautions
 from fmu_src.net_capture import lines as net_capture_lines
 from fmu_src.net_capture import stress as net_capture_stress
 from fmu_src.net_capture import trade as net_capture_trade
+from fmu_src.net_capture.capacity import FAMILIES
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.net_capture.interface import NETS, TARGETS
 from fmu_src.packaging.c_header import STATE_HEAD
@@ -41,6 +42,7 @@ from fmu_src.trade import Rung
 
 __all__ = [
     "CATALOGUE",
+    "FAMILIES",
     "STATE_HEAD",
     "Experiment",
     "Extreme",
@@ -184,8 +186,8 @@ def known_variables(name: str) -> dict[str, tuple[Variable, Value]]:
     model = CATALOGUE[name]
     rows = list(model.base)
     for name, group in model.groups.items():
-        # a term for any number of nodes is a family of its own: one node stands for all
-        terms = [group.terms["1"]] if name == "nodes" else group.terms.values()
+        # a term for any number of one thing is a family of its own: one of them stands for all
+        terms = [group.terms["1"]] if name in FAMILIES else group.terms.values()
         rows += [v for term in terms for v in term.variables]
     found: dict[str, tuple[Variable, Value]] = {}
     for v in rows:

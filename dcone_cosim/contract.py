@@ -38,6 +38,7 @@ HANDED_OVER = "handed_over"
 """Name of the choice of `start.condition` under which the removal takes the state it is given."""
 
 NODE_PREFIX = "node["
+THREAD_PREFIX = "thread["
 TUG_PREFIX = "tug["
 TUG_FIELDS = ("time", "peak", "speed")
 

@@ -11,6 +11,7 @@ from dcone_cosim.contract import ENDED
 from dcone_cosim.errors import SUCCESS, DconeError, Interrupted
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.steppable import Steppable, Terminated
+from dcone_cosim.frames import Frames
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 from dcone_cosim.scene.data import PhaseScene, Scene
@@ -29,6 +30,7 @@ class PhaseResult:
     error        the failure, or the interrupt, that ended the phase early
     ended_by     what the FMU said as it came to its own end, "" when it did not; `ended_at` is when [s]
     coupling     steps of several coupled FMUs: how many, rejected, forced, smallest and largest [s]
+    frames       of a net, for a replay, if that was asked
     passive      what becomes of a tow that stops at instants on the way, `phases.passive.Instant`, if that was asked
     """
 
@@ -49,6 +51,7 @@ class PhaseResult:
     ended_at: float = math.nan
     origin: float = 0.0
     passive: Sequence[Any] = ()
+    frames: Frames | None = None
 
     def ended(self, end: Terminated) -> None:
         """Note the FMU's own end, which is no failure. Its outputs in a step it did not finish are not to be trusted:

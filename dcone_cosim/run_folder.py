@@ -2,6 +2,7 @@
 
     summary.json  provenance.json  scene.toml  fmus/*.fmu  ledger.json  ledger.csv
     PHASE.parquet  nodes.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
+    replay_nodes.parquet  replay_threads.parquet
     states/*.state  *.png
 
 Columns carry their unit in the field metadata of the Parquet file, and in `df.attrs["units"]` where pandas reads it; in
@@ -27,6 +28,7 @@ import numpy.typing as npt
 
 from dcone_cosim import state_file
 from dcone_cosim.drafts import PROVENANCE, contents
+from dcone_cosim.frames import Frames
 from dcone_cosim.phases import kind_of
 from dcone_cosim.recorder import Snapshots, TugLog
 from dcone_cosim.results import Handover, PhaseResult, RunResult
@@ -44,6 +46,8 @@ PACKAGES = (
 
 NODES = "nodes"
 """Name of the table of the net's knots."""
+REPLAY_NODES, REPLAY_THREADS = "replay_nodes", "replay_threads"
+"""Names of the tables of a replay."""
 
 
 def default_folder(scene: str) -> Path:
@@ -138,6 +142,8 @@ def _arrow(values: npt.NDArray[Any]) -> Any:
         return pa.Array.from_buffers(
             pa.bool_(), len(values), [None, pa.py_buffer(np.packbits(values, bitorder="little"))]
         )
+    if values.dtype == np.float32:
+        return pa.Array.from_buffers(pa.float32(), len(values), [None, pa.py_buffer(np.ascontiguousarray(values))])
     kind = pa.int64() if np.issubdtype(values.dtype, np.integer) else pa.float64()
     contiguous = np.ascontiguousarray(values, dtype=np.int64 if kind == pa.int64() else np.float64)
     return pa.Array.from_buffers(kind, len(values), [None, pa.py_buffer(contiguous)])
@@ -150,6 +156,10 @@ def tables_of(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
         yield name, phase_table(result, clock)
         if result.snapshots.times:
             yield NODES, nodes_table(result.snapshots, clock)
+        if result.frames is not None and result.frames.times:
+            yield REPLAY_NODES, replay_nodes_table(result.frames, clock)
+            if len(result.frames.ends):
+                yield REPLAY_THREADS, replay_threads_table(result.frames, clock)
         if result.tugs is not None:
             yield kind.tugs_file, tugs_table(result.tugs, clock)
         if result.passive:
@@ -177,6 +187,33 @@ def nodes_table(snapshots: Snapshots, clock: str) -> pa.Table:
     ]
     columns += [(f"position[{i + 1}]", "m", np.ascontiguousarray(positions[:, i])) for i in range(3)]
     return _table(columns, time={"clock": clock})
+
+
+def replay_nodes_table(frames: Frames, clock: str) -> pa.Table:
+    """One row per node and frame: time, node counted from 1, position in single precision."""
+    positions = np.array(frames.nodes)
+    count = positions.shape[1]
+    columns = [
+        ("time", "s", np.repeat(frames.times, count)),
+        ("node", "1", np.tile(np.arange(1, count + 1), len(frames.times))),
+    ]
+    columns += [(f"position[{i + 1}]", "m", positions[:, :, i].ravel()) for i in range(3)]
+    return _table(columns, time={"clock": clock})
+
+
+def replay_threads_table(frames: Frames, clock: str) -> pa.Table:
+    """One row per thread and frame: time, thread counted from 1, its two nodes, tension in single precision."""
+    count, times = len(frames.ends), len(frames.times)
+    return _table(
+        [
+            ("time", "s", np.repeat(frames.times, count)),
+            ("thread", "1", np.tile(np.arange(1, count + 1), times)),
+            ("node[1]", "1", np.tile(frames.ends[:, 0], times)),
+            ("node[2]", "1", np.tile(frames.ends[:, 1], times)),
+            ("tension", "N", np.array(frames.tensions).ravel()),
+        ],
+        time={"clock": clock},
+    )
 
 
 def tugs_table(tugs: TugLog, clock: str) -> pa.Table:

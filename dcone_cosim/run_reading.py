@@ -18,6 +18,7 @@ from dcone_cosim.drafts import PROVENANCE
 from dcone_cosim.errors import HandoffError, InputError
 from dcone_cosim.files import regular
 from dcone_cosim.fmu.steppable import Steppable
+from dcone_cosim.frames import Frames
 from dcone_cosim.level import with_term
 from dcone_cosim.loading import load
 from dcone_cosim.phases import kind_of
@@ -26,10 +27,10 @@ from dcone_cosim.phases.phase import Stage
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder, Row, Snapshots, TugLog
 from dcone_cosim.results import Attained, PhaseResult, RunResult
-from dcone_cosim.run_folder import NODES, ledger_file
+from dcone_cosim.run_folder import NODES, REPLAY_NODES, REPLAY_THREADS, ledger_file
 from dcone_cosim.scene.data import Scene
 
-KINDS = {"double": "Real", "int64": "Integer", "bool": "Boolean"}
+KINDS = {"double": "Real", "float": "Real", "int64": "Integer", "bool": "Boolean"}
 """Kind of a variable by the type of its column."""
 EXTREMES = {"tether.taut": "Boolean", "tether.tension_peak": "Real"}
 
@@ -161,6 +162,7 @@ def _phase(folder: Path, name: str, about: Mapping[str, Any]) -> PhaseResult:
         float(out["ended_at"]["value"]),
         float(about["origin"]["value"]),
         _instants(safety) if safety.is_file() else (),
+        _frames(folder, about["options"]) if kind_of(name).keeps_nodes else None,
     )
 
 
@@ -197,6 +199,26 @@ def _snapshots(path: Path) -> Snapshots:
         first = np.flatnonzero(columns["node"] == 1)
         found.times = times[first].tolist()
         found.nodes = np.split(positions, first[1:])
+    return found
+
+
+def _frames(folder: Path, options: Mapping[str, Any]) -> Frames | None:
+    """Frames of a replay, None where none were kept."""
+    path = folder / f"{REPLAY_NODES}.parquet"
+    if not path.is_file():
+        return None
+    columns = {name: values for name, (_, _, values) in _columns(path).items()}
+    times = np.unique(columns["time"])
+    positions = np.column_stack([columns[f"position[{i}]"] for i in (1, 2, 3)]).astype(np.float32)
+    found = Frames(float(options["replay_every"]), times.tolist(), list(positions.reshape(len(times), -1, 3)))
+    threads = folder / f"{REPLAY_THREADS}.parquet"
+    if threads.is_file():
+        columns = {name: values for name, (_, _, values) in _columns(threads).items()}
+        found.tensions = list(columns["tension"].astype(np.float32).reshape(len(times), -1))
+        ends = np.column_stack([columns["node[1]"], columns["node[2]"]])
+        found.ends = ends[: len(found.tensions[0])].astype(np.int64)
+    else:
+        found.tensions = [np.zeros(0, dtype=np.float32) for _ in times]
     return found
 
 

@@ -39,11 +39,13 @@ class CaptureOptions:
     hand_over      one of `contract.HAND_OVER`
     after_capture  go on for this long after the capture, when no phase follows [s]
     snapshots      when to keep the positions of the nodes [s]; empty: evenly spread
+    replay_every   from frame to frame of a replay [s]; infinite: none is kept
     """
 
     hand_over: str = "captured"
     after_capture: float = math.inf
     snapshots: Sequence[float] = ()
+    replay_every: float = math.inf
 
 
 class Capture(Phase):
@@ -53,6 +55,7 @@ class Capture(Phase):
         "hand_over": Expected("1", choices=HAND_OVER),
         "after_capture": Expected("s", example="1 s", minimum=0.0),
         "snapshots": Expected("s", example="5.32 s", minimum=0.0, size=ANY),
+        "replay_every": Expected("s", example="40 ms", minimum=1e-6),
     }
     examples = ("0.02 s", "30 s")
     begins_at_zero = True
@@ -95,6 +98,9 @@ class Capture(Phase):
         group = NEEDED_FOR.get(given) if isinstance(given, str) else None
         if part.fmu is None and group is not None and group not in part.terms:
             yield Mistake(path, given, f"needs the table [capture.{group}], which this scene lacks")
+        every = document.tables["capture"].get("replay_every")
+        if every is not None and part.fmu is None and "nodes" not in part.terms:
+            yield Mistake(("capture", "replay_every"), every, "needs the table [capture.nodes], which this scene lacks")
         following = document.after("capture")
         if not following:
             return

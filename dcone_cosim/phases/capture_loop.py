@@ -10,11 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from dcone_cosim import interrupts
-from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES
+from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, NODE_PREFIX, OUTCOMES, THREAD_PREFIX
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu import restoring
 from dcone_cosim.fmu.component import Readable, Row, Steppable, output_names
+from dcone_cosim.frames import Frames, Whole
 from dcone_cosim.holding import holding
 from dcone_cosim.phases.stepping import carried_out, grid_steps, length_of, take_up
 from dcone_cosim.progress import Progress
@@ -22,6 +25,9 @@ from dcone_cosim.recorder import Recorder, Snapshots
 from dcone_cosim.results import PhaseResult
 from dcone_cosim.states import Keeper, KeptState
 
+COUNTS = ("net.nodes", "net.threads")
+"""Outputs that tell how many of the others mean something."""
+NODE_OF_THREAD = "].node["
 LOCATED_TO = 1e-6
 """How closely the instant of a hand-over is located by halving [s]."""
 
@@ -34,6 +40,7 @@ class CapturePlan:
     stop_there     end at the trigger, since a removal follows; otherwise go on
     after_capture  go on for this long after the trigger [s]
     snapshots      when to keep node positions [s]; empty: evenly spread
+    replay_every   time from frame to frame of a replay [s]; infinite: none is kept
     start          time the FMU is told to begin at [s]; all other times count from there, the shot
     """
 
@@ -43,6 +50,7 @@ class CapturePlan:
     stop_there: bool = False
     after_capture: float = math.inf
     snapshots: Sequence[float] = ()
+    replay_every: float = math.inf
     start: float = 0.0
 
 
@@ -55,11 +63,11 @@ class CaptureLoop:
         self.progress = progress
         self.keeper: Keeper | None = None
         self._next = 0
-        names = output_names(component.variables, without=(NODE_PREFIX,))
+        names = output_names(component.variables, without=(NODE_PREFIX, THREAD_PREFIX))
         self.read = self.component.row(names)
         self.place = {name: i for i, name in enumerate(self.read.names)}
-        nodes = [name for name in output_names(component.variables) if name.startswith(NODE_PREFIX)]
-        self.read_nodes: Readable | None = component.reader(nodes) if nodes else None
+        self.read_nodes = self._reader(NODE_PREFIX, "]")
+        self.read_tensions = self._reader(THREAD_PREFIX, "].tension")
         self.can_locate = component.can_save and component.can_vary_step
         self._kept: Row = self.read.values
         self.tether_length = math.inf
@@ -74,7 +82,14 @@ class CaptureLoop:
             Recorder(self.read.names, component.variables, grid_steps(plan.duration, plan.macro_step) + 3),
             Snapshots(plan.snapshots),
             origin=plan.start,
+            frames=Frames(plan.replay_every) if math.isfinite(plan.replay_every) else None,
         )
+
+    def _reader(self, prefix: str, ending: str) -> Readable | None:
+        """Of all outputs with such names; None where there are none."""
+        told = output_names(self.component.variables)
+        names = [name for name in told if name.startswith(prefix) and name.endswith(ending)]
+        return self.component.reader(names) if names else None
 
     def _need(self, name: str) -> None:
         if name not in self.place:
@@ -121,6 +136,24 @@ class CaptureLoop:
             count = int(self.read.values[self.place["net.nodes"]]) if "net.nodes" in self.place else None
             positions = self.read_nodes().reshape(-1, 3)
             self.result.snapshots.add(time, positions[:count])
+        frames = self.result.frames
+        if frames is not None and (frames.due(time) or force):
+            self._add_frame(frames, time)
+
+    def _add_frame(self, frames: Frames, time: float) -> None:
+        """The net as it is now; between which nodes its threads run is asked once."""
+        count = {name: int(self.read.values[self.place[name]]) for name in COUNTS if name in self.place}
+        if not frames.times and self.read_tensions is not None:
+            frames.ends = self._ends(count.get("net.threads"))
+        positions = self.read_nodes().reshape(-1, 3) if self.read_nodes is not None else np.zeros((0, 3))
+        tensions = self.read_tensions() if self.read_tensions is not None else np.zeros(0)
+        frames.add(time, positions[: count.get("net.nodes")], tensions)
+
+    def _ends(self, count: int | None) -> Whole:
+        """Numbers of the two nodes of each thread, (threads, 2)."""
+        names = [name for name in output_names(self.component.variables) if name.startswith(THREAD_PREFIX)]
+        told = self.component.get([name for name in names if NODE_OF_THREAD in name])
+        return np.array(list(told.values()), dtype=np.int64).reshape(-1, 2)[:count]
 
     def _run(self) -> None:
         plan, result = self.plan, self.result
@@ -172,7 +205,8 @@ class CaptureLoop:
     def _stand(self, following: int) -> dict[str, Any]:
         result = self.result
         told = {name: getattr(result, name) for name in ("steps", "outcome", "located", "located_by")}
-        return {"next": following, "snapshots": result.snapshots.as_kept(), "result": told}
+        frames = {} if result.frames is None else {"frames": result.frames.as_kept()}
+        return {"next": following, "snapshots": result.snapshots.as_kept(), "result": told, **frames}
 
     def take_up(self, state: KeptState, earlier: PhaseResult, changed: Mapping[str, float]) -> None:
         """Go on from a kept state, with other values of some variables from there on, SI."""
@@ -185,6 +219,8 @@ class CaptureLoop:
         take_up(self.component, self.read, self.result, state, earlier)
         self._next = int(state.loop["next"])
         self.result.snapshots.take_up(state.loop["snapshots"])
+        if self.result.frames is not None:
+            self.result.frames.take_up(state.loop["frames"])
         vars(self.result).update(state.loop["result"])
         if changed:
             self.component.set(changed)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from dcone_cosim import interrupts
-from dcone_cosim.contract import NODE_PREFIX, TUG_PREFIX
+from dcone_cosim.contract import NODE_PREFIX, THREAD_PREFIX, TUG_PREFIX
 from dcone_cosim.errors import FmuError, Interrupted
 from dcone_cosim.fmu.component import Readable, Steppable, Terminated, output_names
 from dcone_cosim.fmu.restoring import differing
@@ -122,7 +122,9 @@ class PhaseLoop:
         self.progress = progress
         self.keeper: Keeper | None = None
         self._next = 0
-        self.read = self.component.row(output_names(component.variables, without=(NODE_PREFIX, TUG_PREFIX)))
+        self.read = self.component.row(
+            output_names(component.variables, without=(NODE_PREFIX, THREAD_PREFIX, TUG_PREFIX))
+        )
         self.result = PhaseResult(
             component.name,
             start - origin,

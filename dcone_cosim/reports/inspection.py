@@ -194,10 +194,10 @@ def _terms(component: ComponentScene) -> Iterator[tuple[str, str, str]]:
         if named is not None:
             yield "in", f"{group_name}: {named}", group.terms[named].summary
         others = [term for term in group.terms if term != named]
-        for term in others if group_name != "nodes" else ():
+        for term in others if group_name not in build.FAMILIES else ():
             yield "left out", f"{group_name}: {term}", group.terms[term].summary
-        if group_name == "nodes" and named is None:
-            yield "left out", "nodes", "position of every node"
+        if group_name in build.FAMILIES and named is None:
+            yield "left out", group_name, build.FAMILIES[group_name].summary
 
 
 STEPS = ("solver.stability_bound", "solver.substep")

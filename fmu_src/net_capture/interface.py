@@ -7,12 +7,13 @@ from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
 from fmu_src.net_capture import air, breaking, capture_index, pull_off, shot, tether, volume, wrapping
+from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES, MOST_THREADS
 from fmu_src.net_capture.closing import closings, jam
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
 from fmu_src.net_capture.graph import WRONG_NUMBER
 from fmu_src.net_capture.gravity import gravities
-from fmu_src.net_capture.nets import LARGEST_MESH, USUAL_BULLETS, nets
+from fmu_src.net_capture.nets import USUAL_BULLETS, nets
 from fmu_src.net_capture.outcome import OUTCOMES
 from fmu_src.net_capture.pace import paces
 from fmu_src.net_capture.planes import MOST_BULLETS
@@ -25,9 +26,6 @@ from fmu_src.net_capture.shapes import shapes
 from fmu_src.net_capture.stepping import STEP_TOO_SMALL
 from fmu_src.rows import angle, at_least_zero, count, flag, moving, output, parameter, peak, positive, state, vector
 
-MOST_NODES = (LARGEST_MESH + 1) ** 2
-"""Nodes of the largest net there is, one of uncut threads: each brings three outputs, so more would be of no use."""
-
 NOT_FINITE = fault(
     "not_finite", "", "the state of the net is no longer finite: lower solver.step_ratio or the stiffness"
 )
@@ -35,6 +33,11 @@ TOO_MANY_NODES = fault(
     "too_many_nodes",
     "net.mesh",
     "the net has more nodes than this FMU has outputs for; raise the capacity of nodes",
+)
+TOO_MANY_THREADS = fault(
+    "too_many_threads",
+    "net.mesh",
+    "the net has more threads than this FMU has outputs for; raise the capacity of threads",
 )
 
 
@@ -222,43 +225,35 @@ def each_bullet(terms: Mapping[str, str], parameters: Mapping[str, float]) -> st
     return terms.get("bullets") or bullets_of(terms, parameters)
 
 
-class NodeTerms(Mapping[str, Term]):
-    """A term for any number of nodes: `{"nodes": "625"}` gives an FMU with outputs for up to 625 nodes."""
+def nodes_of(terms: Mapping[str, str], values: Mapping[str, float]) -> int:
+    """Nodes of the net and of what is rigged to it; 1 where there is no such net."""
+    net = NETS[terms["net"]].checks
+    return net.nodes(values) + sum(part.checks.nodes(values, net) for part in rigged_of(terms).values())
 
-    def __getitem__(self, capacity: str) -> Term:
-        if capacity not in self:
-            raise KeyError(capacity)
-        position = Variable(
-            "node[#].position[#]",
-            "m",
-            "output",
-            "node of the net, orbital frame, row by row of the "
-            "flat net (knots first, then the inner nodes of the threads)",
-            shape=(int(capacity), 3),
-        )
-        return Term(f"position of every node, up to {capacity} nodes", (position,))
 
-    def __contains__(self, capacity: object) -> bool:
-        return (
-            isinstance(capacity, str)
-            and capacity.isascii()
-            and capacity.isdecimal()
-            and len(capacity) <= len(str(MOST_NODES))
-            and 1 <= int(capacity) <= MOST_NODES
-        )
+def threads_of(terms: Mapping[str, str], values: Mapping[str, float]) -> int:
+    """Threads of the net and pieces of what is rigged to it; 1 where there is no such net.
 
-    def __iter__(self) -> Iterator[str]:
-        return iter((f"a whole number of nodes, from 1 to {MOST_NODES}",))
-
-    def __len__(self) -> int:
+    Checked  tests/net_capture/test_tensions.py
+    """
+    net = NETS[terms["net"]].checks
+    if net.nodes(values) == 1:
         return 1
+    lines, rim = net.drawing(values)
+    pieces = round(values["net.segments"])
+    edge = len(rim) - 1 if "edge" in terms else 0
+    leads = RIGGINGS["leads"].checks.nodes(values, net) if "leads" in terms else 0
+    return sum(len(line) - 1 for line in lines) * pieces + edge + leads
 
 
 def capacity_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
-    """The capacity that a net's mesh asks for, "1" where there is no such net."""
-    net = NETS[terms["net"]].checks
-    rigged = sum(part.checks.nodes(parameters, net) for part in rigged_of(terms).values())
-    return str(min(net.nodes(parameters) + rigged, MOST_NODES))
+    """The capacity that a net's mesh asks for."""
+    return str(min(nodes_of(terms, parameters), MOST_NODES))
+
+
+def thread_capacity_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
+    """The same of threads."""
+    return str(min(threads_of(terms, parameters), MOST_THREADS))
 
 
 def rigged_of(terms: Mapping[str, str]) -> dict[str, Term]:
@@ -298,7 +293,8 @@ GROUPS = {
     "volume": _plain(volume.PART),
     "quality": _plain(capture_index.PART),
     "pull_off": _plain(pull_off.PART),
-    "nodes": Group(NodeTerms(), selector="capacity", optional=True, follows=capacity_of),
+    "nodes": Group(FAMILIES["nodes"], selector="capacity", optional=True, follows=capacity_of),
+    "threads": Group(FAMILIES["threads"], selector="capacity", optional=True, follows=thread_capacity_of),
 }
 
 
@@ -306,9 +302,10 @@ def _faults() -> Iterator[Fault]:
     """Those of the loop, then those of every part in the order of the groups."""
     yield from (NOT_FINITE, TOO_MANY_NODES, shot.NO_AXIS, STEP_TOO_SMALL, WRONG_NUMBER)
     for name, group in GROUPS.items():
-        if name != "nodes":
+        if name not in FAMILIES:
             for part in group.terms.values():
                 yield from part.faults
+    yield TOO_MANY_THREADS
 
 
 MODEL = Model(
@@ -329,11 +326,10 @@ def _refuses_numbers(scene: Scene) -> Iterator[Refusal]:
     bullets = scene.terms.get("bullets", str(USUAL_BULLETS))
     if bullets != str(net.bullets):
         yield Refusal("bullets.number", bullets, f"must be {net.bullets}: a mouth of this shape has so many corners")
-    nodes = net.nodes(scene.values) + sum(
-        part.checks.nodes(scene.values, net) for part in rigged_of(scene.terms).values()
-    )
-    if int(scene.terms.get("nodes", nodes)) < nodes:
-        yield Refusal("nodes.capacity", scene.terms["nodes"], f"must be at least {nodes}, the nodes of this net")
+    for group, count, what in (("nodes", nodes_of, "nodes"), ("threads", threads_of, "threads")):
+        if group in scene.terms and int(scene.terms[group]) < count(scene.terms, scene.values):
+            text = f"must be at least {count(scene.terms, scene.values)}, the {what} of this net"
+            yield Refusal(f"{group}.capacity", scene.terms[group], text)
 
 
 def refusals(terms: Mapping[str, str], values: Mapping[str, float], duration: float = math.inf) -> list[Refusal]:

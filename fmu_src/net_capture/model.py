@@ -24,10 +24,11 @@ from fmu_src.net_capture import outcome, quality
 from fmu_src.net_capture.book import make_balance
 from fmu_src.net_capture.closing.triggers import make_reached
 from fmu_src.net_capture.composition import Composition
-from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES
+from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES, TOO_MANY_THREADS
 from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
 from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep, make_limit_way
+from fmu_src.net_capture.tensions import make_tensions
 from orbital.kernel import entry, kernel
 
 ON_GRID = 1e-3
@@ -48,6 +49,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     pull_off, has_load = parts.pull_off, parts.pull_off is not None
     has_nodes, has_air = "nodes" in terms, parts.air is not None
     capacity = int(terms["nodes"]) if has_nodes else 0
+    has_threads = "threads" in terms
+    thread_capacity = int(terms["threads"]) if has_threads else 0
+    tensions = make_tensions(parts) if has_threads else None
     planes, per_double = parts.planes, parts.per_double
     node_plane, properties = parts.memory.node_plane, parts.memory.properties
 
@@ -59,7 +63,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
     judge = outcome.make_judge(parts, measures)
     reached = make_reached(parts, measures) if has_closing else None
-    not_finite, no_axis, too_many_nodes = (parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES))
+    not_finite, no_axis, too_many_nodes, too_many_threads = (
+        parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES, TOO_MANY_THREADS)
+    )
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
@@ -89,6 +95,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if p.net_nodes > capacity:
                 p.fault_value = p.net_nodes
                 return too_many_nodes
+        if has_threads:
+            if p.net_threads > thread_capacity:
+                p.fault_value = p.net_threads
+                return too_many_threads
         words = scheme.own_words(p) + masks * p.strips
         if has_wrap:
             words += wrap.words(p)
@@ -213,6 +223,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             tether.measure(p)
         if has_nodes:
             write_nodes(p, work)
+        if has_threads:
+            tensions.write(p, work)
         if has_index:
             fault = index.measure(p, work)
             if fault != 0:
@@ -314,6 +326,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             if fault != 0:
                 return fault
             limit_way(p)
+        if has_threads:
+            tensions.list_threads(p, work)
         folding.fold(p, work)
         shot.jitter(p, work)
         shot.shoot(p, work)

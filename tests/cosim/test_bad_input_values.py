@@ -17,7 +17,8 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.expected import Expected, Unexpected
 from dcone_cosim.scenes.reading import parse
-from fmu_src.net_capture.interface import MOST_NODES, NodeTerms, refusals
+from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES
+from fmu_src.net_capture.interface import refusals
 from fmu_src.net_capture.nets.grid import node_count
 from tests.cosim.mock_components import MockCapture
 
@@ -177,7 +178,7 @@ def test_a_muzzle_is_judged_in_the_targets_own_axes() -> None:
 
 @pytest.mark.parametrize("capacity", ["0", "-1", "²", "1.5", "", str(MOST_NODES + 1), "9" * 5000, 625])
 def test_a_capacity_that_is_no_term(capacity: object) -> None:
-    assert capacity not in NodeTerms()
+    assert capacity not in FAMILIES["nodes"]
 
 
 @pytest.mark.parametrize(

@@ -51,7 +51,7 @@ class TestNeeds:
         model = build.CATALOGUE[name]
         if name == "net_capture":
             # outputs for so many nodes and bullets, and what an ejector's data come to, ask for no kernels
-            groups = {n: group for n, group in model.groups.items() if n not in ("nodes", "bullets", "ejector")}
+            groups = {n: group for n, group in model.groups.items() if n not in (*build.FAMILIES, "bullets", "ejector")}
             assert sorted(groups.pop("precision").terms) == sorted(REALS)
             assert all(term.make is not None for group in groups.values() for term in group.terms.values())
             return
