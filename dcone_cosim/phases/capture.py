@@ -15,7 +15,7 @@ from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS
-from dcone_cosim.phases import capture_criteria, capture_quantities, capture_report, chaos
+from dcone_cosim.phases import capture_clip, capture_criteria, capture_quantities, capture_report, chaos
 from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
 from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage
 from dcone_cosim.quantities import Quantity
@@ -23,6 +23,7 @@ from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scene.mistakes import Mistake
+from dcone_cosim.scenery import Chart, Clip
 
 OPENING = "shot.opening"
 """Key of how far bullets fly until they alone would have spread the net."""
@@ -173,6 +174,13 @@ class Capture(Phase):
     def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
         phase = next(phase for phase in run.scene.phases if phase.name == self.name)
         return capture_report.figures(run, phase, result)
+
+    def clip(self, run: RunResult, result: PhaseResult) -> Clip | None:
+        phase = next(phase for phase in run.scene.phases if phase.name == self.name)
+        return capture_clip.clip(run, phase, result, self.marks(result))
+
+    def charts(self, run: RunResult, result: PhaseResult) -> Iterator[Chart]:
+        return capture_clip.charts(result, self.marks(result))
 
     def without_figure(self, scene: Scene, result: PhaseResult) -> Iterator[str]:
         if not result.snapshots.times:

@@ -24,6 +24,7 @@ from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake
 from dcone_cosim.scene.toml_lines import Path as KeyPath
+from dcone_cosim.scenery import Chart, Clip
 from dcone_cosim.states import Keeper, KeptState
 
 Figure = tuple[str, Callable[[Path], object]]
@@ -293,6 +294,18 @@ class Phase:
     def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
         """The figures that there is data for."""
         yield from ()
+
+    def clip(self, run: RunResult, result: PhaseResult) -> Clip | None:
+        """What moved in it, for a page; None where that is not known."""
+        return None
+
+    def charts(self, run: RunResult, result: PhaseResult) -> Iterator[Chart]:
+        """Its histories, for a page."""
+        yield from ()
+
+    def marks(self, result: PhaseResult) -> list[tuple[float, str]]:
+        """Instants that only phases of this kind have, tugs left out, and what they are."""
+        return [(event.time, event.what) for event in self.own_events(result) if event.peak != event.peak]
 
     def without_figure(self, scene: Scene, result: PhaseResult) -> Iterator[str]:
         """Why there is no figure where one might be expected."""

@@ -19,7 +19,7 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
-from dcone_cosim.phases import chaos, passive, removal_criteria, removal_quantities, removal_report
+from dcone_cosim.phases import chaos, passive, removal_criteria, removal_quantities, removal_report, tow_clip
 from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
 from dcone_cosim.plots import tow
 from dcone_cosim.quantities import Quantity
@@ -28,6 +28,7 @@ from dcone_cosim.scene.data import SHARED, PhaseScene
 from dcone_cosim.scene.expected import Expected
 from dcone_cosim.scene.mistakes import Mistake, shown
 from dcone_cosim.scene.toml_lines import Path, given_at
+from dcone_cosim.scenery import Chart, Clip
 from dcone_cosim.transaction import HandoffRecord, check_before
 
 LINE = "tether.length"
@@ -132,11 +133,28 @@ class Tow(Phase):
         recorder, title = result.recorder, run.scene.title
         if len(recorder) < 2:
             return
-        since = "time since the hand-over" if self.name in run.handovers else f"time since the {self.spoken} began"
+        since = self._since(run)
         if {"chaser.radius", "target.radius"} <= set(recorder.names):
             yield self.figure_names[0], partial(tow.orbit, result, since, title)
         if "tether.tension" in recorder:
             yield self.figure_names[1], partial(tow.tension, result, run.comparisons.get(self.name), since, title)
+
+    def _since(self, run: RunResult) -> str:
+        return "time since the hand-over" if self.name in run.handovers else f"time since the {self.spoken} began"
+
+    def clip(self, run: RunResult, result: PhaseResult) -> Clip | None:
+        surface = None
+        for phase in run.scene.phases:
+            if phase.name == self.name or phase.main.model == self.model:
+                continue
+            found = build.target_surface(run.parameters.get(phase.name, {}), phase.main.terms)
+            if found is not None:
+                surface = (np.array(found[0], dtype=float), [list(face) for face in found[1]])
+        since = self._since(run).partition(" ")[2]
+        return tow_clip.clip(self.name, result, since, run.parameters.get(self.name, {}), surface)
+
+    def charts(self, run: RunResult, result: PhaseResult) -> Iterator[Chart]:
+        return tow_clip.charts(result, run.comparisons.get(self.name), self._since(run))
 
 
 class Removal(Tow):

@@ -326,9 +326,9 @@ def _refuses_numbers(scene: Scene) -> Iterator[Refusal]:
     bullets = scene.terms.get("bullets", str(USUAL_BULLETS))
     if bullets != str(net.bullets):
         yield Refusal("bullets.number", bullets, f"must be {net.bullets}: a mouth of this shape has so many corners")
-    for group, count, what in (("nodes", nodes_of, "nodes"), ("threads", threads_of, "threads")):
-        if group in scene.terms and int(scene.terms[group]) < count(scene.terms, scene.values):
-            text = f"must be at least {count(scene.terms, scene.values)}, the {what} of this net"
+    for group, there_are in (("nodes", nodes_of), ("threads", threads_of)):
+        if group in scene.terms and int(scene.terms[group]) < there_are(scene.terms, scene.values):
+            text = f"must be at least {there_are(scene.terms, scene.values)}, the {group} of this net"
             yield Refusal(f"{group}.capacity", scene.terms[group], text)
 
 

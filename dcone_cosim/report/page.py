@@ -1,0 +1,159 @@
+"""The page of a run, or its replay alone: what the run folder holds, in one file."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dcone_cosim.errors import InputError
+from dcone_cosim.phases import kind_of
+from dcone_cosim.report import packing, scripts, told
+from dcone_cosim.reports import pages
+from dcone_cosim.reports.warnings import warnings
+from dcone_cosim.run_reading import json_of, provenance_of, read_run
+
+REPORT, REPLAY = "report.html", "replay.html"
+PICTURES = {"capture": "capture_in_space.png", "removal": "tether_tension.png", "second_tow": "second_tow_tension.png"}
+"""What is shown of a phase where a clip cannot be: in print, and without WebGL."""
+LEAST_TONE = 0.3
+"""Where on its scale the colour map begins: darker than that is not seen on the dark ground of a clip."""
+
+
+@dataclass(frozen=True)
+class Linked:
+    """Another report that belongs to a run: of its sizing, its accuracy or its stability.
+
+    kind      "sizing", "accuracy" or "stability"
+    said      its answer in sentences
+    """
+
+    kind: str
+    folder: Path
+    said: Sequence[str]
+
+    @classmethod
+    def read(cls, kind: str, folder: Path) -> Linked:
+        """Of the folder that the command left; `InputError` where it is none."""
+        if not (folder / REPORT).is_file():
+            raise InputError(
+                f"{folder} holds no report of {kind}: expected a {REPORT} in it, as `dcone {COMMANDS[kind]}` writes"
+            )
+        content = json_of(folder / "summary.json")
+        said = content.get("said") or [
+            one for phase in content.get("phases", {}).values() for one in phase.get("sentences", ())
+        ]
+        return cls(kind, folder, [str(one) for one in said])
+
+
+COMMANDS = {"sizing": "size", "accuracy": "accuracy", "stability": "stability"}
+"""The command that makes each."""
+
+
+def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: bool = True) -> str:
+    """The page of the run of a folder, to be put at `place`; `InputError` where it is no run.
+
+    whole    all of it; otherwise the replay alone, with the tugs
+    """
+    run, about = read_run(folder), provenance_of(folder)
+    clips, charts = [], []
+    for name, result in run.phases.items():
+        kind = kind_of(name)
+        one = kind.clip(run, result)
+        clips += [] if one is None else [packing.clip(one)]
+        charts += [(name, packing.chart(chart)) for chart in kind.charts(run, result)]
+    if not whole:
+        charts = [(name, chart) for name, chart in charts if chart["key"] == "tension"]
+    for name, chart in charts:
+        chart["key"] = f"{name}-{chart['key']}"
+    data = {"clips": clips, "charts": [chart for _, chart in charts], "colours": colours()}
+    values: dict[str, Any] = {
+        "title": run.scene.title,
+        "status": run.status,
+        "message": run.message,
+        "good": run.exit_code == 0,
+        "whole": whole,
+        "chief": told.chief(run),
+        "warnings": warnings(run),
+        "clips": [{**_head(clip), "picture": _picture(folder, clip["key"])} for clip in clips],
+        "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
+        "about": told.provenance(about, run, folder.absolute().name),
+        "page": "report" if whole else "replay",
+        "library": scripts.origin() if clips else {},
+        "scale": scale(),
+        **packed(data),
+    }
+    if whole:
+        values |= {
+            "lines": told.lines(run),
+            "diameters": told.diameters(run),
+            "handovers": list(told.handovers(run)),
+            "events": list(told.events(run)),
+            "figures": list(told.figures(run)),
+            "trust": told.trust(run),
+            "linked": [_linked(kind, linked, place, run.scene.name) for kind in COMMANDS],
+            "scene": run.scene.text,
+            "force_map": None,
+        }
+    return pages.render("run.html", **values)
+
+
+def packed(data: Mapping[str, Any]) -> dict[str, str]:
+    """What the template writes into script elements: the data, and the import map of what shows them."""
+    more = ("replay",) if data["clips"] else ()
+    return {
+        "data": json.dumps(data, separators=(",", ":")).replace("</", "<\\/"),
+        "import_map": scripts.import_map("page", more),
+    }
+
+
+def _head(clip: Mapping[str, Any]) -> dict[str, Any]:
+    """What the template says of a clip."""
+    of = clip.get("net", {}).get("tensions") or clip.get("tension")
+    scaled = (
+        None
+        if of is None or not of["most"]
+        else [(n, f"{of['most'] * of['floor'] ** (1.0 - n):.3g}") for n in (0.0, 1 / 3, 2 / 3, 1.0)]
+    )
+    return {"key": clip["key"], "title": clip["title"], "notes": clip["notes"], "scale": scaled, "net": "net" in clip}
+
+
+def _picture(folder: Path, phase: str) -> str:
+    path = folder / PICTURES.get(phase, "")
+    return base64.b64encode(path.read_bytes()).decode() if path.is_file() else ""
+
+
+def _linked(kind: str, linked: Sequence[Linked], place: Path, scene: str) -> dict[str, Any]:
+    """A report of that kind that is there, or how to make it."""
+    found = next((one for one in linked if one.kind == kind), None)
+    command = f"dcone {COMMANDS[kind]} {scene}"
+    if found is None:
+        return {"kind": kind, "href": "", "said": [], "command": command}
+    href = os.path.relpath((found.folder / REPORT).absolute(), place.absolute().parent)
+    return {"kind": kind, "href": Path(href).as_posix(), "said": found.said, "command": command}
+
+
+def colours() -> list[int]:
+    """256 colours for tensions, least to largest: red, green, blue, 0 to 255 each.
+
+    The upper part of viridis, whose lightness grows evenly, so that it is told apart without colour as well.
+
+    Source   matplotlib's colour map of that name
+    Checked  tests/report/test_packing.py
+    """
+    import matplotlib as mpl
+
+    table = mpl.colormaps["viridis"]
+    rows = [table(LEAST_TONE + (1.0 - LEAST_TONE) * n / 255.0)[:3] for n in range(256)]
+    return [round(255.0 * part) for row in rows for part in row]
+
+
+def scale() -> str:
+    """The same as a gradient of CSS, from the least to the largest."""
+    rows = colours()
+    stops = ["rgb({}, {}, {})".format(*rows[3 * n : 3 * n + 3]) for n in range(0, 256, 15)]
+    return f"linear-gradient(to right, {', '.join(stops)})"

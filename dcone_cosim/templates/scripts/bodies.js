@@ -1,0 +1,133 @@
+// What is drawn of a clip: net, bullets, target, chaser and line, set to the frame that is shown.
+
+import * as THREE from "three";
+import { Places, Tensions, unpack } from "dcone/bytes";
+import { Lines } from "dcone/lines";
+
+const SLACK = [0.62, 0.68, 0.75, 0.5];
+const CORD = [0.9, 0.6, 0.85, 1];
+const COLOURS = { target: 0xc9a15f, chaser: 0x6fb1e8, bullet: 0xf0f0f0, edge: 0x2a2115 };
+
+/** A closed surface of flat faces, each a polygon of corners in body axes (radial, along, cross at no turn). */
+function solid({ corners, faces }) {
+  const place = (n) => new THREE.Vector3(corners[n][1], corners[n][0], -corners[n][2]);
+  const points = [], edges = [];
+  for (const face of faces) {
+    const around = face.map(place);
+    for (let i = 1; i + 1 < around.length; i++) points.push(around[0], around[i], around[i + 1]);
+    around.forEach((point, i) => edges.push(point, around[(i + 1) % around.length]));
+  }
+  const shape = new THREE.BufferGeometry().setFromPoints(points);
+  shape.computeVertexNormals();
+  const material = new THREE.MeshLambertMaterial({ color: COLOURS.target, side: THREE.DoubleSide, transparent: true, opacity: 0.72, flatShading: true });
+  const made = new THREE.Group();
+  made.add(new THREE.Mesh(shape, material));
+  made.add(new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(edges), new THREE.LineBasicMaterial({ color: COLOURS.edge })));
+  return made;
+}
+
+const ball = (radius, color) => new THREE.Mesh(new THREE.SphereGeometry(radius, 20, 14), new THREE.MeshLambertMaterial({ color }));
+
+export class Bodies {
+  constructor(clip, colours, scene) {
+    this.clip = clip;
+    this.times = unpack(clip.times);
+    this.chaser = new Places(clip.chaser);
+    for (const name of ["target", "line", "bullets"]) this[name] = clip[name] ? new Places(clip[name]) : null;
+    this.attitude = clip.attitude ? unpack(clip.attitude) : null;
+    this.tension = clip.tension ? new Tensions(clip.tension) : null;
+    this.box = this.bounds();
+    const size = 0.012 * this.reach();
+    this.ship = new THREE.Mesh(new THREE.BoxGeometry(1.4, 1.1, 1.1), new THREE.MeshLambertMaterial({ color: COLOURS.chaser }));
+    scene.add(this.ship);
+    if (this.target) {
+      this.body = clip.surface ? solid(clip.surface) : ball(2.2 * size, COLOURS.target);
+      scene.add(this.body);
+    }
+    this.shots = this.bullets ? Array.from({ length: this.bullets.count }, () => ball(size, COLOURS.bullet)) : [];
+    this.shots.forEach((one) => scene.add(one));
+    if (this.line) {
+      this.tether = new Lines(1, colours, [0.75, 0.8, 0.86, 0.8], [1.2, 4]);
+      scene.add(this.tether.object);
+    }
+    if (clip.net) this.hang(clip.net, colours, scene);
+    this.ribbons = [this.tether, this.threads, this.rim].filter(Boolean);
+  }
+
+  hang(net, colours, scene) {
+    this.nodes = new Places(net.nodes);
+    this.ends = unpack(net.threads);
+    this.tensions = net.tensions ? new Tensions(net.tensions) : null;
+    this.threads = new Lines(this.ends.length / 2, colours, this.tensions ? SLACK : [0.55, 0.75, 0.95, 0.9], [0.55, 2.6]);
+    scene.add(this.threads.object);
+    if (net.rim.length) {
+      this.mouth = net.rim;
+      this.rim = new Lines(net.rim.length - 1, colours, CORD, [1.3, 1.3]);
+      scene.add(this.rim.object);
+    }
+  }
+
+  /** Everything that is ever shown lies in it. */
+  bounds() {
+    const box = new THREE.Box3(), point = new THREE.Vector3();
+    const parts = [this.chaser, this.target, this.line, this.bullets, this.clip.net ? new Places(this.clip.net.nodes) : null].filter(Boolean);
+    const every = Math.max(1, Math.floor(this.times.length / 60));
+    for (const part of parts) {
+      for (let frame = 0; frame < this.times.length; frame += every) {
+        const points = part.at(frame);
+        for (let i = 0; i < part.count; i++) box.expandByPoint(point.fromArray(points, 3 * i));
+      }
+    }
+    if (this.clip.surface) {
+      const far = Math.max(...this.clip.surface.corners.map((corner) => Math.hypot(...corner)));
+      const middle = new THREE.Vector3().fromArray(this.target.at(0));
+      box.union(new THREE.Box3().setFromCenterAndSize(middle, new THREE.Vector3(2 * far, 2 * far, 2 * far)));
+    }
+    return box;
+  }
+
+  reach() {
+    return 0.5 * this.box.getSize(new THREE.Vector3()).length();
+  }
+
+  /** Tone of a code: 0 to 1 on the scale, -1 for slack. */
+  static tone(code) {
+    return code === 0 ? -1 : (code - 1) / 254;
+  }
+
+  show(frame) {
+    this.ship.position.fromArray(this.chaser.at(frame));
+    if (this.target) this.body.position.fromArray(this.target.at(frame));
+    if (this.attitude) {
+      const [w, a, b, c] = this.attitude.subarray(4 * frame, 4 * frame + 4);
+      this.body.quaternion.set(b, a, -c, w);
+    }
+    const shots = this.bullets?.at(frame);
+    this.shots.forEach((one, i) => one.position.fromArray(shots, 3 * i));
+    if (this.tether) {
+      const ends = [...this.chaser.at(frame), ...this.line.at(frame)];
+      this.tether.put(0, ends, 0, 1, this.tension ? Bodies.tone(this.tension.code(frame)) : -1);
+      this.tether.done();
+    }
+    if (this.threads) {
+      const points = this.nodes.at(frame);
+      for (let i = 0; i < this.threads.count; i++) this.threads.put(i, points, this.ends[2 * i], this.ends[2 * i + 1], this.tensions ? Bodies.tone(this.tensions.code(frame, i)) : -1);
+      this.threads.done();
+      for (let i = 0; this.rim && i < this.rim.count; i++) this.rim.put(i, points, this.mouth[i], this.mouth[i + 1], -1);
+      this.rim?.done();
+    }
+  }
+
+  /** Tautest thread of a frame [N], and how many are taut; null where tensions are not known. */
+  told(frame) {
+    const of = this.tensions ?? this.tension;
+    if (!of) return null;
+    let most = 0, taut = 0;
+    for (let i = 0; i < of.count; i++) {
+      const code = of.code(frame, i);
+      most = Math.max(most, code);
+      taut += code > 0 ? 1 : 0;
+    }
+    return { most: of.newtons(most), taut, count: of.count };
+  }
+}

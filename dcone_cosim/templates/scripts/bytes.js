@@ -1,0 +1,64 @@
+// Arrays of the page: what dcone_cosim/reports/packing.py has written, read back.
+
+const KINDS = { f4: Float32Array, f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
+
+/** The numbers of a packed array, flat; codes where it is one of codes. */
+export function unpack(packed) {
+  const text = atob(packed.data);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+  return new KINDS[packed.type](bytes.buffer);
+}
+
+/** Positions: `at(frame)` fills a Float32Array with those of a frame, as (x, y, z) of the scene. */
+export class Places {
+  constructor(packed) {
+    this.values = unpack(packed);
+    this.count = packed.shape.length === 3 ? packed.shape[1] : 1;
+    this.low = packed.low || [0, 0, 0];
+    this.step = packed.step || [1, 1, 1];
+    this.own = new Float32Array(3 * this.count);
+  }
+
+  /** Component `axis` (radial, along-track, cross-track) of point `i` of a frame [m]. */
+  told(frame, i, axis) {
+    return this.low[axis] + this.step[axis] * this.values[3 * (frame * this.count + i) + axis];
+  }
+
+  at(frame) {
+    for (let i = 0; i < this.count; i++) {
+      this.own[3 * i] = this.told(frame, i, 1);
+      this.own[3 * i + 1] = this.told(frame, i, 0);
+      this.own[3 * i + 2] = -this.told(frame, i, 2);
+    }
+    return this.own;
+  }
+}
+
+/** Tensions as codes of a logarithmic scale: 0 is slack, 255 the largest. */
+export class Tensions {
+  constructor(packed) {
+    this.codes = unpack(packed);
+    this.count = packed.shape.length === 2 ? packed.shape[1] : 1;
+    this.most = packed.most;
+    this.floor = packed.floor;
+  }
+
+  code(frame, i = 0) {
+    return this.codes[frame * this.count + i];
+  }
+
+  /** [N] */
+  newtons(code) {
+    return code === 0 ? 0 : this.most * Math.pow(this.floor, (255 - code) / 254);
+  }
+}
+
+/** A number with so many digits, as a reader takes it. */
+export function spoken(value, digits = 4) {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1).replace("e", " · 10^").replace("+", "");
+  return Number(value.toPrecision(digits)).toLocaleString("en", { maximumSignificantDigits: digits, useGrouping: size >= 1e4 });
+}

@@ -1,0 +1,25 @@
+// What makes a page of what it holds: a replay for each clip, a chart for each history.
+
+import { Chart } from "dcone/chart";
+
+const data = JSON.parse(document.getElementById("data").textContent);
+
+/** For whoever looks from outside: the parts of the page, as they stand. */
+window.dcone = { charts: {}, replays: {}, faults: [] };
+
+for (const chart of data.charts) window.dcone.charts[chart.key] = new Chart(document.getElementById(`chart-${chart.key}`), chart);
+
+if (data.clips.length) {
+  const fall = (error) => {
+    window.dcone.faults.push(String(error));
+    document.documentElement.classList.add("flat");
+  };
+  import("dcone/replay").then(({ Replay }) => {
+    for (const clip of data.clips) {
+      try {
+        window.dcone.replays[clip.key] = new Replay(document.getElementById(`replay-${clip.key}`), clip, data.colours);
+      } catch (error) { fall(error); }
+    }
+    document.documentElement.dataset.ready = "true";
+  }, fall);
+} else document.documentElement.dataset.ready = "true";
