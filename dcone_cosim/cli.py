@@ -22,6 +22,7 @@ from dcone_cosim.cli_options import (
     promise,
     results,
 )
+from dcone_cosim.cli_pages import pages_app
 from dcone_cosim.cli_runs import runs_app
 from dcone_cosim.cli_tracks import tracks_app
 from dcone_cosim.completion import phases_like, scenes_like
@@ -39,6 +40,7 @@ app.add_typer(cache_app, name="cache")
 app.add_typer(runs_app)
 app.add_typer(cases_app)
 app.add_typer(tracks_app)
+app.add_typer(pages_app)
 
 
 def _version(asked: bool) -> None:

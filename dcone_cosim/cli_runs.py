@@ -75,6 +75,9 @@ def run(
         ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Of an ensemble's first run; the others count on.")] = 0,
+    replay: Annotated[
+        bool, typer.Option("--replay", help="Keep the net in full, for `dcone replay` and `dcone report`.")
+    ] = False,
     jobs: Jobs = None,
     offline: Offline = False,
 ) -> None:
@@ -96,6 +99,8 @@ def run(
     if ensemble is not None:
         if force:
             raise InputError("--force: an ensemble goes on with what is in its folder; choose another with -o")
+        if replay:
+            raise InputError("--replay: an ensemble keeps figures alone; leave it out")
         if save_at or go_on:
             raise InputError("--ensemble: its runs keep no states and go on from none; leave --save-at and --from out")
         raise typer.Exit(cli_cases.ensemble(scene, ensemble, seed, out, settings or [], jobs, isolate, json))
@@ -106,7 +111,7 @@ def run(
     try:
         with exits.noise_apart():
             written = run_and_write(
-                scene, out, progress, csv, figures, force, settings or (), isolate, save_at or (), go_on
+                scene, out, progress, csv, figures, force, settings or (), isolate, save_at or (), go_on, replay
             )
     finally:
         progress.close()
@@ -162,13 +167,16 @@ def compare(
     second: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of another.")],
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="Folder for compare.csv, compare.json and compare.png; must be new."),
+        typer.Option(
+            "-o", "--out", help="Folder for compare.csv, compare.json, compare.png and report.html; must be new."
+        ),
     ] = None,
     json: Json = False,
 ) -> None:
     """Set two runs side by side: the keys in which their scenes differ, and every figure with its difference.
 
-    Differences are those of the second from the first. With -o there is a picture too: tensions and mouth areas.
+    Differences are those of the second from the first. With -o there is a picture too, of
+    tensions and mouth areas, and a page with all histories of both.
 
     Exit code: 0 success, whether they differ or not, 2 bad input.
     """

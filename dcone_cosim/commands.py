@@ -18,6 +18,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.loading import find, load, named
 from dcone_cosim.plots import style
 from dcone_cosim.progress import Progress
+from dcone_cosim.replaying import replay_settings
 from dcone_cosim.reports import summary
 from dcone_cosim.results import Attained, RunResult
 from dcone_cosim.resume import instants
@@ -54,14 +55,22 @@ def run_and_write(
     isolate: bool | None = None,
     save_at: Sequence[str] = (),
     go_on: str = "",
+    replay: bool = False,
 ) -> Written:
     """Run a scene and write its folder. Bad input, or a place that cannot be written, raises and leaves nothing.
 
     save_at    instants at which states are kept
     go_on      where the run of the folder that `name` is goes on; "" to run it from its beginning
+    replay     keep the net in full, see `replaying`
     """
     started = datetime.now(UTC)
     origin = Origin(Path(name), go_on, settings) if go_on else None
+    if replay and origin is not None:
+        raise InputError(
+            "--replay: what a run goes on from has kept of its net what it has; leave out --replay or --from"
+        )
+    if replay:
+        settings = (*settings, *replay_settings(named(name, settings)))
     scene = (named(name, settings) if origin is None else origin.scene).isolating(isolate)
     keep = instants.save_at(save_at, scene)
     if keep and scene.accuracy is not None:

@@ -28,11 +28,11 @@ def draw_again(folder: Path, out: Path | None, progress: Progress) -> tuple[list
             notes = draw_all(run, draft)
         files = sorted(path.name for path in draft.glob("*.png"))
         if place.samefile(folder):
-            _list_them(folder, files, draft / PROVENANCE)
+            list_files(folder, files, draft / PROVENANCE)
         return [placed.put(draft / name, place / name) for name in files], notes
 
 
-def _list_them(folder: Path, files: list[str], draft: Path) -> None:
+def list_files(folder: Path, files: list[str], draft: Path) -> None:
     """Have the provenance list files before they are there: what it lists may be missing, no others may be there."""
     told = provenance_of(folder)
     listed = sorted({*told.get("files", ()), *files})

@@ -266,18 +266,23 @@ def _write_ledger(handover: Handover, path: Path) -> None:
             writer.writerows(rows)
 
 
+def versions() -> dict[str, str]:
+    """Of the packages that matter."""
+    found = {}
+    for package in PACKAGES:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            found[package] = "not installed"
+    return found
+
+
 def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: datetime) -> dict[str, Any]:
     """What made these numbers: versions, machine, FMUs, every value that a model was given, and the time it took.
 
     `dcone run` on the folder makes the run again from the scene that is kept in it; this says what that scene came to.
     Values are SI; `given` are those that the master set, `handed_over` those of them that the scene does not say.
     """
-    versions = {}
-    for package in PACKAGES:
-        try:
-            versions[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            versions[package] = "not installed"
     phases = {}
     settings = {phase.name: phase for phase in run.scene.phases}
     for name, result in run.phases.items():
@@ -315,7 +320,7 @@ def provenance(run: RunResult, fmus: Mapping[str, Mapping[str, Any]], started: d
         "platform": platform.platform(),
         "machine": platform.machine(),
         "processors": os.cpu_count(),
-        "packages": versions,
+        "packages": versions(),
         "phases": phases,
         "without_recoil": {name: _compared(result) for name, result in run.comparisons.items()},
         "attained": {name: vars(attained) for name, attained in run.attained.items()},

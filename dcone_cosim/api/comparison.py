@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from dcone_cosim.api.pictures import Picture
 from dcone_cosim.api.result import Run
 from dcone_cosim.api.running import load_run
-from dcone_cosim.comparing import commands, plot, show
+from dcone_cosim.comparing import commands, comparison, plot, show
 from dcone_cosim.errors import InputError
 from dcone_cosim.scratch import Scratch
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Comparison:
     """What differs between two runs: `figures` and `scenes` are tables, `picture` shows their histories."""
 
-    def __init__(self, found: commands.Comparison) -> None:
+    def __init__(self, found: comparison.Comparison) -> None:
         self._found = found
 
     @property

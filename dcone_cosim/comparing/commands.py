@@ -3,43 +3,23 @@
 compare.csv    every figure of both: values, difference, percent, unit, scatter
 compare.json   the same, with the keys in which the scenes differ, and which tables have the same bits
 compare.png    tension of the tows and mouth area of the captures
+report.html    all of it as one page
 """
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from dcone_cosim.comparing import plot
-from dcone_cosim.comparing.pairs import KeyPair, Pair, figures, same_tables, scene_keys
+from dcone_cosim.comparing.comparison import Comparison
+from dcone_cosim.comparing.pairs import figures, same_tables, scene_keys
 from dcone_cosim.drafts import atomic_folder, check_free
 from dcone_cosim.results import RunResult
-from dcone_cosim.run_folder import as_json
+from dcone_cosim.run_folder import as_json, versions
 from dcone_cosim.run_reading import read_run
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Two runs side by side.
-
-    names    by which they are told apart
-    tables   of both, and whether they hold the same bits
-    """
-
-    folders: tuple[Path | None, Path | None]
-    names: tuple[str, str]
-    runs: tuple[RunResult, RunResult]
-    figures: list[Pair]
-    keys: list[KeyPair]
-    tables: Mapping[str, bool]
-    notes: list[str] = field(default_factory=list)
-
-    @property
-    def title(self) -> str:
-        return f"{self.names[0]} beside {self.names[1]}"
 
 
 def compare(one: Path, other: Path) -> Comparison:
@@ -80,4 +60,7 @@ def write(found: Comparison, folder: Path, content: Mapping[str, Any]) -> Path:
         (draft.path / "compare.json").write_text(as_json(content) + "\n", encoding="utf-8")
         reason = plot.draw(list(zip(found.names, found.runs, strict=True)), found.title, draft.path / "compare.png")
         found.notes.extend([reason] if reason else [])
+        from dcone_cosim.comparing.page import text_of  # it brings Jinja2
+
+        (draft.path / "report.html").write_text(text_of(found, versions()), encoding="utf-8")
     return draft.folder

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from dcone_cosim.comparing.commands import Comparison
+from dcone_cosim.comparing.comparison import Comparison
 from dcone_cosim.comparing.pairs import MISSING, Pair
 from dcone_cosim.findings import SAMPLE
 

@@ -99,7 +99,8 @@ def _line_end(values: Mapping[str, float], chaser: Array, attitude: Array | None
         return np.asarray(Rotation.from_quat(attitude, scalar_first=True).apply(held))
     reach = values.get("target.attachment_distance", 0.0)
     distance = np.linalg.norm(chaser, axis=1)[:, None]
-    return chaser * np.minimum(reach / np.maximum(distance, 1e-12), 1.0)
+    shares: Array = np.minimum(reach / np.maximum(distance, 1e-12), 1.0)
+    return np.asarray(chaser * shares)
 
 
 def charts(result: PhaseResult, beside: PhaseResult | None, since: str) -> Iterator[Chart]:

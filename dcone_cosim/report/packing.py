@@ -1,4 +1,4 @@
-"""Arrays as a page holds them: positions in 16 bits, tensions in 8 on a logarithmic scale, the rest in single precision.
+"""Arrays as a page holds them: positions in 16 bits, tensions in 8 on a logarithmic scale, all else in single.
 
 Each array is `{"type", "shape", "data"}` with the bytes in base64, little-endian, and what makes numbers of them:
 

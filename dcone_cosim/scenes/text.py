@@ -18,6 +18,8 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.scene.mistakes import Override, shown
 from dcone_cosim.scene.toml_lines import DEEPEST, Path, deep_key, dotted, given_at
 
+RECORDED = ("replay_every", "nodes", "threads")
+"""Keys of a phase that say what is kept of a run, and change nothing in it."""
 FORM = 'expected KEY.KEY=VALUE, such as capture.bullets.speed="4 m/s"'
 
 
@@ -92,7 +94,10 @@ def setting(path: Path, value: Any) -> str:
 def name_changes(text: str, document: dict[str, Any], overrides: Sequence[Override]) -> None:
     """Let the document's title say what the overrides changed of the text."""
     before = tomllib.loads(text)
-    of = {change.path: given_at(document, change.path) for change in overrides if change.path != ("title",)}
+    told = [
+        change.path for change in overrides if change.path != ("title",) and not set(change.path[1:2]) & set(RECORDED)
+    ]
+    of = {path: given_at(document, path) for path in told}
     changes = [setting(path, value) for path, value in of.items() if given_at(before, path) != value]
     title = document.get("title", "")
     if changes and isinstance(title, str):

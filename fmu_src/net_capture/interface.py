@@ -228,7 +228,8 @@ def each_bullet(terms: Mapping[str, str], parameters: Mapping[str, float]) -> st
 def nodes_of(terms: Mapping[str, str], values: Mapping[str, float]) -> int:
     """Nodes of the net and of what is rigged to it; 1 where there is no such net."""
     net = NETS[terms["net"]].checks
-    return net.nodes(values) + sum(part.checks.nodes(values, net) for part in rigged_of(terms).values())
+    rigged = sum(part.checks.nodes(values, net) for part in rigged_of(terms).values())
+    return int(net.nodes(values) + rigged)
 
 
 def threads_of(terms: Mapping[str, str], values: Mapping[str, float]) -> int:

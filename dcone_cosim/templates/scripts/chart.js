@@ -167,7 +167,11 @@ export class Chart {
     svg.append(defs, this.axes(low, high));
     const body = node("g", { "clip-path": `url(#${clip})` });
     for (const row of this.series) body.append(row.kind === "stems" ? this.stems(row) : this.curve(row));
-    for (const mark of this.data.marks) if (mark.time >= this.shown[0] && mark.time <= this.shown[1]) body.append(this.mark(mark));
+    let last = -Infinity;
+    for (const mark of this.together()) {
+      body.append(this.mark(mark, this.toX(mark.time) - last < 15));
+      last = this.toX(mark.time);
+    }
     svg.append(body);
     this.svg = svg;
     this.plot.replaceChildren(svg);
@@ -222,10 +226,23 @@ export class Chart {
     return group;
   }
 
-  mark({ time, what }) {
+  /** Marks in sight, in order; of those of one instant the first. */
+  together() {
+    const found = [];
+    for (const mark of [...this.data.marks].sort((a, b) => a.time - b.time)) {
+      if (mark.time < this.shown[0] || mark.time > this.shown[1]) continue;
+      const before = found[found.length - 1];
+      if (!before || this.toX(mark.time) - this.toX(before.time) >= 2) found.push(mark);
+    }
+    return found;
+  }
+
+  /** A line with what it is, at its left and from the top, or at its right and from the foot. */
+  mark({ time, what }, other) {
     const x = this.toX(time), group = node("g", { class: "mark" });
     group.append(node("line", { x1: x, x2: x, y1: MARGIN.top, y2: MARGIN.top + this.inner.height }));
-    group.append(node("text", { x: x - 4, y: MARGIN.top + 4, transform: `rotate(-90 ${x - 4} ${MARGIN.top + 4})`, "text-anchor": "end" }, what));
+    const [tx, ty, anchor] = other ? [x + 11, MARGIN.top + this.inner.height - 4, "start"] : [x - 4, MARGIN.top + 4, "end"];
+    group.append(node("text", { x: tx, y: ty, transform: `rotate(-90 ${tx} ${ty})`, "text-anchor": anchor }, what));
     return group;
   }
 

@@ -5,7 +5,11 @@ import { Chart } from "dcone/chart";
 const data = JSON.parse(document.getElementById("data").textContent);
 
 /** For whoever looks from outside: the parts of the page, as they stand. */
-window.dcone = { charts: {}, replays: {}, faults: [] };
+window.dcone = { charts: {}, replays: {}, faults: [], ready: 0 };
+const ready = () => {
+  window.dcone.ready = performance.now();
+  document.documentElement.dataset.ready = "true";
+};
 
 for (const chart of data.charts) window.dcone.charts[chart.key] = new Chart(document.getElementById(`chart-${chart.key}`), chart);
 
@@ -20,6 +24,6 @@ if (data.clips.length) {
         window.dcone.replays[clip.key] = new Replay(document.getElementById(`replay-${clip.key}`), clip, data.colours);
       } catch (error) { fall(error); }
     }
-    document.documentElement.dataset.ready = "true";
-  }, fall);
-} else document.documentElement.dataset.ready = "true";
+    ready();
+  }, (error) => { fall(error); ready(); });
+} else ready();

@@ -8,7 +8,7 @@ import { texture } from "dcone/lines";
 import { ticks } from "dcone/chart";
 
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1200, 3600, 7200, 36000, 86400];
-const LONGEST = 25;
+const LONGEST = 25, LONGEST_AS_IT_IS = 90;
 const VIEWS = { side: [0, 0.12], slanting: [0.65, 0.38], "from behind the chaser": [-Math.PI / 2, 0.12], "from above": [0, 1.5] };
 
 export class Replay {
@@ -67,12 +67,12 @@ export class Replay {
     find("last").addEventListener("click", () => { this.stop(); this.go(this.times.length - 1); });
     const span = this.times[this.times.length - 1] - this.times[0];
     const offered = SPEEDS.filter((one) => span / one >= 1 && span / one <= 600);
-    const usual = offered.find((one) => span / one <= LONGEST) ?? 1;
+    const usual = span <= LONGEST_AS_IT_IS && span > 2 ? 1 : offered.find((one) => span / one <= LONGEST) ?? 1;
     speed.append(...(offered.length ? offered : [1]).map((one) => new Option(one === 1 ? "as fast as it is" : `${one.toLocaleString("en")} times as fast`, String(one), one === usual, one === usual)));
     view.append(...Object.keys(VIEWS).map((name) => new Option(name, name, name === "slanting", name === "slanting")));
     view.addEventListener("change", () => this.look(view.value));
     grid.textContent = `grid ${spoken(this.mesh)} m`;
-    for (const mark of this.clip.marks) {
+    for (const mark of [...this.clip.marks].sort((a, b) => a.time - b.time)) {
       if (mark.time < this.times[0] || mark.time > this.times[this.times.length - 1]) continue;
       const made = Object.assign(document.createElement("button"), { type: "button", textContent: `${mark.what} ${spoken(mark.time)} s` });
       made.addEventListener("click", () => { this.stop(); this.go(this.nearest(mark.time)); });

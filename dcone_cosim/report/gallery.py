@@ -1,0 +1,93 @@
+"""`dcone gallery`: scenes run one after the other, a page of each, and an index of them.
+
+    index.html     one card a scene: picture, title, answer
+    NAME.html      its page          runs/NAME/    its run
+
+What is there already stays: the same command goes on with what is missing. A phase longer than a day is cut to it, and
+the page says so, as it says all that was changed.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from dcone_cosim import placed
+from dcone_cosim.commands import run_and_write
+from dcone_cosim.drafts import check_folder
+from dcone_cosim.errors import InputError
+from dcone_cosim.loading import load, named, shipped
+from dcone_cosim.progress import Progress
+from dcone_cosim.report import told
+from dcone_cosim.report.commands import write_page
+from dcone_cosim.reports import pages
+from dcone_cosim.run_reading import read_run
+from dcone_cosim.scratch import Scratch
+
+INDEX = "index.html"
+DAY = 86400.0
+CARD = (
+    "capture_in_space.png",
+    "tether_tension.png",
+    "second_tow_tension.png",
+    "orbital_radius.png",
+    "mouth_and_energies.png",
+)
+"""Pictures of a run of which a card has the first that there is."""
+
+
+def make(scenes: Sequence[str], out: Path, progress: Progress, full: bool = False) -> tuple[Path, Mapping[str, str]]:
+    """Run the scenes that have no page yet, write their pages and the index; where that is, and which failed, and why.
+
+    scenes    by name or path; all that are shipped if there are none
+    full      run long phases to their end
+    """
+    names = list(scenes) or list(shipped())
+    known = {named(name).name: name for name in names}
+    check_folder(out)
+    out.mkdir(parents=True, exist_ok=True)
+    failed = {}
+    for number, (name, scene) in enumerate(known.items(), start=1):
+        folder, page = out / "runs" / name, out / f"{name}.html"
+        progress.say(f"{number} of {len(known)}: {name}")
+        try:
+            if not folder.is_dir():
+                run_and_write(scene, folder, progress, settings=[] if full else cuts(scene), replay=True)
+            if not page.is_file():
+                write_page(folder, page, progress)
+        except InputError as error:
+            failed[name] = str(error)
+    return _index(out, [name for name in known if name not in failed]), failed
+
+
+def cuts(scene: str) -> list[str]:
+    """Settings that cut every phase of a scene that is longer than a day.
+
+    Checked  tests/report/test_gallery.py
+    """
+    return [f"{phase.name}.duration=1 day" for phase in load(scene).phases if phase.duration > DAY]
+
+
+def _index(out: Path, names: Sequence[str]) -> Path:
+    """The index of all that has a page."""
+    cards = [_card(out, name) for name in names]
+    with Scratch(out) as draft:
+        text = pages.render("gallery.html", title="Scenes of D-CoNe co-simulation", cards=cards)
+        (draft / INDEX).write_text(text, encoding="utf-8")
+        return placed.put(draft / INDEX, out / INDEX)
+
+
+def _card(out: Path, name: str) -> dict[str, Any]:
+    folder = out / "runs" / name
+    run = read_run(folder)
+    picture = next((folder / one for one in CARD if (folder / one).is_file()), None)
+    return {
+        "name": name,
+        "title": run.scene.title,
+        "status": run.status,
+        "good": run.exit_code == 0,
+        "chief": told.chief(run),
+        "picture": "" if picture is None else base64.b64encode(picture.read_bytes()).decode(),
+    }
