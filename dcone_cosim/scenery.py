@@ -23,6 +23,7 @@ class Series:
     x, y     (n,), in the units of the chart
     kind     `LINE` or `STEMS`
     faint    it is there to compare with
+    hue      which of the six colours; None: by its place in the chart
     """
 
     name: str
@@ -30,6 +31,7 @@ class Series:
     y: Array
     kind: str = LINE
     faint: bool = False
+    hue: int | None = None
 
 
 @dataclass(frozen=True)

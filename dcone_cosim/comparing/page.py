@@ -42,7 +42,7 @@ def _named(charts: list[dict[str, object]]) -> Iterator[dict[str, object]]:
 
 
 def together(found: Comparison) -> Iterator[tuple[str, Chart]]:
-    """Charts that both runs have, in one: every curve of the first, then that of the second, by the unit of the first.
+    """Charts that both runs have, in one: every curve of the first with that of the second, by the clock of the first.
 
     Checked  tests/report/test_compare.py
     """
@@ -57,10 +57,10 @@ def together(found: Comparison) -> Iterator[tuple[str, Chart]]:
             if second is None:
                 continue
             by = SECONDS[second.x_unit] / SECONDS[first.x_unit]
+            own = [row for row in first.series if not row.faint]
+            named = {row.name: row for row in second.series}
             series = [
-                row
-                for part in zip(first.series, _matched(first, second), strict=True)
-                for row in _pair(found, *part, by)
+                row for hue, one_of in enumerate(own) for row in _pair(found, one_of, named.get(one_of.name), by, hue)
             ]
             yield name, replace(first, series=series, marks=())
 
@@ -69,13 +69,8 @@ SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "day": 86400.0}
 """Of a unit of time [s]."""
 
 
-def _matched(first: Chart, second: Chart) -> list[Series | None]:
-    """Of the second chart, the curve of the name of each of the first."""
-    by_name = {row.name: row for row in second.series}
-    return [by_name.get(row.name) for row in first.series]
-
-
-def _pair(found: Comparison, one: Series, other: Series | None, by: float) -> Iterator[Series]:
-    yield replace(one, name=f"{one.name}: {found.names[0]}")
+def _pair(found: Comparison, one: Series, other: Series | None, by: float, hue: int) -> Iterator[Series]:
+    """A curve of the first run and that of the second, in one colour, the second dashed."""
+    yield replace(one, name=f"{one.name}: {found.names[0]}", hue=hue)
     if other is not None:
-        yield replace(other, name=f"{other.name}: {found.names[1]}", x=other.x * by, faint=True)
+        yield replace(other, name=f"{other.name}: {found.names[1]}", x=other.x * by, faint=True, hue=hue)

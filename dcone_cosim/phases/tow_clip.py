@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from dcone_cosim.plots.style import time_axis
+from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import PhaseResult
 from dcone_cosim.scenery import Array, Chart, Clip, Series
 
@@ -42,14 +43,9 @@ def clip(
         return None
     rows = np.unique(np.linspace(0, len(recorder) - 1, MOST_FRAMES).astype(int))
     chaser = -recorder.vector("relative.position")[rows]
-    orbit = next((one for one in ("center", "target") if f"{one}.velocity[1]" in recorder), "")
-    axes = np.broadcast_to(np.eye(3), (len(rows), 3, 3))
-    if orbit and "altitude" in recorder:
-        axes = orbital_axes(recorder.vector(f"{orbit}.position")[rows], recorder.vector(f"{orbit}.velocity")[rows])
-        chaser = np.einsum("nij,nj->ni", axes, chaser)
     attitude = None
     if "target.attitude[1]" in recorder:
-        attitude = _seen_from(axes, recorder.vector("target.attitude", 4)[rows])
+        attitude = _seen_from(_axes(recorder, rows), recorder.vector("target.attitude", 4)[rows])
     peak = next((one for one in ("tether.tension_peak", "tether.tension") if one in recorder), "")
     taut = recorder["tether.taut"][rows] > 0 if "tether.taut" in recorder else None
     notes = ["seen from the target, which stays in the middle; the line is coloured by the largest tension of its step"]
@@ -69,8 +65,26 @@ def clip(
         _line_end(values, chaser, attitude),
         recorder[peak][rows] if peak else None,
         taut,
+        marks=_marks(result),
         notes=notes,
     )
+
+
+def _marks(result: PhaseResult) -> list[tuple[float, str]]:
+    """The first tug and the largest."""
+    rows = [] if result.tugs is None else sorted(result.tugs.rows.values())
+    if not rows:
+        return []
+    largest = max(rows, key=lambda row: row[1])
+    first = (rows[0][0], "first tug")
+    return [first] if largest is rows[0] else [first, (largest[0], "largest tug")]
+
+
+def _axes(recorder: Recorder, rows: Array) -> Array:
+    """Of the orbital frame at some rows, (n, 3, 3); those of the field-free frame where there is no orbit."""
+    if not {"altitude", "center.position[1]", "center.velocity[1]"} <= set(recorder.names):
+        return np.broadcast_to(np.eye(3), (len(rows), 3, 3))
+    return orbital_axes(recorder.vector("center.position")[rows], recorder.vector("center.velocity")[rows])
 
 
 def _seen_from(axes: Array, attitude: Array) -> Array:

@@ -118,7 +118,9 @@ def chart(one: Chart) -> dict[str, Any]:
     series = []
     for row in one.series:
         x, y = (row.x, row.y) if row.kind == "stems" else thinned(row.x, row.y)
-        series.append({"name": row.name, "kind": row.kind, "faint": row.faint, "x": doubles(x), "y": singles(y)})
+        series.append(
+            {"name": row.name, "kind": row.kind, "faint": row.faint, "hue": row.hue, "x": doubles(x), "y": singles(y)}
+        )
     return {
         "key": one.key,
         "title": one.title,

@@ -20,7 +20,7 @@ from dcone_cosim.run_reading import json_of, provenance_of, read_run
 REPORT, REPLAY = "report.html", "replay.html"
 PICTURES = {"capture": "capture_in_space.png", "removal": "tether_tension.png", "second_tow": "second_tow_tension.png"}
 """What is shown of a phase where a clip cannot be: in print, and without WebGL."""
-LEAST_TONE = 0.3
+LEAST_TONE = 0.36
 """Where on its scale the colour map begins: darker than that is not seen on the dark ground of a clip."""
 
 

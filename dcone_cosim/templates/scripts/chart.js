@@ -45,7 +45,10 @@ export class Chart {
     this.root = root;
     this.data = data;
     this.log = data.log;
-    this.series = data.series.map((row, i) => ({ ...row, x: unpack(row.x), y: unpack(row.y), colour: `var(--s${(i % 6) + 1})`, dash: DASHES[i % 6] }));
+    this.series = data.series.map((row, i) => {
+      const dash = row.hue === null ? DASHES[i % 6] : row.faint ? DASHES[1] : "";
+      return { ...row, x: unpack(row.x), y: unpack(row.y), colour: `var(--s${((row.hue ?? i) % 6) + 1})`, dash };
+    });
     const ends = this.series.flatMap((row) => (row.x.length ? [row.x[0], row.x[row.x.length - 1]] : []));
     this.all = [Math.min(...ends), Math.max(...ends)];
     if (this.all[0] === this.all[1]) this.all[1] = this.all[0] + 1;

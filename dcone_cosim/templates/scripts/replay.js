@@ -10,6 +10,7 @@ import { ticks } from "dcone/chart";
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1200, 3600, 7200, 36000, 86400];
 const LONGEST = 25, LONGEST_AS_IT_IS = 90;
 const VIEWS = { side: [0, 0.12], slanting: [0.65, 0.38], "from behind the chaser": [-Math.PI / 2, 0.12], "from above": [0, 1.5] };
+const NEAR = "close to the target";
 
 export class Replay {
   constructor(root, clip, colours) {
@@ -69,7 +70,8 @@ export class Replay {
     const offered = SPEEDS.filter((one) => span / one >= 1 && span / one <= 600);
     const usual = span <= LONGEST_AS_IT_IS && span > 2 ? 1 : offered.find((one) => span / one <= LONGEST) ?? 1;
     speed.append(...(offered.length ? offered : [1]).map((one) => new Option(one === 1 ? "as fast as it is" : `${one.toLocaleString("en")} times as fast`, String(one), one === usual, one === usual)));
-    view.append(...Object.keys(VIEWS).map((name) => new Option(name, name, name === "slanting", name === "slanting")));
+    const names = [...Object.keys(VIEWS), ...(this.clip.surface ? [NEAR] : [])];
+    view.append(...names.map((name) => new Option(name, name, name === "slanting", name === "slanting")));
     view.addEventListener("change", () => this.look(view.value));
     grid.textContent = `grid ${spoken(this.mesh)} m`;
     for (const mark of [...this.clip.marks].sort((a, b) => a.time - b.time)) {
@@ -103,6 +105,11 @@ export class Replay {
   }
 
   look(name) {
+    if (name === NEAR) {
+      const far = Math.max(...this.clip.surface.corners.map((corner) => Math.hypot(...corner)));
+      this.camera.look(this.bodies.body.position, 1.7 * far, ...VIEWS.slanting);
+      return;
+    }
     const [turned, raised] = VIEWS[name];
     this.camera.look(this.bodies.box.getCenter(new THREE.Vector3()), 0.82 * this.bodies.reach(), turned, raised);
   }

@@ -1,0 +1,141 @@
+"""The page in Chromium: it loads without an error, is drawn, heeds keys, fits both widths and both themes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+from dcone_cosim.report.page import colours, of_folder
+from tests.report.browser import Browser, chromium
+
+WIDE, NARROW = 1280, 390
+
+
+@pytest.fixture(scope="module")
+def place(kept: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    chromium()
+    path = tmp_path_factory.mktemp("page") / "report.html"
+    path.write_text(of_folder(kept, path))
+    return path
+
+
+@pytest.fixture(scope="module")
+def browser(place: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    one = Browser(tmp_path_factory.mktemp("profile"), WIDE)
+    try:
+        one.open(place)
+        yield one
+    finally:
+        one.close()
+
+
+def test_nothing_goes_wrong_and_nothing_moves_by_itself(browser: Browser) -> None:
+    assert browser.said == []
+    assert browser.ask("window.dcone.faults.length") == 0
+    frame = browser.ask("window.dcone.replays.capture.frame")
+    browser.ask("new Promise((done) => setTimeout(done, 300))")
+    assert browser.ask("window.dcone.replays.capture.frame") == frame
+    assert browser.ask("window.dcone.replays.capture.playing") is False
+
+
+def test_threads_have_the_colour_of_their_tension(browser: Browser, kept: Path) -> None:
+    """Tone and colour of the page's own objects, against the table and matplotlib's map."""
+    threads = pd.read_parquet(kept / "replay_threads.parquet")
+    tension = threads["tension"].to_numpy(float).reshape(threads["time"].nunique(), -1)
+    frame = int(np.argmax((tension > 0.01 * tension.max()).sum(axis=1)))
+    browser.ask(f"window.dcone.replays.capture.go({frame})")
+    tones = np.array(browser.ask("[...window.dcone.replays.capture.bodies.threads.tone.array]"))
+    shown = tension[frame] > 1.01e-3 * tension.max()
+    assert (tones[~shown & (tension[frame] < 0.99e-3 * tension.max())] == -1.0).all()
+    wanted = 1.0 + np.log10(tension[frame][shown] / tension.max()) / 3.0
+    np.testing.assert_allclose(tones[shown], wanted, atol=0.003)
+    given = browser.ask(
+        "[...window.dcone.replays.capture.bodies.threads.object.material.uniforms.colours.value.image.data]"
+    )
+    assert np.array(given).reshape(256, 4)[:, :3].ravel().tolist() == colours()
+
+
+def test_a_turning_body_and_its_net_are_in_one_frame(browser: Browser, kept: Path) -> None:
+    """The page's axes are (along-track, radial, -cross-track), a turn of ours: a corner must go with it."""
+    rows = pd.read_parquet(kept / "capture.parquet")
+    browser.ask("window.dcone.replays.capture.go(1e9)")
+    told = browser.ask(
+        "(() => { const b = window.dcone.replays.capture.bodies; b.body.updateMatrixWorld();"
+        " const c = b.clip.surface.corners[0]; const v = b.ship.position.clone().set(c[1], c[0], -c[2]);"
+        " return [...b.body.localToWorld(v).toArray(), c]; })()"
+    )
+    from scipy.spatial.transform import Rotation
+
+    last = rows.iloc[-1]
+    turn = Rotation.from_quat([last[f"target.attitude[{i}]"] for i in range(1, 5)], scalar_first=True)
+    radial, along, cross = turn.apply(told[3]) + [last[f"target.position[{i}]"] for i in (1, 2, 3)]
+    assert told[:3] == pytest.approx([along, radial, -cross], abs=1e-5)
+
+
+def test_keys_step_play_and_turn(browser: Browser) -> None:
+    browser.ask("document.querySelector('#replay-capture .stage').focus()")
+    frame = "window.dcone.replays.capture.frame"
+    for key, shift, wanted in (
+        ("Home", False, 0), ("ArrowRight", False, 1), ("ArrowRight", True, 11), ("ArrowLeft", False, 10),
+    ):  # fmt: skip
+        browser.key(key, shift)
+        assert browser.ask(frame) == wanted
+    browser.key("End")
+    assert browser.ask(f"{frame} === window.dcone.replays.capture.times.length - 1")
+    browser.key("Home")
+    browser.key("Space")
+    assert browser.ask("window.dcone.replays.capture.playing") is True
+    browser.key("Space")
+    assert browser.ask("window.dcone.replays.capture.playing") is False
+    turned = browser.ask("window.dcone.replays.capture.camera.turned")
+    browser.key("d")
+    assert browser.ask("window.dcone.replays.capture.camera.turned") == pytest.approx(turned + 0.08)
+    assert browser.ask("getComputedStyle(document.activeElement).outlineWidth") == "3px"
+
+
+def test_a_chart_is_zoomed_by_keys_and_shows_all_again(browser: Browser) -> None:
+    chart = "window.dcone.charts['removal-tension']"
+    browser.ask(f"{chart}.plot.focus()")
+    all_of_it = browser.ask(f"{chart}.all")
+    browser.key("+")
+    low, high = browser.ask(f"{chart}.shown")
+    assert high - low == pytest.approx(0.7 * (all_of_it[1] - all_of_it[0]))
+    browser.key("Home")
+    assert browser.ask(f"{chart}.shown") == all_of_it
+    tugs = browser.ask(f"{chart}.svg.querySelectorAll('.stems:not(.faint) circle').length")
+    assert tugs == browser.ask(f"{chart}.series.find((row) => row.name === 'tugs').x.length") > 0
+
+
+@pytest.mark.parametrize("width", [WIDE, NARROW])
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_it_fits_and_is_drawn(browser: Browser, place: Path, tmp_path: Path, width: int, dark: bool) -> None:
+    browser.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+    scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+    browser.call("Emulation.setEmulatedMedia", features=[scheme])
+    assert browser.ask("document.documentElement.scrollWidth") <= width
+    paper = browser.ask("getComputedStyle(document.body).backgroundColor")
+    assert paper == ("rgb(20, 24, 29)" if dark else "rgb(255, 255, 255)")
+    top = browser.ask("document.querySelector('#replay-capture .stage').getBoundingClientRect().top + scrollY")
+    browser.picture(tmp_path / "stage.png", top=top, height=280)
+    pixels = np.asarray(Image.open(tmp_path / "stage.png").convert("RGB"), dtype=int)
+    assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 200, "a net, a body, a grid"
+    assert browser.said == []
+
+
+def test_the_switch_overrides_the_system(browser: Browser) -> None:
+    browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
+    seen = []
+    for _ in range(3):
+        browser.ask("document.getElementById('theme').click()")
+        seen.append(
+            browser.ask(
+                "[document.getElementById('theme').textContent, getComputedStyle(document.body).backgroundColor]"
+            )
+        )
+    light, dark = "rgb(255, 255, 255)", "rgb(20, 24, 29)"
+    assert seen == [["theme: light", light], ["theme: dark", dark], ["theme: auto", light]]

@@ -1,0 +1,36 @@
+"""A gallery of two scenes: pages and index; what is there stays, what fails is told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from dcone_cosim.loading import named, shipped
+from dcone_cosim.progress import Progress
+from dcone_cosim.report.gallery import DAY, cuts, make
+from tests.report.conftest import Page
+from tests.runs import COARSE
+
+
+def test_pages_and_index(tmp_path: Path, kept: Path) -> None:
+    """The scene is that of `kept`, so its FMUs are there."""
+    scene = tmp_path / "small.toml"
+    scene.write_text(named("mission", COARSE).text)
+    bad = tmp_path / "bad.toml"
+    bad.write_text(named("mission", COARSE).text)
+    out = tmp_path / "gallery"
+    index, failed = make([str(scene)], out, Progress())
+    assert failed == {}
+    page = Page(index.read_text())
+    assert "small.html" in page.links
+    assert "first tug" in page.text
+    assert Page((out / "small.html").read_text()).data["clips"][0]["net"]["tensions"]
+    before = (out / "small.html").stat().st_mtime_ns
+    make([str(scene)], out, Progress())
+    assert (out / "small.html").stat().st_mtime_ns == before
+
+
+def test_long_phases_are_cut_to_a_day() -> None:
+    long = [name for name in shipped() if cuts(name)]
+    for name in long:
+        assert max(phase.duration for phase in named(name, cuts(name)).phases) == DAY
+    assert cuts("mission") == []
