@@ -12,7 +12,8 @@ from dcone_cosim.drafts import PROVENANCE, check_folder
 from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.redrawing import list_files
-from dcone_cosim.report.page import COMMANDS, REPLAY, REPORT, Linked, of_folder
+from dcone_cosim.report.links import COMMANDS, REPLAY, REPORT, Linked
+from dcone_cosim.report.page import of_folder
 from dcone_cosim.scratch import Scratch
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")

@@ -4,54 +4,22 @@ from __future__ import annotations
 
 import base64
 import json
-import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from dcone_cosim.errors import InputError
 from dcone_cosim.phases import kind_of
-from dcone_cosim.report import packing, scripts, told
+from dcone_cosim.report import links, packing, scripts, told
+from dcone_cosim.report.forces import PICTURE, ForceMap
+from dcone_cosim.report.links import Linked
 from dcone_cosim.reports import pages
 from dcone_cosim.reports.warnings import warnings
-from dcone_cosim.run_reading import json_of, provenance_of, read_run
+from dcone_cosim.run_reading import provenance_of, read_run
 
-REPORT, REPLAY = "report.html", "replay.html"
 PICTURES = {"capture": "capture_in_space.png", "removal": "tether_tension.png", "second_tow": "second_tow_tension.png"}
 """What is shown of a phase where a clip cannot be: in print, and without WebGL."""
 LEAST_TONE = 0.36
 """Where on its scale the colour map begins: darker than that is not seen on the dark ground of a clip."""
-
-
-@dataclass(frozen=True)
-class Linked:
-    """Another report that belongs to a run: of its sizing, its accuracy or its stability.
-
-    kind      "sizing", "accuracy" or "stability"
-    said      its answer in sentences
-    """
-
-    kind: str
-    folder: Path
-    said: Sequence[str]
-
-    @classmethod
-    def read(cls, kind: str, folder: Path) -> Linked:
-        """Of the folder that the command left; `InputError` where it is none."""
-        if not (folder / REPORT).is_file():
-            raise InputError(
-                f"{folder} holds no report of {kind}: expected a {REPORT} in it, as `dcone {COMMANDS[kind]}` writes"
-            )
-        content = json_of(folder / "summary.json")
-        said = content.get("said") or [
-            one for phase in content.get("phases", {}).values() for one in phase.get("sentences", ())
-        ]
-        return cls(kind, folder, [str(one) for one in said])
-
-
-COMMANDS = {"sizing": "size", "accuracy": "accuracy", "stability": "stability"}
-"""The command that makes each."""
 
 
 def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: bool = True) -> str:
@@ -66,6 +34,10 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
         one = kind.clip(run, result)
         clips += [] if one is None else [packing.clip(one)]
         charts += [(name, packing.chart(chart)) for chart in kind.charts(run, result)]
+    forces = ForceMap.read(folder)
+    for one in clips:
+        if forces is not None and "surface" in one and "net" in one:
+            one["forces"] = forces.packed()
     if not whole:
         charts = [(name, chart) for name, chart in charts if chart["key"] == "tension"]
     for name, chart in charts:
@@ -79,7 +51,7 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
         "whole": whole,
         "chief": told.chief(run),
         "warnings": warnings(run),
-        "clips": [{**_head(clip), "picture": _picture(folder, clip["key"])} for clip in clips],
+        "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
         "about": told.provenance(about, run, folder.absolute().name),
         "page": "report" if whole else "replay",
@@ -95,9 +67,11 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
             "events": list(told.events(run)),
             "figures": list(told.figures(run)),
             "trust": told.trust(run),
-            "linked": [_linked(kind, linked, place, run.scene.name) for kind in COMMANDS],
+            "linked": [links.shown(kind, linked, place, run.scene.name) for kind in links.COMMANDS],
+            "governs": links.governing(linked),
             "scene": run.scene.text,
-            "force_map": None,
+            "forces": None if forces is None else forces.hardest(),
+            "force_picture": picture_of(folder / PICTURE),
         }
     return pages.render("run.html", **values)
 
@@ -119,22 +93,19 @@ def _head(clip: Mapping[str, Any]) -> dict[str, Any]:
         if of is None or not of["most"]
         else [(n, f"{of['most'] * of['floor'] ** (1.0 - n):.3g}") for n in (0.0, 1 / 3, 2 / 3, 1.0)]
     )
-    return {"key": clip["key"], "title": clip["title"], "notes": clip["notes"], "scale": scaled, "net": "net" in clip}
+    return {
+        "key": clip["key"],
+        "title": clip["title"],
+        "notes": clip["notes"],
+        "scale": scaled,
+        "net": "net" in clip,
+        "forces": "forces" in clip,
+    }
 
 
-def _picture(folder: Path, phase: str) -> str:
-    path = folder / PICTURES.get(phase, "")
+def picture_of(path: Path) -> str:
+    """A picture in base64, "" where there is none."""
     return base64.b64encode(path.read_bytes()).decode() if path.is_file() else ""
-
-
-def _linked(kind: str, linked: Sequence[Linked], place: Path, scene: str) -> dict[str, Any]:
-    """A report of that kind that is there, or how to make it."""
-    found = next((one for one in linked if one.kind == kind), None)
-    command = f"dcone {COMMANDS[kind]} {scene}"
-    if found is None:
-        return {"kind": kind, "href": "", "said": [], "command": command}
-    href = os.path.relpath((found.folder / REPORT).absolute(), place.absolute().parent)
-    return {"kind": kind, "href": Path(href).as_posix(), "said": found.said, "command": command}
 
 
 def colours() -> list[int]:

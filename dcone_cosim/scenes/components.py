@@ -138,12 +138,18 @@ def of_model(
         mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
         part.terms[needed] = next(iter(model.groups[needed].terms))
     clashes: dict[str, list[str]] = {}
-    for group_name, other in model.clashing(part.terms):
+    several = {name: "1" for name in part.following if name in build.FAMILIES}  # however many follow
+    for group_name, other in model.clashing(part.terms | several):
         clashes.setdefault(group_name, []).append(f"[{dotted((*part.path, other))}]")
     for group_name, others in clashes.items():
-        group = model.groups[group_name]
+        group, text = model.groups[group_name], f"cannot go together with {' and '.join(others)}"
+        if group_name in build.FAMILIES:
+            mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
+            part.terms.pop(group_name, None)
+            part.following = [name for name in part.following if name != group_name]
+            continue
         path = (*part.path, group.table or group_name, group.selector)
-        mistakes.append(Mistake(path, part.terms[group_name], f"cannot go together with {' and '.join(others)}"))
+        mistakes.append(Mistake(path, part.terms[group_name], text))
         part.terms[group_name] = group.default or next(iter(group.terms))
     interface = model.interface(part.terms)
     part.keys = dict(_keys(model.name, tuple(part.terms.items())))

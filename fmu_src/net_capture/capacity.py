@@ -17,15 +17,24 @@ class Family(Mapping[str, Term]):
     """A term for any number of one thing: `{"nodes": "625"}` gives an FMU with outputs for up to 625 nodes.
 
     rows(capacity)    the variables of so many
+    excludes          groups with which none of its terms goes together
     """
 
-    def __init__(self, what: str, summary: str, most: int, rows: Callable[[int], tuple[Variable, ...]]) -> None:
-        self.what, self.summary, self.most, self.rows = what, summary, most, rows
+    def __init__(
+        self,
+        what: str,
+        summary: str,
+        most: int,
+        rows: Callable[[int], tuple[Variable, ...]],
+        excludes: tuple[str, ...] = (),
+    ) -> None:
+        self.what, self.summary, self.most, self.rows, self.excludes = what, summary, most, rows, excludes
 
     def __getitem__(self, capacity: str) -> Term:
         if capacity not in self:
             raise KeyError(capacity)
-        return Term(f"{self.summary}, up to {capacity} {self.what}", self.rows(int(capacity)))
+        summary = f"{self.summary}, up to {capacity} {self.what}"
+        return Term(summary, self.rows(int(capacity)), excludes=self.excludes)
 
     def __contains__(self, capacity: object) -> bool:
         return (
@@ -83,6 +92,9 @@ def thread_rows(capacity: int) -> tuple[Variable, ...]:
 
 FAMILIES: Mapping[str, Family] = {
     "nodes": Family("nodes", "position of every node", MOST_NODES, node_rows),
-    "threads": Family("threads", "tension of every thread, and between which nodes it runs", MOST_THREADS, thread_rows),
+    # a thread that lies round an edge is longer than the straight way that is measured here
+    "threads": Family(
+        "threads", "tension of every thread, and between which nodes it runs", MOST_THREADS, thread_rows, ("wrap",)
+    ),
 }
 """Groups with a term for any number, by name."""

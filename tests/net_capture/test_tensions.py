@@ -25,6 +25,7 @@ def strung():
     count = threads_of(*settled("square", values, **RIGGED))
     layer = Layer("square", **RIGGED, threads=str(count + SPARE))
     laid = layer.lay(values)
+    assert int(laid.p["net_threads"]) == count, "as many outputs as threads, or what is written goes astray"
     tensions = make_tensions(layer.parts)
     list_all, write_all = tensions.list_threads, tensions.write
 

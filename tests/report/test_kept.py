@@ -94,6 +94,10 @@ def test_what_is_asked_follows_the_scene() -> None:
     scene = named("mission", ("capture.duration=9 s", "capture.macro_step=1 ms"))
     assert list(replay_settings(scene)) == ["capture.threads={}", "capture.replay_every=0.03 s"]
     assert list(replay_settings(named("table2-deorbit"))) == []
+    bending = named("mission", ("capture.wrap={}",))
+    assert list(replay_settings(bending)) == ["capture.replay_every=0.04 s"], "the tension of a bent thread is not told"
+    with pytest.raises(InputError, match=r"capture\.wrap"):
+        named("mission", ("capture.wrap={}", "capture.threads={}"))
     mine = named("mission", ("capture.threads.capacity=3000", "capture.replay_every=0.1 s"))
     assert list(replay_settings(mine)) == []
     assert (suits(30.0, 0.02), suits(1.5, 1e-3), suits(30.0, 0.5)) == (0.04, 0.005, 0.5)

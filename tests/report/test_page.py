@@ -16,7 +16,8 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.report import scripts
 from dcone_cosim.report.commands import write_page
-from dcone_cosim.report.page import Linked, of_folder
+from dcone_cosim.report.links import Linked
+from dcone_cosim.report.page import of_folder
 from tests.cosim.conftest import Dcone, dcone
 from tests.report.conftest import Page
 from tests.report.test_packing import decoded, newtons
@@ -154,15 +155,26 @@ def test_commands_write_whole_files_and_refuse_what_is_no_run(kept: Path, tmp_pa
 
 def test_reports_that_belong_to_it_are_linked_from_where_the_page_is(kept: Path, tmp_path: Path) -> None:
     sizing = tmp_path / "sized"
+    rows = [
+        {"load": "steady load", "size": 0.5, "diameter": 1e-4, "how": "FoS 2"},
+        {"load": "snap", "size": 812.25, "diameter": 2.1e-3, "how": "the hardest tug"},
+        {"load": "debris cut", "size": None, "diameter": 7e-4, "how": "1 %"},
+    ]
+    parts = {"governs": {"title": "", "purpose": "each by itself", "units": {}, "rows": rows, "said": []}}
     sizing.mkdir()
     (sizing / "report.html").write_text("")
-    (sizing / "summary.json").write_text(json.dumps({"said": ["2.1 mm of Kevlar 29", "the first tug governs"]}))
+    (sizing / "summary.json").write_text(
+        json.dumps({"said": ["2.1 mm of Kevlar 29", "the first tug governs"], "parts": parts})
+    )
     also = [Linked.read("sizing", sizing)]
     (path,) = write_page(kept, tmp_path / "pages" / "mission.html", Progress(), also)
     page = Page(path.read_text())
     assert "../sized/report.html" in page.links
     assert "Report of sizing: 2.1 mm of Kevlar 29" in page.text
     assert "the first tug governs" in page.text
+    assert page.row("snap, governs") == ["snap, governs", "2.1", "812.2", "the hardest tug"]
+    loads = [row[0] for row in page.rows]
+    assert loads.index("snap, governs") < loads.index("debris cut") < loads.index("steady load")
 
 
 def test_three_is_held_against_its_hash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -42,6 +42,7 @@ export class Bodies {
     scene.add(this.ship);
     if (this.target) {
       this.body = clip.surface ? solid(clip.surface) : ball(2.2 * size, COLOURS.target);
+      if (clip.forces) this.press(clip.forces, colours.image.data);
       scene.add(this.body);
     }
     this.shots = this.bullets ? Array.from({ length: this.bullets.count }, () => ball(size, COLOURS.bullet)) : [];
@@ -65,6 +66,21 @@ export class Bodies {
       this.rim = new Lines(net.rim.length - 1, colours, CORD, [1.3, 1.3]);
       scene.add(this.rim.object);
     }
+  }
+
+  /** Cells on the body, each in the colour of the largest force that it bore. */
+  press(forces, colours) {
+    const places = new Places(forces.places), peaks = new Tensions(forces.peaks), count = forces.places.shape[0];
+    const side = forces.size, shape = new THREE.BoxGeometry(side, side, side);
+    this.cells = new THREE.InstancedMesh(shape, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.9 }), count);
+    const here = new THREE.Matrix4(), colour = new THREE.Color();
+    for (let i = 0; i < count; i++) {
+      const at = 4 * Math.round(255 * Math.max(Bodies.tone(peaks.code(i)), 0));
+      here.makeTranslation(places.told(i, 0, 1), places.told(i, 0, 0), -places.told(i, 0, 2));
+      this.cells.setMatrixAt(i, here);
+      this.cells.setColorAt(i, colour.setRGB(colours[at] / 255, colours[at + 1] / 255, colours[at + 2] / 255, THREE.SRGBColorSpace));
+    }
+    this.body.add(this.cells);
   }
 
   /** Everything that is ever shown lies in it. */

@@ -80,6 +80,7 @@ export class Replay {
       made.addEventListener("click", () => { this.stop(); this.go(this.nearest(mark.time)); });
       marks.append(made);
     }
+    find("forces")?.addEventListener("change", (event) => { this.bodies.cells.visible = event.target.checked; this.ask(); });
     this.root.addEventListener("keydown", (event) => this.key(event));
   }
 
