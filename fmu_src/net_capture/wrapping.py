@@ -86,6 +86,8 @@ def make(composition: Any) -> Wrap:
     begin_step, rate_of = composition.contact.begin_step, composition.gravity.rate
     peaks, now = composition.peaks, composition.clock.now
     so_far, note = peaks.so_far, peaks.note
+    has_map = composition.force_map is not None
+    add_to_map = composition.force_map.add if has_map else None
 
     @kernel
     def words(p):
@@ -244,6 +246,8 @@ def make(composition: Any) -> Wrap:
             for axis in range(3):
                 p.target_spin[axis] += p.wrap_a[axis]
             p.wrap_impulse += math.sqrt(squared)
+            if has_map:
+                add_to_map(p, p.wrap_bend, math.sqrt(squared))
             number = table[STRIP_WORDS * strip + FIRST] + code % 64 + 1
             if tension > so_far(p, number):
                 note(p, number, tension)
