@@ -53,6 +53,8 @@ from orbital.rotations import rotate, rotate_inverse
 from orbital.vectors import cross, dot
 
 SCHEME = "leapfrog"
+CONVEX = ("box", "cylinder", "frustum", "sphere")
+"""Shapes along whose distance a straight line comes to the surface once."""
 AHEAD = 0.05
 """Metres that a node may move against the target before the threads near it are looked up again."""
 LONGEST_LOOK = 200
@@ -340,10 +342,14 @@ def make(composition: Any) -> Wrap:
 
 
 def refuses(scene: Scene) -> Iterator[Refusal]:
-    """A scheme or a precision with which no thread bends."""
+    """A scheme, a precision or a target with which no thread bends."""
     scheme, precision = scene.terms["solver"], scene.terms["precision"]
     if scheme != SCHEME:
         yield Refusal("solver.scheme", f'"{scheme}"', f'keeps all threads straight; [capture.wrap] needs "{SCHEME}"')
+    shape = scene.terms["target"]
+    if shape not in CONVEX:
+        expected = f"must be convex where threads bend round it, one of {', '.join(CONVEX)}: [capture.wrap]"
+        yield Refusal("target.shape", f'"{shape}"', expected)
     if precision != "double":
         yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')
 

@@ -9,6 +9,7 @@ from scipy.optimize import minimize_scalar
 from fmu_src.net_capture.contact.edges import make_bend
 from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.planes import U, X
+from fmu_src.net_capture.refusal import Scene
 from orbital.kernel import kernel
 from tests.net_capture.on_target import Kernels
 
@@ -126,5 +127,8 @@ def test_what_no_thread_bends_with_is_refused():
     interface = MODEL.interface(terms | {"precision": "single"})
     start = {n: s for v in interface.variables for n, s in zip(v.element_names(), v.starts(), strict=True)}
     assert [r.name for r in refusals(terms | {"precision": "single"}, start)] == ["solver.precision"]
+    hollow = MODEL.interface(terms | {"target": "mesh"}).terms
+    found = MODEL.groups["wrap"].terms["plain"].refuses(Scene(hollow, {}, 1.0, {}))
+    assert [r.name for r in found] == ["target.shape"]
     with pytest.raises(ValueError, match="break"):
         MODEL.interface(terms | {"break": "breaks"})

@@ -23,7 +23,7 @@ Checked  tests/net_capture/test_penalty.py
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from fmu_src.extremes import Extreme
@@ -256,10 +256,12 @@ def make(composition: Any) -> Contact:
     return law._replace(start=start, measure=measure, weigh=weigh)
 
 
-def of_values(values: Mapping[str, float], node: float, mass: float, nodes: int, radius: float) -> float:
+def of_values(
+    values: Mapping[str, float], node: float, mass: float, nodes: int, radius: Callable[[Mapping[str, float]], float]
+) -> float:
     """See `Checks.stiffening`: a node in the middle of a thread is half as heavy as one that four threads meet at."""
     inertia = [values[f"target.principal_inertia[{i}]"] for i in (1, 2, 3)]
-    share = 1.0 + values["target.mass"] * radius**2 / min(inertia) if any(inertia) else TARGET_SHARE
+    share = 1.0 + values["target.mass"] * radius(values) ** 2 / min(inertia) if any(inertia) else TARGET_SHARE
     lightest = node * (0.5 if values["net.segments"] > 1 else 0.75)
     duration, stiffness = values["contact.duration"], values["contact.stiffness"]
     found: float = formula(stiffening)(duration, stiffness, lightest, mass, nodes, values["target.mass"], share)
