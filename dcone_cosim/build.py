@@ -25,6 +25,7 @@ from fmu_src.implied import Implied
 from fmu_src.interface import Group, Interface, Laid, Model, Term, Undesigned, Value, Variable
 from fmu_src.lines import Line
 from fmu_src.net_capture import cautions as net_capture_cautions
+from fmu_src.net_capture import force_map
 from fmu_src.net_capture import lines as net_capture_lines
 from fmu_src.net_capture import stress as net_capture_stress
 from fmu_src.net_capture import trade as net_capture_trade
@@ -392,6 +393,15 @@ def hull_corners(values: Mapping[str, Any], terms: Mapping[str, str]) -> tuple[d
     filled = np.vstack([corners, np.repeat(corners[-1:], CORNERS - len(corners), axis=0)])
     names = ((f"target.corner_{axis}[{k + 1}]", k, i) for i, axis in enumerate("xyz") for k in range(CORNERS))
     return {name: float(filled[k, i]) for name, k, i in names}, short
+
+
+def force_cells(values: Mapping[str, float], terms: Mapping[str, str]) -> list[list[float]] | None:
+    """Middles of the cells of a force map in body axes [m], in the order of its outputs; None for a target that is none
+    of ours."""
+    part = _part(TARGETS, terms.get("target"), values)
+    if part is None:
+        return None
+    return [force_map.centre_of(number, part.checks.half(values)) for number in range(force_map.NUMBER)]
 
 
 def _part(parts: Mapping[str, Term], term: str | None, values: Mapping[str, float]) -> Term | None:

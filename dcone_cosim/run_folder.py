@@ -1,7 +1,7 @@
 """The run folder: everything a run leaves, written whole or not at all.
 
     summary.json  provenance.json  scene.toml  fmus/*.fmu  ledger.json  ledger.csv
-    PHASE.parquet  nodes.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
+    PHASE.parquet  nodes.parquet  force_map.parquet  tugs.parquet  removal_without_recoil_tugs.parquet
     replay_nodes.parquet  replay_threads.parquet
     states/*.state  *.png
 
@@ -29,7 +29,7 @@ import numpy.typing as npt
 from dcone_cosim import state_file
 from dcone_cosim.drafts import PROVENANCE, contents
 from dcone_cosim.frames import Frames
-from dcone_cosim.phases import kind_of
+from dcone_cosim.phases import force_map, kind_of
 from dcone_cosim.recorder import Snapshots, TugLog
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scenes.kept import keep
@@ -44,6 +44,7 @@ PACKAGES = (
 )
 
 
+FORCE_MAP = "force_map"
 NODES = "nodes"
 """Name of the table of the net's knots."""
 REPLAY_NODES, REPLAY_THREADS = "replay_nodes", "replay_threads"
@@ -162,6 +163,9 @@ def tables_of(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
                 yield REPLAY_THREADS, replay_threads_table(result.frames, clock)
         if result.tugs is not None:
             yield kind.tugs_file, tugs_table(result.tugs, clock)
+        cells = force_map.of_run(run, name)
+        if cells is not None:
+            yield FORCE_MAP, force_table(cells)
         if result.passive:
             yield f"{name}_passive_safety", passive_table(result, clock)
     for name, result in run.comparisons.items():
@@ -214,6 +218,13 @@ def replay_threads_table(frames: Frames, clock: str) -> pa.Table:
         ],
         time={"clock": clock},
     )
+
+
+def force_table(cells: force_map.Cells) -> pa.Table:
+    """One row per cell of the target: face, middle in body axes, impulse and largest force."""
+    columns = [("cell", "1", np.arange(1, len(cells.impulse) + 1)), ("face", "1", cells.face)]
+    columns += [(f"position[{i + 1}]", "m", np.ascontiguousarray(cells.middle[:, i])) for i in range(3)]
+    return _table([*columns, ("impulse", "N.s", cells.impulse), ("peak", "N", cells.peak)])
 
 
 def tugs_table(tugs: TugLog, clock: str) -> pa.Table:

@@ -106,16 +106,6 @@ WAITING = (
         "a hanging line with mass, swinging, as another program computes it",
         "a line with nodes: that of the removal has no mass",
     ),
-    Open(
-        "A node that bounces off a springy surface and slides on it",
-        "pi/omega_d and exp(-2 zeta acos(zeta)/sqrt(1 - zeta^2)) with a force that never pulls; v0^2/(2 mu a)",
-        "the penalty law of contact with friction",
-    ),
-    Open(
-        "A rope over a cylinder",
-        "holds up to ((1 + mu tan(delta/2))/(1 - mu tan(delta/2)))^(phi/delta), toward exp(mu phi)",
-        "friction in contact",
-    ),
 )
 
 

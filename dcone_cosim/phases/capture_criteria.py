@@ -207,7 +207,22 @@ def _depth(evidence: Evidence) -> Iterator[Criterion]:
         near = body if reach < math.inf else body[:0]
         for point in near:
             deepest = min(deepest, distance(evidence.values, point.tolist()))
-    yield Criterion("depth", "deepest node below the target's surface", -deepest, "m", DEPTH, DEEPEST)
+    give = _give(evidence)
+    label = "deepest node below the target's surface"
+    yield Criterion("depth", label, -deepest, "m", DEPTH + 2.0 * give, DEEPEST + 10.0 * give)
+
+
+def _give(evidence: Evidence) -> float:
+    """How deep a bullet goes into a surface with a spring at the speed of the shot [m].
+
+    v sqrt(m/c), or v t/pi where all contacts last t; 0 at a surface without one
+    """
+    values = evidence.values
+    if "contact.duration" not in values:
+        return 0.0
+    if values["contact.stiffness"] > 0.0:
+        return float(values["bullets.speed"] * math.sqrt(values["bullets.mass"] / values["contact.stiffness"]))
+    return float(values["bullets.speed"] * values["contact.duration"] / math.pi)
 
 
 def matrix(quaternion: Array) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 from dcone_cosim import build
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
-from dcone_cosim.phases import closed_report
+from dcone_cosim.phases import closed_report, force_map
 from dcone_cosim.phases.end import of_end
 from dcone_cosim.phases.phase import Figure
 from dcone_cosim.plots import net_view, style
@@ -109,6 +109,9 @@ def figures(run: RunResult, phase: PhaseScene, result: PhaseResult) -> Iterator[
         shapes = build.net_drawing(values, phase.main.terms), build.target_surface(values, phase.main.terms)
         asked = bool(phase.options.snapshots)
         yield "capture_in_space.png", partial(net_view.draw, result, *shapes, asked, title)
+    cells = force_map.of_run(run, phase.name)
+    if cells is not None:
+        yield "force_map.png", partial(force_map.draw, cells, title)
     if "mouth.area" in result.recorder:
         yield "mouth_and_energies.png", partial(mouth_and_energy, result, title)
     yield from closed_report.figures(result, title)

@@ -43,8 +43,8 @@ class Composition:
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
-    gravity, net, rigging, graph, peaks, folding, target, contact, jam, closing, tether, air, wrap, spin, ejection,
-    volume, index, pull_off, pulls, pace, breaking, scheme
+    gravity, net, rigging, graph, peaks, folding, target, force_map, contact, jam, closing, tether, air, wrap, spin,
+    ejection, volume, index, pull_off, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -73,6 +73,7 @@ class Composition:
         self.rigging = [self._make(group) for group in riggings() if group in terms]
         self.graph, self.peaks = make_graph(self), make_peaks(self)
         self.target = self._make("target")
+        self.force_map = self._make("force_map")
         self.contact = self._make("contact")
         self.jam = self._make("jam")
         self.closing, self.tether = self._make("closing"), self._make("tether")

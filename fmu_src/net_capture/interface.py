@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
-from fmu_src.net_capture import air, breaking, capture_index, pull_off, shot, tether, volume, wrapping
+from fmu_src.net_capture import air, breaking, capture_index, force_map, pull_off, shot, tether, volume, wrapping
 from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES, MOST_THREADS
 from fmu_src.net_capture.closing import closings, jam
 from fmu_src.net_capture.contact import contacts
@@ -284,6 +284,7 @@ GROUPS = {
     "substeps": Group(paces(), selector="substeps", default="fixed", table="solver"),
     "target": Group(TARGETS, selector="shape", optional=True),
     "contact": Group(CONTACTS, optional=True),
+    "force_map": _plain(force_map.PART),
     "wrap": _plain(wrapping.PART),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
     "jam": _plain(jam.PART),

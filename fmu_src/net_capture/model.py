@@ -70,6 +70,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
     presses, wrap, has_wrap = parts.presses, parts.wrap, parts.wrap is not None
+    force_map, has_map = parts.force_map, parts.force_map is not None
     changes, watches, renew, watch = (
         gravity.renew is not None,
         gravity.watch is not None,
@@ -157,6 +158,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return not_finite
         if has_volume:
             hold.watch(p, work)
+        if has_map:
+            force_map.look(p)
         if has_closing:
             touched = p.contact_first_time if has_contact else -1.0
             closing.trigger(p, work, time, touched, reached(p, work))
@@ -357,6 +360,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             pull_off.start(p)
         if has_wrap:
             wrap.start(p)
+        if has_map:
+            force_map.start(p)
         scheme.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         if has_air:

@@ -62,5 +62,5 @@ def _pressing(values: Values, parts: Mapping[str, Any], node: float) -> float:
     mass = values["net.mass"] + net.bullets * values["bullets.mass"] + values["vertex.mass"]
     mass += sum(rig.mass(values, net) for rig in rigged)
     nodes = net.nodes(values) + sum(rig.nodes(values, net) for rig in rigged)
-    found: float = law(values, node, mass, nodes, parts["target"].checks.radius(values))
+    found: float = law(values, node, mass, nodes, parts["target"].checks.radius)
     return found

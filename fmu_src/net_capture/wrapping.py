@@ -10,6 +10,10 @@ The target gets what is left of both pulls, at the bend. That is a potential, so
 with a thread across an edge swing round it. A contact point in the middle of a thread that stays straight would take
 all they have.
 
+A taut thread comes to lie across an edge little by little, and goes on so. One whose way would jump, over a corner of
+the body or because it is found on the far side of an edge already, has gone through: it stays straight until it is
+clear of the target, and is counted in `wrap.passed`.
+
 Which threads are near is looked up now and then, ahead of how fast anything moves. In what is shown the pull round an
 edge counts up to the middle of the last substep, as that of contact by penalty does.
 
@@ -49,10 +53,21 @@ from orbital.rotations import rotate, rotate_inverse
 from orbital.vectors import cross, dot
 
 SCHEME = "leapfrog"
+CONVEX = ("box", "cylinder", "frustum", "sphere")
+"""Shapes along whose distance a straight line comes to the surface once."""
 AHEAD = 0.05
 """Metres that a node may move against the target before the threads near it are looked up again."""
 LONGEST_LOOK = 200
 """Substeps after which they are in any case."""
+
+
+FRESH = 1e-3
+"""Metres that a thread may lie round an edge beyond the straight way when it first does."""
+JUMP = 2e-4
+"""Metres that its way may change in a substep beyond twice what the ends' speeds make: 0.3 mJ of Table 1's net."""
+FREE, BENT, PASSED = range(3)
+"""States of a thread: clear of the target; round an edge; through it."""
+NANOMETRE = 1e-9
 
 
 class Wrap(NamedTuple):
@@ -86,14 +101,24 @@ def make(composition: Any) -> Wrap:
     begin_step, rate_of = composition.contact.begin_step, composition.gravity.rate
     peaks, now = composition.peaks, composition.clock.now
     so_far, note = peaks.so_far, peaks.note
+    has_map = composition.force_map is not None
+    add_to_map = composition.force_map.add if has_map else None
 
     @kernel
     def words(p):
-        """A whole number for each thread.
+        """For each thread a place in the list of those near, its state, and the length of its way [nm].
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        return p.thread_numbers
+        return 3 * p.thread_numbers
+
+    @kernel
+    def list_at(p, words):
+        """Where the list begins.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        return words.size - masks * p.strips - 3 * p.thread_numbers
 
     @kernel
     def start(p):
@@ -104,6 +129,7 @@ def make(composition: Any) -> Wrap:
         p.wrap_listed = 0
         p.wrap_next = 0
         p.wrap_threads = 0
+        p.wrap_passed = 0
         p.wrap_impulse = 0.0
         p.wrap_stored = 0.0
 
@@ -116,7 +142,7 @@ def make(composition: Any) -> Wrap:
         Checked  tests/net_capture/test_wrapping.py
         """
         words, table, numbers = own(p, work), strips(p, work), properties(p, work)
-        at = words.size - masks * p.strips - p.thread_numbers
+        at = list_at(p, words)
         for row in range(p.node_slots // p.row_pitch):
             bring(p, reals_of(work), words, row)
         fastest = 0.0
@@ -150,6 +176,8 @@ def make(composition: Any) -> Wrap:
                     if distance_to(p, p.wrap_line, middle) < half:
                         words[at + p.wrap_listed] = 64 * strip + lane
                         p.wrap_listed += 1
+                        continue
+                words[at + p.thread_numbers + table[s + FIRST] + lane] = FREE
 
     @kernel
     def look(p, work, code, place, rate):
@@ -197,6 +225,27 @@ def make(composition: Any) -> Wrap:
         return True, from_first + from_last, going, straight, closing
 
     @kernel
+    def follow(p, words, at, cuts, way, going, straight, length):
+        """State of a thread in this substep, by whether it cuts an edge, and the length of its way [nm].
+
+        at        where its state stands, `thread_numbers` before the length of its way
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        before = words[at]
+        if not cuts:
+            words[at] = FREE
+        elif before == FREE:
+            words[at] = BENT if way - straight < FRESH or way <= length else PASSED
+        elif before == BENT:
+            jump = abs(way - NANOMETRE * words[at + p.thread_numbers])
+            if way > length and jump > JUMP + 2.0 * p.solver_substep * abs(going):
+                words[at] = PASSED
+        if before != PASSED and words[at] == PASSED:
+            p.wrap_passed += 1
+        words[at + p.thread_numbers] = np.int64(way / NANOMETRE)
+
+    @kernel
     def pull(p, work):
         """For every thread that bends: the pull along its way in place of the straight one, node, node and target.
 
@@ -206,7 +255,7 @@ def make(composition: Any) -> Wrap:
         if p.grid >= p.wrap_next:
             list_near(p, work)
         words, table, numbers = own(p, work), strips(p, work), properties(p, work)
-        at = words.size - masks * p.strips - p.thread_numbers
+        at = list_at(p, words)
         h = p.solver_substep
         for n in range(p.wrap_listed):
             code = words[at + n]
@@ -215,10 +264,12 @@ def make(composition: Any) -> Wrap:
             b = table[STRIP_WORDS * strip + B] + code % 64
             bring(p, reals_of(work), words, a // p.row_pitch)
             bring(p, reals_of(work), words, b // p.row_pitch)
-            bends, way, going, straight, closing = look(p, work, code, X, P)
+            cuts, way, going, straight, closing = look(p, work, code, X, P)
             q = STRIP_NUMBERS * strip
             length = numbers[q + LENGTH]
-            if not bends or way <= length:
+            number = table[STRIP_WORDS * strip + FIRST] + code % 64
+            follow(p, words, at + p.thread_numbers + number, cuts, way, going, straight, length)
+            if words[at + p.thread_numbers + number] != BENT or way <= length:
                 continue
             rouse(p, work, a)
             rouse(p, work, b)
@@ -244,9 +295,10 @@ def make(composition: Any) -> Wrap:
             for axis in range(3):
                 p.target_spin[axis] += p.wrap_a[axis]
             p.wrap_impulse += math.sqrt(squared)
-            number = table[STRIP_WORDS * strip + FIRST] + code % 64 + 1
-            if tension > so_far(p, number):
-                note(p, number, tension)
+            if has_map:
+                add_to_map(p, p.wrap_bend, math.sqrt(squared))
+            if tension > so_far(p, number + 1):
+                note(p, number + 1, tension)
             p.contact_force = max(p.contact_force, 2.0 * tension)
             if p.contact_first_time < 0.0:
                 p.contact_first_time = now(p)
@@ -259,16 +311,18 @@ def make(composition: Any) -> Wrap:
         Checked  tests/net_capture/test_wrapping.py
         """
         words, table, numbers = own(p, work), strips(p, work), properties(p, work)
-        at = words.size - masks * p.strips - p.thread_numbers
+        at = list_at(p, words)
         p.wrap_stored = 0.0
         p.wrap_threads = 0
         for n in range(p.wrap_listed):
             code = words[at + n]
             strip = code // 64
-            bends, way, going, straight, closing = look(p, work, code, SHOWN, SHOWN_RATE)
+            if words[at + p.thread_numbers + table[STRIP_WORDS * strip + FIRST] + code % 64] != BENT:
+                continue
+            cuts, way, going, straight, closing = look(p, work, code, SHOWN, SHOWN_RATE)
             q = STRIP_NUMBERS * strip
             length = numbers[q + LENGTH]
-            if not bends or way <= length:
+            if not cuts or way <= length:
                 continue
             p.wrap_threads += 1
             stretch = max(0.0, way - 0.5 * p.solver_substep * going - length)
@@ -288,10 +342,14 @@ def make(composition: Any) -> Wrap:
 
 
 def refuses(scene: Scene) -> Iterator[Refusal]:
-    """A scheme or a precision with which no thread bends."""
+    """A scheme, a precision or a target with which no thread bends."""
     scheme, precision = scene.terms["solver"], scene.terms["precision"]
     if scheme != SCHEME:
         yield Refusal("solver.scheme", f'"{scheme}"', f'keeps all threads straight; [capture.wrap] needs "{SCHEME}"')
+    shape = scene.terms["target"]
+    if shape not in CONVEX:
+        expected = f"must be convex where threads bend round it, one of {', '.join(CONVEX)}: [capture.wrap]"
+        yield Refusal("target.shape", f'"{shape}"', expected)
     if precision != "double":
         yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')
 
@@ -300,6 +358,7 @@ PART = Term(
     "threads between nodes bend round the edges of the target",
     (
         count("wrap.threads", "taut threads that bend round an edge now"),
+        count("wrap.passed", "how often a thread has gone through an edge"),
         peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
         output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
         count("wrap_listed", "threads near the target", "state"),

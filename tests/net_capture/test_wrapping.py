@@ -9,6 +9,7 @@ from scipy.optimize import minimize_scalar
 from fmu_src.net_capture.contact.edges import make_bend
 from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.planes import U, X
+from fmu_src.net_capture.refusal import Scene
 from orbital.kernel import kernel
 from tests.net_capture.on_target import Kernels
 
@@ -106,10 +107,28 @@ def test_a_light_target_takes_the_opposite_of_all(kernels):
     assert np.linalg.norm(scene.p["target_drift"]) > 1e-3
 
 
+def test_a_taut_thread_that_is_through_already_stays_straight(kernels):
+    """The pull of a way that is there at once would come from nowhere."""
+    scene = kernels.place(**SIDES)
+    places = [(1.4, 0.0, 2.001), (2.001, 0.0, 1.4)]
+    scene.put([NODE] * 2, places, np.zeros((2, 3))).join(2, 1.1, 13368.0, 0.0)
+    scene.go(2e-5, 10)
+    assert scene.p["wrap_passed"] == 1
+    assert scene.p["wrap_impulse"] == 0.0
+    # were it slack, it would have its way at once, and pull once that is longer than it is
+    scene = kernels.place(**SIDES).put([NODE] * 2, places, [(-1.0, 0.0, 0.0), (0.0, 0.0, -1.0)])
+    scene.join(2, 1.21, 13368.0, 0.0).go(2e-5, 1000)
+    assert scene.p["wrap_passed"] == 0
+    assert scene.p["wrap_impulse"] > 0.2 * NODE
+
+
 def test_what_no_thread_bends_with_is_refused():
     terms = dict(BOX)
     interface = MODEL.interface(terms | {"precision": "single"})
     start = {n: s for v in interface.variables for n, s in zip(v.element_names(), v.starts(), strict=True)}
     assert [r.name for r in refusals(terms | {"precision": "single"}, start)] == ["solver.precision"]
+    hollow = MODEL.interface(terms | {"target": "mesh"}).terms
+    found = MODEL.groups["wrap"].terms["plain"].refuses(Scene(hollow, {}, 1.0, {}))
+    assert [r.name for r in found] == ["target.shape"]
     with pytest.raises(ValueError, match="break"):
         MODEL.interface(terms | {"break": "breaks"})

@@ -36,11 +36,11 @@ class Checks(NamedTuple):
 
     planes                    node planes of its own, behind those of scheme and pace
     stiffening(values, node, mass, nodes, radius)   the same [1/s2] of values by FMI name, a node between two pieces of
-                              thread [kg], mass [kg] and number of all nodes, radius of the target [m]; None: nothing
+                              thread [kg], mass [kg] and number of all nodes, `Checks.radius` of the shape; None: nothing
     """
 
     planes: int = 0
-    stiffening: Callable[[Mapping[str, float], float, float, int, float], float] | None = None
+    stiffening: Callable[[Mapping[str, float], float, float, int, Any], float] | None = None
 
 
 def contacts() -> dict[str, Any]:

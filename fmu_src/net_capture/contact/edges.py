@@ -30,7 +30,7 @@ ALIKE = 1e-3
 """Sine of the angle of two planes that are one."""
 OPPOSITE = -0.9
 """Cosine of the angle of two planes between which there lie two edges."""
-NEAREST = 0.01
+NEAREST = 1e-4
 """Of the straight way, how near to one of its ends a bend may be: nearer, the end itself lies on the edge."""
 
 

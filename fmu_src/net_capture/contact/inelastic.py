@@ -30,6 +30,8 @@ def make(composition: Any) -> Contact:
     """Kernels of the law with the composition's target."""
     node_plane, distance_to = composition.memory.node_plane, composition.target.shape.distance
     now = composition.clock.now
+    has_map = composition.force_map is not None
+    add_to_map = composition.force_map.add if has_map else None
 
     @kernel
     def touch(p, work, node, h):
@@ -104,6 +106,8 @@ def make(composition: Any) -> Contact:
             feel += local[i] * turned[i]
         impulse = (wanted - approach) / feel
         p.contact_impulse += impulse
+        if has_map:
+            add_to_map(p, body, impulse)
         # work of the impulse over the mean of the relative normal velocities before the kick of this substep, as far as
         # the surface takes it, and after it; the predicted velocity is half a kick ahead of that after it
         taken = 0.0

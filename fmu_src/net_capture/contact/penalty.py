@@ -23,7 +23,7 @@ Checked  tests/net_capture/test_penalty.py
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from fmu_src.extremes import Extreme
@@ -112,6 +112,8 @@ def make(composition: Any) -> Contact:
     node_plane, distance_to = composition.memory.node_plane, composition.target.shape.distance
     now, first_plane = composition.clock.now, composition.contact_planes
     relative, aim, push = make_push(composition)
+    has_map = composition.force_map is not None
+    add_to_map = composition.force_map.add if has_map else None
     rub, stored_along = make_friction(composition)
 
     @kernel
@@ -159,6 +161,8 @@ def make(composition: Any) -> Contact:
             rubbed = rub(p, work, node, inverse, since, held, stiffness, dashpot, p.contact_friction * size)
             impulse = math.sqrt(impulse * impulse + rubbed * rubbed)
         p.contact_impulse += impulse
+        if has_map:
+            add_to_map(p, body, impulse)
         node_plane(p, work, first_plane + SINCE)[node] = p.grid + 1
         if p.contact_first_time < 0.0:
             p.contact_first_time = now(p)
@@ -252,10 +256,12 @@ def make(composition: Any) -> Contact:
     return law._replace(start=start, measure=measure, weigh=weigh)
 
 
-def of_values(values: Mapping[str, float], node: float, mass: float, nodes: int, radius: float) -> float:
+def of_values(
+    values: Mapping[str, float], node: float, mass: float, nodes: int, radius: Callable[[Mapping[str, float]], float]
+) -> float:
     """See `Checks.stiffening`: a node in the middle of a thread is half as heavy as one that four threads meet at."""
     inertia = [values[f"target.principal_inertia[{i}]"] for i in (1, 2, 3)]
-    share = 1.0 + values["target.mass"] * radius**2 / min(inertia) if any(inertia) else TARGET_SHARE
+    share = 1.0 + values["target.mass"] * radius(values) ** 2 / min(inertia) if any(inertia) else TARGET_SHARE
     lightest = node * (0.5 if values["net.segments"] > 1 else 0.75)
     duration, stiffness = values["contact.duration"], values["contact.stiffness"]
     found: float = formula(stiffening)(duration, stiffness, lightest, mass, nodes, values["target.mass"], share)
@@ -325,12 +331,12 @@ PART = Term(
         *(
             Extreme(
                 f"contact of {duration:g} s",
-                "a surface as hard or as soft as can be told from rigid",
+                "a spring at the surface a thousandth or ten thousand times as stiff as usual",
                 "energy_gained",
                 {"contact.duration": duration},
-                chief=duration < DURATION,
+                chief=duration > DURATION,
             )
-            for duration in (1e-4, 1e-2)
+            for duration in (1e-5, 3e-2)
         ),
         *(
             Extreme(
