@@ -357,7 +357,7 @@ def _ways(study: Study) -> Section:
             f"[removal.plume] is taken off: {100 * lost:.0f} % of a beam on the debris is lost, and pushes it back"
             if "plume" in study.ground.phase.main.terms
             else f"time, propellant and tension are those of the whole thrust. With {100 * lost:.0f} % of a beam on "
-            f"the debris it would take {1.0 / (1.0 - lost):.2g} times as much of the first two: let the chaser lead, turn "
-            "its thrusters aside, or name [removal.plume]"
+            f"the debris it would take {1.0 / (1.0 - lost):.2g} times as much of the first two: let the chaser lead, "
+            "turn its thrusters aside, or name [removal.plume]"
         ]
     return part
