@@ -214,6 +214,9 @@ def size(
         int | None, typer.Option("--samples", help="Runs with all uncertain values at random: 64; with --quick 12.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Fewer runs and materials, for a first look.")] = False,
+    phase: Annotated[
+        str | None, typer.Option("--phase", help="The tow that is sized, where a scene has two: removal if not given.")
+    ] = None,
     jobs: Jobs = None,
     json: Json = False,
     isolate: Annotated[
@@ -244,7 +247,8 @@ def size(
         else:
             assert scene is not None
             done = commands.size(
-                scene, out, progress, settings or [], quick, fos, samples, ranges or [], material or [], jobs, isolate
+                scene, out, progress, settings or [], quick, fos, samples, ranges or [], material or [], jobs, isolate,
+                phase,
             )  # fmt: skip
     answer(json, done.told(), lambda console: show.show(done, console), done.notes, done.folder)
     raise typer.Exit(done.exit_code)

@@ -23,6 +23,7 @@ def size(
     samples: int | None = None,
     ranges: Mapping[str, tuple[Any, Any]] | None = None,
     materials: Sequence[str] = (),
+    phase: str | None = None,
     jobs: int | None = None,
     progress: bool | None = None,
     isolate: bool | None = None,
@@ -36,6 +37,7 @@ def size(
     samples            runs with the uncertain values at random
     ranges             what is uncertain, by key: {"removal.thrust.level": ("-20 mN", "-5 mN")}
     materials          names of those the line is sized of; empty: all that are known
+    phase              the tow, where the scene has two; None: removal
     jobs, progress, isolate   as for `sweep`
 
     `sizing.said` is the answer in sentences, `sizing["required"]` a part of the report as a pandas table in SI with its
@@ -46,8 +48,8 @@ def size(
     with shown(progress) as showing:
         if folder is not None:
             asked = (quick, factor_of_safety, samples, spans, materials)
-            return commands.size(given.source, Path(folder), showing, given.settings, *asked, jobs, isolate)
-        options = options_of(given.checked, quick, factor_of_safety, samples, spans, materials)
+            return commands.size(given.source, Path(folder), showing, given.settings, *asked, jobs, isolate, phase)
+        options = options_of(given.checked, quick, factor_of_safety, samples, spans, materials, phase)
         return commands.of_scene(given.source, options, showing, given.settings, jobs, isolate)
 
 

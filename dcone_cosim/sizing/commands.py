@@ -72,13 +72,15 @@ def of_scene(
             path.write_text(scene.text, encoding="utf-8")
             return of_scene(str(path), options, progress, settings, jobs, isolate)
     progress = progress or Progress()
-    alone, others = _begun(scene, settings, isolate, progress)
-    ground = Ground(alone, progress)
+    alone = Alone(scene, settings, isolate)
+    chosen = options or options_of(alone.scene)
+    alone, others = _begun(scene, settings, isolate, progress, alone, chosen.phase)
+    ground = Ground(alone, progress, chosen.phase)
     with Workers(jobs or cores()) as workers:
         memory = Memory()
         ahead = 2 * (jobs or cores())
         return _sized(
-            ground, others, options or options_of(alone.scene), Runner(memory, workers, ahead, work.run),
+            ground, others, chosen, Runner(memory, workers, ahead, work.run),
             Runner(memory, workers, ahead, closed_net.run), progress,
         )  # fmt: skip
 
@@ -95,14 +97,17 @@ def size(
     materials: Sequence[str] = (),
     jobs: int | None = None,
     isolate: bool | None = None,
+    phase: str | None = None,
 ) -> Sizing:
     """Size the hardware of a scene and write the folder. Bad input raises and leaves nothing."""
     started = datetime.now(UTC)
     alone = Alone(name, settings, isolate)
-    options = options_of(alone.scene, quick, factor_of_safety, samples, ranges, materials)
-    uncertain(Ground(alone, progress), options.ranges)  # what is wrong with them is told before anything is run
-    alone, others = _begun(name, settings, isolate, progress, alone)
-    ground = Ground(alone, progress)
+    options = options_of(alone.scene, quick, factor_of_safety, samples, ranges, materials, phase)
+    uncertain(
+        Ground(alone, progress, options.phase), options.ranges
+    )  # what is wrong with them is told before anything is run
+    alone, others = _begun(name, settings, isolate, progress, alone, options.phase)
+    ground = Ground(alone, progress, options.phase)
     scene = alone.scene
     folder = out if out is not None else default_folder(f"{scene.name}-size")
     asked = repr(options)
@@ -123,7 +128,7 @@ def size(
         store.gather_if_many()
         done.folder = folder
         assert done.study is not None
-        command = _command(name, settings, quick, factor_of_safety, samples, ranges, materials)
+        command = _command(name, settings, quick, factor_of_safety, samples, ranges, materials, phase)
         pictures = partial(plot.draw, done.study)
         write(done, [scene], pictures, folder, started, command)
     return done
@@ -136,10 +141,9 @@ def _leave_nothing(folder: Path, kind: type[BaseException] | None, error: BaseEx
 
 
 def _begun(
-    name: str, settings: Sequence[str], isolate: bool | None, progress: Progress, alone: Alone | None = None
+    name: str, settings: Sequence[str], isolate: bool | None, progress: Progress, alone: Alone, phase: str
 ) -> tuple[Alone, list[tuple[str, Ground]]]:
     """The scene begun, and as other shots hand it over."""
-    alone = alone or Alone(name, settings, isolate)
     alone.begin(progress)
     key, low, high = SHOTS
     others = []
@@ -153,7 +157,7 @@ def _begun(
         except InputError as error:
             progress.say(f"a shot at {share:g} of its speed is left out: {error}")
             continue
-        others.append((f"shot at {share:g} of its speed", Ground(other, progress)))
+        others.append((f"shot at {share:g} of its speed", Ground(other, progress, phase)))
     return alone, others
 
 
@@ -193,7 +197,7 @@ def write(
 
 def _command(
     name: str, settings: Sequence[str], quick: bool, factor: float | None, samples: int | None, ranges: Sequence[str],
-    materials: Sequence[str],
+    materials: Sequence[str], phase: str | None,
 ) -> str:  # fmt: skip
     """What makes the report again."""
     parts = ["dcone", "size", name, *(part for setting in settings for part in ("--set", setting))]
@@ -201,6 +205,7 @@ def _command(
     parts += [part for name in materials for part in ("--material", name)]
     parts += [] if factor is None else ["--fos", f"{factor:g}"]
     parts += [] if samples is None else ["--samples", str(samples)]
+    parts += [] if phase is None else ["--phase", phase]
     return shlex.join([*parts, *(["--quick"] if quick else [])])
 
 

@@ -22,7 +22,7 @@ from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.materials import section
 from orbital.plain import mean_motion
 
-PHASE = "removal"
+PHASE, CAPTURE = "removal", "capture"
 LINE = ("tether.diameter", "tether.youngs_modulus", "tether.rest_length", "tether.damping_ratio")
 BREAK, SEPARATION, LENGTH = "break.strength", "start.separation", "tether.rest_length"
 Values = Mapping[str, float]
@@ -42,12 +42,12 @@ class Found:
         return max(self.tugs, key=lambda tug: tug[1], default=None)
 
     def figure(self, name: str) -> float | None:
-        value = self.row.figures.get(f"{PHASE}.{name}")
+        value = self.row.figures.get(f"{next(iter(self.row.samples))}.{name}") if self.row.samples else None
         return float(value) if isinstance(value, int | float) else None
 
     @property
     def loads(self) -> Mapping[str, Any]:
-        loads: Mapping[str, Any] = self.row.samples[PHASE]
+        loads: Mapping[str, Any] = next(iter(self.row.samples.values()))
         return loads
 
 
@@ -55,20 +55,23 @@ class Ground:
     """The tow as it is, and with other values.
 
     alone      the scene, its phases each by itself, begun already
+    name       of the phase, a tow
     runner     runs its cases; set before the first
     breaks_at  load at which the line breaks in the scene [N], None where it does not
     """
 
-    def __init__(self, alone: Alone, progress: Progress) -> None:
-        self.alone, self._progress = alone, progress
-        if PHASE not in alone.phases:
+    def __init__(self, alone: Alone, progress: Progress, name: str = PHASE) -> None:
+        self.alone, self._progress, self.name = alone, progress, name
+        if name not in alone.phases or name == CAPTURE:
             names = ", ".join(alone.phases)
-            raise InputError(f"{alone.scene.source}: sizing needs a [{PHASE}]; this scene has {names} alone")
-        self.scene = alone.scene_of(PHASE)
+            raise InputError(
+                f"{alone.scene.source}: sizing needs a tow, [{name}]; the phases of this scene are {names}"
+            )
+        self.scene = alone.scene_of(name)
         self.phase: PhaseScene = self.scene.phases[0]
         main = self.phase.main
         if main.fmu is not None:
-            raise InputError(f"{alone.scene.source}: sizing varies parameters of our tow; [{PHASE}] names an FMU")
+            raise InputError(f"{alone.scene.source}: sizing varies parameters of our tow; [{name}] names an FMU")
         missing = [name for name in LINE if name not in {**main.defaults, **main.parameters}]
         if missing:
             reel = main.terms.get("reel")
@@ -82,8 +85,8 @@ class Ground:
 
     @property
     def handed_over(self) -> bool:
-        """Whether a capture hands over to it."""
-        return len(self.alone.phases) > 1 and self.alone.phases[0] != PHASE
+        """Whether a phase before it hands over to it."""
+        return self.alone.phases[0] != self.name
 
     def pin(self, values: Values) -> None:
         """Let all of its runs have these values, SI by FMI name."""
@@ -144,9 +147,9 @@ def why(row: Row) -> str:
 
 def found(row: Row) -> Found:
     """What a row tells of loads."""
-    if PHASE not in row.samples:
+    if not row.samples:
         return Found(float("nan"), (), row)
-    loads = row.samples[PHASE]
+    (loads,) = row.samples.values()
     return Found(loads["peak"], [(t, p, v) for t, p, v in loads["tugs"]], row)
 
 

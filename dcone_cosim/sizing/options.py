@@ -29,6 +29,7 @@ class Options:
     samples, steps        runs of the uncertain values at random; points of a sensitivity
     materials             names of those that the line is sized of beside the scene's own; empty: all that there are
     quick                 fewer runs, for a first look
+    phase                 the tow that is sized
     told                  names of those that the scene or the command line says
     """
 
@@ -44,6 +45,7 @@ class Options:
     steps: int = 7
     materials: tuple[str, ...] = ()
     quick: bool = False
+    phase: str = "removal"
     told: frozenset[str] = frozenset()
 
 
@@ -65,11 +67,13 @@ def options_of(
     samples: int | None = None,
     ranges: Sequence[str] = (),
     materials: Sequence[str] = (),
+    phase: str | None = None,
 ) -> Options:
     """What a sizing of a scene asks.
 
     ranges      `KEY=LEAST..LARGEST` of the command line
     materials   names, of yarns and of braids as in "Kevlar 29 braid"
+    phase       the tow, where the scene has two
     """
     for name in materials:
         try:
@@ -88,6 +92,8 @@ def options_of(
         told["samples"] = samples
     told["ranges"] = {**told.get("ranges", {}), **dict(_range(text) for text in ranges)}
     told["materials"] = tuple(materials)
+    if phase is not None:
+        told["phase"] = phase
     flux = {_FLUX[name]: told.pop(name) for name in list(told) if name in _FLUX}
     if flux:
         told["flux"] = replace(chosen.flux, source="the scene, [sizing]", off=1.0, **flux)

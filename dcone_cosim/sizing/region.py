@@ -19,7 +19,7 @@ from typing import Any
 from dcone_cosim.errors import InputError
 from dcone_cosim.level import GROUP, with_term
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.sizing.ground import LENGTH, PHASE, SEPARATION, Ground, why
+from dcone_cosim.sizing.ground import LENGTH, SEPARATION, Ground, why
 
 BOX = "box"
 SURFACES = ("box", "cylinder", "hull")
@@ -167,6 +167,6 @@ def _size(ground: Ground) -> tuple[tuple[float, float, float], str]:
     """Size of the debris, and where it is told."""
     for phase in ground.alone.scene.phases:
         values = {**phase.main.defaults, **phase.main.parameters}
-        if phase.name != PHASE and all(f"target.size[{i}]" in values for i in (1, 2, 3)):
+        if phase.name != ground.name and all(f"target.size[{i}]" in values for i in (1, 2, 3)):
             return (values["target.size[1]"], values["target.size[2]"], values["target.size[3]"]), f"{phase.name}'s"
     return TABLE_1, "that of the paper's Table 1, as the scene tells none"

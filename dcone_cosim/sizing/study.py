@@ -222,7 +222,9 @@ def chief_material(ground: Ground) -> tuple[Material, float]:
         strength = ground.breaks_at / area
     if strength is None:
         source, name = ground.scene.source, material.name
-        raise InputError(f'{source}: the strength of {name} is not known; say it: removal.tether.strength = "2.9 GPa"')
+        raise InputError(
+            f'{source}: the strength of {name} is not known; say it: {ground.name}.tether.strength = "2.9 GPa"'
+        )
     own = replace(material, youngs_modulus=values["tether.youngs_modulus"], strength=strength)
     if own != material:
         own = replace(own, name=f"the scene's {material.name}")

@@ -13,7 +13,7 @@ import numpy as np
 
 from dcone_cosim import build
 from dcone_cosim.errors import InputError
-from dcone_cosim.sizing.ground import PHASE, Ground
+from dcone_cosim.sizing.ground import Ground
 from dcone_cosim.units import Unit, by_name, spoken
 
 SEED = 13
@@ -132,12 +132,13 @@ def _told(ground: Ground, key: str, ends: Sequence[str]) -> Uncertain:
     """The range of a key that a scene or an option tells, by what the scene with it comes to."""
     if len(ends) != 2:
         raise InputError(f"sizing range of {key}: {len(ends)} values; expected the least and the largest")
-    if not key.startswith(f"{PHASE}."):
-        raise InputError(f"sizing range of {key}: expected a key of [{PHASE}], such as {PHASE}.thrust.level")
+    phase = ground.name
+    if not key.startswith(f"{phase}."):
+        raise InputError(f"sizing range of {key}: expected a key of [{phase}], such as {phase}.thrust.level")
     found: list[dict[str, Any]] = []
     for end in ends:
         try:
-            scene = ground.alone.scene_of(PHASE, [f"{key}={end}"])
+            scene = ground.alone.scene_of(phase, [f"{key}={end}"])
         except InputError as error:
             raise InputError(f"sizing range of {key}: {error}") from None
         main = scene.phases[0].main
@@ -147,7 +148,7 @@ def _told(ground: Ground, key: str, ends: Sequence[str]) -> Uncertain:
     if not names:
         raise InputError(f"sizing range of {key}: {ends[0]} and {ends[1]} come to the same")
     kept = [{name: float(one[name]) for name in names} for one in found]
-    return Uncertain(key, key.removeprefix(f"{PHASE}."), (kept[0], kept[1]), (ends[0], ends[1]), "told")
+    return Uncertain(key, key.removeprefix(f"{phase}."), (kept[0], kept[1]), (ends[0], ends[1]), "told")
 
 
 def ends(ranges: Sequence[Uncertain]) -> list[tuple[Uncertain, Sample]]:

@@ -107,6 +107,32 @@ def test_rows_before_an_fmu_ends_itself() -> None:
     check_rows(result)
 
 
+class Telling(Pulling):
+    """One that has the outputs of its end, and says so."""
+
+    def __init__(self, ends_at: float, told: float) -> None:
+        super().__init__(ends_at=ends_at)
+        self.told = told
+        self.declare(("ends.time",), "output", 0.0)
+
+    def step(self, time: float, size: float) -> None:
+        try:
+            super().step(time, size)
+        except Terminated:
+            self.values["ends.time"], self.values["tether.tension"] = self.told, 77.0
+            raise
+
+
+def test_a_row_of_the_instant_at_which_an_fmu_ends_itself() -> None:
+    """Where it says that its outputs are of that; at another time than 0 too, but not where it tells another time."""
+    for start in (0.0, 100.0):
+        result = tow(Telling(start + 7.3, 7.3), 3.0, 15.0, start)
+        assert (result.outcome, result.end) == ("ended", result.ended_at)
+        assert list(result.recorder["time"]) == pytest.approx([0.0, 3.0, 6.0, 7.3])
+        assert result.recorder["tether.tension"][-1] == 77.0
+    assert tow(Telling(7.3, 5.0), 3.0, 15.0).end == 6.0
+
+
 @pytest.mark.parametrize("start", [0.0, 100.0, -50.0])
 @pytest.mark.parametrize("reports", [True, False])
 def test_rows_around_the_instant_of_capture(reports: bool, start: float) -> None:

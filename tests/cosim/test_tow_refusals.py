@@ -28,6 +28,11 @@ RIGID = '[removal.chaser]\nbody = "rigid"\nmass = "2000 kg"'
             ('propellant = "2000 kg"', 'propellant = "1999 kg"'),
         ),
         (
+            '[removal.engine]\nkind = "chemical"\npropellant = "100 kg"\ntank_radius = "0.5 m"',
+            ["removal.engine.tank_radius", "0.5 m", "chaser.body = rigid"],
+            ('[removal.chaser]\nmass = "2000 kg"', RIGID),
+        ),
+        (
             '[removal.environment]\nfield = "none"\n[removal.burn]\nwhen = "arcs"\nhalf_width = "20 deg"',
             ["removal.burn.half_width", "20 deg", "need an orbit"],
             ('[removal.environment]\nfield = "none"', ""),
@@ -52,6 +57,15 @@ def test_what_does_not_go_together(tables: str, said: Sequence[str], mended: tup
     assert all(word in str(caught.value) for word in said)
     assert "wrong.toml:" in str(caught.value)
     parse(text.replace(*mended), "right", "right.toml")
+
+
+def test_an_empty_chaser_is_a_body() -> None:
+    """1000 kg m2 about each axis, of which 100 kg at 3.16 m are all."""
+    text = TABLE_2.replace('[removal.chaser]\nmass = "2000 kg"', RIGID)
+    text += '\n[removal.engine]\nkind = "chemical"\npropellant = "100 kg"\ntank_radius = "3.17 m"\n'
+    with pytest.raises(InputError, match=r"removal\.engine\.tank_radius = .*3\.17 m.*at most 3\.162 m"):
+        parse(text, "wrong", "wrong.toml")
+    parse(text.replace("3.17 m", "3.15 m"), "right", "right.toml")
 
 
 @pytest.mark.parametrize(

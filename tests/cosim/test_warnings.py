@@ -17,6 +17,8 @@ from dcone_cosim.recorder import TugLog
 from dcone_cosim.reports.warnings import warnings
 from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import Scene
+from fmu_src.cautions import Range
+from fmu_src.tethered_deorbit import cautions as of_tows
 from tests.cosim.conftest import Dcone
 from tests.cosim.test_summary import found, removal_run
 
@@ -227,3 +229,13 @@ def test_of_an_fmu_from_elsewhere_nothing_is_known_beforehand(make_scene: MakeSc
     (tmp_path / "mine.toml").write_text(text)
     assert load(str(tmp_path / "mine.toml")).cautions == ()
     assert math.isclose(load(str(tmp_path / "mine.toml")).phases[0].main.parameters["tether.damping_ratio"], 0.7)
+
+
+def test_wheels_at_their_limits_are_told() -> None:
+    """Where they were in any row, with how far the chaser was off."""
+    columns = {"aocs.deviation": Range(0.0, 0.1, 0.0, 0.02)}
+    for limited, said in ((1.0, True), (0.0, False)):
+        columns["aocs.limited"] = Range(0.0, limited, 0.0, 0.0)
+        told = [c for c in of_tows.after({}, (), {"aocs": "wheels"}, columns.get) if c.about == "aocs.limited"]
+        assert (len(told) == 1) is said
+        assert not said or "5.73 deg" in told[0].sentence

@@ -7,8 +7,11 @@ import math
 import pytest
 
 from dcone_cosim.cases.alone import Alone
+from dcone_cosim.cases.rows import Row
+from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
-from dcone_cosim.sizing.ground import Ground, preload, reduced, steady, stiffness
+from dcone_cosim.sizing.ground import Found, Ground, preload, reduced, steady, stiffness
+from dcone_cosim.sizing.uncertain import uncertain
 
 N = math.sqrt(3.986004418e14 / 7178137.0**3)
 
@@ -54,6 +57,20 @@ def test_what_is_pinned_stays_in_every_run(ground: Ground) -> None:
     other.pin({"break.strength": 1e12})
     assert other.scene_with({}).phases[0].main.parameters["break.strength"] == 1e12
     assert ground.case({}).key == before
+
+
+def test_the_second_of_two_tows() -> None:
+    """The tow that is named, by its own values and figures."""
+    alone = Alone("two-tows", (), None)
+    second = Ground(alone, Progress(), "second_tow")
+    assert (second.phase.name, second.handed_over) == ("second_tow", True)
+    assert not Ground(alone, Progress()).handed_over
+    run = Found(1.0, (), Row("0", "completed", figures={"second_tow.tugs": 3}, samples={"second_tow": {"peak": 1.0}}))
+    assert (run.figure("tugs"), run.loads["peak"]) == (3.0, 1.0)
+    with pytest.raises(InputError, match=r"expected a key of \[second_tow\]"):
+        uncertain(second, {"removal.thrust.level": ("-1 N", "-2 N")})
+    with pytest.raises(InputError, match=r"needs a tow, \[capture\]"):
+        Ground(Alone("mission", (), None), Progress(), "capture")
 
 
 @pytest.mark.slow
