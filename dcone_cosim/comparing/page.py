@@ -44,7 +44,7 @@ def _named(charts: list[dict[str, object]]) -> Iterator[dict[str, object]]:
 def together(found: Comparison) -> Iterator[tuple[str, Chart]]:
     """Charts that both runs have, in one: every curve of the first with that of the second, by the clock of the first.
 
-    Checked  tests/report/test_compare.py
+    Checked  tests/report/test_told.py
     """
     one, other = found.runs
     for name in one.phases:

@@ -122,6 +122,7 @@ MEANING: Mapping[str, str] = {
     "hand_over": "what ends the capture and begins the next phase; none: flown to its end",
     "safety_every": "look every so often what becomes of the pair if the thrust stops or the line is cut",
     "safety_horizon": "for how long the pair is followed from there",
+    "replay_every": "time from frame to frame of a replay of the net, which `dcone run --replay` sets",
     "after_capture": "go on for this long after the capture, when no phase follows",
     "snapshots": "when to keep the positions of the nodes; evenly spread if not given",
     "point_tolerance": "largest change of the first tug's time and peak, by a bound, with which the target is a point; "
