@@ -1,0 +1,43 @@
+"""Stored results of many shots: what they are made of, and that they add up."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.net_capture.evidence import indices, launches
+from tests.net_capture.evidence.shots import draw
+
+
+def test_index_and_captured_are_compared_over_these_shots():
+    result = json.loads(indices.RESULT.read_text())
+    rows = result["rows"]
+    assert result["command"] == indices.COMMAND
+    assert [row["number"] for row in rows] == list(range(indices.SHOTS))
+    assert result["captured"] == sum(row["captured"] for row in rows)
+    for row in rows:
+        assert {name: row[name] for name in ("scene", "tilt", "distance", "roll", "spin")} == draw(row["number"])[2]
+        assert row["captured"] == (row["outcome"] in ("captured", "settled"))
+        assert 0.0 < row["index_least"] <= row["index"]
+    assert [indices.disagreement(rows, threshold) for threshold in indices.THRESHOLDS] == result["disagreements"]
+    few = min(told["captured_alone"] + told["index_alone"] for told in result["disagreements"])
+    assert 0 < few < 0.2 * len(rows), "they differ somewhere, and say the same of most shots at the best threshold"
+
+
+def test_launches_scatter_as_their_rows_say():
+    result = json.loads(launches.RESULT.read_text())
+    rows = result["rows"]
+    assert (result["command"], len(rows)) == (launches.COMMAND, launches.SHOTS)
+    assert result["captured"] == sum(row["outcome"] == "captured" for row in rows) == launches.SHOTS
+    for name, told in result["times"].items():
+        times = np.array([row[name] for row in rows])
+        assert told["mean"] == pytest.approx(times.mean(), abs=1e-3)
+        assert told["deviation"] == pytest.approx(times.std(ddof=1), abs=1e-3)
+    assert result["times"]["open"]["mean"] == pytest.approx(9.04, rel=0.03)
+
+
+@pytest.mark.evidence
+@pytest.mark.parametrize("module", [indices, launches])
+def test_a_shot_comes_out_as_it_is_stored(module):
+    stored = json.loads(module.RESULT.read_text())["rows"][0]
+    assert module.follow(0) == stored
