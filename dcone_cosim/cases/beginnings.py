@@ -88,7 +88,7 @@ def kept_of(folder: Path) -> dict[str, Path]:
     Checked  tests/cases/test_beginnings.py: a sweep of a run
     """
     told, scene = provenance_of(folder), load(str(folder))
-    if scene.accuracy is not None or told["packages"]["dcone-cosim"] != code()["dcone-cosim"]:
+    if scene.accuracy is not None or told.get("packages", {}).get("dcone-cosim") != code()["dcone-cosim"]:
         return {}
     fmus, found = identities(told["phases"]), {}
     for count, phase in enumerate(scene.phases[:-1], start=1):

@@ -41,6 +41,7 @@ from dcone_cosim.loading import named
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import RunResult
 from dcone_cosim.run_folder import as_json, default_folder, provenance
+from dcone_cosim.run_reading import json_of
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import remarks
 from dcone_cosim.scenes.kept import keep
@@ -155,7 +156,7 @@ def sweep_over(
 def _kept(name: str, progress: Progress) -> Mapping[str, Path]:
     """The beginnings there are, where the scene is the folder of a run."""
     folder = Path(name)
-    if not (folder / PROVENANCE).is_file():
+    if not (folder / PROVENANCE).is_file() or "phases" not in json_of(folder / PROVENANCE):
         return {}
     found = kept_of(folder)
     if found:
