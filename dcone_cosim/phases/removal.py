@@ -31,6 +31,8 @@ from dcone_cosim.scene.toml_lines import Path, given_at
 from dcone_cosim.scenery import Chart, Clip
 from dcone_cosim.transaction import HandoffRecord, check_before
 
+COARSE = 16
+"""Macro steps of a tow that are one of its comparison without recoil, of which tugs and largest tension are told alone."""
 LINE = "tether.length"
 """Length of the line in the phase before, a capture: one and the same line."""
 EACH = tuple(f"[{i}]" for i in (1, 2, 3))
@@ -274,6 +276,9 @@ class Removal(Tow):
         capture = run.parameters[stage.before.name]
         velocity = np.array([capture[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
         name = f"{self.name} without recoil"
+        if phase.main.fmu is None and not phase.others:
+            # of ours the tugs have the same bits whatever the macro step, and a step with too many of them is halved
+            stage = replace(stage, phase=replace(phase, macro_step=COARSE * phase.macro_step))
         try:
             component = stage.instantiate(self.name, name)
             try:

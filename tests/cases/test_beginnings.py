@@ -15,6 +15,7 @@ from dcone_cosim.cases.beginnings import FOLDER, kept_of, key_of_beginning, shar
 from dcone_cosim.cases.case import Case, key_of
 from dcone_cosim.cases.work import Fleet
 from dcone_cosim.loading import load
+from dcone_cosim.phases import removal
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
 from tests.cases.conftest import dcone
@@ -147,6 +148,16 @@ def test_what_is_damaged_counts_as_not_there(swept: Path, dcone: Dcone, tmp_path
         assert code == 0, err
         assert (copy / "table.parquet").read_bytes() == before
     assert len(beginnings(copy)) == 1
+
+
+def test_the_comparison_without_recoil_is_that_of_fine_steps(fmus: Fmus, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its macro steps are sixteen times as long, and no bit of what is told of it changes."""
+    own = case(load("mission", COARSE), fmus)
+    coarse = Fleet().row(own)
+    monkeypatch.setattr(removal, "COARSE", 1)
+    fine = Fleet().row(own)
+    assert fine.figures == coarse.figures
+    assert any("without_recoil" in name for name in fine.figures)
 
 
 def test_a_sweep_of_a_run_goes_on_from_what_it_left(fmus: Fmus, tmp_path: Path) -> None:
