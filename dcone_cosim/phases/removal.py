@@ -32,7 +32,7 @@ from dcone_cosim.scenery import Chart, Clip
 from dcone_cosim.transaction import HandoffRecord, check_before
 
 COARSE = 16
-"""Macro steps of a tow that are one of its comparison without recoil, of which tugs and largest tension are told alone."""
+"""Macro steps of a tow that are one of its comparison without recoil: of that, tugs and largest tension are told."""
 LINE = "tether.length"
 """Length of the line in the phase before, a capture: one and the same line."""
 EACH = tuple(f"[{i}]" for i in (1, 2, 3))
