@@ -13,6 +13,10 @@ import pyarrow.parquet
 import pytest
 
 from dcone_cosim.errors import InputError
+from dcone_cosim.fmu.steppable import VariableInfo
+from dcone_cosim.resume.begin import Origin
+from dcone_cosim.resume.differences import Difference
+from dcone_cosim.resume.instants import Place
 from tests.cases.conftest import SCENE
 from tests.cosim.fmus.build import build
 from tests.resume.conftest import Kept
@@ -239,3 +243,21 @@ def test_a_capture_that_would_have_handed_over_before(tmp_path: Path) -> None:
     on = put(kept, tmp_path / "on", both, go_on="capture:7 s")
     whole = put("mission", tmp_path / "whole", (*COARSE, "capture.after_capture=1 s"))
     assert tables(on) == tables(whole)
+
+
+def test_what_an_fmu_lets_be_changed_on_its_way() -> None:
+    """Inputs and tunable parameters of any FMU, by what its description says of them; a fixed one is refused, and what
+    may change is told."""
+    origin = Origin.__new__(Origin)
+    origin.option, origin.place = "--from RUN", Place("removal", 600.0)
+    variables = {
+        name: VariableInfo(name, at, "Real", "1", causality, "", variability=variability)
+        for at, (name, causality, variability) in enumerate(
+            [("push", "input", "continuous"), ("drag", "parameter", "tunable"), ("mass", "parameter", "fixed")]
+        )
+    }
+    tunable = [Difference("removal", "parameters", name, 1.0, 2.0) for name in ("push", "drag")]
+    longer = Difference("removal", "", "duration", 1.0, 2.0)
+    assert origin._changed([*tunable, longer], variables) == {"push": 2.0, "drag": 2.0}
+    with pytest.raises(InputError, match=r"removal\.mass: was 1, is 2.*fixed parameter.*What may change: drag, push"):
+        origin._changed([Difference("removal", "parameters", "mass", 1.0, 2.0)], variables)
