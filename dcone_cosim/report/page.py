@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,7 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
     whole    all of it; otherwise the replay alone, with the tugs
     """
     run, about = read_run(folder), provenance_of(folder)
+    here = shlex.quote(f"./{folder.absolute().name}")  # a bare name may be that of a scene
     clips, charts = [], []
     for name, result in run.phases.items():
         kind = kind_of(name)
@@ -53,7 +55,7 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
         "warnings": warnings(run),
         "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
-        "about": told.provenance(about, run, folder.absolute().name),
+        "about": told.provenance(about, run, here),
         "page": "report" if whole else "replay",
         "library": scripts.origin() if clips else {},
         "scale": scale(),
@@ -62,7 +64,7 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
     if whole:
         values |= {
             "lines": told.lines(run),
-            "diameters": told.diameters(run),
+            "diameters": told.diameters(run, here),
             "handovers": list(told.handovers(run)),
             "events": list(told.events(run)),
             "figures": list(told.figures(run)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -16,7 +17,7 @@ from dcone_cosim.results import RunResult
 CHIEF = (
     ("outcome", "capture"),
     ("t_capture", "captured at"),
-    ("lasted", "did it last"),
+    ("lasted", "did the catch last"),
     ("first_tug", "first tug"),
     ("first_tug_peak", "its peak"),
     ("largest_tug_peak", "largest tug"),
@@ -106,8 +107,10 @@ def _governing(run: RunResult, load: loads.Load) -> str:
     return f"tug {number} of {log.count}, at {time:.6g} s"
 
 
-def diameters(run: RunResult) -> dict[str, Any] | None:
+def diameters(run: RunResult, folder: str) -> dict[str, Any] | None:
     """What another diameter would do to the tow's line, by closed form; None where it has none, or no tug.
+
+    folder    of the run, as a command names it
 
         T ~ v sqrt(k m) ~ d,   sigma = T / A ~ 1 / d,   MS = (sigma_max / sigma) - 1
 
@@ -131,7 +134,7 @@ def diameters(run: RunResult) -> dict[str, Any] | None:
             }
             for share in DIAMETERS
         ]
-        command = f'dcone run RUN --from {load.phase} --set {load.phase}.{key}="{2e3 * given:.4g} mm" -o runs/thicker'
+        command = f'dcone run {folder} --from {load.phase} --set {load.phase}.{key}="{2e3 * given:.4g} mm" -o thicker'
         return {"rows": rows, "command": command, "phase": load.phase, "mark": SAMPLE if load.spread else ""}
     return None
 
@@ -186,12 +189,14 @@ def trust(run: RunResult) -> list[str]:
     return said
 
 
-def provenance(about: Mapping[str, Any], run: RunResult, name: str) -> dict[str, Any]:
-    """What made the run, and the commands that make it and the page again."""
-    scene, settings = about["scene"], about.get("settings", ())
+def provenance(about: Mapping[str, Any], run: RunResult, folder: str) -> dict[str, Any]:
+    """What made the run, and the commands that make it and the page again; `folder` as `diameters` has it."""
+    scene = about["scene"]
+    settings = [word for setting in about["settings"] for word in ("--set", setting)]
     return {
-        "command": f"dcone run {name}",
-        "origin": " ".join(["dcone run", scene, *(f"--set '{setting}'" for setting in settings)]),
+        "command": f"dcone run {folder}",
+        "folder": folder,
+        "origin": "" if run.gone_on else shlex.join(["dcone", "run", scene, *settings]),
         "started": about["started"],
         "python": about["python"],
         "platform": about["platform"],

@@ -20,7 +20,17 @@ from dcone_cosim.ssp.matching import PackageComponent, owner_of
 from dcone_cosim.ssp.package import Mistakes
 from dcone_cosim.ssp.parsing import Document, decimal
 
-RESERVED = (*kinds(), "nodes", "tugs", "ledger", "summary", "provenance", "removal_without_recoil_tugs")
+RESERVED = (
+    *kinds(),
+    "nodes",
+    "replay_nodes",
+    "replay_threads",
+    "tugs",
+    "ledger",
+    "summary",
+    "provenance",
+    "removal_without_recoil_tugs",
+)
 """Names of files in a run folder that a system's own name must not take."""
 
 SETTINGS = {"solver_tolerance": COMPONENT_KEYS["solver_tolerance"]}

@@ -28,7 +28,7 @@ def thick(bare: Path) -> Path:
 
 def test_another_diameter_by_closed_form_and_by_a_run_with_it(bare: Path, thick: Path) -> None:
     """Of one tug: the first, which both runs begin with at one speed."""
-    reckoned = told.diameters(read_run(bare))
+    reckoned = told.diameters(read_run(bare), "./bare")
     assert reckoned is not None
     one, two = (next(row for row in reckoned["rows"] if row["diameter"] == d) for d in ("1", "2"))
     stiffness = 60e9 * np.pi / 4.0 * 1e-6 / 14.0
