@@ -80,15 +80,19 @@ def cord_stiffness(axial_stiffness: float, length: float) -> float:
 
 
 @kernel
-def cord_mass(bullet_mass: float, edge_mass: float, rings: int) -> float:
-    """Mass that a cord between two bullets moves as it lengthens [kg]: 1 / (2/m + 4 n/q), at the sharpest bends.
+def cord_mass(bullet_mass: float, edge_mass: float, rings: int, apart: int = 0) -> float:
+    """Mass that a cord between two reels moves as it lengthens [kg]: 1 / (2/m + 4 n/q), at the sharpest bends; with its
+    reels on such knots too, and a ring at the bullet between them, 1 / (4/m + (4 n - 2)/q).
 
     bullet_mass   m      of each                                 [kg]
     edge_mass     q      of a knot on the net's edge             [kg]
     rings         n      on such knots, which it runs through    [1]
+    apart                stretches from a bullet to its reel     [1]
 
     Checked  tests/net_capture/test_formulas.py
     """
+    if apart > 0:
+        return 1.0 / (4.0 / bullet_mass + (4.0 * rings - 2.0) / edge_mass)
     return 1.0 / (2.0 / bullet_mass + 4.0 * rings / edge_mass)
 
 
@@ -172,6 +176,7 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
         bullet_mass: float,
         rings: int,
         pressing: float,
+        apart: int = 0,
     ) -> tuple[float, float]:
         """Stability bound of a net and the step that is accurate [s], the least of an inner node's, a bullet's and a
         ring's.
@@ -182,11 +187,13 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
         bullet_mass          of each, without the thread that hangs on it            [kg]
         rings                that each pair's cord runs through                      [1]
         pressing             what a surface adds at every node, see `longest_step`; 0 without one   [1/s2]
+        apart                stretches of the cord from a bullet to its reel; 0: reels at the bullets   [1]
 
         A cord of way s pulls its knots along ds/dx, of length 1 at a bullet and up to 2 at a ring, so through n rings a
         row of its matrix sums to 2 (n + 1) k at a bullet and twice that at a ring; half of it counts here. A stretch
         that is no longer than a ring's radius b turns, which adds T/b = k L/b times the strain, and BREAKING_STRAIN
-        bounds that; of a single ring's two stretches only one can be so short.
+        bounds that; of a single ring's two stretches only one can be so short, but both of those that end at a reel on
+        the rim.
 
         Checked  tests/net_capture/test_formulas.py
         """
@@ -202,7 +209,9 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
         enough = min(enough, accurate(stiffness_rate, damping_rate))
         if rings > 0 and cord > 0.0:
             edge = 0.75 * node_mass
-            stiffness_rate = (3.0 * thread + 2.0 * held + min(rings, 2) * turning) / edge + pressing
+            stiffness_rate = (
+                3.0 * thread + 2.0 * held + (2 if apart > 0 else min(rings, 2)) * turning
+            ) / edge + pressing
             damping_rate = (3.0 * dashpot + 2.0 * damped) / edge
             bound = min(bound, longest(stiffness_rate, damping_rate))
             enough = min(enough, accurate(stiffness_rate, damping_rate))

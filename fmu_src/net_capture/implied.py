@@ -45,7 +45,10 @@ def hanging(values: Values, terms: Mapping[str, str]) -> Hanging:
 def cord_mass(values: Values, terms: Mapping[str, str]) -> float:
     """Mass [kg] that a cord between two bullets moves as it lengthens."""
     return formula(formulas.cord_mass)(
-        values["bullets.mass"], hanging(values, terms).edge, int(values["closing.rings"])
+        values["bullets.mass"],
+        hanging(values, terms).edge,
+        int(values["closing.rings"]),
+        int(values["closing.reels_at"]),
     )
 
 

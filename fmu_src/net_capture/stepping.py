@@ -48,13 +48,15 @@ def make_choose_substep(composition: Any) -> Any:
         cord = 0.0
         dashpot = 0.0
         rings = 0
+        apart = 0
         if has_closing:
             rings = p.closing_rings
-            p.cord_mass = formulas.cord_mass(p.bullets_mass, 0.75 * node, rings)
+            apart = p.closing_reels_at
+            p.cord_mass = formulas.cord_mass(p.bullets_mass, 0.75 * node, rings, apart)
             cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
             dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.cord_mass)
         pressing = p.contact_stiffening if presses else 0.0
-        bound, step = substep_limits(stiffness, damping, node, cord, dashpot, p.bullets_mass, rings, pressing)
+        bound, step = substep_limits(stiffness, damping, node, cord, dashpot, p.bullets_mass, rings, pressing, apart)
         if has_rig:
             stiff, damped = rates(p, stiffness, damping, node)
             if stiff > 0.0:

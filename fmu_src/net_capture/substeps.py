@@ -27,10 +27,10 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
     thread = values["net.density"] * section * length
     dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, 2.0 * thread)
     cord = cord_dashpot = 0.0
-    rings = 0
+    rings = apart = 0
     if "closing" in parts:
-        rings = int(values["closing.rings"])
-        moved = formula(formulas.cord_mass)(values["bullets.mass"], 1.5 * thread / pieces, rings)
+        rings, apart = int(values["closing.rings"]), int(values["closing.reels_at"])
+        moved = formula(formulas.cord_mass)(values["bullets.mass"], 1.5 * thread / pieces, rings, apart)
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
         cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, moved)
     pressing = _pressing(values, parts, 2.0 * thread / pieces)
@@ -45,6 +45,7 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
         values["bullets.mass"],
         rings,
         pressing,
+        apart,
     )
     rigged = [parts[name].checks.rates(values, net, *of_net) for name in riggings() if name in parts]
     stiff, damped = (max(rates) for rates in zip((0.0, 0.0), *rigged, strict=True))

@@ -36,6 +36,8 @@ def test_cord_of_half_a_millimetre_of_nylon():
     assert formulas.cord_damping(0.1, stiffness, mass) == pytest.approx(0.2 * math.sqrt(37.625 * 0.25), rel=1e-9)
     # one ring on a knot of a gram, bent sharply: it moves twice as far as the cord lengthens
     assert formulas.cord_mass(0.5, 1e-3, 1) == pytest.approx(1.0 / (4.0 + 4000.0))
+    # reels on knots of the rim, and the ring at the bullet between them
+    assert formulas.cord_mass(0.5, 1e-3, 1, 1) == pytest.approx(1.0 / (8.0 + 2000.0))
     # rings take a fifth of 25 cm, shared by the stretches; without rings there is nothing to pass
     assert [formulas.ring_radius(0.25, rings) for rings in (0, 1, 3)] == pytest.approx([0.0, 0.025, 0.0125])
 

@@ -1,12 +1,19 @@
 """Springs that draw the mouth in, and a reel that jams: four bullets, against an integration of their own."""
 
 import math
+from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from fmu_src.net_capture import formulas
+from fmu_src.net_capture.closing.part import refuses
+from fmu_src.net_capture.planes import MASS, U
+from fmu_src.net_capture.refusal import Scene
 from tests.net_capture.holding import ALONE, HOLDING
+from tests.net_capture.memory import nodes, planes, shown
 
 BULLET, SIDE, LOCK, FIRST = 0.5, 4.0, 0.25, 0.01
 SPRUNG = ALONE | {
@@ -160,3 +167,47 @@ def test_a_reel_that_jams_leaves_the_others_drawing(sprung, time):
         [math.dist(told.places[(i + 1) % 4], told.places[i]) for i in range(4)], rel=5e-4
     )
     assert net["closed"] == 0
+
+
+@pytest.mark.parametrize(
+    ("rings", "at", "stops"),
+    [
+        (1, 0, ([0, 2, 4], [4, 14, 24], [24, 22, 20], [20, 10, 0])),
+        (1, 1, ([2, 4, 14], [14, 24, 22], [22, 20, 10], [10, 0, 2])),
+        (3, 2, ([2, 3, 4, 9, 14], [14, 19, 24, 23, 22], [22, 21, 20, 15, 10], [10, 5, 0, 1, 2])),
+    ],
+)
+def test_reels_stand_at_chosen_knots(shoot, rings, at, stops):
+    """Of a net of 5 x 5 that lies folded, all threads slack; knots counted by hand, row by row.
+
+    One cord alone is drawn: each of its stops is kicked towards those before and after it, and nothing else moves.
+    """
+    change = {"net.side": 4.0, "net.mesh": 1.0, "net.mass": 1.0, "closing.rings": rings, "closing.reels_at": at}
+    change |= {f"solver.jitter[{i}]": 0.01 for i in (1, 2, 3)} | {"bullets.speed": 0.0, "closing.time": 0.0}
+    net = shoot(ALONE | change | {"closing.lock_length": 0.1}, HOLDING)
+    assert net.array("cord_length")[:4] == pytest.approx(4.0)
+    net.step(0.01)
+    radius, mass = formulas.ring_radius(0.1, rings), planes(net)[MASS, nodes(net)][:, None]
+    for cord, along in enumerate(stops):
+        net.array("cord_length")[:] = 1e3
+        net.array("cord_length")[cord] = 0.11
+        net.array("cord_rate")[:] = 0.0
+        places, before = shown(net), shown(net, U)
+        net.step(net["solver.substep"])
+        kick = mass * (shown(net, U) - before)
+        expected = np.zeros_like(kick)
+        for a, b in pairwise(along):
+            way = places[b] - places[a]
+            pull = way / math.sqrt(way @ way + radius * radius)
+            expected[a] += pull
+            expected[b] -= pull
+        push = net["cord.tension_peak"] * net["solver.substep"]
+        assert push > 0.0
+        assert kick == pytest.approx(push * expected, rel=1e-9, abs=1e-9 * push)
+
+
+def test_a_reel_beyond_the_last_ring_is_refused():
+    values = {"closing.rings": 1, "closing.reels_at": 2, "closing.trigger": 0}
+    net = SimpleNamespace(checks=SimpleNamespace(knots=lambda values: 20))
+    (refusal,) = refuses(Scene({"target": "box"}, values, 30.0, {"net": net}))
+    assert (refusal.name, refusal.value) == ("closing.reels_at", "2")

@@ -56,6 +56,7 @@ NET = SimpleNamespace(checks=SimpleNamespace(knots=lambda values: 20))
 def test_distances_that_nothing_reaches_are_refused(way, distance, target, blamed):
     values = {
         "closing.rings": 1,
+        "closing.reels_at": 0,
         "closing.trigger": TRIGGER_DISTANCE,
         "closing.measured": WAYS.index(way),
         "closing.distance": distance,

@@ -1,4 +1,6 @@
-"""A cord between neighbouring bullets, which runs along the mouth's rim through rings: its way, and how it draws.
+"""A cord between neighbouring reels, which runs along the mouth's rim through rings: its way, and how it draws.
+
+Reels stand at the bullets, or `closing.reels_at` stretches farther along the rim; a ring is then at each bullet.
 
 Whatever shortens it: its length, and so its tension, is the drive's.
 """
@@ -14,7 +16,7 @@ from orbital.kernel import kernel
 
 
 class Cord(NamedTuple):
-    """Kernels of the cord of pair i, from bullet i to the next.
+    """Kernels of the cord of pair i, from reel i to the next.
 
     pieces(p, work, i)               pieces of thread on the rim between the two [1]
     rouse(p, work)                   all nodes that it draws stand where they are now, and are kicked in this substep
@@ -34,7 +36,7 @@ class Cord(NamedTuple):
 
 @kernel
 def stops(p):
-    """Stretches of one pair's cord: from bullet to ring to bullet.
+    """Stretches of one pair's cord: from reel to ring to reel.
 
     Checked  tests/net_capture/test_closing.py
     """
@@ -59,11 +61,14 @@ def make_cord(composition: Any) -> Cord:
 
     @kernel
     def cord_stop(p, work, i, stop):
-        """Node at which a stretch of the i-th pair's cord begins: stop 0 is bullet i, the last is the next bullet.
+        """Node at which a stretch of the i-th pair's cord begins: stop 0 is reel i, the last is the next reel.
 
-        Checked  tests/net_capture/test_closing.py
+        Checked  tests/net_capture/test_closing.py, tests/net_capture/test_springs.py
         """
-        at = corners(p, work)[i] + (2 * stop * pieces(p, work, i) + stops(p)) // (2 * stops(p))
+        place = stop + p.closing_reels_at
+        side = (i + place // stops(p)) % p.net_corners
+        place %= stops(p)
+        at = corners(p, work)[side] + (2 * place * pieces(p, work, side) + stops(p)) // (2 * stops(p))
         return rim(p, work)[at if at < p.rim_nodes else 0]
 
     @kernel

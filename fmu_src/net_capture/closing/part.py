@@ -38,6 +38,16 @@ def rows(reels: str) -> tuple[Variable, ...]:
             64,
             kind="Integer",
         ),
+        parameter(
+            "closing.reels_at",
+            "1",
+            "which of these places along the rim, counted from each bullet, its reel stands at: 0 is the bullet "
+            "itself; at others a ring is at the bullet",
+            0,
+            0,
+            64,
+            kind="Integer",
+        ),
         positive("closing.axial_stiffness", "N", "EA of the cord: 0.5 mm nylon", 903.0),
         at_least_zero("closing.damping_ratio", "1", "of the cord between two bullets", 0.106),
         positive("closing.lock_length", "m", "a pair is locked when its cord is shorter than this", 0.25),
@@ -88,11 +98,14 @@ def rows(reels: str) -> tuple[Variable, ...]:
 
 
 def refuses(scene: Scene) -> Iterator[Refusal]:
-    """More rings than the shortest side of the mouth has knots, and distances that nothing can reach."""
+    """More rings than the shortest side of the mouth has knots, reels beyond them, distances that nothing can reach."""
     most = scene.parts["net"].checks.knots(scene.values)
     if scene.values["closing.rings"] > most >= 1:
         expected = f"must be at most {most}: a side of this net has so many knots between its bullets"
         yield Refusal("closing.rings", f"{int(scene.values['closing.rings'])}", expected)
+    if scene.values["closing.reels_at"] > scene.values["closing.rings"]:
+        given, rings = int(scene.values["closing.reels_at"]), int(scene.values["closing.rings"])
+        yield Refusal("closing.reels_at", f"{given}", f"must be at most {rings}, closing.rings")
     if scene.values["closing.trigger"] == TRIGGER_DISTANCE:
         way, distance = int(scene.values["closing.measured"]), scene.values["closing.distance"]
         if way != BEYOND_TARGET and distance <= 0.0:

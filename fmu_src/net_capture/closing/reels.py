@@ -207,7 +207,10 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
         p.mouth_locked_pairs = 0
         p.mouth_cord_length = 0.0
         for i in range(p.net_corners):
-            p.cord_length[i] = max(p.mouth_side[i], p.closing_lock_length)
+            beyond = p.closing_reels_at / (p.closing_rings + 1)
+            following = p.mouth_side[i + 1 if i + 1 < p.net_corners else 0]
+            side = (1.0 - beyond) * p.mouth_side[i] + beyond * following
+            p.cord_length[i] = max(side, p.closing_lock_length)
             p.cord_most[i] = p.cord_length[i]
             p.cord_rate[i] = 0.0
             p.mouth_cord_length += p.cord_length[i]
