@@ -226,8 +226,6 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             tether.measure(p)
         if has_nodes:
             write_nodes(p, work)
-        if has_threads:
-            tensions.write(p, work)
         if has_index:
             fault = index.measure(p, work)
             if fault != 0:
