@@ -37,9 +37,9 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
         clips += [] if one is None else [packing.clip(one)]
         charts += [(name, packing.chart(chart)) for chart in kind.charts(run, result)]
     forces = ForceMap.read(folder)
-    for one in clips:
-        if forces is not None and "surface" in one and "net" in one:
-            one["forces"] = forces.packed()
+    for packed_clip in clips:
+        if forces is not None and "surface" in packed_clip and "net" in packed_clip:
+            packed_clip["forces"] = forces.packed()
     if not whole:
         charts = [(name, chart) for name, chart in charts if chart["key"] == "tension"]
     for name, chart in charts:
