@@ -33,6 +33,17 @@ CAPTURE: Mapping[str, float] = {
     "enclosure.at_capture": 0.03,
     "enclosure.least": 0.09,
     "mouth.margin_at_capture": 1.4,
+    # of four runs of `pull-off`
+    "closing.braked": 3e-3,
+    "quality.at_capture": 0.04,
+    "quality.index": 0.04,
+    "quality.hull_volume": 0.06,
+    "quality.hull_surface": 0.04,
+    "quality.offset": 0.02,
+    "pull_off.t_start": 5e-3,
+    "pull_off.drawn_max": 0.17,
+    "pull_off.tension_max": 0.38,
+    "pull_off.work": 0.1,
 }
 """Relative spread [1] of the figures of a net, by key."""
 
