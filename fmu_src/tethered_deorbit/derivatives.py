@@ -75,10 +75,9 @@ def make_differentiate(
             r.rate_chaser_velocity[i] = rate[3 + i] - r.state_target_share * rate[9 + i]
             r.rate_target_velocity[i] = rate[3 + i] + r.state_chaser_share * rate[9 + i]
         thrust.lose(record, state, rate, 1.0)
-        environment.differentiate(record, state, rate)
-        perturbing.differentiate(record, state[0:3], state[3:6])
         lost = thrust.shed(record, rate)
-        r.rate_energy_orbital += lost * r.energy_orbital / r.state_total_mass
+        environment.differentiate(record, state, rate, lost)
+        perturbing.differentiate(record, state[0:3], state[3:6])
         environment.frame(record, center, velocity)
         room, other = r.state_vector[0], r.state_vector[1]
         # rate[0:6] has been read: from here on it is room.

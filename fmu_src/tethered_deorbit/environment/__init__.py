@@ -23,7 +23,7 @@ class Environment(NamedTuple):
     fallen(position) -> radius                         of a centre of mass that has come down [m], or -1
     frame(record, position, velocity) -> rate          the frame in which the pair is seen: as `place`
     publish(record)                                    outputs of its own, from those of both bodies and the centre
-    differentiate(record, state, rate)                 and their rates
+    differentiate(record, state, rate, shed)           and their rates, as the pair's mass changes [kg/s]
     relative_rates(basis, position, velocity, acceleration, relative, out) -> (rate, its change)
                                                        rates of the relative state as seen, and of the frame
     """

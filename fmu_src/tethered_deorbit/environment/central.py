@@ -254,14 +254,15 @@ def relative_rates(
 
 
 @kernel
-def differentiate(record: Any, state: Array, rate: Array) -> None:
+def differentiate(record: Any, state: Array, rate: Array, shed: float) -> None:
     """Rates of what `publish` fills, at one instant.
 
-        e' = V.(A - g) - g.(R' - V),   a' = 2 a^2/mu e',   E' = M e',   g = -mu R/|R|^3,   e the energy per mass
+        e' = V.(A - g) - g.(R' - V),   a' = 2 a^2/mu e',   E' = M e' + M' e,   g = -mu R/|R|^3,   e the energy per mass
 
-    R' differs from V where mass leaves; E' is that of the mass that stays.
+    R' differs from V where mass leaves.
 
     state, rate   R, V, rho, rho'  of `layout`, inertial         (12,)
+    shed          M'     rate of the pair's mass                 [kg/s]
 
     The acceleration that is not the Kepler orbit's is a difference of accelerations, good to 1e-15 m/s^2.
 
@@ -288,6 +289,7 @@ def differentiate(record: Any, state: Array, rate: Array) -> None:
     semi = semi_major_axis(center, velocity, EARTH_MU)
     r.rate_semi_major_axis = 2.0 * semi * semi / EARTH_MU * power
     r.rate_energy_orbital = r.state_total_mass * power
+    r.rate_energy_orbital += shed * specific_energy(center, velocity, EARTH_MU)
 
 
 def make_central(interface: Interface) -> Environment:

@@ -101,7 +101,7 @@ def publish(record: Any) -> None:
 
 
 @kernel
-def differentiate(record: Any, state: Array, rate: Array) -> None:
+def differentiate(record: Any, state: Array, rate: Array, shed: float) -> None:
     """Nor rates of them."""
 
 
