@@ -124,7 +124,7 @@ def _half(values: Values) -> list[float]:
 def _distance(values: Values, point: Point) -> float:
     a = math.hypot(point[0], point[1]) - values["target.radius"]
     b = abs(point[2]) - 0.5 * values["target.length"]
-    return math.hypot(a, b) if a > 0.0 and b > 0.0 else max(a, b)
+    return float(math.hypot(a, b) if a > 0.0 and b > 0.0 else max(a, b))
 
 
 def _girth(values: Values) -> float:
