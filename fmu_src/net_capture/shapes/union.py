@@ -214,6 +214,7 @@ PART = Term(
         ),
     ),
     lay=lay,
+    follows=("target.mass",),
     make=make,
     checks=CHECKS,
 )
