@@ -9,8 +9,8 @@ jitter of a micrometre, caught with both: what each has at the end.
                     target, how far their centres of mass are apart, and the target's longest edge. The lower the better
     impulse         sum of the sizes of all impulses of the contact [N s]
 
-The impulse of one catch scatters by a fifth, since it counts every rattle of the drawn cord: so many starts tell its mean
-to a twentieth, and a difference of 2 % would take some 800. What is judged is the difference over its standard error.
+The impulse of one catch scatters by a fifth, since it counts every rattle of the drawn cord: so many starts tell its
+mean to a twentieth, and a difference of 2 % would take some 800. What is judged is the difference over its error.
 """
 
 from __future__ import annotations
