@@ -129,7 +129,7 @@ def _distance(values: Values, point: Point) -> float:
 
 def _girth(values: Values) -> float:
     radius, length = values["target.radius"], values["target.length"]
-    return min(2.0 * math.pi * radius, 2.0 * (length + 2.0 * radius))
+    return float(min(2.0 * math.pi * radius, 2.0 * (length + 2.0 * radius)))
 
 
 def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:
