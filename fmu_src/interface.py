@@ -197,6 +197,7 @@ class Term:
     design   `design(values, asked, terms)`: those values, SI by FMI name; `Undesigned` where there are none
     sources  tables that a scene gives and no FMU has: from them `lay` makes all of `tables`
     lay      `lay(values, sources)`: `Laid`; values with those of `asked` among them; `Undesigned` where it cannot
+    follows  parameters that it finds: a scene does not say them
     """
 
     summary: str
@@ -215,6 +216,7 @@ class Term:
     design: Callable[[Mapping[str, float], Mapping[str, float], Mapping[str, str]], dict[str, float]] | None = None
     sources: tuple[Table, ...] = ()
     lay: Callable[[Mapping[str, float], Mapping[str, npt.NDArray[np.float64]]], Laid] | None = None
+    follows: tuple[str, ...] = ()
 
 
 class Undesigned(Exception):
@@ -414,6 +416,12 @@ class Interface:
     def sources(self) -> tuple[Table, ...]:
         """Tables that a scene gives and its FMUs have not."""
         return tuple(t for group, term in self.terms.items() for t in self.model.groups[group].terms[term].sources)
+
+    @cached_property
+    def follows(self) -> frozenset[str]:
+        """Parameters that parts find from those."""
+        terms = (self.model.groups[group].terms[term] for group, term in self.terms.items())
+        return frozenset(name for term in terms for name in term.follows)
 
     @cached_property
     def laid(self) -> frozenset[str]:

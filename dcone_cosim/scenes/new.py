@@ -150,7 +150,7 @@ def _component(
     """What a component of our models can be told, under the header of its table."""
     above, terms = dotted(path), _terms(model, tables)
     interface = model.interface(terms)
-    rows = [row for row in build.settable(interface) if row.section != SHARED]
+    rows = [row for row in build.settable(interface) if row.section != SHARED and row.name not in interface.follows]
     rows = [row for row in rows if not build.scene_name(row).startswith(tuple(skip) or ("\0",))]
     own = {build.scene_name(row): _described(row) for row in rows if not row.key}
     yield from _table(tables, own)
@@ -218,19 +218,11 @@ def _entries(path: str, given: Mapping[str, Any], tables: Sequence[build.Table])
         if table.entry and path.endswith(f".{home}"):
             yield from ("", *textwrap.wrap(table.description, WIDTH, initial_indent="# ", subsequent_indent="#   "))
             keys = entry_keys(table)
-            for place, entry in enumerate(given.get(name, ())):
-                yield f"[[{path}.{name}]]"
-                shown = keys if place == 0 else {key: keys[key] for key in entry}
-                yield from (_entry(key, entry.get(key), known) for key, known in shown.items())
-                yield ""
-
-
-def _entry(key: str, given: Any, known: Key) -> str:
-    """A key of an entry with what is said, or an example of it as a comment."""
-    text = _meaning(known.description, known.expected)
-    if given is not None:
-        return _line(key, _toml(given), text)
-    return _line(key, known.expected.written(known.starts), f"for example; {text}", "# ")
+            for key, known in keys.items():
+                yield f"#   {key}: {_meaning(known.description, known.expected)}"
+            for entry in given.get(name, ()):
+                yield from ("", f"[[{path}.{name}]]")
+                yield from (f"{key} = {_toml(value)}" for key, value in entry.items())
 
 
 def _described(row: build.Variable) -> Key:

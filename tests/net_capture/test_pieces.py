@@ -83,6 +83,8 @@ def test_distance_is_that_of_the_nearest_of_dense_points():
     skins = meshes(rows)
     dense = np.vstack([trimesh.sample.sample_surface_even(mesh, 8000, seed=3)[0] for mesh in skins])
     dense = (dense - solid[solids.CENTER : solids.HALF]) @ turn
+    np.testing.assert_allclose(np.abs(dense).max(axis=0), solid[solids.HALF : solids.RADIUS], rtol=0.01)
+    assert np.linalg.norm(dense, axis=1).max() == pytest.approx(solid[solids.RADIUS], rel=0.01)
     distance = formula(union.union_distance)
     room = np.zeros((2, 3))
     outer = dense[np.array([distance(table, np.zeros(3), *room, point) for point in dense]) > -1e-3]
@@ -178,7 +180,7 @@ def test_girth_is_that_of_the_closed_forms(entry, girth):
 
 
 def test_sample_points_are_as_deep_as_asked_or_as_there_is():
-    _, made = laid(STAGE)
+    rows, made = laid(STAGE)
     table, places = made.tables["target.pieces"], made.tables["target.samples"]
     distance, room = formula(union.union_distance), np.zeros((3, 3))
     at = [[distance(table, *room, row[3 * k : 3 * k + 3]) for k in (0, 1)] for row in places]
@@ -188,6 +190,10 @@ def test_sample_points_are_as_deep_as_asked_or_as_there_is():
     for row in places:
         way = row[:3] + (row[3:] - row[:3]) * np.linspace(0.05, 1.0, 20)[:, None]
         assert max(distance(table, *room, point) for point in way) < 0.0
+    body = union.body_of(rows)
+    for piece in pieces.pieces(rows):
+        filled = [distance(table, *room, point) for point in body.to_body(pieces.filling(piece))]
+        assert np.mean(np.array(filled) < 1e-9) >= (1.0 if piece.kind == BOX else 0.2)
     apart = np.linalg.norm(places[1:, None, :3] - places[None, 1:, :3], axis=-1) + 10.0 * np.eye(26)
     assert apart.min() > 0.5
 
@@ -279,7 +285,7 @@ def test_contact_moves_a_sphere_and_never_turns_it():
     for _ in range(12):
         net.step(0.5)
     speed = float(np.linalg.norm(net.array("target_velocity")))
-    assert net["contact.impulse"] > 2.0
+    assert net["contact.impulse"] > 1.0
     assert net.array("target_velocity")[0] < -1e-4
     np.testing.assert_allclose(net.array("target_spin"), spin, atol=1e-13 * 50.0)
     assert net["target.energy"] == pytest.approx(energy + 25.0 * speed**2, rel=1e-9)

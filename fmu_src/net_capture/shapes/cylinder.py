@@ -124,12 +124,12 @@ def _half(values: Values) -> list[float]:
 def _distance(values: Values, point: Point) -> float:
     a = math.hypot(point[0], point[1]) - values["target.radius"]
     b = abs(point[2]) - 0.5 * values["target.length"]
-    return math.hypot(a, b) if a > 0.0 and b > 0.0 else max(a, b)
+    return float(math.hypot(a, b) if a > 0.0 and b > 0.0 else max(a, b))
 
 
 def _girth(values: Values) -> float:
     radius, length = values["target.radius"], values["target.length"]
-    return min(2.0 * math.pi * radius, 2.0 * (length + 2.0 * radius))
+    return float(min(2.0 * math.pi * radius, 2.0 * (length + 2.0 * radius)))
 
 
 def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:

@@ -120,7 +120,7 @@ def girth(points: Array, along: Array | None = None) -> tuple[float, Array]:
         return float(ConvexHull(np.column_stack([corners @ one[0], corners @ two[0]])).area)
 
     starts = ways[np.argsort(perimeter, kind="stable")[:BEST]]
-    options = {"xatol": 1e-5, "fatol": 1e-8, "maxiter": 100}
+    options: Any = {"xatol": 1e-5, "fatol": 1e-8, "maxiter": 100}
     found = [minimize(round_it, way, method="Nelder-Mead", options=options) for way in starts]
     best = min(found, key=lambda each: float(each.fun))
     return float(best.fun), np.asarray(best.x)

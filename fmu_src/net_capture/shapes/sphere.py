@@ -93,7 +93,7 @@ def sample(p, out, number, depth):
 
 
 def _radius(values: Values) -> float:
-    return values["target.radius"]
+    return float(values["target.radius"])
 
 
 def _distance(values: Values, point: Point) -> float:

@@ -107,7 +107,7 @@ def body_of(rows: np.ndarray) -> solids.Solid:
     """
     found = [(piece.mass, *of.mass_of(piece)) for piece in of.pieces(rows)]
     mass = sum(each for each, _, _ in found)
-    center = sum(each * place for each, place, _ in found) / mass
+    center = np.sum([each * place for each, place, _ in found], axis=0) / mass
     tensor = np.zeros((3, 3))
     for each, place, own in found:
         d = place - center
@@ -147,7 +147,8 @@ def _laid(content: bytes) -> Laid:
     normals, room, distance = np.empty_like(points), np.empty((2, 3)), formula(union_distance)
 
     def depth(at: np.ndarray) -> np.ndarray:
-        return np.array([-distance(table, normal, *room, point) for normal, point in zip(normals, at, strict=False)])
+        pairs = zip(normals, at, strict=False)
+        return np.array([-distance(table, normal, room[0], room[1], point) for normal, point in pairs])
 
     depths = depth(points)
     out = points + depths[:, None] * normals
@@ -168,8 +169,8 @@ def _laid(content: bytes) -> Laid:
 
 
 def _distance(values: Values, point: Point) -> float:
-    room = np.empty((3, 3))
-    return float(formula(union_distance)(values[PIECES], *room, point))
+    normal, own, local = np.empty((3, 3))
+    return float(formula(union_distance)(values[PIECES], normal, own, local, point))
 
 
 def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:
@@ -213,6 +214,7 @@ PART = Term(
         ),
     ),
     lay=lay,
+    follows=("target.mass",),
     make=make,
     checks=CHECKS,
 )
