@@ -40,11 +40,10 @@ def phases_apart(scene: Scene, from_run: Path | None, notes: list[str]) -> list[
 
 def _begun_alone(before: PhaseScene, phase: PhaseScene, notes: list[str]) -> PhaseScene | None:
     """A phase that would take over, with the scene's own start; None where by that it cannot begin."""
-    values = {**phase.main.defaults, **phase.main.parameters}
     own, other = kind_of(phase.name).spoken or phase.name, kind_of(before.name).spoken or before.name
     begins = f"the {own} begins with what the {other} hands over, which the scene alone does not tell"
     how = "run the scene, then name its folder with --from-run"
-    refusals = build.cannot_work(phase.main.model, values, phase.duration, phase.main.terms, False)
+    refusals = build.cannot_work(phase.main.model, phase.main.values, phase.duration, phase.main.terms, False)
     if refusals:
         first = refusals[0]
         reason = f"by itself it cannot begin: {first.variable} = {first.given} {first.expected}"

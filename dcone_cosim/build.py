@@ -35,7 +35,7 @@ from fmu_src.net_capture.interface import NETS, TARGETS
 from fmu_src.packaging.c_header import STATE_HEAD
 from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.sources import SHIM
-from fmu_src.tables import Table
+from fmu_src.tables import Table, from_files
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit import lines as tethered_deorbit_lines
 from fmu_src.tethered_deorbit import stress as tethered_deorbit_stress
@@ -61,6 +61,7 @@ __all__ = [
     "Rung",
     "Table",
     "Variable",
+    "from_files",
 ]
 
 CAUTIONS = {NET_CAPTURE.name: net_capture_cautions, TETHERED_DEORBIT.name: tethered_deorbit_cautions}
@@ -125,6 +126,11 @@ def term_rows(group: Group, term: str) -> tuple[Variable, ...]:
     return (*group.terms[term].variables, *group.terms[term].asked) if term in group.terms else ()
 
 
+def is_counted(group: Group) -> bool:
+    """Whether its terms are numbers of outputs, of which it lists none."""
+    return not any(term in group.terms for term in group.terms)
+
+
 def all_rows(model: Model) -> Iterator[Variable]:
     """Every row the model can have: those that are always there, and those of every term."""
     yield from model.base
@@ -134,12 +140,12 @@ def all_rows(model: Model) -> Iterator[Variable]:
 
 
 def all_tables(model: Model) -> Iterator[Table]:
-    """Every table the model can have."""
+    """Every table that a scene of the model can give."""
     for group in model.groups.values():
         for term in group.terms:
             if term in group.terms:
                 part = group.terms[term]
-                yield from (*part.sources, *(() if part.lay is not None else part.tables))
+                yield from (*part.sources, *(() if part.lay is not None else from_files(part.tables)))
 
 
 def defaults(interface: Interface) -> dict[str, float]:
@@ -344,8 +350,8 @@ def target_distance(
 
 def mouth_sides(values: Mapping[str, float], terms: Mapping[str, str]) -> list[float]:
     """Sides of the mouth as meant, each from a bullet to the next [m]; none for a net that is none of ours."""
-    part = _part(NETS, terms.get("net"), values) if "net.mesh" in values else None
-    return [] if part is None else (list(part.checks.sides(values).values()) * 8)[: part.checks.bullets]
+    part = _net(values, terms)
+    return [] if part is None else list(part.checks.sides(values))
 
 
 def shot_frame(values: Mapping[str, float]) -> tuple[Any, Any]:
@@ -368,7 +374,7 @@ def shot_frame(values: Mapping[str, float]) -> tuple[Any, Any]:
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:
     """Lines of threads and closed rim of the net with these values, as numbers of nodes; None for none of ours."""
-    part = _part(NETS, terms.get("net"), values) if "net.mesh" in values else None
+    part = _net(values, terms)
     return None if part is None else part.checks.drawing(values)
 
 
@@ -404,27 +410,33 @@ def force_cells(values: Mapping[str, float], terms: Mapping[str, str]) -> list[l
     return [force_map.centre_of(number, part.checks.half(values)) for number in range(force_map.NUMBER)]
 
 
+def _net(values: Mapping[str, float], terms: Mapping[str, str]) -> Term | None:
+    """The net of a scene, or of an FMU in a file; None for one that is none of ours."""
+    return _part(NETS, terms.get("net"), values) if "net" in terms or "net.mesh" in values else None
+
+
 def _part(parts: Mapping[str, Term], term: str | None, values: Mapping[str, float]) -> Term | None:
     """The part that a scene names; of a capture FMU in a file, which names none, that with the most parameters of its
-    own among those all of whose own it has."""
+    own among those all of whose own it has. What a part's tables hold such a file does not tell."""
     if term is not None:
         return parts[term]
     names = {
         key: {n for v in part.variables if v.causality == "parameter" for n in v.element_names()}
         for key, part in parts.items()
+        if not part.tables
     }
     shared = set.intersection(*names.values())
     known = [key for key, wanted in names.items() if wanted - shared <= values.keys() and parts[key].lay is None]
     return parts[max(known, key=lambda key: len(names[key]))] if known else None
 
 
-def masses_after(capture: Mapping[str, float]) -> dict[str, float]:
+def masses_after(capture: Mapping[str, float], terms: Mapping[str, str]) -> dict[str, float]:
     """Masses of the pair [kg] that a capture of ours with these values hands over, by the removal's names."""
     from fmu_src.net_capture.implied import catch_mass
 
     if "target.mass" not in capture:
         return {}
-    return {"chaser.mass": capture["chaser.mass"], "target.mass": capture["target.mass"] + catch_mass(capture)}
+    return {"chaser.mass": capture["chaser.mass"], "target.mass": capture["target.mass"] + catch_mass(capture, terms)}
 
 
 def shared_with_template() -> dict[str, str]:

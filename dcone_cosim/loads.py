@@ -93,7 +93,7 @@ def of_phase(run: RunResult, name: str) -> list[Load]:
     result, main = run.phases[name], phase.main
     if not len(result.recorder):
         return []
-    values = {**run.parameters.get(name, {}), **run.inputs.get(name, {})}
+    values = {**run.parameters.get(name, {}), **run.inputs.get(name, {}), **main.numbers}
     terms = main.terms if main.fmu is None else {}
     kind = kind_of(name)
     spreads = kind.spreads(run, result)

@@ -15,7 +15,7 @@ Checked  tests/packaging/test_tables.py
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -63,6 +63,7 @@ class Table:
     read    `read(path)`: the numbers of such a file; ValueError, with the line where there is one, for what is none
     entry   rows that a scene may say of each of its entries, where it is no file but an array of tables
     gather  `gather(entries)`: the numbers of such entries, each with what it says by key [SI]; ValueError as `read`
+    made    `made(numbers)`: the numbers of one that no scene gives, from those of the tables before it, by name
     """
 
     name: str
@@ -72,6 +73,7 @@ class Table:
     read: Callable[[Path], npt.ArrayLike] = read_rows
     entry: tuple[Any, ...] = ()
     gather: Callable[[Sequence[Mapping[str, Any]]], npt.ArrayLike] | None = None
+    made: Callable[[Mapping[str, npt.NDArray[np.float64]]], npt.ArrayLike] | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.dimensions <= MOST_DIMENSIONS:
@@ -92,9 +94,14 @@ class Table:
         return values
 
 
+def from_files(tables: Iterable[Table]) -> list[Table]:
+    """Those that a scene gives."""
+    return [table for table in tables if table.made is None]
+
+
 def demand(tables: Sequence[Table], given: Container[str], model: str) -> None:
     """ValueError for the first table of a model that was not given."""
-    for table in tables:
+    for table in from_files(tables):
         if table.name not in given:
             raise ValueError(f"this {model} needs the table {table.name} ({table.description}), and was given none")
 
@@ -102,16 +109,17 @@ def demand(tables: Sequence[Table], given: Container[str], model: str) -> None:
 def numbers(
     tables: Sequence[Table], given: Mapping[str, npt.ArrayLike], model: str
 ) -> dict[str, npt.NDArray[np.float64]]:
-    """What each table of a model is given; ValueError if one is missing, unknown, or can not be what it is for."""
-    known = {table.name for table in tables}
+    """What each table of a model is given or made of; ValueError if one is missing, unknown, or can not be what it is
+    for."""
+    known = {table.name for table in from_files(tables)}
     for name in given:
         if name not in known:
             raise ValueError(f"table {name}: this {model} has no table of that name")
     demand(tables, given, model)
-    found = {}
+    found: dict[str, npt.NDArray[np.float64]] = {}
     for table in tables:
         try:
-            found[table.name] = table.numbers(given[table.name])
+            found[table.name] = table.numbers(given[table.name] if table.made is None else table.made(found))
         except ValueError as error:
             raise ValueError(f"table {table.name}: {error}") from None
     return found

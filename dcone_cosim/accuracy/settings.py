@@ -60,8 +60,7 @@ def settings_of(phase: PhaseScene, refine: bool, notes: list[str]) -> list[Setti
 
 def _of_model(phase: PhaseScene, notes: list[str]) -> Iterator[Setting]:
     main = phase.main
-    own = {**main.defaults, **main.parameters}
-    yield from _rungs(phase, main.terms, own, ())
+    yield from _rungs(phase, main.terms, main.values, ())
     groups = build.CATALOGUE[main.model].groups
     for name in (*build.numerics(main.model), *build.beside(main.model)):
         if name not in groups:
@@ -77,15 +76,14 @@ def _of_model(phase: PhaseScene, notes: list[str]) -> Iterator[Setting]:
                 notes.append(f"{phase.name}: {term} is not for this scene: it cannot go together with {tables}")
                 continue
             interface = build.CATALOGUE[main.model].interface(terms)
-            values = {**build.defaults(interface), **main.parameters}
+            values = {**build.defaults(interface), **main.given}
             key = f"{phase.name}.{group.table or name}.{group.selector}"
             yield from _rungs(phase, interface.terms, values, (f'{key}="{term}"',))
 
 
 def _refinements(phase: PhaseScene) -> Iterator[Setting]:
     main = phase.main
-    own = {**main.defaults, **main.parameters}
-    for name, rungs in build.refinements(main.model, own, main.terms).items():
+    for name, rungs in build.refinements(main.model, main.values, main.terms).items():
         yield from (
             Setting(name, name, r.size, (*following(phase, r.values), *changes_of(phase, r.values))) for r in rungs
         )

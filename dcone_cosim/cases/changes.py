@@ -33,5 +33,5 @@ def following(phase: PhaseScene, values: Mapping[str, float]) -> Iterator[str]:
     main = phase.main
     for name, group in build.CATALOGUE[main.model].groups.items():
         if name in main.terms and group.follows is not None:
-            term = group.follows(main.terms, {**main.defaults, **main.parameters, **values})
+            term = group.follows(main.terms, {**main.values, **values})
             yield f"{phase.name}.{group.table or name}.{group.selector}={term}"

@@ -156,7 +156,7 @@ class Capture(Phase):
 
     def laden(self, phase: PhaseScene) -> tuple[Mapping[str, float], float] | None:
         """Flat from the start: folded, most threads sleep, and a beginning tells nothing of what an open net costs."""
-        values = {**phase.main.defaults, **phase.main.parameters}
+        values = phase.main.values
         sides = build.mouth_sides(values, phase.main.terms)
         if not sides or "net.fold_side" not in values:
             return None

@@ -59,6 +59,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
             whole = not unit and math.isfinite(last[name])
             value = int(last[name]) if whole else last[name]
             yield Finding("capture", name, label, value, unit)
+    yield from _of_hardest(last)
     yield from _of_catch(last, result)
     yield from closed_report.findings(last)
     parameters = run.parameters.get("capture", {})
@@ -66,6 +67,15 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))
         yield Finding("capture", "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+
+
+def _of_hardest(last: Mapping[str, float]) -> Iterator[Finding]:
+    """Where and when the largest tension of a thread was, of an FMU that tells it."""
+    nodes = [last.get(f"thread.tension_max_node[{end}]", 0.0) for end in (1, 2)]
+    if all(nodes):
+        text = f"{nodes[0]:.0f} and {nodes[1]:.0f}"
+        yield Finding("capture", "thread.tension_max_node", "between the nodes", text)
+        yield Finding("capture", "thread.tension_max_time", "at", last["thread.tension_max_time"], "s")
 
 
 _CATCH_ROWS = (

@@ -238,7 +238,7 @@ class Removal(Tow):
     def values_taken(self, before: PhaseScene) -> dict[str, float]:
         """The masses of the pair."""
         main = before.main
-        return build.masses_after({**main.defaults, **main.parameters}) if main.fmu is None else {}
+        return build.masses_after(main.values, main.terms) if main.fmu is None else {}
 
     def take_over(self, stage: Stage) -> Handover | None:
         """The capture's bodies and line as the removal's, of the level that carries them; `HandoffError` if none

@@ -137,8 +137,8 @@ class ComponentScene:
 
     @property
     def made(self) -> dict[str, Any]:
-        """All that its parts make of them."""
-        return {**self.laid, **self.shown}
+        """All tables that its parts take, and what they make of files."""
+        return {**self.numbers, **self.shown}
 
     @property
     def values(self) -> dict[str, Any]:
@@ -150,6 +150,11 @@ class ComponentScene:
         """Numbers of each table of its FMU, by name."""
         given = {name: table.numbers for name, table in self.tables.items() if name not in self.sources}
         return given | dict(self.laid)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """What the scene gives: parameters and inputs by FMI name, SI, and tables."""
+        return {**self.parameters, **self.made}
 
 
 @dataclass(frozen=True)

@@ -271,8 +271,8 @@ def _read_component(
         if not _foreign(part, tables, folder, mistakes):
             return read
     elif part.model is not None:
-        of_model(part, part.model, tables, mistakes)
-    elif not _named_model(part, tables, mistakes):
+        of_model(part, part.model, tables, folder, mistakes)
+    elif not _named_model(part, tables, folder, mistakes):
         return read
     read_files(part, tables, folder, mistakes)
     read.parameters = read_part(part, tables, orbit, mistakes)
@@ -325,14 +325,13 @@ def _cautions(scene: Scene) -> dict[str, None]:
     for phase in scene.phases:
         main = phase.main
         if main.fmu is None:
-            values = main.values
-            found += build.cautions(phase.name, main.model, values, main.parameters, main.terms)
+            found += build.cautions(phase.name, main.model, main.values, main.parameters, main.terms)
     for before, own in pairs(scene):
         found += kind_of(own.name).cautions(before, own)
     return dict.fromkeys(found)
 
 
-def _named_model(part: ReadComponent, tables: dict[str, Any], mistakes: list[Mistake]) -> bool:
+def _named_model(part: ReadComponent, tables: dict[str, Any], folder: File, mistakes: list[Mistake]) -> bool:
     """Take the model of ours that a further component names; false when there is none."""
     path, given = (*part.path, "model"), tables.get("model")
     if given is None:
@@ -341,7 +340,7 @@ def _named_model(part: ReadComponent, tables: dict[str, Any], mistakes: list[Mis
     if not isinstance(given, str) or given not in build.CATALOGUE:
         mistakes.append(unknown(path, given, "expected the name of a model", str(given), build.CATALOGUE))
         return False
-    of_model(part, build.CATALOGUE[given], tables, mistakes)
+    of_model(part, build.CATALOGUE[given], tables, folder, mistakes)
     return True
 
 

@@ -45,8 +45,7 @@ def faults(scene: Scene, accuracy: Accuracy, document: Mapping[str, Any]) -> lis
         main = phase.main
         if main.fmu is not None:
             continue
-        values = {**main.defaults, **main.parameters}
-        chosen = {name for rung in build.rungs(main.model, values, main.terms) for name in rung.values}
+        chosen = {name for rung in build.rungs(main.model, main.values, main.terms) for name in rung.values}
         for name in sorted(chosen & main.parameters.keys()):
             text = f"is chosen by {SOLVER}.accuracy; leave one of them out"
             path = (phase.name, *name.split("."))
@@ -65,8 +64,7 @@ def chosen_of(phase: PhaseScene, accuracy: Accuracy, tables: Mapping[str, Any]) 
     groups = build.CATALOGUE[main.model].groups
     paths = {name: (phase.name, groups[name].table or name, groups[name].selector) for name in _numerics(main.model)}
     fixed = [name for name, path in paths.items() if given_at(tables, path) is not None]
-    values = {**main.defaults, **main.parameters}
-    choice = measured.choose(main.model, main.terms, values, accuracy.asked, accuracy.quantities, fixed)
+    choice = measured.choose(main.model, main.terms, main.values, accuracy.asked, accuracy.quantities, fixed)
     if choice is None:
         return None
     entry, known = choice.entry, build.known_variables(main.model)

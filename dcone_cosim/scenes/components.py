@@ -7,6 +7,7 @@ keys follow from its model description. Both are read alike: `key` in `[capture.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path as File
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
 from dcone_cosim.scene.data import SHARED, LineScene, TableFile
-from dcone_cosim.scene.expected import LARGEST_INTEGER, TEXT
+from dcone_cosim.scene.expected import LARGEST_INTEGER, TEXT, Unexpected
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted, given_at
 from dcone_cosim.scenes.fmus import Offer
@@ -88,12 +89,16 @@ class ReadComponent:
         numbers = [key for key in self.keys.values() if key.expected.kind != TEXT]
         return {n: s for key in numbers for n, s in zip(key.names, key.starts, strict=True)}
 
+    def known(self) -> dict[str, Any]:
+        """What its model may be asked with: those, and the numbers of its tables, as far as they could be read."""
+        return {**self.defaults(), **{name: table.numbers for name, table in self.tables.items()}}
+
     def choices(self) -> dict[str, tuple[str, ...]]:
         return {key.names[0]: key.expected.choices for key in self.keys.values() if key.expected.choices}
 
 
 def of_model(
-    part: ReadComponent, model: build.Model, tables: Mapping[str, Any], mistakes: list[Mistake]
+    part: ReadComponent, model: build.Model, tables: Mapping[str, Any], folder: File, mistakes: list[Mistake]
 ) -> ReadComponent:
     """The part as this model of ours; a wrong term is noted, and the check goes on with the likeliest."""
     part.model = model
@@ -101,7 +106,7 @@ def of_model(
         path = (*part.path, group.table or group_name)
         table = tables.get(group.table or group_name)
         if group.default and (table is None or (isinstance(table, dict) and group.selector not in table)):
-            part.terms[group_name] = group.default
+            part.terms[group_name] = _early(part, group, model, tables, folder) if group.early else group.default
             part.unnamed.add(group_name)
             continue
         if table is None:
@@ -115,7 +120,7 @@ def of_model(
             part.terms[group_name] = names[0]
         if group.follows is not None and isinstance(table, dict) and group.selector not in table:
             if group.early:
-                part.terms[group_name] = group.follows(part.terms, {})
+                part.terms[group_name] = _early(part, group, model, tables, folder)
                 continue
             part.following.append(group_name)
             continue
@@ -153,11 +158,25 @@ def of_model(
         part.terms[group_name] = group.default or next(iter(group.terms))
     interface = model.interface(part.terms)
     part.keys = dict(_keys(model.name, tuple(part.terms.items())))
-    given = (table for table in interface.tables if table.name not in interface.laid)
+    given = (table for table in build.from_files(interface.tables) if table.name not in interface.laid)
     part.files = {table.name: table for table in (*given, *interface.sources)}
     part.lines = {line.table: line for line in build.lines(model.name, part.terms)}
     _offer_slots(part, model)
     return part
+
+
+def _early(part: ReadComponent, group: build.Group, model: build.Model, tables: Mapping[str, Any], folder: File) -> str:
+    """The term of a group that follows from those before it and from their files; what is wrong with these is told
+    where all are read."""
+    found = {}
+    for name, term in part.terms.items():
+        for table in build.from_files(model.groups[name].terms[term].tables):
+            given = given_at(tables, tuple(table.name.split(".")))
+            if given is not None:
+                with suppress(Unexpected):
+                    found[table.name] = table_of(table, given, folder, part.path).numbers
+    assert group.follows is not None
+    return group.follows(part.terms, found)
 
 
 def follow(part: ReadComponent, values: Mapping[str, float]) -> None:
@@ -167,7 +186,7 @@ def follow(part: ReadComponent, values: Mapping[str, float]) -> None:
     for group_name in part.following:
         follows = part.model.groups[group_name].follows
         assert follows is not None
-        part.terms[group_name] = follows(part.terms, {**part.defaults(), **values})
+        part.terms[group_name] = follows(part.terms, {**part.known(), **values})
     _offer_slots(part, part.model)
 
 
@@ -248,7 +267,8 @@ def read_lines(
         table = tables.get(name)
         if isinstance(table, dict):
             keys = keys_of(line, part.keys)
-            read = read_line(line, keys, table, (*part.path, name), part.defaults(), found, part.terms, own, mistakes)
+            at = (*part.path, name)
+            read = read_line(line, keys, table, at, part.known(), found, part.terms, own, mistakes)
             if read is not None:
                 lines[name], taken = read
                 follows |= taken

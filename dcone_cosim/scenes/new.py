@@ -205,7 +205,7 @@ def _left_out(above: str, name: str, group: build.Group) -> Iterator[str]:
 
 def _files(section: str, given: Mapping[str, Any], tables: Sequence[build.Table], mark: str = "") -> Iterator[str]:
     """The keys of a section that name files, with what is given or an example."""
-    for table in tables:
+    for table in build.from_files(tables):
         home, _, key = table.name.partition(".")
         if home == section and not table.entry:
             yield _line(key, _toml(given.get(key, EXAMPLE)), f"path of a file: {table.description}", mark)

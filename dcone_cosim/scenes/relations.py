@@ -75,10 +75,11 @@ def about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
     for phase in scene.phases:
         if phase.main.fmu is not None:
             continue
-        values = phase.main.values
         handed_over = phase is not scene.phases[0]
         must_arrive_in = math.inf if kind_of(phase.name).hand_over(phase.options) == NEVER else phase.duration
-        for refusal in build.cannot_work(phase.main.model, values, must_arrive_in, phase.main.terms, handed_over):
+        for refusal in build.cannot_work(
+            phase.main.model, phase.main.values, must_arrive_in, phase.main.terms, handed_over
+        ):
             section, _, key = refusal.variable.partition(".")
             path = (section, key) if section == SHARED else (phase.name, section, key.partition("[")[0])
             yield Mistake(path, given_at(document, path), refusal.expected, refusal.given)
@@ -126,7 +127,7 @@ def designed(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistak
         if not main.asked:
             continue
         taken = kind_of(phase.name).values_taken(before) if before is not None else {}
-        answer = build.designed(main.model, {**main.defaults, **main.parameters, **taken}, main.asked, main.terms)
+        answer = build.designed(main.model, {**main.values, **taken}, main.asked, main.terms)
         if isinstance(answer, build.Refusal):
             path: Path = (phase.name, *answer.variable.split("."))
             found.append(Mistake(path, given_at(document, path), answer.expected, answer.given))

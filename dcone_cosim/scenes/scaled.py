@@ -12,7 +12,7 @@ Checked  tests/cosim/test_scaled.py
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -99,7 +99,7 @@ def _text(value: float, unit: str) -> str:
 
 
 def _comments(scene: Scene, phase: PhaseScene, share: float) -> Iterator[str]:
-    values: Mapping[str, float] = {**phase.main.defaults, **phase.main.parameters}
+    values = phase.main.values
     rows = {row.key: row.value for row in build.implied(phase.main.model, values, phase.main.terms)}
     side = max(build.mouth_sides(values, phase.main.terms), default=math.nan)
     fall = 0.5 * STANDARD_GRAVITY * (share * phase.duration) ** 2

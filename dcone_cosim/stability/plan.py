@@ -117,7 +117,7 @@ def _schemes(phase: PhaseScene) -> Iterator[Scheme]:
     for chosen in choices:
         terms = {**main.terms, **dict(zip(groups, chosen, strict=True))}
         beside = {name: model.groups[name].default for name in build.beside(model.name)}
-        if not build.rungs(model.name, {**main.defaults, **main.parameters}, terms):
+        if not build.rungs(model.name, main.values, terms):
             terms |= beside
         named = [*chosen, *(terms[name] for name, usual in beside.items() if terms[name] != usual)]
         without = _left_out(model, terms, groups)
@@ -243,7 +243,7 @@ class _Maker:
         changes, without = [*self._settings, *scheme.changes], list(scheme.without)
         main = own.main
         if main.fmu is None:
-            values = {**main.defaults, **main.parameters, **main.asked}
+            values = {**main.values, **main.asked}
             given = extreme.given(values)
             if any(name not in values and f"{name}[1]" not in values for name in given):
                 return None, (), ()
@@ -297,7 +297,7 @@ class _Maker:
         main = own.main
         if main.fmu is not None:
             return (f"{self._phase}.macro_step={written(min(STEPS) * own.macro_step, 's', DIGITS)}",)
-        values = {**main.defaults, **main.parameters}
+        values = main.values
         rungs = build.rungs(main.model, values, main.terms)
         finest = rungs[-1].values if rungs else {}
         quartered = {name: FINER_STEP * values[name] for name in finest if name in extreme.values}

@@ -137,8 +137,7 @@ def judge_cell(cell: Cell) -> tuple[Verdict, Cost | None, float]:
         criteria.append(one)
         spent += more
     main = cell.scene.phases[0].main
-    values = {**main.defaults, **main.parameters}
-    wider = build.within(main.model, values, main.terms) if main.fmu is None else {}
+    wider = build.within(main.model, main.values, main.terms) if main.fmu is None else {}
     criteria = suited(criteria, build.instead(main.model, main.terms), wider)
     return verdict(criteria, cell.asked), cost, spent
 

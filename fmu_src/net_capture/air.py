@@ -23,6 +23,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from fmu_src.extremes import Extreme, times
 from fmu_src.interface import Term
 from fmu_src.net_capture.planes import (
     FX,
@@ -182,4 +183,22 @@ PART = Term(
         state("air_loss", "J", "taken by the air up to half a substep back"),
     ),
     make=make,
+    extremes=(
+        *(
+            Extreme(
+                f"air {factor:g} times as dense",
+                "drag up to where it would stop a thread within a substep",
+                "energy_gained",
+                {"air.density": times("air.density", factor)},
+                chief=factor == 1e3,
+            )
+            for factor in (1e-6, 1e3)
+        ),
+        Extreme(
+            "bullets of 1 m",
+            "drag far greater than what a bullet weighs",
+            "energy_gained",
+            {"air.bullet_diameter": 1.0},
+        ),
+    ),
 )

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 
 from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.interface import GROUPS, NETS, RIGGINGS, rigged_of
-from fmu_src.net_capture.nets import USUAL_BULLETS, Checks, Hanging
+from fmu_src.net_capture.interface import GROUPS, NETS, rigged_of
+from fmu_src.net_capture.nets import USUAL_BULLETS, Checks, Hanging, Thread
 from fmu_src.net_capture.release import ejection, ejector
 from fmu_src.net_capture.shapes import mesh, solids
 from fmu_src.net_capture.shot import opening_distance
@@ -26,20 +26,16 @@ def thread_length(values: Values, terms: Mapping[str, str]) -> float:
     return float(NETS[terms["net"]].checks.total(values))
 
 
-def thread_section(values: Values, terms: Mapping[str, str]) -> float:
-    """Area [m2] of a thread's section."""
-    return formula(formulas.thread_area)(values["net.mass"], values["net.density"], thread_length(values, terms))
-
-
-def thread_mass(values: Values, terms: Mapping[str, str]) -> float:
-    """Mass [kg] of a thread as long as a mesh is wide."""
-    return values["net.density"] * thread_section(values, terms) * values["net.mesh"]
+def thread_section(values: Values, terms: Mapping[str, str]) -> float | None:
+    """Area [m2] of the section of the thinnest thread; None where nothing tells it."""
+    found: Thread = NETS[terms["net"]].checks.thread(values)
+    return found.section
 
 
 def hanging(values: Values, terms: Mapping[str, str]) -> Hanging:
     """Masses [kg] of the pieces of thread that hang on a knot inside the net, on its edge, and at a bullet."""
-    line = values["net.density"] * thread_section(values, terms) / values["net.segments"]
-    return Hanging(*(line * length for length in NETS[terms["net"]].checks.hanging(values)))
+    pieces = values["net.segments"]
+    return Hanging(*(mass / pieces for mass in NETS[terms["net"]].checks.hanging(values)))
 
 
 def cord_mass(values: Values, terms: Mapping[str, str]) -> float:
@@ -55,7 +51,7 @@ def cord_mass(values: Values, terms: Mapping[str, str]) -> float:
 def open_loop(values: Values, terms: Mapping[str, str]) -> float:
     """Way [m] round the loop that a locked cord leaves open between two knots that it holds: the net's edge between
     them, and the cord's share."""
-    side = max(NETS[terms["net"]].checks.sides(values).values())
+    side = max(NETS[terms["net"]].checks.sides(values))
     return float((side + values["closing.lock_length"]) / (values["closing.rings"] + 1))
 
 
@@ -65,26 +61,17 @@ def bullet_thread(values: Values, terms: Mapping[str, str]) -> float:
     return led[0](values, NETS[terms["net"]].checks) if led else hanging(values, terms).corner
 
 
-def catch_mass(values: Values) -> float:
+def catch_mass(values: Values, terms: Mapping[str, str]) -> float:
     """Mass [kg] of net, what is rigged to it, bullets and vertex."""
-    rigged, net = sum(rigged_masses(values).values()), net_of(values)
-    bullets = USUAL_BULLETS if net is None else net.bullets
-    return values["net.mass"] + rigged + bullets * values["bullets.mass"] + values["vertex.mass"]
+    net: Checks = NETS[terms["net"]].checks
+    rigged = sum(rigged_masses(values, terms).values())
+    return net.mass(values) + rigged + net.bullets(values) * values["bullets.mass"] + values["vertex.mass"]
 
 
-def net_of(values: Values) -> Checks | None:
-    """The net of ours that has these values: of those all of whose parameters are among them the one with the most."""
-    nets = [
-        part for part in NETS.values() if all(v.name in values for v in part.variables if v.causality == "parameter")
-    ]
-    return max(nets, key=lambda part: len(part.variables)).checks if nets else None
-
-
-def rigged_masses(values: Values) -> dict[str, float]:
-    """Mass [kg] of each thing that these values rig to the net, by the name of its group."""
-    there = {n: part for n, part in RIGGINGS.items() if any(v.name in values for v in part.variables)}
-    net = net_of(values)
-    return {} if net is None else {name: part.checks.mass(values, net) for name, part in there.items()}
+def rigged_masses(values: Values, terms: Mapping[str, str]) -> dict[str, float]:
+    """Mass [kg] of each thing that is rigged to the net, by the name of its group."""
+    net = NETS[terms["net"]].checks
+    return {name: part.checks.mass(values, net) for name, part in rigged_of(terms).items()}
 
 
 def substeps(values: Values, terms: Mapping[str, str]) -> tuple[float, float]:
@@ -112,17 +99,14 @@ def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
 
 
 def _of_thread(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
-    area, modulus = thread_section(values, terms), values["net.youngs_modulus"]
-    stiffness = formula(formulas.axial_stiffness)(modulus, area, values["net.mesh"])
-    knot = 2.0 * thread_mass(values, terms)
-    yield Implied("thread.area", "section of a thread", area, "m2")
-    yield Implied(
-        "thread.diameter", "its diameter, were it solid and round", formula(formulas.round_diameter)(area), "m"
-    )
-    yield Implied("thread.axial_stiffness", "EA of a thread", modulus * area, "N")
-    yield Implied("thread.stiffness", "stiffness of a thread from knot to knot", stiffness, "N/m")
-    dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, knot)
-    yield Implied("thread.dashpot", "dashpot of a thread from knot to knot", dashpot, "N.s/m")
+    thread: Thread = NETS[terms["net"]].checks.thread(values)
+    if thread.section is not None:
+        yield Implied("thread.area", "section of a thread", thread.section, "m2")
+        diameter = formula(formulas.round_diameter)(thread.section)
+        yield Implied("thread.diameter", "its diameter, were it solid and round", diameter, "m")
+    yield Implied("thread.axial_stiffness", "EA of a thread", thread.strength, "N")
+    yield Implied("thread.stiffness", "stiffness of a thread from knot to knot", thread.stiffness, "N/m")
+    yield Implied("thread.dashpot", "dashpot of a thread from knot to knot", thread.dashpot, "N.s/m")
 
 
 def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
@@ -140,12 +124,12 @@ def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
         )
     else:
         yield Implied("corner.mass", "mass of a corner, with its bullet", corner + values["bullets.mass"], "kg")
-    for name, mass in rigged_masses(values).items():
+    for name, mass in rigged_masses(values, terms).items():
         yield Implied(f"{name}.mass", f"mass of all that [{name}] brings", mass, "kg")
     if values["net.segments"] > 1:
-        piece = thread_mass(values, terms) / values["net.segments"]
+        piece = NETS[terms["net"]].checks.thread(values).mass / values["net.segments"]
         yield Implied("thread_node.mass", "mass of a node within a thread", piece, "kg")
-    yield Implied("catch.mass", "net, bullets and vertex together", catch_mass(values), "kg")
+    yield Implied("catch.mass", "net, bullets and vertex together", catch_mass(values, terms), "kg")
 
 
 def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
@@ -153,7 +137,7 @@ def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     volume = GROUPS["folding"].terms[terms.get("folding", "flat")].checks.volume(values)
     if volume > 0.0:
         yield Implied("canister.volume", "volume of the canister", volume, "m3")
-        solid = values["net.mass"] / values["net.density"]
+        solid = NETS[terms["net"]].checks.mass(values) / values["net.density"]
         label = "share of it that the net's threads fill, were they solid"
         yield Implied("canister.filled", label, solid / volume, "")
 
@@ -181,7 +165,7 @@ def _of_cord(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the cord between two bullets, which swing against each other with half a bullet's mass; and what it closes."""
     sides = NETS[terms["net"]].checks.sides(values)
     for key, label, length in (
-        ("cord_open", "the cord between two bullets, net flat", max(sides.values())),
+        ("cord_open", "the cord between two bullets, net flat", max(sides)),
         ("cord_locked", "the cord between two bullets, locked", values["closing.lock_length"]),
     ):
         stiffness = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], length)

@@ -6,7 +6,18 @@ import math
 from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
-from fmu_src.net_capture import air, breaking, capture_index, force_map, pull_off, shot, tether, volume, wrapping
+from fmu_src.net_capture import (
+    air,
+    breaking,
+    capture_index,
+    force_map,
+    hardest,
+    pull_off,
+    shot,
+    tether,
+    volume,
+    wrapping,
+)
 from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES, MOST_THREADS
 from fmu_src.net_capture.closing import closings, jam
 from fmu_src.net_capture.contact import contacts
@@ -217,7 +228,7 @@ BULLETS = {
 
 def bullets_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
     """As many as the shape of the net asks for."""
-    return str(NETS[terms["net"]].checks.bullets)
+    return str(NETS[terms["net"]].checks.bullets(parameters))
 
 
 def each_bullet(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
@@ -295,6 +306,7 @@ GROUPS = {
     "volume": _plain(volume.PART),
     "quality": _plain(capture_index.PART),
     "pull_off": _plain(pull_off.PART),
+    "tensions": _plain(hardest.PART),
     "nodes": Group(FAMILIES["nodes"], selector="capacity", optional=True, follows=capacity_of),
     "threads": Group(FAMILIES["threads"], selector="capacity", optional=True, follows=thread_capacity_of),
 }
@@ -326,8 +338,9 @@ def _refuses_numbers(scene: Scene) -> Iterator[Refusal]:
     """Other bullets than the shape has corners, and more nodes than there are outputs for."""
     net = scene.parts["net"].checks
     bullets = scene.terms.get("bullets", str(USUAL_BULLETS))
-    if bullets != str(net.bullets):
-        yield Refusal("bullets.number", bullets, f"must be {net.bullets}: a mouth of this shape has so many corners")
+    corners = net.bullets(scene.values)
+    if bullets != str(corners):
+        yield Refusal("bullets.number", bullets, f"must be {corners}: a mouth of this shape has so many corners")
     for group, there_are in (("nodes", nodes_of), ("threads", threads_of)):
         if group in scene.terms and int(scene.terms[group]) < there_are(scene.terms, scene.values):
             text = f"must be at least {there_are(scene.terms, scene.values)}, the {group} of this net"
@@ -343,6 +356,8 @@ def refusals(terms: Mapping[str, str], values: Mapping[str, float], duration: fl
     """
     terms = {name: group.default for name, group in GROUPS.items() if group.default} | dict(terms)
     scene = Scene(terms, values, duration, {group: GROUPS[group].terms[term] for group, term in terms.items()})
+    if not scene.parts["net"].checks.sound(values):  # all others ask how large it is
+        return list(scene.parts["net"].refuses(scene))
     found: list[Refusal] = []
     for part in scene.parts.values():
         if part.refuses is not None:

@@ -9,7 +9,7 @@ CORD_DIAMETER = 0.5e-3
 
 
 def thread_area(values: Values, terms: Terms) -> float | None:
-    """Section [m2] of a thread of the net, by its mass; None for a net that is none of ours."""
+    """Section [m2] of the thinnest thread of the net; None where nothing tells it, or for no net of ours."""
     if "net" not in terms:
         return None
     from fmu_src.net_capture.implied import thread_section  # and with it numba

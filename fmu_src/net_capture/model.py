@@ -52,6 +52,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     has_threads = "threads" in terms
     thread_capacity = int(terms["threads"]) if has_threads else 0
     tensions = make_tensions(parts) if has_threads else None
+    has_hardest, hardest = parts.hardest is not None, parts.hardest
     planes, per_double = parts.planes, parts.per_double
     node_plane, properties = parts.memory.node_plane, parts.memory.properties
 
@@ -233,6 +234,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_threads:
             tensions.write(p, work)
         peaks.collect(p)
+        if has_hardest:
+            hardest.tell(p, work)
         if has_closing:
             if p.cord_tension_peak > p.cord_tension_max:
                 p.cord_tension_max = p.cord_tension_peak
@@ -307,6 +310,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         p.closed = 0
         p.t_capture = -1.0
         peaks.start(p)
+        if has_hardest:
+            hardest.start(p)
         p.thread_loss = 0.0
         if presses:
             p.contact_stiffening = 0.0

@@ -196,10 +196,9 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
     if tether is not None and tether < near:
         expected = f"must be at least {near:.4g} m, the distance to the target's nearest point"
         yield Refusal("tether.length", f"{tether:g} m", expected)
-    if sum((list(sides.values()) * 2)[:2]) * 2.0 <= girth:
-        shortest = min(sides, key=lambda name: sides[name])
-        expected = f"must be more than {girth / 4:.4g} m: the mouth must go round the target"
-        yield Refusal(shortest, f"{sides[shortest]:g} m", expected)
+    if sum(sides) <= girth:
+        expected = f"must be more than {girth / len(sides):.4g} m: the mouth must go round the target"
+        yield Refusal(net.narrow(values), f"{min(sides):g} m", expected)
     forward = speed * math.cos(angle)
     if angle <= 0.0:
         expected = "must be greater than 0: bullets that fly side by side never open the net"

@@ -19,25 +19,20 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
 
     parts    terms of the model by group, those of COUNT among them as far as the scene has them
     """
-    pieces = values["net.segments"]
     net = parts["net"].checks
-    length = net.shortest(values)
-    section = formula(formulas.thread_area)(values["net.mass"], values["net.density"], net.total(values))
-    stiffness = formula(formulas.axial_stiffness)(values["net.youngs_modulus"], section, length)
-    thread = values["net.density"] * section * length
-    dashpot = formula(formulas.thread_dashpot)(values["net.damping_ratio"], stiffness, 2.0 * thread)
+    of_net = net.piece(values)
+    *_, node = of_net
     cord = cord_dashpot = 0.0
     rings = apart = 0
     if "closing" in parts:
         rings, apart = int(values["closing.rings"]), int(values["closing.reels_at"])
-        moved = formula(formulas.cord_mass)(values["bullets.mass"], 1.5 * thread / pieces, rings, apart)
+        moved = formula(formulas.cord_mass)(values["bullets.mass"], 0.75 * node, rings, apart)
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
         cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, moved)
-    pressing = _pressing(values, parts, 2.0 * thread / pieces)
+    pressing = _pressing(values, parts, node)
     needs = parts["solver"].checks
     longest, accurate = formula(needs.longest_step), formula(needs.accurate_step)
     limits = formulas.make_substep_limits(longest, accurate)
-    of_net = (pieces * stiffness, pieces * dashpot, 2.0 * thread / pieces)
     found: tuple[float, float] = formula(limits)(
         *of_net,
         cord,
@@ -60,7 +55,7 @@ def _pressing(values: Values, parts: Mapping[str, Any], node: float) -> float:
     if law is None:
         return 0.0
     net, rigged = parts["net"].checks, [parts[name].checks for name in riggings() if name in parts]
-    mass = values["net.mass"] + net.bullets * values["bullets.mass"] + values["vertex.mass"]
+    mass = net.mass(values) + net.bullets(values) * values["bullets.mass"] + values["vertex.mass"]
     mass += sum(rig.mass(values, net) for rig in rigged)
     nodes = net.nodes(values) + sum(rig.nodes(values, net) for rig in rigged)
     found: float = law(values, node, mass, nodes, parts["target"].checks.radius)

@@ -15,7 +15,12 @@ from tests.net_capture.memory import graph_of, planes_of
 
 
 class Layer:
-    """What lays nets of one shape out: its kernels, for a record and work memory."""
+    """What lays nets of one shape out: its kernels, for a record and work memory.
+
+    tables    of a net of one's own, by name
+    """
+
+    tables: Mapping[str, np.ndarray] = {}
 
     def __init__(self, shape: str, **rigged: str) -> None:
         self.terms = MODEL.interface(FREE | {"net": shape} | rigged).terms
@@ -59,7 +64,10 @@ class Layer:
         self.check, self._fold = check, fold
 
     def record(self, values: Mapping[str, float]):
-        record = MODEL.interface(self.terms).make_record()
+        interface = MODEL.interface(self.terms).with_tables(self.tables)
+        record = interface.make_record()
+        self._block = interface.table_block
+        record["tables_at"] = self._block.ctypes.data
         for name, value in values.items():
             record[name.replace(".", "_")] = value
         return record

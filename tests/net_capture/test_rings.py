@@ -116,7 +116,9 @@ def test_what_it_says_before_it_is_laid_out(pair):
     lengths = [np.linalg.norm(places[a] - places[b]) for a, b in threads]
     assert said.total(every) == pytest.approx(sum(lengths), rel=1e-12)
     assert said.nodes(every) == len(places)
-    (side,) = said.sides(every).values()
+    side, *others = said.sides(every)
+    assert others == [side] * 3
+    assert said.gap(every) == pytest.approx(side / (said.knots(every) + 1), rel=1e-12)
     rim = [knots[0][j] for j in sorted(knots[0])]
     quarter = places[rim[: len(rim) // 4 + 1]]
     assert side == pytest.approx(np.linalg.norm(np.diff(quarter, axis=0), axis=1).sum(), rel=1e-12)
@@ -145,13 +147,15 @@ def test_what_hangs_on_its_knots_and_how_stiff_it_is(pair):
     np.testing.assert_allclose(laid.mass[laid.slots], density * area * hang, rtol=1e-11)
     rim = list(knots[0].values())
     inner = [n for ring in knots[1:] for n in ring.values()]
-    said = MODEL.groups["net"].terms[shape_of(name)].checks.hanging(all_values(shape_of(name), values))
+    checks = MODEL.groups["net"].terms[shape_of(name)].checks
+    said = checks.hanging(all_values(shape_of(name), values))
+    assert checks.piece(all_values(shape_of(name), values)) == pytest.approx(laid.thread, rel=1e-12)
     tip = len(set(knots[-1].values())) == 1
-    assert said.edge == pytest.approx(pieces * max(hang[rim]), rel=1e-12)
-    assert said.corner == pytest.approx(pieces * hang[rim[0]], rel=1e-12)
+    assert said.edge == pytest.approx(pieces * density * area * max(hang[rim]), rel=1e-12)
+    assert said.corner == pytest.approx(pieces * density * area * hang[rim[0]], rel=1e-12)
     between = [n for n in inner if not (tip and n == max(inner))]
     if between:
-        assert said.inside == pytest.approx(pieces * max(hang[between]), rel=1e-12)
+        assert said.inside == pytest.approx(pieces * density * area * max(hang[between]), rel=1e-12)
     thread, dashpot, node = laid.thread
     mass = density * area * hang
     assert 4.0 * thread / node == pytest.approx(max(stiff / mass), rel=1e-12)

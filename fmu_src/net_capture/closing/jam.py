@@ -32,7 +32,8 @@ def make(composition: Any) -> Any:
 
 def refuses(scene: Scene) -> Iterator[Refusal]:
     """A reel that is not there, and an instant that never comes."""
-    reel, most, time = int(scene.values["jam.reel"]), scene.parts["net"].checks.bullets, scene.values["jam.time"]
+    reel, time = int(scene.values["jam.reel"]), scene.values["jam.time"]
+    most = scene.parts["net"].checks.bullets(scene.values)
     if reel > most:
         yield Refusal("jam.reel", f"{reel}", f"must be at most {most}: this mouth has so many reels")
     if time > scene.duration:

@@ -16,7 +16,7 @@ from typing import Any
 
 from fmu_src.interface import Term
 from fmu_src.net_capture.folding import Checks, Folding, Values
-from fmu_src.net_capture.folding.zigzag import DEPTH, GOLDEN, TOO_DEEP, TOO_WIDE, fold_width, zigzag
+from fmu_src.net_capture.folding.zigzag import DEPTH, GOLDEN, TOO_DEEP, TOO_WIDE, extremes, fold_width, zigzag
 from fmu_src.net_capture.planes import SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import positive
@@ -97,4 +97,5 @@ PART = Term(
     make=make,
     checks=Checks(lambda values, net: math.sqrt(0.5) * values["canister.width"], volume),
     refuses=refuses,
+    extremes=extremes("canister.width"),
 )

@@ -18,7 +18,7 @@ from typing import Any
 from fmu_src.implied import formula
 from fmu_src.interface import Term, fault
 from fmu_src.net_capture.folding import Checks, Folding, Values
-from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, fold_width, zigzag
+from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, extremes, fold_width, zigzag
 from fmu_src.net_capture.planes import SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import positive
@@ -143,4 +143,5 @@ PART = Term(
     make=make,
     checks=Checks(lambda values, net: values[RADIUS], volume),
     refuses=refuses,
+    extremes=extremes(RADIUS),
 )

@@ -4,12 +4,28 @@ from __future__ import annotations
 
 import math
 
+from fmu_src.extremes import Extreme, times
 from fmu_src.interface import fault
 from orbital.kernel import kernel
 
 DEPTH = "canister.depth"
 TOO_DEEP = fault("too_deep", DEPTH, "canister.depth must be less than half of what the mouth of the net is wide")
 TOO_WIDE = fault("too_wide", "canister.width", "the canister must be narrower than the mouth of the net is wide")
+
+
+def extremes(width: str) -> tuple[Extreme, ...]:
+    """The ends of a canister's range; `width` is the parameter across the shot."""
+    return (
+        Extreme(
+            "canister a tenth as wide",
+            "folds much narrower than a mesh",
+            "energy_gained",
+            {width: times(width, 0.1)},
+            chief=True,
+        ),
+        Extreme("canister of 1 mm depth", "layers that all but touch", "energy_gained", {DEPTH: 1e-3}),
+        Extreme("canister 1 km deep", "no net folds into that: it is to be refused", "refused", {DEPTH: 1e3}),
+    )
 
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)

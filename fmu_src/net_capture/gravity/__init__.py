@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from fmu_src.net_capture.gravity import still
+
 
 class Gravity(NamedTuple):
-    """Kernels of one gravity. A kick takes velocities from half a substep before an instant to half a substep after it.
+    """Kernels of one gravity; what it leaves out is that of none. A kick takes velocities from half a substep before an
+    instant to half a substep after it.
 
     bends                                       whether it acts on nodes that nothing pulls
     start(p)                                    ready before anything moves
@@ -36,22 +39,22 @@ class Gravity(NamedTuple):
                                                 nodes as shown; None: it does not change
     """
 
-    bends: bool
-    start: Any
-    renew: Any
-    rate: Any
-    kick_chaser: Any
-    kick_target: Any
     kick_group: Any
     coast_group: Any
     begin_flight: Any
     fly_group: Any
-    stray: Any
-    stray_apart: Any
-    accelerate: Any
-    potential: Any
-    chaser_potential: Any
-    target_potential: Any
+    bends: bool = False
+    start: Any = still.start
+    renew: Any = None
+    rate: Any = still.rate
+    kick_chaser: Any = still.kick_body
+    kick_target: Any = still.kick_body
+    stray: Any = still.stray
+    stray_apart: Any = still.stray
+    accelerate: Any = still.accelerate
+    potential: Any = still.potential
+    chaser_potential: Any = still.body_potential
+    target_potential: Any = still.body_potential
     watch: Any = None
     given: Any = None
 

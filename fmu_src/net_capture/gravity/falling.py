@@ -39,12 +39,6 @@ ROWS = (
 
 
 @kernel
-def rate(p):
-    """The frame does not turn."""
-    return 0.0
-
-
-@kernel
 def kick(p, velocity, pull, falls, h):
     """Kick a body with an acceleration of its own [m/s2], and with gravity if it falls.
 
@@ -192,22 +186,21 @@ def make_falling(composition: Any, start: Any, renew: Any, begin_flight: Any, wa
             store(reals, at + back * slots, after - splat(flight[BACK + axis]))
 
     return Gravity(
-        True,
-        start,
-        renew,
-        rate,
-        kick_chaser,
-        kick_target,
-        kick_group,
-        coast_group,
-        begin_flight,
-        fly_group,
-        stray,
-        stray_apart,
-        accelerate,
-        potential,
-        chaser_potential,
-        target_potential,
-        watch,
-        given,
+        bends=True,
+        start=start,
+        renew=renew,
+        kick_chaser=kick_chaser,
+        kick_target=kick_target,
+        kick_group=kick_group,
+        coast_group=coast_group,
+        begin_flight=begin_flight,
+        fly_group=fly_group,
+        stray=stray,
+        stray_apart=stray_apart,
+        accelerate=accelerate,
+        potential=potential,
+        chaser_potential=chaser_potential,
+        target_potential=target_potential,
+        watch=watch,
+        given=given,
     )

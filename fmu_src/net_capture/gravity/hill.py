@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.gravity import Gravity
 from fmu_src.net_capture.planes import FX, INVERSE_MASS, P, U
@@ -214,22 +215,21 @@ def make(composition: Any) -> Gravity:
         store(reals, i + (back + 2) * slots, ww + half * (square * zz))
 
     return Gravity(
-        True,
-        start,
-        None,
-        rate,
-        kick_body,
-        kick_body,
-        kick_group,
-        coast_group,
-        begin_flight,
-        fly_group,
-        stray,
-        stray,
-        accelerate,
-        potential,
-        chaser_potential,
-        target_potential,
+        bends=True,
+        start=start,
+        rate=rate,
+        kick_chaser=kick_body,
+        kick_target=kick_body,
+        kick_group=kick_group,
+        coast_group=coast_group,
+        begin_flight=begin_flight,
+        fly_group=fly_group,
+        stray=stray,
+        stray_apart=stray,
+        accelerate=accelerate,
+        potential=potential,
+        chaser_potential=chaser_potential,
+        target_potential=target_potential,
     )
 
 
@@ -254,4 +254,13 @@ PART = Term(
         state("mean_motion", "rad/s", "of the orbital frame"),
     ),
     make=make,
+    extremes=tuple(
+        Extreme(
+            f"orbit at {altitude / 1e3:g} km",
+            "the rate at which the frame turns, at its ends",
+            "energy_gained",
+            {"orbit.altitude": altitude},
+        )
+        for altitude in (100e3, 1e8)
+    ),
 )

@@ -11,61 +11,12 @@ from orbital.kernel import kernel
 
 
 @kernel
-def start(p):
-    """Nothing to do."""
-
-
-@kernel
-def rate(p):
-    """The frame does not turn."""
-    return 0.0
-
-
-@kernel
-def kick_body(p, place, velocity, pull, h):
-    """Kick a body that feels nothing but an acceleration of its own [m/s2].
-
-    Checked  tests/net_capture/test_threads.py
-    """
-    for i in range(3):
-        velocity[i] += h * pull[i]
-
-
-@kernel
 def begin_flight(p, flight, first, steps):
     """The time alone counts [s].
 
     Checked  tests/net_capture/test_sleep.py
     """
     flight[0] = steps * p.solver_substep
-
-
-@kernel
-def stray(p, distance, speed, time):
-    """A free flight is straight [m]."""
-    return 0.0
-
-
-@kernel
-def accelerate(p, out, position, velocity):
-    """Nothing accelerates a free node.
-
-    Checked  tests/net_capture/test_threads.py
-    """
-    for i in range(3):
-        out[i] = 0.0
-
-
-@kernel
-def potential(p, position):
-    """There is none [J/kg]."""
-    return 0.0
-
-
-@kernel
-def body_potential(p):
-    """There is none [J]."""
-    return 0.0
 
 
 def make(composition: Any) -> Gravity:
@@ -119,24 +70,7 @@ def make(composition: Any) -> Gravity:
                 store(reals, at + rate * slots, velocity)
                 store(reals, at + back * slots, velocity)
 
-    return Gravity(
-        False,
-        start,
-        None,
-        rate,
-        kick_body,
-        kick_body,
-        kick_group,
-        coast_group,
-        begin_flight,
-        fly_group,
-        stray,
-        stray,
-        accelerate,
-        potential,
-        body_potential,
-        body_potential,
-    )
+    return Gravity(kick_group=kick_group, coast_group=coast_group, begin_flight=begin_flight, fly_group=fly_group)
 
 
 PART = Term("inertial drift", make=make)

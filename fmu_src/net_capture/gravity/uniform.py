@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.gravity import Gravity
 from fmu_src.net_capture.gravity.falling import ROWS, begin_steady_flight, make_falling
@@ -44,4 +45,14 @@ PART = Term(
         *ROWS,
     ),
     make=make,
+    extremes=tuple(
+        Extreme(
+            f"gravity of {many:g} g",
+            "from none to what no net is tested in",
+            "energy_gained",
+            {"gravity.acceleration": (-many * STANDARD, 0.0, 0.0)},
+            chief=many == 100.0,
+        )
+        for many in (0.0, 100.0)
+    ),
 )

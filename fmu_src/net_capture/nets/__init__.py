@@ -23,6 +23,7 @@ class Net(NamedTuple):
     lay_out(p, work)         write strips, corners, apex and faces, and every node's place in the net as it is meant to
                              open, into the planes of what is shown: along the mouth's two axes and along the shot [m]
     rim_node(p, n)           the n-th node of the rim
+    rim_gap(p, n)            from that to the next, as the net is meant [m]
     thread(p)                stiffness [N/m], dashpot [N s/m] of the stiffest piece of thread, and mass of a node
                              between two threads like it [kg]: what the bound of the substep is reckoned from
     """
@@ -30,51 +31,77 @@ class Net(NamedTuple):
     count: Any
     lay_out: Any
     rim_node: Any
+    rim_gap: Any
     thread: Any
 
 
 class Hanging(NamedTuple):
-    """Length of thread [m] whose mass hangs on a knot inside the net, on its edge, and where a bullet is made fast:
-    half of every thread that ends there, the largest of each."""
+    """Mass of thread [kg] that hangs on a knot inside the net, on its edge, and where a bullet is made fast: half of
+    every thread that ends there, the largest of each; with threads uncut."""
 
     inside: float
     edge: float
     corner: float
 
 
+class Thread(NamedTuple):
+    """What the threads of a net are; where they differ, what is said of each size.
+
+    section      of the thinnest; None where nothing tells it    [m2]
+    strength     E A of the softest                              [N]
+    stiffness    from knot to knot, of the stiffest              [N/m]
+    dashpot      of that                                         [N s/m]
+    mass         from knot to knot, of the lightest              [kg]
+    """
+
+    section: float | None
+    strength: float
+    stiffness: float
+    dashpot: float
+    mass: float
+
+
 class Checks(NamedTuple):
-    """What a net says before any build or run, of values by FMI name.
+    """What a net says before any build or run, of values by FMI name. The tables of a part stand among the values.
 
     corner(values)     place of a bullet in the net as meant, along both axes of the mouth           [m]
     widths(values)     of the mouth along both axes                                                  [m]
-    sides(values)      of the rim from each bullet to the next, by the name of the variable that is to blame for it;
-                       one alone: all are equal                                                      [m]
+    sides(values)      of the rim, from each bullet to the next                                      [m]
+    narrow(values)     name of what is to blame where the shortest of them is too short
     knots(values)      of the rim between two bullets, where there are fewest                        [1]
+    gap(values)        from knot to knot of the rim, the least                                       [m]
     total(values)      length of all threads                                                         [m]
-    shortest(values)   length of a thread of which a net of square meshes is as stiff for its mass as this one where it
-                       is stiffest: the square root of the least sum of l over sum of 1/l at a knot  [m]
+    mass(values)       of all threads                                                                [kg]
+    thread(values)     what they are
+    piece(values)      stiffness [N/m], dashpot [N s/m] and mass [kg] of the kernel `Net.thread`
     hanging(values)    what hangs on its knots
     nodes(values)      with the inner nodes of all threads; 1 where there is no such net             [1]
-    bullets            how many the shape has
     drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
                        count them
+    bullets(values)    how many the shape has
+    sound(values)      whether the others have an answer
     """
 
     corner: Callable[[Values], tuple[float, float]]
     widths: Callable[[Values], tuple[float, float]]
-    sides: Callable[[Values], dict[str, float]]
+    sides: Callable[[Values], list[float]]
+    narrow: Callable[[Values], str]
     knots: Callable[[Values], int]
+    gap: Callable[[Values], float]
     total: Callable[[Values], float]
-    shortest: Callable[[Values], float]
+    mass: Callable[[Values], float]
+    thread: Callable[[Values], Thread]
+    piece: Callable[[Values], tuple[float, float, float]]
     hanging: Callable[[Values], Hanging]
     nodes: Callable[[Values], int]
     drawing: Callable[[Values], tuple[list[list[int]], list[int]]]
-    bullets: int = USUAL_BULLETS
+    bullets: Callable[[Values], int] = lambda values: USUAL_BULLETS
+    sound: Callable[[Values], bool] = lambda values: True
 
 
 def nets() -> dict[str, Any]:
     """Every net's term, by name."""
-    from fmu_src.net_capture.nets import cone, hexagon, pyramid, radial, rectangle, square
+    from fmu_src.net_capture.nets import cone, hexagon, pyramid, radial, rectangle, square, table
 
     return {
         "square": square.PART,
@@ -83,4 +110,5 @@ def nets() -> dict[str, Any]:
         "cone": cone.PART,
         "radial": radial.PART,
         "hexagon": hexagon.PART,
+        "table": table.PART,
     }

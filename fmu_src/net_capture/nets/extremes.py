@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 
 from fmu_src.extremes import Extreme, Given, Values, times
 from fmu_src.net_capture.nets import Checks
 
 Total = Callable[[Values], float]
-Sides = Callable[[Values], Mapping[str, float]]
+Sides = Callable[[Values], list[float]]
 
 LIGHTEST_KNOT = 1e-9
 """Mass of a knot [kg] beside bullets of 10 kg."""
@@ -24,6 +24,11 @@ OPENING = {"target": None, "contact": None, "closing": None, **FLAT}
 def extremes(checks: Checks) -> tuple[Extreme, ...]:
     """Those of a net, by what it says of a scene's values."""
     return (*_stiffness(), *_damping(), *_meshes(checks.sides), *_masses(checks.total), *_folds(checks.widths))
+
+
+def of_threads(checks: Checks) -> tuple[Extreme, ...]:
+    """Those of a net whose meshes and mass are no parameters."""
+    return (*_stiffness(), *_damping(), *_folds(checks.widths))
 
 
 def _stiffness() -> Iterator[Extreme]:
@@ -55,7 +60,7 @@ def _meshes(sides: Sides) -> Iterator[Extreme]:
         """A mesh near that width, of which the first side holds a whole number."""
 
         def width(values: Values) -> float:
-            side = next(iter(sides(values).values()))
+            side = sides(values)[0]
             return side / max(2, round(side / mesh))
 
         return width

@@ -18,10 +18,12 @@ from typing import Any, NamedTuple
 
 from fmu_src.interface import fault
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Hanging, Net, Values
+from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Net, Values
+from fmu_src.net_capture.nets.uniform import uniform
 from fmu_src.net_capture.nets.weave import (
     TOO_FINE,
     add_strip,
+    even_gap,
     first_lanes,
     make_thread,
 )
@@ -40,17 +42,24 @@ Sides = Callable[[Values], dict[str, float]]
 def checks(sides: Sides, total: Callable[[Values], float]) -> Checks:
     """What a net of a grid says: of its sides by the name of their variable, along the rows first, one name if equal;
     and of the length of all its threads [m]."""
-    return Checks(
-        lambda values: _halves(sides(values)),
-        lambda values: _both(sides(values)),
-        sides,
-        lambda values: round(min(sides(values).values()) / values["net.mesh"]) - 1,
-        total,
-        lambda values: values["net.mesh"],
-        lambda values: Hanging(2.0 * values["net.mesh"], 1.5 * values["net.mesh"], values["net.mesh"]),
-        lambda values: nodes_of(values, sides(values)),
-        lambda values: _drawing(sides(values), values["net.mesh"]),
+    return uniform(
+        corner=lambda values: _halves(sides(values)),
+        widths=lambda values: _both(sides(values)),
+        sides=lambda values: [*_both(sides(values))] * 2,
+        narrow=lambda values: min(sides(values), key=lambda name: sides(values)[name]),
+        knots=lambda values: round(min(sides(values).values()) / values["net.mesh"]) - 1,
+        gap=lambda values: values["net.mesh"],
+        total=total,
+        shortest=lambda values: values["net.mesh"],
+        lengths=lambda values: (2.0 * values["net.mesh"], 1.5 * values["net.mesh"], values["net.mesh"]),
+        nodes=lambda values: nodes_of(values, sides(values)),
+        drawing=lambda values: _drawing(sides(values), values["net.mesh"]),
     )
+
+
+def make_refuses(sides: Sides) -> Callable[[Scene], Iterator[Refusal]]:
+    """`refuses(scene)` of a net of a grid with such sides."""
+    return lambda scene: _refused(scene, sides(scene.values))
 
 
 def _both(sides: dict[str, float]) -> tuple[float, float]:
@@ -299,7 +308,7 @@ def make_grid(composition: Any, grid: Grid) -> Net:
                         node = line_node(p, line_of(p, i, 1, s), j)
                         put(p, work, node, i + share, j, here + share * (there - here))
 
-    return Net(count, lay_out, rim_node, make_thread(total, mesh))
+    return Net(count, lay_out, rim_node, even_gap, make_thread(total, mesh))
 
 
 @kernel
@@ -339,9 +348,8 @@ def meshes(side: float, mesh: float) -> int | None:
     return whole if whole >= 2 and abs(count - whole) <= WHOLE * whole else None
 
 
-def refuses(scene: Scene) -> Iterator[Refusal]:
+def _refused(scene: Scene, sides: dict[str, float]) -> Iterator[Refusal]:
     """Why a net of a grid makes none with these values."""
-    sides = scene.parts["net"].checks.sides(scene.values)
     mesh, segments = float(scene.values["net.mesh"]), int(scene.values["net.segments"])
     cut = f", each cut into {segments} segments" if segments > 1 else ""
     for name, side in sides.items():

@@ -15,11 +15,12 @@ from typing import Any
 
 from fmu_src.interface import Term
 from fmu_src.net_capture import formulas
-from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Hanging, Net
+from fmu_src.net_capture.nets import LARGEST_MESH, Net
 from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.grid import whole_meshes
 from fmu_src.net_capture.nets.lattice import drawing, knots_of, leads_on, meshes_of, nodes, other_end
-from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE, add_strip, make_thread
+from fmu_src.net_capture.nets.uniform import uniform
+from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE, add_strip, even_gap, make_thread
 from fmu_src.net_capture.planes import FACE_WORDS, LONGEST_ROW, SHOWN
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import positive
@@ -264,20 +265,22 @@ def make(composition: Any) -> Net:
                             node = line_node(p, line_of(p, i, family, piece), j)
                             put(p, work, node, i, j, piece / p.net_segments, family)
 
-    return Net(count, lay_out, rim_node, make_thread(total, mesh))
+    return Net(count, lay_out, rim_node, even_gap, make_thread(total, mesh))
 
 
-CHECKS = Checks(
+CHECKS = uniform(
     corner=lambda values: (values[RADIUS], 0.0),
     widths=lambda values: (2.0 * values[RADIUS], 2.0 * values[RADIUS]),
-    sides=lambda values: {RADIUS: values[RADIUS]},
+    sides=lambda values: [values[RADIUS]] * CORNERS,
+    narrow=lambda values: RADIUS,
     knots=lambda values: meshes_of(values) - 1,
+    gap=lambda values: values["net.mesh"],
     total=lambda values: 6.0 * meshes_of(values) * (meshes_of(values) + 1) * values["net.mesh"],
     shortest=lambda values: values["net.mesh"],
-    hanging=lambda values: Hanging(3.0 * values["net.mesh"], 2.0 * values["net.mesh"], 1.5 * values["net.mesh"]),
+    lengths=lambda values: (3.0 * values["net.mesh"], 2.0 * values["net.mesh"], 1.5 * values["net.mesh"]),
     nodes=nodes,
     drawing=drawing,
-    bullets=CORNERS,
+    bullets=lambda values: CORNERS,
 )
 
 

@@ -14,8 +14,9 @@ import math
 
 from fmu_src.implied import formula
 from fmu_src.interface import Term
+from fmu_src.net_capture.nets import Values
 from fmu_src.net_capture.nets.extremes import extremes
-from fmu_src.net_capture.nets.grid import Grid, checks, make_grid, refuses, whole_meshes
+from fmu_src.net_capture.nets.grid import Grid, checks, make_grid, make_refuses, whole_meshes
 from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE
 from fmu_src.rows import positive
 from orbital.kernel import kernel
@@ -84,8 +85,13 @@ def depth(p, i, j):
     return p.net_depth * (1.0 - max(abs(i - half), abs(j - half)) / half)
 
 
+def named(values: Values) -> dict[str, float]:
+    """Sides of the mouth by the name of their variable [m]."""
+    return {SIDE: values[SIDE]}
+
+
 CHECKS = checks(
-    lambda values: {SIDE: values[SIDE]},
+    named,
     lambda values: formula(pyramid_length)(
         values[SIDE], formula(slope)(values[SIDE], values["net.depth"]), values["net.mesh"]
     ),
@@ -101,6 +107,6 @@ PART = Term(
     faults=(whole_meshes(SIDE), TOO_FINE),
     make=lambda composition: make_grid(composition, Grid(sides, (SIDE, SIDE), total, length, depth)),
     checks=CHECKS,
-    refuses=refuses,
+    refuses=make_refuses(named),
     extremes=extremes(CHECKS),
 )

@@ -5,8 +5,9 @@ from __future__ import annotations
 from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture import formulas
+from fmu_src.net_capture.nets import Values
 from fmu_src.net_capture.nets.extremes import extremes
-from fmu_src.net_capture.nets.grid import Grid, checks, flat_length, make_grid, no_depth, refuses, whole_meshes
+from fmu_src.net_capture.nets.grid import Grid, checks, flat_length, make_grid, make_refuses, no_depth, whole_meshes
 from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE
 from fmu_src.rows import positive
 from orbital.kernel import kernel
@@ -32,8 +33,13 @@ def total(p):
     return formulas.grid_length(p.net_width, p.net_height, p.net_mesh)
 
 
+def named(values: Values) -> dict[str, float]:
+    """Sides of the mouth by the name of their variable [m]."""
+    return {WIDTH: values[WIDTH], HEIGHT: values[HEIGHT]}
+
+
 CHECKS = checks(
-    lambda values: {WIDTH: values[WIDTH], HEIGHT: values[HEIGHT]},
+    named,
     lambda values: formula(formulas.grid_length)(values[WIDTH], values[HEIGHT], values["net.mesh"]),
 )
 
@@ -47,6 +53,6 @@ PART = Term(
     faults=(whole_meshes(WIDTH), whole_meshes(HEIGHT), TOO_FINE),
     make=lambda composition: make_grid(composition, Grid(sides, (WIDTH, HEIGHT), total, flat_length, no_depth)),
     checks=CHECKS,
-    refuses=refuses,
+    refuses=make_refuses(named),
     extremes=extremes(CHECKS),
 )

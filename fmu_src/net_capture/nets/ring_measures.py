@@ -11,7 +11,8 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 from fmu_src.implied import formula
-from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Hanging, Values
+from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Values
+from fmu_src.net_capture.nets.uniform import Lengths, uniform
 from orbital.kernel import kernel
 
 BULLETS = 4
@@ -213,7 +214,7 @@ def make_checks(profile: Profile) -> Checks:
     def knots(values: Values) -> int:
         return int(record_of(profile, values).grid_columns) // BULLETS - 1
 
-    def hanging(values: Values) -> Hanging:
+    def lengths(values: Values) -> Lengths:
         p = record_of(profile, values)
         goes_in = p.grid_rows > 1 or written.has_tip(p)
         edge = measures.along_of(p, 0, 1) + (0.5 * measures.inward_of(p, 0) if goes_in else 0.0)
@@ -222,7 +223,7 @@ def make_checks(profile: Profile) -> Checks:
             onward = 0.5 * measures.inward_of(p, i) if i + 1 < p.grid_rows or written.has_tip(p) else 0.0
             along = measures.along_of(p, i, measures.every_of(p, i))
             inside = max(inside, along + 0.5 * measures.inward_of(p, i - 1) + onward)
-        return Hanging(inside, edge, edge)
+        return inside, edge, edge
 
     def nodes(values: Values) -> int:
         if not sound(profile, values):
@@ -246,14 +247,16 @@ def make_checks(profile: Profile) -> Checks:
             lines.append([*line, first] if written.has_tip(p) and j in number[-1] else line)
         return [line for line in lines if len(line) > 1], [*number[0].values(), 0]
 
-    return Checks(
+    return uniform(
         corner=lambda values: (math.sqrt(0.5) * values["net.radius"], math.sqrt(0.5) * values["net.radius"]),
         widths=lambda values: (2.0 * values["net.radius"], 2.0 * values["net.radius"]),
-        sides=lambda values: {"net.radius": side(values)},
+        sides=lambda values: [side(values)] * BULLETS,
+        narrow=lambda values: "net.radius",
         knots=knots,
+        gap=lambda values: side(values) / (knots(values) + 1),
         total=lambda values: float(measures.total(record_of(profile, values))),
         shortest=lambda values: float(measures.shortest(record_of(profile, values))),
-        hanging=hanging,
+        lengths=lengths,
         nodes=nodes,
         drawing=drawing,
     )

@@ -31,7 +31,7 @@ from fmu_src.net_capture.nets.ring_measures import (
     next_every,
     record_of,
 )
-from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE, add_strip, make_thread
+from fmu_src.net_capture.nets.weave import THREAD, TOO_FINE, add_strip, even_gap, make_thread
 from fmu_src.net_capture.planes import FACE_WORDS, LONGEST_ROW, SHOWN
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import parameter
@@ -284,7 +284,7 @@ def make_rings(composition: Any, profile: Profile) -> Net:
                         node = line_node(p, line_of(p, i, inward, piece), j)
                         put_between(p, work, node, line_node(p, i, j), last, share)
 
-    return Net(count, lay_out, rim_node, make_thread(total, measures.shortest))
+    return Net(count, lay_out, rim_node, even_gap, make_thread(total, measures.shortest))
 
 
 def make_refuses(profile: Profile) -> Any:

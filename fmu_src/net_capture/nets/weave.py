@@ -72,6 +72,15 @@ def first_lanes(count):
     return -1 if count == LONGEST_ROW else (1 << count) - 1
 
 
+@kernel
+def even_gap(p, n):
+    """From a knot of the rim to the next [m], where all are as far apart.
+
+    Checked  tests/net_capture/test_rigging.py
+    """
+    return p.rim_mesh
+
+
 def make_thread(total: Any, shortest: Any) -> Any:
     """Kernel `thread(p)` of a net, see `Net`: of all its thread [m], and of the shortest as `Checks` means it [m]."""
 

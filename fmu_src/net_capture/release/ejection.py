@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term, Variable
 from fmu_src.net_capture.planes import MOST_BULLETS
 from fmu_src.net_capture.refusal import Refusal, Scene
@@ -108,6 +109,28 @@ def part(number: int) -> Term:
         faults=(NO_WAY_OUT, NONE_LEAVES, HELD_AND_TURNING),
         make=make,
         refuses=refuses,
+        extremes=(
+            Extreme(
+                "one bullet stays",
+                "the others fling the net round it",
+                "energy_gained",
+                {"ejection.stays[1]": 1.0},
+                chief=True,
+            ),
+            Extreme(
+                "one bullet a second late",
+                "it leaves a net that is under way",
+                "energy_gained",
+                {"ejection.delay[1]": 1.0},
+            ),
+            Extreme(
+                "one bullet ten times as fast",
+                "it arrives long before the others",
+                "energy_gained",
+                {"ejection.speed_error[1]": lambda values: 9.0 * values["bullets.speed"]},
+                duration=4.0,
+            ),
+        ),
     )
 
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.planes import MASS, U, X
 from fmu_src.net_capture.release import BOOKED
@@ -117,4 +118,15 @@ PART = Term(
         state("spin_vectors[#]", "1", "small vectors of its kernels", shape=(15,)),
     ),
     make=make,
+    extremes=tuple(
+        Extreme(
+            f"net turns at {rate:g} rad/s",
+            "the pull outward grows with the square of the rate",
+            "energy_gained",
+            {"spin.rate": rate},
+            duration=duration,
+            chief=rate == 10.0,
+        )
+        for rate, duration in ((0.0, 0.0), (10.0, 0.0), (100.0, 1.0))
+    ),
 )

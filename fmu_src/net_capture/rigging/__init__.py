@@ -34,12 +34,14 @@ class Checks(NamedTuple):
     rates(values, net, thread, dashpot, node)   as the kernel
     mass(values, net)                           it adds [kg]
     nodes(values, net)                          it adds [1]
+    threads(values, net)                        it adds [1]
     corner(values, net)                         mass [kg] that hangs on a bullet; None: it is that of the net's corner
     """
 
     rates: Callable[[Values, Any, float, float, float], tuple[float, float]]
     mass: Callable[[Values, Any], float]
     nodes: Callable[[Values, Any], int] = lambda values, net: 0
+    threads: Callable[[Values, Any], int] = lambda values, net: 0
     corner: Callable[[Values, Any], float] | None = None
 
 

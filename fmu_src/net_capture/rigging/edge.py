@@ -14,7 +14,7 @@ from fmu_src.interface import Term
 from fmu_src.net_capture.nets.weave import first_lanes
 from fmu_src.net_capture.planes import LONGEST_ROW, SHOWN
 from fmu_src.net_capture.rigging import Checks, Rig, Values
-from fmu_src.net_capture.rigging.rope import make_add_rope, piece, piece_of, rows
+from fmu_src.net_capture.rigging.rope import extremes, make_add_rope, piece, piece_of, rows
 from fmu_src.rows import count, peak
 from orbital.kernel import kernel
 
@@ -45,14 +45,14 @@ def of_rim(p):
 
 def make(composition: Any) -> Rig:
     """Kernels for the composition's net."""
-    rim_node, memory = composition.net.rim_node, composition.memory
+    rim_node, rim_gap, memory = composition.net.rim_node, composition.net.rim_gap, composition.memory
     node_plane = memory.node_plane
     add_rope = make_add_rope(memory)
 
     @kernel
     def run(p, n):
         """How many pieces from the n-th knot of the rim on stand in one strip [1]: neighbours in a row, in one
-        direction.
+        direction, of one length.
 
         Checked  tests/net_capture/test_rigging.py
         """
@@ -65,6 +65,8 @@ def make(composition: Any) -> Rig:
             at = rim_node(p, n + found)
             following = rim_node(p, (n + found + 1) % p.rim_nodes)
             if following - at != step or following // p.row_pitch != here // p.row_pitch:
+                break
+            if rim_gap(p, n + found) != rim_gap(p, n):
                 break
             found += 1
         return found
@@ -128,18 +130,11 @@ def make(composition: Any) -> Rig:
     return Rig(count_up, lay_out, stiffest)
 
 
-def rim(values: Values, net: Any) -> list[tuple[float, float]]:
-    """Of every side of the rim: its length, and that of a piece of it [m]."""
-    sides = list(net.sides(values).values())
-    shortest = min(sides) / (net.knots(values) + 1)
-    return [(side, side / round(side / shortest)) for side in (sides * 4)[:4]]
-
-
 def of_edge(values: Values, net: Any) -> tuple[float, float, float]:
     """Stiffness [N/m], dashpot [N s/m] and mass [kg] of the rope's shortest piece; zeros where a scene has no rope."""
     if "edge.diameter" not in values:
         return 0.0, 0.0, 0.0
-    return piece_of(values, "edge", min(length for _, length in rim(values, net)))
+    return piece_of(values, "edge", net.gap(values))
 
 
 def _rates(values: Values, net: Any, thread: float, dashpot: float, node: float) -> tuple[float, float]:
@@ -148,7 +143,7 @@ def _rates(values: Values, net: Any, thread: float, dashpot: float, node: float)
 
 
 def _mass(values: Values, net: Any) -> float:
-    return sum(piece_of(values, "edge", side)[2] for side, _ in rim(values, net))
+    return sum(piece_of(values, "edge", side)[2] for side in net.sides(values))
 
 
 PART = Term(
@@ -162,5 +157,6 @@ PART = Term(
     ),
     excludes=("break",),
     make=make,
-    checks=Checks(_rates, _mass),
+    extremes=extremes("edge", "edge rope"),
+    checks=Checks(_rates, _mass, threads=lambda values, net: len(net.drawing(values)[1]) - 1),
 )

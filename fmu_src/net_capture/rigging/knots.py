@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.planes import DAMPING, MASS, STIFFNESS, STRIP_NUMBERS
 from fmu_src.net_capture.rigging import Checks, Rig, Values
@@ -77,5 +78,11 @@ PART = Term(
         at_least_zero("knots.compliance", "m/N", "by which a thread's two knots together give way", 0.0),
     ),
     make=make,
+    extremes=(
+        Extreme("knots of 1 kg", "knots far heavier than their threads", "energy_gained", {"knots.mass": 1.0}),
+        Extreme(
+            "knots that give way by 1 m/N", "threads as soft as their knots", "energy_gained", {"knots.compliance": 1.0}
+        ),
+    ),
     checks=Checks(lambda *_: (0.0, 0.0), _mass),
 )

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.extremes import Extreme
 from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture.nets.weave import first_lanes
 from fmu_src.net_capture.planes import SHOWN
 from fmu_src.net_capture.rigging import Checks, Rig, Values
 from fmu_src.net_capture.rigging.edge import of_edge, of_rim
-from fmu_src.net_capture.rigging.rope import make_add_rope, piece, piece_of, rows
+from fmu_src.net_capture.rigging.rope import extremes, make_add_rope, piece, piece_of, rows
 from fmu_src.rows import count, parameter, peak, positive
 from orbital.kernel import kernel
 
@@ -159,7 +160,7 @@ def _rates(values: Values, net: Any, thread: float, dashpot: float, node: float)
 
 
 def _mass(values: Values, net: Any) -> float:
-    return float(net.bullets * values["leads.segments"] * _piece(values)[2])
+    return float(net.bullets(values) * values["leads.segments"] * _piece(values)[2])
 
 
 PART = Term(
@@ -176,10 +177,21 @@ PART = Term(
     ),
     excludes=("closing", "break"),
     make=make,
+    extremes=(
+        *extremes("leads", "leads"),
+        Extreme(
+            "leads of 1 cm",
+            "a piece far shorter and lighter than a thread of the net",
+            "energy_gained",
+            {"leads.length": 0.01, "leads.segments": 1},
+            duration=2.0,
+        ),
+    ),
     checks=Checks(
         _rates,
         _mass,
-        nodes=lambda values, net: net.bullets * int(values["leads.segments"]),
+        nodes=lambda values, net: net.bullets(values) * int(values["leads.segments"]),
+        threads=lambda values, net: net.bullets(values) * int(values["leads.segments"]),
         corner=lambda values, net: 0.5 * _piece(values)[2],
     ),
 )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from fmu_src.extremes import Extreme, times
 from fmu_src.implied import formula
 from fmu_src.interface import Variable
 from fmu_src.net_capture.planes import (
@@ -57,6 +58,32 @@ def piece_of(values: Mapping[str, float], prefix: str, length: float) -> tuple[f
     density, ratio = values[f"{prefix}.density"], values[f"{prefix}.damping_ratio"]
     found: tuple[float, float, float] = formula(piece)(diameter, modulus, density, ratio, length)
     return found
+
+
+def extremes(prefix: str, what: str) -> tuple[Extreme, ...]:
+    """The ends of a rope's range: stiff, soft, damped."""
+    name = f"{prefix}.youngs_modulus"
+    stiff = (
+        Extreme(
+            f"{what} {factor:g} times as stiff",
+            "beside a net that stays as it is: the substep follows the stiffest node",
+            "energy_gained",
+            {name: times(name, factor)},
+            duration=duration,
+            chief=factor == 1e2,
+        )
+        for factor, duration in ((1e-3, 0.0), (1e2, 0.0), (1e4, 4.0))
+    )
+    damped = (
+        Extreme(
+            f"{what}, damping ratio {ratio:g}",
+            "dashpots from none to ten times critical",
+            "energy_lost" if ratio else "energy_gained",
+            {f"{prefix}.damping_ratio": ratio},
+        )
+        for ratio in (0.0, 10.0)
+    )
+    return (*stiff, *damped)
 
 
 def make_add_rope(memory: Any) -> Any:

@@ -1,0 +1,132 @@
+"""How a net of one's own stands in memory: nodes in rows, threads in strips (see `planes`), in the order of its files.
+
+Threads that follow one another in their file, from and to nodes that go up in step, are a strip, as far as they are
+alike. Nodes that a strip reaches over stand in one row, so a net that is written row by row stands as it would if it
+were one of ours. Of a net whose threads are written in no order the rows are full, and many strips have one lane.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fmu_src.net_capture.nets.own_graph import CLOSE, OwnGraph
+from fmu_src.net_capture.planes import LONGEST_ROW
+
+Floats = npt.NDArray[np.float64]
+EMPTY = 2.0
+"""Slots for each node from which on rows are filled up."""
+
+HALF_WORD = 32
+ROW, COLUMN = 0, 1
+A_ROW, A_COLUMN, B_ROW, B_COLUMN, LANES_LOW, LANES_HIGH, SPAN, INNER_ROW, INNER_COLUMN, OF = range(10)
+"""Columns of the strips: row and column of both ends of lane 0; the lanes that are threads, in two halves; lanes from
+the first to the last; where the inner nodes of cut threads begin, in the first of their rows; a thread of it."""
+STRIP_COLUMNS = 10
+
+
+class Rows(NamedTuple):
+    """Where everything stands.
+
+    slots       row and column of every node, (n, 2)
+    strips      (q, STRIP_COLUMNS)
+    longest     nodes of the longest row
+    rows        of nodes
+    inner       rows of one inner node each of all threads, where they are cut
+    """
+
+    slots: npt.NDArray[np.int64]
+    strips: npt.NDArray[np.int64]
+    longest: int
+    rows: int
+    inner: int
+
+
+@lru_cache(maxsize=16)
+def rows_of(graph: OwnGraph) -> Rows:
+    """Rows and strips of a graph."""
+    alike = _alike(graph)
+    ends = graph.ends.tolist()
+    runs = _runs(ends, alike, np.zeros((len(graph.names), 2), dtype=np.int64))
+    lengths = _row_lengths(len(graph.names), ends, runs)
+    slots = _slots(lengths)
+    longest = int(slots[:, COLUMN].max()) + 1
+    if (slots[-1, ROW] + 1) * longest > EMPTY * len(slots):
+        slots = _slots([len(graph.names)])
+        longest = int(slots[:, COLUMN].max()) + 1
+    found, row, column = [], 0, 0
+    for run in _runs(ends, alike, slots):
+        a, b = ends[run[0]]
+        lanes = [ends[k][0] - a for k in run]
+        word = sum(1 << lane for lane in lanes)
+        span = lanes[-1] + 1
+        if column + span > longest:
+            row, column = row + 1, 0
+        halves = word & (1 << HALF_WORD) - 1, word >> HALF_WORD
+        found.append([*slots[a], *slots[b], *halves, span, row, column, run[0]])
+        column += span
+    return Rows(slots, np.array(found, dtype=np.int64), longest, int(slots[-1, ROW]) + 1, row + 1)
+
+
+def _alike(graph: OwnGraph) -> list[int]:
+    """A number for every thread; those alike have the same, but for rounding of their lengths."""
+    kinds: dict[tuple[float, ...], list[tuple[float, int]]] = {}
+    found, last = [], 0
+    for length, told in zip(graph.lengths.tolist(), graph.told.tolist(), strict=True):
+        there = kinds.setdefault(tuple(told), [])
+        number = next((n for near, n in there if abs(near - length) <= CLOSE * near), None)
+        if number is None:
+            number, last = last, last + 1
+            there.append((length, number))
+        found.append(number)
+    return found
+
+
+def _runs(ends: Sequence[Sequence[int]], alike: Sequence[int], slots: npt.NDArray[np.int64]) -> list[list[int]]:
+    """Threads that are a strip each: consecutive, alike, going up in step at both ends within a row."""
+    rows = slots[:, ROW].tolist()
+    found: list[list[int]] = []
+    for k, (a, b) in enumerate(ends):
+        if found:
+            run = found[-1]
+            first_a, first_b = ends[run[0]]
+            step = a - ends[run[-1]][0]
+            if (
+                0 < step == b - ends[run[-1]][1]
+                and a - first_a < LONGEST_ROW
+                and alike[k] == alike[run[0]]
+                and rows[a] == rows[first_a]
+                and rows[b] == rows[first_b]
+            ):
+                run.append(k)
+                continue
+        found.append([k])
+    return found
+
+
+def _row_lengths(count: int, ends: Sequence[Sequence[int]], runs: Sequence[Sequence[int]]) -> list[int]:
+    """Nodes of each row: none ends between two nodes that one end of a strip reaches over."""
+    held = np.zeros(count + 1, dtype=np.int64)
+    for run in runs:
+        for end in (0, 1):
+            held[ends[run[0]][end]] += 1
+            held[ends[run[-1]][end]] -= 1
+    bounds = [0, *(np.flatnonzero(np.cumsum(held)[: count - 1] == 0) + 1).tolist(), count]
+    return [b - a for a, b in itertools.pairwise(bounds)]
+
+
+def _slots(lengths: Sequence[int]) -> npt.NDArray[np.int64]:
+    """Row and column of every node; a row of more than `LONGEST_ROW` stands in several pieces."""
+    found, row = [], 0
+    for length in lengths:
+        pieces = math.ceil(length / LONGEST_ROW)
+        piece = math.ceil(length / pieces)
+        found += [(row + k // piece, k % piece) for k in range(length)]
+        row += math.ceil(length / piece)
+    return np.array(found, dtype=np.int64)
