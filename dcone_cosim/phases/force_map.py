@@ -52,8 +52,9 @@ def draw(cells: Cells, title: str, path: Path) -> None:
     """Both sizes on the six faces of the box round the target, a row each."""
     from matplotlib.colors import Normalize
 
-    figure = style.new_figure(11.0, 5.0)
+    figure = style.new_figure(13.0, 6.0)
     axes: Any = figure.subplots(2, len(FACES), squeeze=False)
+    figure.subplots_adjust(left=0.04, wspace=0.35, hspace=0.4, top=0.82)
     for row, (values, label) in enumerate(((cells.impulse, "impulse [N s]"), (cells.peak, "largest force [N]"))):
         scale = Normalize(0.0, max(float(values.max()), 1e-12))
         for column, name in enumerate(FACES):
@@ -69,11 +70,8 @@ def draw(cells: Cells, title: str, path: Path) -> None:
                 cmap="viridis",
             )
             one.grid(False)
-            one.set_xlabel(f"axis {along + 1} [m]", fontsize=8)
-            one.set_ylabel(f"axis {up + 1} [m]", fontsize=8)
             one.tick_params(labelsize=7)
-            if row == 0:
-                one.set_title(f"face {name}")
+            one.set_title(f"face {name}: axis {up + 1} [m]\nover axis {along + 1} [m]", fontsize=8)
         figure.colorbar(picture, ax=list(axes[row]), label=label)
     style.head(figure, title)
     style.save(figure, path)

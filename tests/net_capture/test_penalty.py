@@ -1,6 +1,7 @@
 """Law B by its kernels alone: how long a contact lasts and what comes back, sliding and sticking, a rope round a
 cylinder, momenta, the step, and what is refused."""
 
+import json
 import math
 
 import numpy as np
@@ -11,6 +12,7 @@ from fmu_src.net_capture.contact import penalty
 from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.planes import U, X
 from orbital.oscillators import snap_duration, snap_restitution
+from tests.net_capture.evidence import laws
 from tests.net_capture.on_target import Kernels
 from tests.validation import closed_form
 
@@ -209,3 +211,24 @@ def test_what_can_not_work_is_refused(terms, values, name, expected):
 def test_other_schemes_are_refused(scheme):
     with pytest.raises(ValueError, match=f"(?i){scheme}"):
         MODEL.interface(TERMS | {"solver": scheme})
+
+
+def test_the_same_catch_under_both_laws_comes_to_the_same():
+    """Means of an ensemble, `tests/net_capture/evidence/laws.py`: the quality of the capture within 5 %; the impulse
+    within 2 % beside what the number of shots leaves open."""
+    stored = json.loads(laws.RESULT.read_text(encoding="utf-8"))
+    assert stored["command"] == laws.COMMAND
+    assert len(stored["shots"]) >= 100
+    quality, impulse = (laws.compared(stored["shots"], name) for name in ("quality", "impulse"))
+    assert abs(quality["apart"]) < 0.05
+    assert quality["error"] < 0.02
+    assert abs(impulse["apart"]) < 0.02 + 2.0 * impulse["error"]
+    assert snap_restitution(laws.damping_ratio(laws.RESTITUTION)) == pytest.approx(laws.RESTITUTION, abs=1e-9)
+
+
+@pytest.mark.evidence
+def test_a_pair_of_shots_lies_among_those_stored():
+    stored = json.loads(laws.RESULT.read_text(encoding="utf-8"))["shots"]
+    for shot in laws.shoot(1):
+        others = [other["quality"] for other in stored if other["law"] == shot["law"]]
+        assert min(others) <= shot["quality"] <= max(others)

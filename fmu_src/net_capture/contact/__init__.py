@@ -36,7 +36,7 @@ class Checks(NamedTuple):
 
     planes                    node planes of its own, behind those of scheme and pace
     stiffening(values, node, mass, nodes, radius)   the same [1/s2] of values by FMI name, a node between two pieces of
-                              thread [kg], mass [kg] and number of all nodes, `Checks.radius` of the shape; None: nothing
+                              thread [kg], mass [kg] and number of all nodes, `radius` of the shape; None: nothing
     """
 
     planes: int = 0
