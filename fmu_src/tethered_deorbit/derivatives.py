@@ -7,6 +7,7 @@ from typing import Any
 
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
+from fmu_src.tethered_deorbit.environment.perturbed import Perturbing
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.thrust import Thrust
 from orbital.hill import hill_jacobi
@@ -15,7 +16,12 @@ from orbital.vectors import Array, matrix_vector
 
 
 def make_differentiate(
-    inertial: Callable[..., Any], reel: Reel, thrust: Thrust, environment: Environment, bodies: Bodies
+    inertial: Callable[..., Any],
+    reel: Reel,
+    thrust: Thrust,
+    environment: Environment,
+    perturbing: Perturbing,
+    bodies: Bodies,
 ) -> Callable[..., Any]:
     """The kernel that fills the rates and partial derivatives of the outputs.
 
@@ -70,6 +76,7 @@ def make_differentiate(
             r.rate_target_velocity[i] = rate[3 + i] + r.state_chaser_share * rate[9 + i]
         thrust.lose(record, state, rate, 1.0)
         environment.differentiate(record, state, rate)
+        perturbing.differentiate(record, state[0:3], state[3:6])
         lost = thrust.shed(record, rate)
         r.rate_energy_orbital += lost * r.energy_orbital / r.state_total_mass
         environment.frame(record, center, velocity)

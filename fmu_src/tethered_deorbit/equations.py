@@ -8,6 +8,7 @@ from typing import Any
 from fmu_src.tethered_deorbit.aocs import Aocs
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
+from fmu_src.tethered_deorbit.environment.perturbed import Perturbing
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import StateLayout
 from fmu_src.tethered_deorbit.level import Held
@@ -18,7 +19,14 @@ from orbital.vectors import Array
 
 
 def make_equations(
-    environment: Environment, reel: Reel, thrust: Thrust, bodies: Bodies, aocs: Aocs, held: Held, layout: StateLayout
+    environment: Environment,
+    perturbing: Perturbing,
+    reel: Reel,
+    thrust: Thrust,
+    bodies: Bodies,
+    aocs: Aocs,
+    held: Held,
+    layout: StateLayout,
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The kernels `inertial(record, state, rate, since, elapsed)` and `derivative(record, state, rate, elapsed)`."""
     impulse, felt = layout.impulse, bodies.felt
@@ -39,6 +47,7 @@ def make_equations(
         """
         thrust.weigh(record, state)
         environment.add_gravity(record, state, rate)
+        perturbing.add(record, state, rate, elapsed)
         bodies.move(record, state, rate)
         thrust.add(record, state, rate, since)
         aocs.add(record, state, rate, elapsed)

@@ -25,7 +25,8 @@ from fmu_src.rows import (
 )
 from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
-from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME
+from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, SCHEMES
+from fmu_src.tethered_deorbit.orbit_rows import AIR, OBLATENESS
 from fmu_src.tethered_deorbit.reel_rows import REELS
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.surface import NO_BODY
@@ -366,16 +367,6 @@ CHASERS = Group(
     default="point",
 )
 
-SCHEMES = Group(
-    {
-        "dop853": Term("Dormand-Prince 8(5,3), explicit: the fastest wherever nothing is stiff"),
-        "gauss": Term("Gauss-Legendre of order 8, symplectic at steps of one size: for long undamped motion"),
-        "radau": Term("Radau IIA of order 5, implicit and L-stable: for stiff lines that are damped hard"),
-    },
-    selector="scheme",
-    default="dop853",
-)
-
 MODEL = Model(
     name="tethered_deorbit",
     summary="A chaser with a thruster and a reel tows a captured target on a tether.",
@@ -387,6 +378,8 @@ MODEL = Model(
         "engine": ENGINES,
         "plume": PLUME,
         "environment": ENVIRONMENTS,
+        "oblateness": OBLATENESS,
+        "air": AIR,
         "target": TARGETS,
         "chaser": CHASERS,
         "aocs": AOCS,

@@ -15,6 +15,7 @@ from fmu_src.tethered_deorbit.breaking import breakable
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.ends import ENDS, make_ends
 from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
+from fmu_src.tethered_deorbit.environment.perturbed import make_perturbing
 from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.extremes import make_extremes
@@ -61,6 +62,8 @@ IMPLEMENTED = {
     "ends": ("watched",),
     "break": ("breaks",),
     "level": ("settled",),
+    "oblateness": ("J2",),
+    "air": ("exponential",),
     **KINDS,
 }
 """Terms that are composed here."""
@@ -76,7 +79,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     interface = MODEL.interface(terms)
     terms = interface.terms
     check_implemented(MODEL, IMPLEMENTED, terms)
-    environment = make_environment(terms["environment"], interface)
+    environment, perturbing = make_environment(terms["environment"], interface), make_perturbing(terms)
     command_slot = next(interface.references[name] for name in INPUTS if name in interface.references)
     limits = make_limits(interface, *LIMITED)
     layout = layout_of(terms, *components(terms["reel"]))
@@ -91,7 +94,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         raise ValueError(f"{MODEL.name}: no line settles with reel = {terms['reel']!r}")
     settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
     held = make_held(reel, bodies) if settles else UNHELD
-    inertial, derivative = make_equations(environment, reel, thrust, bodies, aocs, held, layout)
+    inertial, derivative = make_equations(environment, perturbing, reel, thrust, bodies, aocs, held, layout)
     scheme = SCHEMES[terms["solver"]](
         derivative, make_squared_error(bodies, held), layout.moving, layout.size - layout.moving
     )
@@ -104,8 +107,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state = make_start(environment, bodies, interface)
-    publish = make_publish(reel, environment, bodies, layout)
-    differentiate = make_differentiate(inertial, reel, thrust, environment, bodies)
+    publish = make_publish(reel, environment, perturbing, bodies, layout)
+    differentiate = make_differentiate(inertial, reel, thrust, environment, perturbing, bodies)
     size, spent, work_size = layout.size, layout.spent, places.total
     end_state, here_state, slope_state, low_error = places.end, places.here, places.slope, places.low
 

@@ -1,4 +1,5 @@
-"""The variables of what a scene may add to a tow: burns, engine, plume, attitude control, ends, a line that breaks."""
+"""The variables of what a scene may add to a tow: burns, engine, plume, attitude control, ends, a line that breaks,
+and how it is solved."""
 
 from __future__ import annotations
 
@@ -212,6 +213,16 @@ AOCS = Group(
     optional=True,
     follows=lambda terms, values: "wheels",
 )  # fmt: skip
+
+SCHEMES = Group(
+    {
+        "dop853": Term("Dormand-Prince 8(5,3), explicit: the fastest wherever nothing is stiff"),
+        "gauss": Term("Gauss-Legendre of order 8, symplectic at steps of one size: for long undamped motion"),
+        "radau": Term("Radau IIA of order 5, implicit and L-stable: for stiff lines that are damped hard"),
+    },
+    selector="scheme",
+    default="dop853",
+)
 
 SETTLING_LAWS, SETTLING_SCHEMES = ("locked",), ("dop853",)
 """Laws of the line whose vibration can be stepped over once it has died, and schemes that do: `radau` needs not, and

@@ -8,6 +8,7 @@ from typing import Any
 
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.environment import Environment
+from fmu_src.tethered_deorbit.environment.perturbed import Perturbing
 from fmu_src.tethered_deorbit.interface import TUGS
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import StateLayout
@@ -75,7 +76,9 @@ def note_pull(record: Any, tension: float) -> None:
     r.tether_tug_count += 1
 
 
-def make_publish(reel: Reel, environment: Environment, bodies: Bodies, layout: StateLayout) -> Callable[..., Any]:
+def make_publish(
+    reel: Reel, environment: Environment, perturbing: Perturbing, bodies: Bodies, layout: StateLayout
+) -> Callable[..., Any]:
     """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
     impulse = layout.impulse
 
@@ -109,6 +112,7 @@ def make_publish(reel: Reel, environment: Environment, bodies: Bodies, layout: S
             r.target_position[i] = state[i] + r.state_chaser_share * position[i]
             r.target_velocity[i] = state[3 + i] + r.state_chaser_share * velocity[i]
         environment.publish(record)
+        perturbing.publish(record)
         turning = environment.frame(record, r.center_position, r.center_velocity)
         relative_to_orbital(r.relative_position, r.relative_velocity, r.state_basis, turning, position, velocity)
         r.tether_angle = math.atan2(r.relative_position[1], r.relative_position[0])

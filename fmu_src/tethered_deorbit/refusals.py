@@ -40,6 +40,9 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         yield from _of_tank(terms, values)
     if "burn" in terms:
         yield from _of_burns(terms, values)
+    for group, key in (("oblateness", "zonal"), ("air", "law")):
+        if group in terms and terms.get("environment") == "none":
+            yield f"{group}.{key}", terms[group], "needs an orbit; leave the table out, or environment.field = none"
     if "level" in terms and terms["reel"] not in SETTLING_LAWS:
         text = f"a line settles with reel.law = {' or '.join(SETTLING_LAWS)} alone; leave the table out, or take that"
         yield "level.detail", terms["level"], text

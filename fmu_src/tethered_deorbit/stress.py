@@ -140,6 +140,19 @@ TURNING = (
 )  # fmt: skip
 """Of a target that turns."""
 
+OBLATENESS = (
+    Extreme("flattened, over the poles", "what the flattening's potential gives the orbit has to come back", "longer",
+            {"orbit.inclination": 0.5 * math.pi}),
+)  # fmt: skip
+AIR = (
+    Extreme("air at 180 km", "it comes down within the hour", "longer",
+            {"orbit.altitude": 180e3, "air.base_density": 5.464e-10, "air.base_altitude": 180e3,
+             "air.scale_height": 29.74e3}, duration=0.5 * HOUR),
+    Extreme("one body as thin as air", "it is blown away from the other", "longer",
+            {"orbit.altitude": 400e3, "air.target_area": 1e4}, duration=HOUR),
+)  # fmt: skip
+"""Of what disturbs an orbit."""
+
 BURNS = (
     Extreme("pulses of a millisecond", "a thousand times shorter than what they shake", "orbit",
             {"burn.start": 0.0, "burn.duration": 1e-3, "burn.interval": 10.0}, duration=HOUR),
