@@ -9,6 +9,7 @@ from __future__ import annotations
 import textwrap
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from dcone_cosim import build
@@ -101,12 +102,18 @@ def _model(phase: str) -> build.Model:
 
 
 def _terms(model: build.Model, tables: Mapping[str, Any]) -> dict[str, str]:
-    """By group: the term that a scene names, the default, or the only one there is of a table that the scene has."""
+    """By group: the term that a scene names, that follows from those before it, the default, or the only one there is
+    of a table that the scene has."""
     found = {}
     for name, group in model.groups.items():
         table = tables.get(group.table or name)
         if table is not None and group.selector in table:
             found[name] = term_named(table[group.selector])
+        elif table is not None and group.early and group.follows is not None:
+            # from the net's files, where it has them, which are not read here: then as if it had not
+            with suppress(KeyError):
+                found[name] = group.default
+                found[name] = group.follows({k: v for k, v in found.items() if k != name}, {})
         elif group.default:
             found[name] = group.default
         elif table is not None and isinstance(group.terms, dict) and len(group.terms) == 1:
