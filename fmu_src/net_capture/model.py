@@ -21,12 +21,12 @@ from typing import Any
 
 from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.net_capture import outcome, quality
-from fmu_src.net_capture.book import make_balance
 from fmu_src.net_capture.closing.triggers import make_reached
 from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES, TOO_MANY_THREADS
-from fmu_src.net_capture.planes import MASS, SHOWN, complete_strips, work_size
+from fmu_src.net_capture.planes import complete_strips, work_size
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
+from fmu_src.net_capture.showing import make_measure
 from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep, make_limit_way
 from fmu_src.net_capture.tensions import make_tensions
 from orbital.kernel import entry, kernel
@@ -54,19 +54,20 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     tensions = make_tensions(parts) if has_threads else None
     has_hardest, hardest = parts.hardest is not None, parts.hardest
     planes, per_double = parts.planes, parts.per_double
-    node_plane, properties = parts.memory.node_plane, parts.memory.properties
+    properties = parts.memory.properties
 
     graph, folding, gravity, scheme, peaks = parts.graph, parts.folding, parts.gravity, parts.scheme, parts.peaks
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
     has_break, breaking = parts.breaking is not None, parts.breaking
-    has_ejection, has_spin, ejection = parts.ejection is not None, parts.spin is not None, parts.ejection
+    has_ejection, ejection = parts.ejection is not None, parts.ejection
     shot, measures, limit_way = make_shot(parts), quality.make_quality(parts), make_limit_way(parts)
-    choose_substep, energy_balance = make_choose_substep(parts), make_balance(parts)
+    choose_substep = make_choose_substep(parts)
     judge = outcome.make_judge(parts, measures)
     reached = make_reached(parts, measures) if has_closing else None
     not_finite, no_axis, too_many_nodes, too_many_threads = (
         parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES, TOO_MANY_THREADS)
     )
+    measure = make_measure(parts, measures, tensions, not_finite)
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
     now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
@@ -170,123 +171,6 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_load:
             pull_off.look(p, work, time)
         return 0
-
-    @kernel
-    def measure(p, work, ahead):
-        """All outputs, `ahead` seconds after the last substep; nothing of the state changes.
-
-        Checked  tests/net_capture/test_quality.py
-        """
-        late = lag * p.solver_substep
-        scheme.show(p, work)
-        elastic = scheme.stored(p, work)
-        p.thread_dissipated = p.thread_loss + late * p.thread_power
-        if has_wrap:
-            elastic += p.wrap_stored
-        if has_closing:
-            elastic += closing.stored(p, work)
-            p.cord_dissipated = p.cord_loss + late * p.cord_power
-            p.closed = 1 if p.mouth_locked_pairs == p.net_corners else 0
-        place_bodies(p, ahead)
-        if has_ejection or has_spin:
-            for axis in range(3):
-                p.chaser_spin[axis] = p.chaser_turned[axis]
-        if has_ejection:
-            ejection.show(p, work)
-        if has_air:
-            p.air_dissipated = p.air_loss + late * p.air_power
-        measures.measure_net(p, work)
-        p.energy_elastic = elastic
-        p.energy_total = p.energy_kinetic + elastic
-        quality.add_body_momenta(p, p.chaser_mass, p.chaser_position, p.chaser_velocity)
-        if has_ejection or has_spin:
-            for axis in range(3):
-                p.angular_momentum[axis] += p.chaser_spin[axis]
-        if has_target:
-            target.measure(p)
-            target.turn(p.target_attitude, p.target_pose, p.target_rate, p, frame_rate(p), ahead)
-            quality.add_body_momenta(p, p.target_mass, p.target_position, p.target_velocity)
-            for axis in range(3):
-                p.angular_momentum[axis] += p.target_spin[axis]
-            if has_closing:
-                p.mouth_girth = p.girth
-        if has_contact:
-            contact.measure(p, work)
-        if has_load:
-            pull_off.show(p, work, late)
-        balance = energy_balance(p, work)
-        p.energy_remainder = p.energy_start - balance
-        measures.measure_mouth(p, work)
-        if ahead > 0.0:
-            measures.carry(p, work, ahead)
-        if has_volume:
-            hold.watch(p, work)
-        measures.show_points(p, work)
-        carry_mass(p, ahead)
-        if has_tether:
-            tether.measure(p)
-        if has_nodes:
-            write_nodes(p, work)
-        if has_index:
-            fault = index.measure(p, work)
-            if fault != 0:
-                return fault
-        if has_threads:
-            tensions.write(p, work)
-        peaks.collect(p)
-        if has_hardest:
-            hardest.tell(p, work)
-        if has_closing:
-            if p.cord_tension_peak > p.cord_tension_max:
-                p.cord_tension_max = p.cord_tension_peak
-        p.solver_steps = p.grid
-        if follows:
-            p.solver_substep_mean = now(p) / p.grid if p.grid > 0 else p.solver_substep
-        finite = math.isfinite(balance) and math.isfinite(p.momentum[0] + p.momentum[1] + p.momentum[2])
-        return 0 if finite else not_finite
-
-    @kernel
-    def carry_mass(p, ahead):
-        """The centre of mass of the catch a time on [s].
-
-        Checked  tests/net_capture/test_free_flight.py
-        """
-        for axis in range(3):
-            p.catch_position[axis] += ahead * p.catch_velocity[axis]
-
-    @kernel
-    def place_bodies(p, ahead):
-        """Places `ahead` seconds on and velocities now of chaser and target: those they keep lie back by the scheme's
-        `lag`.
-
-        Checked  tests/net_capture/test_free_flight.py
-        """
-        late = lag * p.solver_substep
-        for axis in range(3):
-            p.chaser_position[axis] = p.chaser_place[axis] + ahead * p.chaser_drift[axis]
-            p.chaser_velocity[axis] = p.chaser_drift[axis]
-            if has_target:
-                p.target_position[axis] = p.target_place[axis] + ahead * p.target_drift[axis]
-                p.target_velocity[axis] = p.target_drift[axis]
-        if has_tether:
-            tether.pull_chaser(p)
-        gravity.kick_chaser(p, p.chaser_place, p.chaser_velocity, p.pull, late)
-        if has_target:
-            gravity.kick_target(p, p.target_place, p.target_velocity, p.rest, late)
-
-    @kernel
-    def write_nodes(p, work):
-        """Positions of all nodes, unused slots passed over.
-
-        Checked  tests/net_capture/test_nets.py
-        """
-        mass = node_plane(p, work, MASS)
-        out = 0
-        for node in range(p.node_slots):
-            if mass[node] > 0.0:
-                for axis in range(3):
-                    p.node_position[out, axis] = node_plane(p, work, SHOWN + axis)[node]
-                out += 1
 
     @kernel
     def initialise(p, work, time):
