@@ -107,6 +107,17 @@ def test_a_light_target_takes_the_opposite_of_all(kernels):
     assert np.linalg.norm(scene.p["target_drift"]) > 1e-3
 
 
+def test_the_pull_along_the_way_takes_the_place_of_the_straight_one(kernels):
+    """Both are taut: each node is pulled towards the edge alone, by k (l - L)."""
+    edge, places = np.array([2.0, 0.0, 2.0]), np.array([(1.5, 0.0, 2.02), (2.02, 0.0, 1.995)])
+    scene = kernels.place(**SIDES).put([NODE] * 2, places, np.zeros((2, 3))).join(2, 0.5, 13368.0, 0.0)
+    scene.go(1e-6, 1)
+    far = np.linalg.norm(places - edge, axis=1)
+    towards = (edge - places) / far[:, None]
+    pull = 13368.0 * (far.sum() - 0.5)
+    np.testing.assert_allclose(scene.planes[U : U + 3, :2].T, 1e-6 * pull / NODE * towards, rtol=1e-6, atol=1e-9)
+
+
 def test_a_taut_thread_that_is_through_already_stays_straight(kernels):
     """The pull of a way that is there at once would come from nowhere."""
     scene = kernels.place(**SIDES)
