@@ -186,6 +186,22 @@ def test_a_node_is_stable_up_to_the_bound_on_a_target_as_light_as_itself(kernels
         assert (np.abs(speeds[:, 2]).max() < 0.05) == stable
 
 
+def test_what_an_impulse_gives_a_body_of_several_pieces() -> None:
+    """A dumbbell with a heavy ball at its centre gives way at its tips by far more than any body of one piece."""
+    moments, radius = (4.0, 0.2, 4.1), 10.0
+    values = {"target.mass": 1000.0, "net.segments": 1, "contact.duration": DURATION, "contact.stiffness": 0.0}
+    values |= {f"target.principal_inertia[{i}]": 0.0 for i in (1, 2, 3)}
+
+    def found(**more):
+        return penalty.of_values(values | more, NODE, 1.0, 600, lambda _: radius)
+
+    rate = 0.5 * (math.pi / DURATION) ** 2
+    assert found() == pytest.approx(rate * (1.0 + penalty.TARGET_SHARE * 1.0 / 1000.0), rel=1e-12)
+    assert found(**{"target.solid": moments}) == pytest.approx(rate * (1.0 + 501.0 / 1000.0), rel=1e-12)
+    told = {f"target.principal_inertia[{i + 1}]": 1000.0 * moment for i, moment in enumerate(moments)}
+    assert found(**told) == pytest.approx(rate * (1.0 + 501.0 / 1000.0), rel=1e-12)
+
+
 TERMS = {"net": "square", "gravity": "none", "target": "box", "contact": "penalty"}
 
 

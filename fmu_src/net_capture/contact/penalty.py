@@ -52,8 +52,8 @@ FRICTION = 0.1
 DEEPEST = 0.1
 """Of half the target's least dimension, that a bullet may go below the surface."""
 TARGET_SHARE = 40.0
-"""What an impulse at the farthest point of a uniform body gives it there, over what it gives its centre of mass: 34 at
-the tip of a slender cone, less for all other shapes."""
+"""What an impulse at the farthest point of a uniform body gives it there at most, over what it gives its centre of
+mass: 34 at the tip of a slender cone, less for all other shapes of one piece."""
 
 
 @kernel
@@ -231,11 +231,10 @@ def make(composition: Any) -> Contact:
 
         Checked  tests/net_capture/test_penalty.py
         """
-        given = abs(p.target_principal_inertia[0]) + abs(p.target_principal_inertia[1])
-        if given + abs(p.target_principal_inertia[2]) == 0.0:
-            return TARGET_SHARE
         least = min(p.target_inertia[0], p.target_inertia[1], p.target_inertia[2])
-        return 1.0 + p.target_mass * p.envelope_radius * p.envelope_radius / least
+        share = 1.0 + p.target_mass * p.envelope_radius * p.envelope_radius / least
+        given = abs(p.target_principal_inertia[0]) + abs(p.target_principal_inertia[1])
+        return share if given + abs(p.target_principal_inertia[2]) > 0.0 else max(share, TARGET_SHARE)
 
     @kernel
     def weigh(p, work):
@@ -257,11 +256,16 @@ def make(composition: Any) -> Contact:
 
 
 def of_values(
-    values: Mapping[str, float], node: float, mass: float, nodes: int, radius: Callable[[Mapping[str, float]], float]
+    values: Mapping[str, Any], node: float, mass: float, nodes: int, radius: Callable[[Mapping[str, Any]], float]
 ) -> float:
     """See `Checks.stiffening`: a node in the middle of a thread is half as heavy as one that four threads meet at."""
-    inertia = [values[f"target.principal_inertia[{i}]"] for i in (1, 2, 3)]
-    share = 1.0 + values["target.mass"] * radius(values) ** 2 / min(inertia) if any(inertia) else TARGET_SHARE
+    told = [values[f"target.principal_inertia[{i}]"] / values["target.mass"] for i in (1, 2, 3)]
+    worked_out = [float(moment) for moment in values.get("target.solid", ())[:3]]  # of several pieces, or of a mesh
+    share = TARGET_SHARE
+    if any(told):
+        share = 1.0 + radius(values) ** 2 / min(told)
+    elif worked_out:
+        share = max(share, 1.0 + radius(values) ** 2 / min(worked_out))
     lightest = node * (0.5 if values["net.segments"] > 1 else 0.75)
     duration, stiffness = values["contact.duration"], values["contact.stiffness"]
     found: float = formula(stiffening)(duration, stiffness, lightest, mass, nodes, values["target.mass"], share)
