@@ -54,7 +54,9 @@ def _of_pull(last: Mapping[str, float]) -> Iterator[Finding]:
     slip = [last[f"pull_off.slip[{i}]"] for i in (1, 2, 3)]
     text = ", ".join(f"{way:+.3g}" for way in slip)
     yield Finding("capture", "pull_off.slip", "the net has moved about the target, its axes", f"{text} m")
-    threads = [(int(last[f"pull_off.thread[{i}]"]), last[f"pull_off.borne[{i}]"]) for i in range(1, 6)]
+    threads = [
+        (int(last[f"pull_off.hardest[{i}].thread"]), last[f"pull_off.hardest[{i}].tension"]) for i in range(1, 6)
+    ]
     told = ", ".join(f"{tension:.3g} N (thread {number})" for number, tension in threads if number > 0)
     if told:
         yield Finding("capture", "pull_off.threads", "most borne under the whole load", told)

@@ -40,21 +40,21 @@ def make_bearing(composition: Any) -> Any:
         Checked  tests/net_capture/test_pull_off.py
         """
         at = MOST
-        while at > 0 and tension > p.pull_off_borne[at - 1]:
+        while at > 0 and tension > p.pull_off_hardest_tension[at - 1]:
             at -= 1
         for i in range(MOST - 1, at, -1):
-            p.pull_off_borne[i] = p.pull_off_borne[i - 1]
-            p.pull_off_thread[i] = p.pull_off_thread[i - 1]
+            p.pull_off_hardest_tension[i] = p.pull_off_hardest_tension[i - 1]
+            p.pull_off_hardest_thread[i] = p.pull_off_hardest_thread[i - 1]
             for axis in range(3):
-                p.pull_off_place[i, axis] = p.pull_off_place[i - 1, axis]
+                p.pull_off_hardest_position[i, axis] = p.pull_off_hardest_position[i - 1, axis]
         if at < MOST:
-            p.pull_off_borne[at] = tension
-            p.pull_off_thread[at] = number
+            p.pull_off_hardest_tension[at] = tension
+            p.pull_off_hardest_thread[at] = number
             place = p.scratch[0:3]
             place[0], place[1], place[2] = x, y, z
             rotate_inverse(place, p.target_pose, place)
             for axis in range(3):
-                p.pull_off_place[at, axis] = place[axis]
+                p.pull_off_hardest_position[at, axis] = place[axis]
 
     @kernel
     def tell_threads(p, work):
@@ -63,8 +63,8 @@ def make_bearing(composition: Any) -> Any:
         Checked  tests/net_capture/test_pull_off.py
         """
         for i in range(MOST):
-            p.pull_off_borne[i] = 0.0
-            p.pull_off_thread[i] = 0
+            p.pull_off_hardest_tension[i] = 0.0
+            p.pull_off_hardest_thread[i] = 0
         table, numbers = strips(p, work), properties(p, work)
         middle, way = p.scratch[3:6], p.scratch[6:9]
         for strip in range(p.strips):

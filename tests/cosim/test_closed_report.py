@@ -18,8 +18,8 @@ LAST = {
     "pull_off.tension_max": 60.0,
     "pull_off.work": 16.0,
     **{f"pull_off.slip[{i}]": 0.1 * i for i in (1, 2, 3)},
-    **{f"pull_off.thread[{i}]": 600.0 + i for i in range(1, 6)},
-    **{f"pull_off.borne[{i}]": 14.0 - i for i in range(1, 6)},
+    **{f"pull_off.hardest[{i}].thread": 600.0 + i for i in range(1, 6)},
+    **{f"pull_off.hardest[{i}].tension": 14.0 - i for i in range(1, 6)},
 }
 
 

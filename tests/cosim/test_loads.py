@@ -133,6 +133,7 @@ def net(make_scene: MakeScene, lines: Mapping[str, LineScene], **columns: float)
     run = removal_run(scene, tensions, [0.0, 1.0], TugLog(1))
     run.phases = {"capture": run.phases["removal"]}
     values = {"net.side": 24.0, "net.mesh": 1.0, "net.mass": 0.33, "net.density": 1440.0, "net.youngs_modulus": 70e9}
+    values["net.damping_ratio"] = 0.106
     run.parameters = {"capture": values | {"closing.axial_stiffness": 903.0}}
     return run
 

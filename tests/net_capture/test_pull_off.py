@@ -61,8 +61,8 @@ def test_the_threads_that_bear_most_are_told(shoot):
                 pace = way @ (rate[:, b] - rate[:, a]) / now
                 tensions[number] = max(stiffness * (now - length) + damping * pace, 0.0)
         order = sorted(tensions, key=tensions.__getitem__, reverse=True)[:5]
-        assert net.array("pull_off_thread").tolist() == order
-        assert net.array("pull_off_borne") == pytest.approx([tensions[n] for n in order], rel=1e-6)
+        assert net.array("pull_off_hardest_thread").tolist() == order
+        assert net.array("pull_off_hardest_tension") == pytest.approx([tensions[n] for n in order], rel=1e-6)
         return
     raise AssertionError("the whole load never came")
 

@@ -23,7 +23,7 @@ __all__ = ["dcone"]
 PARTS = {
     "inputs",
     *("loads", "required", "governs", "tugs", "spectrum", "rainflow", "ranges", "sensitivities", "region"),
-    *("reel", "attitude", "disposal"),
+    *("reel", "attitude", "disposal", "closed"),
 }
 PICTURES = {"loads.png", "spectrum.png", "required.png", "sensitivities.png", "region.png"}
 
@@ -88,7 +88,7 @@ def test_the_same_command_goes_on(done: Sizing) -> None:
 @pytest.mark.parametrize(
     ("name", "more", "said"),
     [
-        ("table1-capture", {}, "sizing needs a [removal]"),
+        ("table1-capture", {}, "sizing needs a tow, [removal]"),
         ("table2-deorbit", {"factor_of_safety": 0.5}, "--fos 0.5"),
         ("table2-deorbit", {"samples": -1}, "--samples -1"),
         ("table2-deorbit", {"ranges": ["removal.thrust.level"]}, "--range removal.thrust.level"),

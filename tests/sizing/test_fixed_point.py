@@ -130,6 +130,6 @@ def test_search_across_a_jump() -> None:
         capacity = TECHNORA.strength * math.pi * diameter**2 / 4.0
         one.take(diameter, capacity / SAFETY * (1.3 if diameter < edge else 0.8), SAFETY)
         assert len(one.tried) <= required.ROUNDS
-    found = required.result(one, 1e-4, 1e-4, 12.0, SAFETY)
+    found = required.result(one, None, 1e-4, 12.0, SAFETY)
     assert edge <= found.diameter <= edge * (1.0 + required.CLOSE)
     assert "jumps" in found.note
