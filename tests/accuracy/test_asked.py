@@ -214,6 +214,7 @@ def test_a_tow_is_as_exact_as_asked(tmp_path: Path) -> None:
     assert again.result.attained == written.result.attained
 
 
+@pytest.mark.evidence
 def test_a_tow_that_scatters_in_no_way_needs_one_run_of_each() -> None:
     settings = ["removal.duration=30 min", "solver.accuracy=1 %"]
     _, found = attaining.attain("table2-deorbit", settings, load("table2-deorbit", settings), None, Progress())

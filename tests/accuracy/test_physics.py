@@ -26,6 +26,7 @@ def _effects(tow: Found) -> tuple[Effect, Effect]:
     return here, without
 
 
+@pytest.mark.evidence
 def test_thrust_lowers_the_orbit_and_nothing_else_does(tow: Found) -> None:
     """Without it the semi-major axis keeps all of the change that it has with it, but for the pair's own motion."""
     here, without = _effects(tow)
@@ -35,6 +36,7 @@ def test_thrust_lowers_the_orbit_and_nothing_else_does(tow: Found) -> None:
     assert without.change > 0.9
 
 
+@pytest.mark.evidence
 def test_what_is_left_out_is_not_there(tow: Found) -> None:
     here, without = _effects(tow)
     assert without.bytes < here.bytes - 1000

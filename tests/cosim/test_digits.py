@@ -72,8 +72,8 @@ OF_THE_CLOCK = ("steps", "wall")
     ("scene", "settings"),
     [
         ("table1-capture", ()),
-        ("mission", ('phases=["capture"]', "capture.after_capture=5 s")),
-        ("mission", ("handoff.compare_without_recoil=true",)),
+        pytest.param("mission", ('phases=["capture"]', "capture.after_capture=5 s"), marks=pytest.mark.evidence),
+        pytest.param("mission", ("handoff.compare_without_recoil=true",), marks=pytest.mark.evidence),
     ],
 )
 def test_the_spread_of_every_figure_is_what_is_said(scene: str, settings: tuple[str, ...]) -> None:

@@ -148,6 +148,7 @@ def test_an_interrupt_keeps_the_tow(dcone: Dcone, tmp_path: Path, monkeypatch: p
     assert (tmp_path / "out" / "removal.parquet").is_file()
 
 
+@pytest.mark.evidence
 def test_bodies_that_the_fmu_sees_meet_are_told(dcone: Dcone, tmp_path: Path) -> None:
     """An FMU that ends where they come within the clearance shows them up to there: 1 + 1 + 0.5 m."""
     ends = '[removal.ends]\nchaser_extent = "1 m"\ntarget_extent = "1 m"\nclearance = "0.5 m"\n'

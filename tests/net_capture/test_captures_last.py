@@ -20,6 +20,7 @@ def stored():
     return json.loads(RESULT.read_text())
 
 
+@pytest.mark.evidence
 def test_a_cord_through_rings_holds_what_a_cord_around_four_bullets_loses():
     """The twins: that cord, and with it the rule of version 0.2.0, take what does not last."""
     shots = [(number, seed) for number in SHOTS for seed in SEEDS]

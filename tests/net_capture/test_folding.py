@@ -109,7 +109,7 @@ def test_a_zigzag():
     assert [zigzag(way, 0.25) for way in ways] == pytest.approx([-0.125, -0.025, 0.125, 0.075, -0.125, -0.025, -0.025])
 
 
-@pytest.mark.parametrize("pattern", ["accordion", "rolled"])
+@pytest.mark.parametrize("pattern", ["accordion", pytest.param("rolled", marks=pytest.mark.evidence)])
 def test_a_shot_from_it_opens(pattern):
     values = NETS["square"] | SET[pattern] | {"net.segments": 1, "net.mesh": 1.0, "shot.roll": 0.3}
     net = Instance(MODEL, FREE | {"folding": pattern}, values).initialise()

@@ -132,6 +132,7 @@ def test_the_cord_is_in_the_spectrum(captured):
     assert np.sum(cords_count > 1.0) > 20
 
 
+@pytest.mark.evidence
 def test_between_one_thread_and_all(shoot):
     """Never longer than a thread by itself allows, never shorter than all of them need, but for whole numbers."""
     free = shoot({"net.mesh": 2.0})
@@ -149,7 +150,13 @@ def test_between_one_thread_and_all(shoot):
     assert net["solver.substep_most"] < min(alone)
 
 
-@pytest.mark.parametrize("terms", [FOLLOWING, OPENING | {"solver": "rk4"}], ids=["leapfrog", "rk4"])
+@pytest.mark.parametrize(
+    "terms",
+    [
+        pytest.param(FOLLOWING, id="leapfrog"),
+        pytest.param(OPENING | {"solver": "rk4"}, id="rk4", marks=pytest.mark.evidence),
+    ],
+)
 def test_bits_do_not_depend_on_the_macro_step(shoot, terms):
     values = {"net.mesh": 3.0, "chaser.start_position[2]": -12.0}
     once, often = shoot(values, terms), shoot(values, terms)

@@ -196,7 +196,10 @@ def all_values(shape, values):
     ("shape", "change", "told", "blamed", "shown"),
     [
         ("cone", {"net.meridians": 18}, "net.meridians", "net.meridians", 18),
-        ("radial", {"net.fold_side": 8.5, "net.radius": 4.0}, "net.fold_side", "net.fold_side", 8.5),
+        pytest.param(
+            *("radial", {"net.fold_side": 8.5, "net.radius": 4.0}, "net.fold_side", "net.fold_side", 8.5),
+            marks=pytest.mark.evidence,
+        ),
         ("cone", {"net.mesh": 0.1, "net.segments": 2}, "net.mesh", "net.segments", 1536),
     ],
 )
@@ -211,7 +214,7 @@ def test_what_makes_no_net_is_refused_before_and_by_the_kernel(shape, change, to
 SAME = {"solver.jitter[3]": 1e-3, "shot.roll": 0.3}
 
 
-@pytest.mark.parametrize("name", ["cone-floor", "cone-open", "radial"])
+@pytest.mark.parametrize("name", ["cone-floor", "cone-open", pytest.param("radial", marks=pytest.mark.evidence)])
 def test_a_free_flight_keeps_momenta(name):
     """Of net and chaser together, to a share of 1e-12 of the shot's, and of that at the 20 m to the frame's origin."""
     net = Instance(MODEL, FREE | {"net": shape_of(name)}, CASES[name] | SAME).initialise()
@@ -226,7 +229,7 @@ def test_a_free_flight_keeps_momenta(name):
     assert abs(net["energy.remainder"]) < 0.01 * 9.0
 
 
-@pytest.mark.parametrize("name", ["cone-even", "radial"])
+@pytest.mark.parametrize("name", ["cone-even", pytest.param("radial", marks=pytest.mark.evidence)])
 def test_the_remainder_falls_with_the_square_of_the_step(name):
     def remainder(ratio):
         found = []

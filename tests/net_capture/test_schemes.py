@@ -174,6 +174,7 @@ def test_rk4_is_stable_up_to_its_bound(zeta):
     assert rk4.accurate_step(0.5 * omega * omega, zeta * omega) < step
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("scheme", ["leapfrog", "rk4", *(pytest.param(s, marks=pytest.mark.evidence) for s in NEWER)])
 def test_the_tether_pulls_net_and_chaser_alike(scheme):
     """A constant tension does T (s0 - s1), s the distance from vertex to chaser; whatever the scheme's stages, net and

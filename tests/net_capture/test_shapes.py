@@ -301,6 +301,7 @@ def test_what_is_drawn_is_the_body(body):
     assert all(edges.count(edge) == 2 for edge in edges)
 
 
+@pytest.mark.evidence
 def test_a_cylinder_is_captured_and_momenta_are_kept(shoot):
     turning = {"target.start_rate[1]": 0.02, "target.start_rate[3]": 0.03}
     net = shoot({"closing.time": 11.2} | turning, CYLINDER)

@@ -10,6 +10,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.sizing.bullets import ENOUGH, Opening, flights, least
 
 
+@pytest.mark.evidence
 def test_heavier_bullets_open_the_net_wider() -> None:
     with Workers(1) as workers:
         light, rule = flights(Runner(Memory(), workers, 2), Progress(), (1.0, 6.0))

@@ -73,6 +73,7 @@ def test_where_it_is_written(tmp_path: Path) -> None:
     assert commands.of_debris("1 t, 4 m", None).notes
 
 
+@pytest.mark.evidence
 @pytest.mark.slow
 def test_the_scene_holds(tmp_path: Path) -> None:
     """It captures and tows, and neither thread nor line comes near to breaking."""

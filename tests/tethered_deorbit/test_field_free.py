@@ -291,6 +291,7 @@ def test_a_command_that_moves(scheme: str) -> None:
     assert i["tether.impulse"] != pytest.approx(0.4501, rel=1e-10)
 
 
+@pytest.mark.evidence
 def test_compiled(request: pytest.FixtureRequest) -> None:
     """The FMU's own code, without a field and with an implicit scheme, gives what plain Python gives."""
 

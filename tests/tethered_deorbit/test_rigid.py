@@ -121,7 +121,7 @@ def differences(i: Instance, tow: Tow, after: np.ndarray) -> dict[str, float]:
     }
 
 
-@pytest.mark.parametrize("body", ["target", "both"])
+@pytest.mark.parametrize("body", ["target", pytest.param("both", marks=pytest.mark.evidence)])
 def test_three_tugs_on_an_orbit(body: str) -> None:
     """A tumbling pair with gravity gradient and thrust: tugs, attitude and rates of scipy's DOP853 at 1e-12."""
     terms = ON_ORBIT | ({"chaser": "rigid"} if body == "both" else {})
@@ -271,6 +271,7 @@ def test_undamped_on_an_orbit_the_energy_stays() -> None:
     assert i["energy.relative"] == pytest.approx(energy, abs=2e-5 * abs(energy))
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("target", ["point", "rigid"])
 def test_undamped_energy_over_a_day(target: str) -> None:
     """0.155 J of relative motion, and a target that tumbles at 5 deg/s: over a day of tugs 1e-9 of the 0.155 J stay."""
@@ -459,6 +460,7 @@ def test_a_start_is_stretched_between_the_attachments() -> None:
             assert i["tether.length"] == pytest.approx(10.2, rel=1e-14)
 
 
+@pytest.mark.evidence
 def test_a_linear_reel_feeds_forward_the_tide_on_the_centres() -> None:
     """At its commanded length, aligned and at rest, the line has 3 n^2 m_r (l_c + a), a the length of the arm."""
     arm = 1.5

@@ -156,6 +156,7 @@ def test_a_swing_is_damped() -> None:
         assert i["tether.tug_count"] == 1
 
 
+@pytest.mark.evidence
 def test_a_sampled_loop_decays_by_its_poles() -> None:
     """Table 2's pair about its equilibrium, a sample each 30 s: along the slowest oscillation of the sampled loop."""
     values, asked, terms = scene("sampled_linear", gains=LQR)
@@ -228,6 +229,7 @@ def test_spin_goes_into_the_orbit() -> None:
     assert 0.3 * 2.0 * 8.0 < taken < 1.05 * 2.0 * 8.0
 
 
+@pytest.mark.evidence
 @uncompiled
 def test_one_tension_for_both_ways_calms_nothing() -> None:
     """The same pull while it recedes and while it nears: after a whole turn the spin has its energy back.

@@ -159,6 +159,7 @@ def test_a_line_is_wound_round_a_cylinder(validated: Validated) -> None:
     assert i["tether.bends"] > 60
 
 
+@pytest.mark.evidence
 def test_the_unwinding_line_turns_the_cylinder() -> None:
     """The energy that a reel of constant tension pays is the tension times the length that comes off."""
     radius, pull = 1.3, 5.0
