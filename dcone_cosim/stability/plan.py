@@ -205,6 +205,9 @@ class _Maker:
         if handed:
             why = f"goes without a {handed[0]} of its own: the phase before hands it over"
             return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, why))
+        why = self._unsuited(scheme)
+        if why:
+            return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, why))
         try:
             made, changes, without = self._made(extreme, scheme)
         except InputError as error:
@@ -228,6 +231,16 @@ class _Maker:
             found = refusal(_told(error))
             return Planned(draft.extreme, draft.scheme, draft.changes, found=found)
         return Planned(draft.extreme, draft.scheme, draft.changes, case)
+
+    def _unsuited(self, scheme: Scheme) -> str:
+        """Why a part of the scene, as it is, does not go together with what the scheme changes; "" where all do."""
+        try:
+            self._base(scheme)
+        except InputError as error:
+            told = _told(error)
+            if any(f"{change.partition('=')[0]} = " in told for change in scheme.changes):
+                return f"does not go together with the scene: {told}"
+        return ""
 
     def _base(self, scheme: Scheme) -> PhaseScene:
         if scheme.name not in self._bases:

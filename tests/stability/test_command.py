@@ -15,7 +15,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.stability import commands
 from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, LEFT, REFUSED
-from dcone_cosim.stability.plan import plan
+from dcone_cosim.stability.plan import AS_IT_IS, plan
 from dcone_cosim.stability.work import judge_cell
 from tests.cases.conftest import put_scene, template
 
@@ -112,6 +112,21 @@ def test_a_part_that_is_left_out_takes_its_extremes_with_it() -> None:
     assert {"restitution 1", "closing at the first instant", "net of 10 mg"} <= set(schemes["rk4, double"].lacks)
     assert "all slack" not in schemes["rk4, double"].lacks
     assert EXCLUDED == "excluded"
+
+
+def test_what_a_part_of_the_scene_does_not_go_together_with_is_no_case() -> None:
+    """Contact by penalty asks for double precision: single is no failure of a scheme, and without contact it is one."""
+    from dcone_cosim.stability.plan import _Maker, _schemes
+
+    alone = Alone("table1-capture", ('capture.contact.law="penalty"',), None)
+    schemes = {one.name: one for one in _schemes(alone.scene.phases[0])}
+    maker = _Maker(alone, "capture", (), Fmus(Progress()), 1.0, True)
+    why = maker._unsuited(schemes["leapfrog, single"])
+    assert 'must be "double" with contact by penalty' in why
+    assert [maker._unsuited(schemes[name]) for name in ("leapfrog, double", "rk4, double", "rk4, single")] == [""] * 3
+    verdict = maker.draft(AS_IT_IS, schemes["leapfrog, single"]).found
+    assert verdict is not None
+    assert (verdict.kind, verdict.text) == (EXCLUDED, why)
 
 
 def test_a_scheme_that_cannot_follow_the_net_is_tried_at_substeps_of_one_length() -> None:
