@@ -144,9 +144,13 @@ def _lacking(model: str, all_terms: Mapping[str, str], terms: Mapping[str, str])
 
 def _left_out(model: build.Model, terms: Mapping[str, str], numerics: Sequence[str]) -> list[str]:
     """Groups that a choice of numerics cannot go together with, and those that have nothing to act on then."""
-    left = dict(terms)
-    found = [other for group, other in model.clashing(left) if group in numerics]
-    while found and any(name in left for name in found):
+    return _and_what_needs_them(model, terms, [other for group, other in model.clashing(terms) if group in numerics])
+
+
+def _and_what_needs_them(model: build.Model, terms: Mapping[str, str], gone: Sequence[str]) -> list[str]:
+    """Groups that are left out, and those that have nothing to act on then."""
+    left, found = dict(terms), list(gone)
+    while any(name in left for name in found):
         for name in found:
             left.pop(name, None)
         found += [group for group, needed in model.missing(left) if needed not in left]
@@ -260,13 +264,15 @@ class _Maker:
             given = extreme.given(values)
             if any(name not in values and f"{name}[1]" not in values for name in given):
                 return None, (), ()
-            groups = build.CATALOGUE[main.model].groups
-            for name, term in extreme.terms.items():
-                table = groups[name].table or name
-                if term is None:
-                    without.append(table)
-                else:
-                    changes.append(f'{self._phase}.{table}.{groups[name].selector}="{term}"')
+            model = build.CATALOGUE[main.model]
+            tables = {name: group.table or name for name, group in model.groups.items()}
+            gone = [name for name, term in extreme.terms.items() if term is None]
+            without += [tables[name] for name in _and_what_needs_them(model, main.terms, gone)]
+            changes += [
+                f'{self._phase}.{tables[name]}.{model.groups[name].selector}="{term}"'
+                for name, term in extreme.terms.items()
+                if term is not None
+            ]
             changes += changes_of(own, given, DIGITS)
             numbers = {name: value for name, value in given.items() if not isinstance(value, Sequence)}
             followed = following(own, numbers)

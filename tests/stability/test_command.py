@@ -129,6 +129,20 @@ def test_what_a_part_of_the_scene_does_not_go_together_with_is_no_case() -> None
     assert (verdict.kind, verdict.text) == (EXCLUDED, why)
 
 
+def test_what_needs_a_part_that_an_extreme_goes_without_is_left_out_too() -> None:
+    """A net without a closing cord is not pulled once it is closed."""
+    from dcone_cosim.stability.plan import _Maker, _schemes
+
+    alone = Alone("pull-off", (), None)
+    own = alone.scene.phases[0]
+    slack = next(one for one in build.extremes(own.main.model, own.main.terms) if one.name == "no slack")
+    assert slack.terms["closing"] is None
+    made, _, without = _Maker(alone, "capture", (), Fmus(Progress()), 1.0, True)._made(slack, next(_schemes(own)))
+    assert made is not None
+    assert {"closing", "pull_off"} <= set(without)
+    assert not {"closing", "pull_off"} & set(made.phases[0].main.terms)
+
+
 def test_a_scheme_that_cannot_follow_the_net_is_tried_at_substeps_of_one_length() -> None:
     """A scene of following substeps is one of every scheme: none is refused for the pace of another."""
     from dcone_cosim.stability.plan import _schemes
