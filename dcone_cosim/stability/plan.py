@@ -262,9 +262,10 @@ class _Maker:
         if main.fmu is None:
             values = {**main.values, **main.asked}
             given = extreme.given(values)
-            if any(name not in values and f"{name}[1]" not in values for name in given):
-                return None, (), ()
             model = build.CATALOGUE[main.model]
+            worked_out = model.interface(main.terms).follows  # no scene says these
+            if any((name not in values and f"{name}[1]" not in values) or name in worked_out for name in given):
+                return None, (), ()
             tables = {name: group.table or name for name, group in model.groups.items()}
             gone = [name for name, term in extreme.terms.items() if term is None]
             without += [tables[name] for name in _and_what_needs_them(model, main.terms, gone)]

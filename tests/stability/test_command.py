@@ -129,6 +129,17 @@ def test_what_a_part_of_the_scene_does_not_go_together_with_is_no_case() -> None
     assert (verdict.kind, verdict.text) == (EXCLUDED, why)
 
 
+def test_what_a_scene_does_not_say_is_no_extreme() -> None:
+    """The mass of a target of several pieces is the sum of theirs."""
+    from dcone_cosim.stability.plan import _Maker, _schemes
+
+    alone = Alone("upper-stage", ('phases=["capture"]',), None)
+    own = alone.scene.phases[0]
+    light = next(one for one in build.extremes(own.main.model, own.main.terms) if one.name == "target of 1 kg")
+    maker = _Maker(alone, "capture", (), Fmus(Progress()), 1.0, True)
+    assert maker._made(light, next(_schemes(own)))[0] is None
+
+
 def test_what_needs_a_part_that_an_extreme_goes_without_is_left_out_too() -> None:
     """A net without a closing cord is not pulled once it is closed."""
     from dcone_cosim.stability.plan import _Maker, _schemes
