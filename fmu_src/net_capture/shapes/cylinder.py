@@ -16,6 +16,37 @@ DRAWN_AROUND = 24
 
 
 @kernel
+def of_prism(normal, flat, x, y, height, half_length):
+    """Signed distance [m] from the surface of what has one section all along its third axis and flat ends; outward
+    normal into `normal`.
+
+    flat         signed distance from the section's edge [m], and the way out of it there, x and y [1]
+    height       along the axis, from its middle         [m]
+    normal       unit vector                             [1]  (3,)
+
+    Valid    a section whose distances are exact
+    Checked  tests/net_capture/test_shapes.py, test_pieces.py
+    """
+    up = 1.0 if height >= 0.0 else -1.0
+    end = abs(height) - half_length
+    if flat > 0.0 and end > 0.0:
+        distance = math.sqrt(flat * flat + end * end)
+        normal[0] = flat / distance * x
+        normal[1] = flat / distance * y
+        normal[2] = end / distance * up
+        return distance
+    if flat > end:
+        normal[0] = x
+        normal[1] = y
+        normal[2] = 0.0
+        return flat
+    normal[0] = 0.0
+    normal[1] = 0.0
+    normal[2] = up
+    return end
+
+
+@kernel
 def cylinder_distance(normal, point, radius, half_length):
     """Signed distance [m] of a point from the surface of a cylinder, negative inside; outward normal into `normal`.
 
@@ -31,24 +62,7 @@ def cylinder_distance(normal, point, radius, half_length):
     across = math.sqrt(point[0] * point[0] + point[1] * point[1])
     x = point[0] / across if across > 0.0 else 1.0
     y = point[1] / across if across > 0.0 else 0.0
-    up = 1.0 if point[2] >= 0.0 else -1.0
-    a = across - radius
-    b = abs(point[2]) - half_length
-    if a > 0.0 and b > 0.0:
-        distance = math.sqrt(a * a + b * b)
-        normal[0] = a / distance * x
-        normal[1] = a / distance * y
-        normal[2] = b / distance * up
-        return distance
-    if a > b:
-        normal[0] = x
-        normal[1] = y
-        normal[2] = 0.0
-        return a
-    normal[0] = 0.0
-    normal[1] = 0.0
-    normal[2] = up
-    return b
+    return of_prism(normal, across - radius, x, y, point[2], half_length)
 
 
 @kernel

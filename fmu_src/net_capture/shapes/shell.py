@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from fmu_src.net_capture.shapes.cylinder import of_prism
 from orbital.kernel import kernel
 
 
@@ -51,23 +52,7 @@ def shell_distance(normal, point, radius, length, thickness, angle):
             flat = beyond
             nx = mx
             ny = my
-    end = abs(point[2]) - 0.5 * length
-    up = 1.0 if point[2] >= 0.0 else -1.0
-    if flat > 0.0 and end > 0.0:
-        distance = math.sqrt(flat * flat + end * end)
-        normal[0] = flat / distance * nx
-        normal[1] = flat / distance * ny
-        normal[2] = end / distance * up
-        return distance
-    if flat > end:
-        normal[0] = nx
-        normal[1] = ny
-        normal[2] = 0.0
-        return flat
-    normal[0] = 0.0
-    normal[1] = 0.0
-    normal[2] = up
-    return end
+    return of_prism(normal, flat, nx, ny, point[2], 0.5 * length)
 
 
 def shell_center(radius: float, length: float, thickness: float, angle: float) -> float:
