@@ -214,12 +214,12 @@ def _surrounds(rim: Floats) -> bool:
 
 
 def _in_one_piece(nodes: Floats, names: Ints, near: list[list[int]], first: int) -> None:
-    seen, todo = {first}, [first]
-    while todo:
-        for other in near[todo.pop()]:
-            if other not in seen:
-                seen.add(other)
-                todo.append(other)
-    left = [k for k in range(len(names)) if k not in seen]
-    if left:
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    ends = np.array([(a, b) for a, others in enumerate(near) for b in others])
+    threads = csr_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(names), len(names)))
+    _, piece = connected_components(threads, directed=False)
+    left = np.flatnonzero(piece != piece[first])
+    if len(left):
         raise NetError(NODES, nodes[left[0], LINE], f"no threads lead from node {names[left[0]]} to the mouth")
