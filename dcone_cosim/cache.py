@@ -13,7 +13,7 @@ import shutil
 import statistics
 import time as clock
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +22,8 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.scratch import Scratch, clear_left
 
 DAY = 86400.0
+COMMON = "kernels"
+"""The folder of kernels that the FMUs of several choices of terms have in common, as a build names it."""
 MENDED = "what should be here is built when it is needed"
 UNKNOWN = "this may take a minute or two"
 
@@ -54,7 +56,16 @@ def listing(folder: Path, fault: Callable[[Path], str]) -> list[Kept]:
 
 def _files(folder: Path) -> Iterator[tuple[Path, int, float]]:
     """Whatever has the name of an FMU, with its size [bytes] and when it was written [s since the epoch]."""
-    for path in folder.glob("*.fmu"):
+    yield from _about(folder.glob("*.fmu"))
+
+
+def _kernels(folder: Path) -> Iterator[tuple[Path, int, float]]:
+    """The same of what FMUs have in common."""
+    yield from _about(path for path in (folder / COMMON).rglob("*") if path.is_file())
+
+
+def _about(paths: Iterable[Path]) -> Iterator[tuple[Path, int, float]]:
+    for path in paths:
         with suppress(OSError):
             about = path.lstat()
             yield path, about.st_size, about.st_mtime
@@ -70,14 +81,29 @@ def _described(path: Path) -> tuple[str, str]:
 
 
 def clear(folder: Path, older_than: float = 0.0) -> tuple[int, int]:
-    """Remove what was built longer ago than this [s]; returns how many FMUs and how many bytes are gone."""
+    """Remove what was built longer ago than this [s], kernels that FMUs have in common too; returns how many FMUs and
+    how many bytes are gone."""
     now, count, size = clock.time(), 0, 0
     for path, bytes_of, built in _files(folder):
         if now - built >= older_than:
             _remove(path)
             count, size = count + 1, size + bytes_of
+    for path, size_of, built in _kernels(folder):
+        if now - built >= older_than:
+            path.unlink(missing_ok=True)
+            size += size_of
+    with suppress(OSError):
+        for emptied in sorted((folder / COMMON).rglob("*"), reverse=True):
+            if emptied.is_dir() and not any(emptied.iterdir()):
+                emptied.rmdir()
+        (folder / COMMON).rmdir()
     clear_left(folder)
     return count, size
+
+
+def size_of_kernels(folder: Path) -> int:
+    """Of the kernels that FMUs have in common [bytes]."""
+    return sum(size for _, size, _ in _kernels(folder))
 
 
 def _remove(path: Path) -> None:

@@ -35,7 +35,7 @@ def list_kept(json: Annotated[bool, typer.Option("--json", help="Answer as JSON.
     One serves every scene with these terms, whatever its values.
     """
     from dcone_cosim.build import cache_folder, fault
-    from dcone_cosim.cache import listing, spoken_age, spoken_size
+    from dcone_cosim.cache import listing, size_of_kernels, spoken_age, spoken_size
 
     folder = cache_folder()
     found, now = listing(folder, fault), clock.time()
@@ -51,7 +51,7 @@ def list_kept(json: Annotated[bool, typer.Option("--json", help="Answer as JSON.
             about = f"{spoken_size(kept.size):>8}  {spoken_age(now - kept.built):>8}"
             typer.echo(f"{kept.path.name:{width}}  {about}  {kept.terms}")
         total = spoken_size(sum(kept.size for kept in found))
-        typer.echo(f"{len(found)} FMUs, {total}, in {folder}")
+        typer.echo(f"{len(found)} FMUs, {total}, and {spoken_size(size_of_kernels(folder))} for others, in {folder}")
 
 
 @cache_app.command(name="clear")
@@ -60,7 +60,7 @@ def clear_kept(
         str, typer.Option("--older-than", metavar="AGE", help="Only what was built longer ago, such as 30d or 12h.")
     ] = "",
 ) -> None:
-    """Remove FMUs that are kept; what is needed is built again. Nothing that is being built is touched."""
+    """Remove FMUs and kernels that are kept; what is needed is built again. Nothing being built is touched."""
     from dcone_cosim.build import cache_folder
     from dcone_cosim.cache import age, clear, spoken_size
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 import copy
 import ctypes
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -41,7 +42,7 @@ class _Linked(CPUCodeLibrary):
 
     def finalize(self) -> None:
         # the linker takes of a module what is referred to by then
-        self._linking_libraries = _callers_first(self._linking_libraries)
+        self._linking_libraries = callers_first(self._linking_libraries)
         super().finalize()  # type: ignore[no-untyped-call]
 
 
@@ -56,7 +57,7 @@ class TextLibrary(_Linked):
         self._finalized = True
 
 
-def _callers_first(libraries: list[Any]) -> list[Any]:
+def callers_first(libraries: list[Any]) -> list[Any]:
     """The libraries and all parts below them, each behind all that call it."""
     done: dict[Any, None] = {}
 
@@ -138,13 +139,25 @@ def _target(context_class: type, library_class: type) -> Any:
     return SimpleNamespace(typing_context=typing, target_context=context, options=cpu_target.options)
 
 
+@dataclass
+class Parts:
+    """What numba is to make of kernels that others call, and of the one whose text is asked for."""
+
+    context: type = PartContext
+    library: type = PartLibrary
+    text: type = TextLibrary
+    dispatcher: type = PartDispatcher
+
+
+parts = Parts()
+"""Of this process."""
+
+
 def _dispatcher(function: Any, options: dict[str, Any], context_class: type, library_class: type) -> Any:
     """numba's dispatcher, with a target of our own; the function itself where numba is told not to compile."""
     dispatcher = njit(**options)(function)
     if dispatcher is not function:
         dispatcher._compiler.targetdescr = _target(context_class, library_class)
-        if context_class is PartContext:
-            dispatcher.__class__ = PartDispatcher
     return dispatcher
 
 
@@ -153,7 +166,10 @@ BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 def part(function: Any, options: dict[str, Any]) -> Any:
     """Dispatcher of a kernel for use by other kernels."""
-    return _dispatcher(function, options | BARE, PartContext, PartLibrary)
+    dispatcher = _dispatcher(function, options | BARE, parts.context, parts.library)
+    if dispatcher is not function:
+        dispatcher.__class__ = parts.dispatcher
+    return dispatcher
 
 
 def whole(function: Any, options: dict[str, Any], signature: Any = None) -> Any:
@@ -167,7 +183,7 @@ def whole(function: Any, options: dict[str, Any], signature: Any = None) -> Any:
 
 def module_text(function: Any, signature: Any, options: dict[str, Any]) -> tuple[str, str]:
     """Name of a kernel's function in LLVM IR, and that IR: it and all below it, optimised as numba is told to."""
-    dispatcher = _dispatcher(function, options | BARE, PartContext, TextLibrary)
+    dispatcher = _dispatcher(function, options | BARE, parts.context, parts.text)
     dispatcher.compile(signature)
     result = dispatcher.overloads[signature.args]
     return result.fndesc.llvm_func_name, result.library.get_llvm_str()

@@ -95,7 +95,7 @@ class Shared:
         def make(path: Path) -> None:
             known = builds.kernels(cache_folder(), name, builds.fingerprint(interface))
             if known is None:
-                emit(interface.model, interface.terms, path)
+                emit(interface.model, interface.terms, path, self._folder / builds.COMMON)
             else:
                 path.write_bytes(known)
 
@@ -127,9 +127,9 @@ def share(folder: Path) -> None:
             return instance.compiled(model, terms)
         return shared.entry(model.name, tuple(terms.items()))
 
-    def emit_once(model: Model, terms: Mapping[str, str], path: Path) -> None:
+    def emit_once(model: Model, terms: Mapping[str, str], path: Path, kept: Path) -> None:
         if MODELS.get(model.name) is not model:
-            emit(model, terms, path)
+            emit(model, terms, path, kept)
         else:
             shutil.copyfile(shared.ir(model.name, tuple(terms.items())), path)
 

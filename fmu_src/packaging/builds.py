@@ -48,6 +48,8 @@ from fmu_src.packaging.platforms import PLATFORMS, WIN64, Platform, host
 PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
 """What settles by its version what comes out: the tools, and this package, whose version the description tells."""
 SOURCES = Path(__file__).parents[1]
+COMMON = "kernels"
+"""The folder of a cache that has the kernels which choices of terms have in common."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]
 Workplace = Callable[[Path], AbstractContextManager[Path]]
@@ -110,7 +112,7 @@ def build(
         if known is None:
             terms = ", ".join(interface.terms) or "no terms to choose"
             announce(f"building {name} with {terms} (once; kept in {cache})")
-            compile.emit(interface.model, interface.terms, ir)
+            compile.emit(interface.model, interface.terms, ir, cache / COMMON)
         else:
             ir.write_bytes(known)
         header = folder / "model.h"

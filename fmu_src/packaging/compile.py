@@ -1,4 +1,4 @@
-"""LLVM IR of a model's entry, free of Python: `python -m fmu_src.packaging.compile MODULE TERMS OUT`.
+"""LLVM IR of a model's entry, free of Python: `python -m fmu_src.packaging.compile MODULE TERMS OUT KEPT`.
 
 Runs as a child process, since what numba emits is settled by the environment it is imported in: a generic processor
 and no vectoriser of its own, so that clang chooses both for each target. All but the entry becomes internal, what is
@@ -33,9 +33,13 @@ ENVIRONMENT = {
 }
 
 
-def emit(model: Model, terms: Mapping[str, str], path: Path) -> None:
-    """Write the IR of one model with its terms to `path`, in a child process."""
-    command = [sys.executable, "-m", "fmu_src.packaging.compile", model.module, json.dumps(dict(terms)), str(path)]
+def emit(model: Model, terms: Mapping[str, str], path: Path, kept: Path) -> None:
+    """Write the IR of one model with its terms to `path`, in a child process.
+
+    kept    folder of the kernels that other choices of terms have in common with this one, see `orbital.keeping`
+    """
+    what = [model.module, json.dumps(dict(terms)), str(path), str(kept)]
+    command = [sys.executable, "-m", "fmu_src.packaging.compile", *what]
     tools.run(f"compiling the kernels of {model.name}", command, {**os.environ, **ENVIRONMENT})
 
 
@@ -51,12 +55,15 @@ def _keep_loops_whole(llvm: Any) -> None:
     llvm.create_pipeline_tuning_options = options_without_unrolling
 
 
-def _lower(module: str, terms: Mapping[str, str]) -> str:
+def _lower(module: str, terms: Mapping[str, str], kept: Path) -> str:
     import importlib
 
     import llvmlite.binding as llvm
 
+    from orbital import keeping
+
     _keep_loops_whole(llvm)
+    keeping.keep_in(kept)
     name, ir = importlib.import_module(module).make_entry(dict(terms)).module_text()
     whole = llvm.parse_assembly(ir)
     for function in whole.functions:
@@ -81,4 +88,5 @@ def _lower(module: str, terms: Mapping[str, str]) -> str:
 
 if __name__ == "__main__":
     gc.disable()  # nearly all objects live to the end: to look through them takes a tenth of the time
-    Path(sys.argv[3]).write_text(_lower(sys.argv[1], json.loads(sys.argv[2])))
+    _, _module, _terms, _out, _kept = sys.argv
+    Path(_out).write_text(_lower(_module, json.loads(_terms), Path(_kept)))

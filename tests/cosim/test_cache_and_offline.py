@@ -21,7 +21,7 @@ from dcone_cosim import build, offline, progress
 from dcone_cosim.cache import Times, age, clear, listing, spoken_age
 from dcone_cosim.errors import InputError
 from dcone_cosim.scratch import Scratch
-from fmu_src.packaging import start_values
+from fmu_src.packaging import builds, start_values
 from tests.cosim.conftest import Dcone
 
 XML = '<fmiModelDescription modelName="{}" description="A net. Built with: {}. Left out: nodes."/>'
@@ -81,6 +81,18 @@ class TestCache:
         assert dcone("cache", "clear")[1].startswith("1 FMUs removed")
         assert sorted(p.name for p in folder.iterdir()) == [living, lock]
         assert (folder / living / "model.ll").exists()
+
+    def test_kernels_kept_for_other_choices_of_terms_are_told_and_cleared(self, dcone: Dcone, folder: Path) -> None:
+        old, young = (folder / builds.COMMON / "key" / name for name in ("old", "young"))
+        old.parent.mkdir(parents=True)
+        for path, days in ((old, 40.0), (young, 1.0)):
+            path.write_bytes(bytes(50_000))
+            os.utime(path, (time.time() - days * DAY,) * 2)
+        assert ", and 100 kB for others, in" in dcone("cache", "list")[1]
+        dcone("cache", "clear", "--older-than", "30d")
+        assert (old.exists(), young.exists()) == (False, True)
+        dcone("cache", "clear")
+        assert not (folder / builds.COMMON).exists()
 
     def test_a_cache_that_is_not_there_is_empty(self, dcone: Dcone, tmp_path: Path, monkeypatch) -> None:
         monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "none"))

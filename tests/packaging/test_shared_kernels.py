@@ -47,7 +47,7 @@ def asked(monkeypatch, tmp_path):
     emit, asked = kernels.emit, []
     for module, name in ((compile, "emit"), (instance, "entry_of")):
         monkeypatch.setattr(module, name, getattr(module, name))  # put back afterwards
-    monkeypatch.setattr(kernels, "emit", lambda model, terms, ir: (asked.append(dict(terms)), emit(model, terms, ir)))
+    monkeypatch.setattr(kernels, "emit", lambda model, terms, *to: (asked.append(dict(terms)), emit(model, terms, *to)))
     monkeypatch.setattr(kernels.builds, "kernels", lambda *_: None)
     kernels.share(tmp_path)
     return asked
@@ -62,7 +62,7 @@ def test_each_choice_of_terms_is_compiled_once(asked, tmp_path):
         made["length"] = 13.0
         made.step(0.1)
         assert (made["tension"] == 2.5) == (terms == {})
-        compile.emit(MODEL, made.interface.terms, tmp_path / "model.ll")
+        compile.emit(MODEL, made.interface.terms, tmp_path / "model.ll", tmp_path / "kernels")
     assert asked == [{}, {"motor": "lag"}]
 
 

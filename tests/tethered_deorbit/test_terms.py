@@ -115,7 +115,7 @@ def test_tension_pulls_together() -> None:
 
 def code(terms: dict[str, str], folder: Path) -> str:
     """What goes into an FMU with these terms, as LLVM IR."""
-    compile.emit(MODEL, MODEL.interface(terms).terms, folder / "model.ll")
+    compile.emit(MODEL, MODEL.interface(terms).terms, folder / "model.ll", folder / "kernels")
     return (folder / "model.ll").read_text()
 
 

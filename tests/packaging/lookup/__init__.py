@@ -126,7 +126,7 @@ def build(folder: Path, terms: Mapping[str, str], target: platforms.Target | Non
     place = folder / "binaries" / platforms.host().places[0].folder
     place.mkdir(parents=True)
     ir, header, library = folder / "model.ll", folder / "model.h", place / "lookup.so"
-    compile.emit(MODEL, terms, ir)
+    compile.emit(MODEL, terms, ir, folder / "kernels")
     header.write_text(c_header.header(MODEL.interface(terms), "lookup", key))
     link.link(ir, header, library, [target] if target else platforms.host().places[0].targets)
     return library

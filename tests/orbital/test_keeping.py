@@ -1,0 +1,232 @@
+"""Kernels that are kept: found again by what they are made from, whatever the record around their fields."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dcone_cosim.api import load_scene
+from dcone_cosim.loading import shipped
+from fmu_src.catalogue import MODELS
+from fmu_src.packaging import compile
+from orbital.keeping import Keys, NoKeyError
+from orbital.kernel import kernel
+from tests import kernels
+
+ROOT = Path(__file__).parents[2]
+MODULE = """
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from orbital import keeping
+from orbital.kernel import entry, kernel
+
+LIMIT = 3.0
+
+
+@kernel
+def half(x):
+    return 0.5 * min(x, LIMIT)
+
+
+def make_add(factor):
+    @kernel
+    def add(p, x):
+        p.sum += factor * half(x) + p.offsets[1]
+    return add
+
+
+def make_entry(dtype):
+    add = make_add(2.0)
+
+    @entry(dtype)
+    def model_entry(command, records, work, time, step):
+        p = records[0]
+        p.other = command
+        add(p, time)
+        return 0
+    return model_entry
+
+
+compiled = []
+compile = keeping.PartDispatcher.compile
+def note(self, sig):
+    compiled.append(self.py_func.__name__)
+    return compile(self, sig)
+keeping.PartDispatcher.compile = note
+keeping.keep_in(Path(sys.argv[2]))
+name, text = make_entry(np.dtype([tuple(field) for field in json.loads(sys.argv[1])], align=True)).module_text()
+Path(sys.argv[3]).write_text(text.replace(name, "dcone_entry"))
+print(json.dumps(compiled))
+"""
+FIELDS: list[tuple[object, ...]] = [("sum", "f8"), ("offsets", "f8", [2]), ("other", "i8")]
+OTHER_ORDER = [("other", "i8"), ("more", "f8", [3]), ("offsets", "f8", [2]), ("sum", "f8")]
+
+
+class Compiler:
+    """Compiles the entry in a process of its own, and knows which kernels that took."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self.kept, self.text = folder, folder / "kept", MODULE
+
+    def __call__(self, fields: list[tuple[object, ...]]) -> list[str]:
+        """Names of the kernels that were compiled."""
+        (self._folder / "module.py").write_text(self.text)
+        arguments = [json.dumps(fields), str(self.kept), str(self._folder / "model.ll")]
+        command = [sys.executable, str(self._folder / "module.py"), *arguments]
+        environment = {**os.environ, **compile.ENVIRONMENT, "PYTHONPATH": str(ROOT)}
+        told = subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
+        names: list[str] = json.loads(told)
+        return names
+
+    @property
+    def ir(self) -> str:
+        return (self._folder / "model.ll").read_text()
+
+    def run(self, fields: list[tuple[object, ...]], time: float) -> float:
+        """What the entry adds up to."""
+        library = self._folder / f"{len(list(self._folder.iterdir()))}.so"
+        kernels._library(self._folder / "model.ll", library)
+        shape = [(name, kind, tuple(*extents)) for name, kind, *extents in fields]
+        records = np.zeros(1, np.dtype(shape, align=True))
+        records["offsets"] = 0.0, 0.25
+        assert kernels.Entry(library)(7, records, np.zeros(1), time, 0.0) == 0
+        assert records["other"] == 7
+        return float(records["sum"][0])
+
+
+@pytest.fixture(scope="module")
+def warm(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the entry was compiled."""
+    folder = tmp_path_factory.mktemp("warm")
+    assert set(Compiler(folder)(FIELDS)) == {"add", "half"}
+    return folder
+
+
+@pytest.fixture
+def compiler(tmp_path: Path, warm: Path) -> Compiler:
+    """One that finds all kernels kept."""
+    shutil.copytree(warm, tmp_path / "own")
+    return Compiler(tmp_path / "own")
+
+
+def test_a_second_build_compiles_nothing_but_the_entry_and_gives_the_same_text(compiler: Compiler) -> None:
+    first = compiler.ir
+    assert compiler(FIELDS) == []
+    assert compiler.ir == first
+    assert "place." not in first, "places are numbers by now"
+    assert compiler.run(FIELDS, 1.5) == 1.5 + 0.25
+
+
+def test_fields_may_lie_elsewhere(compiler: Compiler) -> None:
+    assert compiler(OTHER_ORDER) == []
+    assert compiler.run(OTHER_ORDER, 8.0) == 3.0 + 0.25
+
+
+@pytest.mark.parametrize(("kind", "sum_"), [("f4", 3.25), ("i8", 3.0)])
+def test_a_field_of_another_type_is_another_kernels(compiler: Compiler, kind: str, sum_: float) -> None:
+    fields = [("sum", kind), *FIELDS[1:]]
+    assert compiler(fields) == ["add"]
+    assert compiler.run(fields, 4.5) == sum_
+
+
+def test_an_array_of_another_length_is_another_kernels(compiler: Compiler) -> None:
+    assert compiler([FIELDS[0], ("offsets", "f8", [3]), FIELDS[2]]) == ["add"]
+
+
+def test_what_is_new_is_compiled_and_no_more(compiler: Compiler) -> None:
+    compiler.text = compiler.text.replace("make_add(2.0)", "make_add(4.0)")
+    assert compiler(FIELDS) == ["add"]
+    assert compiler.run(FIELDS, 8.0) == 6.25
+
+
+@kernel
+def callee(x):
+    return x
+
+
+def make(factor, called, text="x"):
+    """Key of a kernel, and of whatever it is made from."""
+    scope = {"__name__": __name__, "kernel": kernel, "factor": factor, "called": called, "LIMIT": 3.0, "np": np}
+    exec(f"@kernel\ndef made(x, y=1.0):\n    return factor * called({text})", scope)
+    return Keys().of(scope["made"])
+
+
+@kernel
+def another(x):
+    return x + 1.0
+
+
+def test_what_a_kernel_is_made_from_is_in_its_key():
+    first = make(2.0, callee)
+    assert make(2.0, callee) == first
+    different = [
+        make(2, callee),
+        make(3.0, callee),
+        make(2.0, another),
+        make(2.0, callee, "y"),
+        make(2.0, callee, "-x"),
+    ]
+    assert len({first, *different}) == 6
+
+
+def test_what_is_closed_over_is_in_its_key():
+    def close_over(value):
+        @kernel
+        def made(x):
+            return x * value
+
+        return Keys().of(made)
+
+    values = (1.0, 1, True, "1", None, (1.0,), (1.0, 1.0), callee, another, np.float32(1.0), np.ones(2), np.ones(3))
+    assert len({close_over(value) for value in values}) == len(values)
+    assert close_over((callee, 2.0)) == close_over((callee, 2.0))
+
+
+def test_what_has_no_hash_has_no_key():
+    with pytest.raises(NoKeyError, match="no hash of <object"):
+        Keys().of((1.0, object()))
+
+
+def test_a_damaged_file_is_compiled_again(compiler: Compiler) -> None:
+    first = compiler.ir
+    for path in compiler.kept.rglob("*"):
+        if path.is_file():
+            data = bytearray(path.read_bytes())
+            data[-20] ^= 0xFF
+            path.write_bytes(data)
+    assert set(compiler(FIELDS)) == {"add", "half"}
+    assert compiler.ir == first
+
+
+def test_a_store_that_can_not_be_written_keeps_nothing(compiler: Compiler) -> None:
+    shutil.rmtree(compiler.kept)
+    compiler.kept.touch()
+    assert set(compiler(FIELDS)) == {"add", "half"}
+    assert compiler.run(FIELDS, 1.5) == 1.75
+
+
+def test_every_kernel_of_the_shipped_scenes_has_a_key() -> None:
+    """Else it would be compiled again for each choice of terms, and nobody would notice but by the clock."""
+    keys = Keys()
+    chosen = {
+        (component.model, tuple(component.terms.items()))
+        for name in shipped()
+        for phase in load_scene(name).checked.phases
+        for component in phase.components
+        if component.fmu is None
+    }
+    assert len(chosen) > 20
+    for model, terms in chosen:
+        keys.of(importlib.import_module(MODELS[model].module).make_entry(dict(terms)))
