@@ -56,7 +56,7 @@ def tension(result: PhaseResult, comparison: PhaseResult | None, since: str, tit
     _stems(above, sets, divisor)
     values = np.concatenate([pull, *(rows[:, 1] for _, rows, _, _ in sets)])
     values = values[values > LEAST]
-    above.set_yscale("log")
+    style.logarithmic(above)
     if len(values):
         above.set_ylim(max(LEAST, 0.3 * values.min()), 3.0 * values.max())
     above.set_xlim(0.0, time[-1] / divisor)
