@@ -15,14 +15,11 @@ Checked  tests/orbital/test_keeping.py
 from __future__ import annotations
 
 import hashlib
-import importlib
-import inspect
 import json
 import os
 import pickle
 import platform
 import tempfile
-import types as python
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -39,12 +36,11 @@ from llvmlite import ir
 from numba.core import sigutils, types
 from numba.core.compiler import compile_result
 from numba.core.environment import Environment
-from numba.core.extending import _Intrinsic
 from numba.core.funcdesc import PythonFunctionDescriptor
 from numba.core.typing.templates import signature
 
 from orbital import linking
-from orbital.kernel import Kernel
+from orbital.keys import Keys, NoKeyError, digest, source
 from orbital.linking import PartContext, PartDispatcher, PartLibrary, TextLibrary, callers_first
 
 PLACE = "place."
@@ -52,100 +48,13 @@ PLACE = "place."
 WORD = ir.IntType(64)
 
 
-class NoKeyError(TypeError):
-    """There is no hash of something that a kernel is made from."""
-
-
-def _digest(*parts: str) -> str:
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
-
-
-@cache
-def _source(module: str) -> str:
-    """Hash of a module's source."""
-    return _digest(inspect.getsource(importlib.import_module(module)))
-
-
-def _own_source(module: str) -> str:
-    """The same of a module that is not numba's: what numba is taught there belongs to whatever uses its types."""
-    return "" if module.startswith(("numba.", "llvmlite.")) else _source(module)
-
-
-class Keys:
-    """Hashes of what kernels are made from; every object keeps the one that it had first."""
-
-    def __init__(self) -> None:
-        self._known: dict[int, tuple[Any, str]] = {}
-
-    def of(self, value: Any) -> str:
-        """What is the same for two values that make the same code; `NoKeyError` where that is not known."""
-        if value is None or isinstance(value, str | bytes | int | float | complex | np.generic):
-            return f"{type(value).__name__} {value!r}"
-        known = self._known.get(id(value))
-        if known is None:
-            self._known[id(value)] = (value, "within itself")
-            known = self._known[id(value)] = (value, self._made_of(value))
-        return known[1]
-
-    def _made_of(self, value: Any) -> str:
-        match value:
-            case Kernel():
-                options = self.of(sorted(value._options.items()))
-                return _digest("kernel", value.__module__, self._function(value.py_func), options)
-            case _Intrinsic():
-                return _digest("intrinsic", _source(value._defn.__module__), self._function(value._defn))
-            case python.FunctionType():
-                return _digest("function", value.__module__, self._function(value))
-            case python.CodeType():
-                return _digest("code", value.co_code.hex(), value.co_exceptiontable.hex(), *map(self.of, (
-                    value.co_consts, value.co_names, value.co_varnames, value.co_freevars, value.co_cellvars,
-                )))  # fmt: skip
-            case python.ModuleType():
-                return f"module {value.__name__}"
-            case tuple() | list():
-                return _digest(_named(type(value)), str(getattr(value, "_fields", "")), *map(self.of, value))
-            case dict():
-                return _digest("dict", *(self.of(item) for item in value.items()))
-            case frozenset():
-                return _digest("frozenset", *sorted(map(self.of, value)))
-            case np.ndarray():
-                return _digest("array", value.dtype.str, str(value.shape), value.tobytes().hex())
-            case types.Type() | ir.Type():
-                own = (
-                    ""
-                    if type(value).__module__.startswith(("numba.", "llvmlite."))
-                    else _source(type(value).__module__)
-                )
-                return _digest(_named(type(value)), str(value), own)
-            case type() | python.BuiltinFunctionType() | np.ufunc():
-                return f"{_named(value)} {getattr(value, '_fields', '')}"
-        raise NoKeyError(f"no hash of {value!r:.80}")
-
-    def _function(self, function: Any) -> str:
-        code = function.__code__
-        names = sorted(name for name in _names(code) if name in function.__globals__)
-        around = [(name, function.__globals__[name]) for name in names]
-        closed = [cell.cell_contents for cell in function.__closure__ or ()]
-        return _digest(self.of(code), self.of(around), self.of(closed), self.of(function.__defaults__))
-
-
-def _named(value: Any) -> str:
-    return f"{getattr(value, '__module__', '')}.{getattr(value, '__qualname__', value.__class__.__qualname__)}"
-
-
-def _names(code: python.CodeType) -> set[str]:
-    """Every name that a function and those within it refer to, and their attributes."""
-    inner = [constant for constant in code.co_consts if isinstance(constant, python.CodeType)]
-    return set(code.co_names).union(*map(_names, inner))
-
-
 @cache
 def _tools() -> str:
     """Hash of what makes code of a kernel: versions, settings, and our own rules of linking."""
     settings = sorted((name, value) for name, value in os.environ.items() if name.startswith("NUMBA_"))
     versions = numba.__version__, llvmlite.__version__, np.__version__, platform.python_version(), platform.machine()
-    rules = (_source(name) for name in ("orbital.kernel", "orbital.linking", "orbital.keeping"))
-    return _digest(*versions, json.dumps(settings), *rules)
+    rules = (source(name) for name in ("orbital.kernel", "orbital.linking", "orbital.keeping", "orbital.keys"))
+    return digest(*versions, json.dumps(settings), *rules)
 
 
 @dataclass
@@ -349,7 +258,7 @@ class Store:
         try:
             kinds = ("record" if isinstance(kind, types.Record) else self._kind(kind) for kind in args)
             made = self._keys.of(function), self._keys.of(sorted(options.items()))
-            return _digest(_tools(), *made, *kinds)
+            return digest(_tools(), *made, *kinds)
         except NoKeyError:
             return None
 
@@ -386,9 +295,9 @@ class Store:
         for called in library._linking_libraries:
             library.fields |= called.fields
         fields = dict(sorted(library.fields.items()))
-        place = key, _digest(json.dumps(fields))[:32]
+        place = key, digest(json.dumps(fields))[:32]
         where = f"{function.__module__}.{function.__qualname__}".replace(".<locals>", "")
-        name = f"{where}.{_digest(*place)[:16]}"
+        name = f"{where}.{digest(*place)[:16]}"
         library.rename(name)
         result.fndesc.mangled_name = name
         calls = [called.place for called in library._linking_libraries]

@@ -17,8 +17,9 @@ from dcone_cosim.api import load_scene
 from dcone_cosim.loading import shipped
 from fmu_src.catalogue import MODELS
 from fmu_src.packaging import compile
-from orbital.keeping import Keys, NoKeyError
+from orbital import vectors
 from orbital.kernel import kernel
+from orbital.keys import Keys, NoKeyError
 from tests import kernels
 
 ROOT = Path(__file__).parents[2]
@@ -192,6 +193,21 @@ def test_what_is_closed_over_is_in_its_key():
     values = (1.0, 1, True, "1", None, (1.0,), (1.0, 1.0), callee, another, np.float32(1.0), np.ones(2), np.ones(3))
     assert len({close_over(value) for value in values}) == len(values)
     assert close_over((callee, 2.0)) == close_over((callee, 2.0))
+
+
+@kernel
+def through_a_module(x):
+    return x * vectors.OF_A_TEST
+
+
+def test_what_a_module_holds_is_in_the_key(monkeypatch):
+    """Of its attributes those alone that the kernel names."""
+    monkeypatch.setattr(vectors, "OF_A_TEST", 2.0, raising=False)
+    first = Keys().of(through_a_module)
+    monkeypatch.setattr(vectors, "OF_NOBODY", object(), raising=False)
+    assert Keys().of(through_a_module) == first
+    monkeypatch.setattr(vectors, "OF_A_TEST", 3.0)
+    assert Keys().of(through_a_module) != first
 
 
 def test_what_has_no_hash_has_no_key():

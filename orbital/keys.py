@@ -1,0 +1,115 @@
+"""Hashes of what kernels are made from: two kernels of one hash are compiled to the same code.
+
+A kernel is its code and all that this refers to: what it closes over, globals of its module, attributes of modules of
+ours, and the kernels and functions among these likewise. What numba was taught in a module of ours (types, intrinsics)
+counts with that module's whole source.
+
+Checked  tests/orbital/test_keeping.py
+"""
+
+from __future__ import annotations
+
+import enum
+import hashlib
+import importlib
+import inspect
+import types as python
+from functools import cache
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.core.extending import _Intrinsic
+
+from orbital.kernel import Kernel
+
+OWN = ("orbital", "fmu_src", "dcone_cosim", "tests")
+"""Packages whose modules may change while the versions of all others stay."""
+
+
+class NoKeyError(TypeError):
+    """There is no hash of something that a kernel is made from."""
+
+
+def digest(*parts: str) -> str:
+    """One hash of several texts."""
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+@cache
+def source(module: str) -> str:
+    """Hash of a module's source."""
+    return digest(inspect.getsource(importlib.import_module(module)))
+
+
+class Keys:
+    """Hashes of what kernels are made from; every object keeps the one that it had first."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Any, str]] = {}
+
+    def of(self, value: Any) -> str:
+        """What is the same for two values that make the same code; `NoKeyError` where that is not known."""
+        if value is None or isinstance(value, str | bytes | int | float | complex | np.generic):
+            return f"{type(value).__name__} {value!r}"
+        known = self._known.get(id(value))
+        if known is None:
+            self._known[id(value)] = (value, "within itself")
+            known = self._known[id(value)] = (value, self._made_of(value))
+        return known[1]
+
+    def _made_of(self, value: Any) -> str:
+        match value:
+            case Kernel():
+                options = self.of(sorted(value._options.items()))
+                return digest("kernel", value.__module__, self._function(value.py_func), options)
+            case _Intrinsic():
+                return digest("intrinsic", source(value._defn.__module__), self._function(value._defn))
+            case python.FunctionType():
+                return digest("function", value.__module__, self._function(value))
+            case python.CodeType():
+                return digest("code", value.co_code.hex(), value.co_exceptiontable.hex(), *map(self.of, (
+                    value.co_consts, value.co_names, value.co_varnames, value.co_freevars, value.co_cellvars,
+                )))  # fmt: skip
+            case python.ModuleType():
+                return f"module {value.__name__}"
+            case tuple() | list():
+                return digest(_named(type(value)), str(getattr(value, "_fields", "")), *map(self.of, value))
+            case dict():
+                return digest("dict", *(self.of(item) for item in value.items()))
+            case frozenset():
+                return digest("frozenset", *sorted(map(self.of, value)))
+            case np.ndarray():
+                return digest("array", value.dtype.str, str(value.shape), value.tobytes().hex())
+            case types.Type() | ir.Type():
+                module = type(value).__module__
+                taught = "" if module.startswith(("numba.", "llvmlite.")) else source(module)
+                return digest(_named(type(value)), str(value), taught)
+            case enum.EnumType():
+                return digest(
+                    _named(value), *(f"{name} {self.of(one.value)}" for name, one in value.__members__.items())
+                )
+            case type() | python.BuiltinFunctionType() | np.ufunc():
+                return f"{_named(value)} {getattr(value, '_fields', '')}"
+        raise NoKeyError(f"no hash of {value!r:.80}")
+
+    def _function(self, function: Any) -> str:
+        code = function.__code__
+        names = sorted(_names(code))
+        around = [(name, function.__globals__[name]) for name in names if name in function.__globals__]
+        for _, module in list(around):
+            if isinstance(module, python.ModuleType) and module.__name__.partition(".")[0] in OWN:
+                around += [(name, getattr(module, name)) for name in names if hasattr(module, name)]
+        closed = [cell.cell_contents for cell in function.__closure__ or ()]
+        return digest(self.of(code), self.of(around), self.of(closed), self.of(function.__defaults__))
+
+
+def _named(value: Any) -> str:
+    return f"{getattr(value, '__module__', '')}.{getattr(value, '__qualname__', value.__class__.__qualname__)}"
+
+
+def _names(code: python.CodeType) -> set[str]:
+    """Every name that a function and those within it refer to, and their attributes."""
+    inner = [constant for constant in code.co_consts if isinstance(constant, python.CodeType)]
+    return set(code.co_names).union(*map(_names, inner))
