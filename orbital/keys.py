@@ -87,9 +87,8 @@ class Keys:
                 taught = "" if module.startswith(("numba.", "llvmlite.")) else source(module)
                 return digest(_named(type(value)), str(value), taught)
             case enum.EnumType():
-                return digest(
-                    _named(value), *(f"{name} {self.of(one.value)}" for name, one in value.__members__.items())
-                )
+                members: Any = value
+                return digest(_named(value), self.of([(member.name, member.value) for member in members]))
             case type() | python.BuiltinFunctionType() | np.ufunc():
                 return f"{_named(value)} {getattr(value, '_fields', '')}"
         raise NoKeyError(f"no hash of {value!r:.80}")
