@@ -65,7 +65,7 @@ class Composition:
         self.per_double = self.lanes.width // 4
         scratch = SCRATCH_PLANES * self.per_double if "quality" in terms else 0
         self.planes = self.scratch_plane + scratch
-        self.memory = make_memory(terms["precision"], self.planes)
+        self.memory = make_memory(terms["precision"])
         self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
         self.rouse, self.meeting = needs.make_rouse(self), traits.make_meeting(self)

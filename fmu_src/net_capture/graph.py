@@ -33,6 +33,7 @@ def make_graph(composition: Any) -> Graph:
     node_plane, strips, properties, rim = memory.node_plane, memory.strips, memory.properties, memory.rim
     corners, bullets = memory.corners, memory.bullets
     count_of, lay_net, rim_node = net.count, net.lay_out, net.rim_node
+    planes = composition.planes
     number, wrong_number = composition.bullets, composition.code(WRONG_NUMBER.name)
     rig = _together(composition.rigging)
     has_rig = rig is not None
@@ -51,6 +52,7 @@ def make_graph(composition: Any) -> Graph:
             p.fault_value = number
             return wrong_number
         p.net_strips = p.strips
+        p.node_planes = planes
         if has_rig:
             fault = count_rig(p)
         return fault

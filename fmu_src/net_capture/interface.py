@@ -195,6 +195,7 @@ BASE = (
     state("axes[#]", "1", "shot axes as rows: two transverse, then the axis itself", shape=(9,)),
     state("muzzle[#]", "m", "muzzle at the start, orbital frame", shape=(3,)),
     count("strips", "rows of parallel threads", "state"),
+    count("node_planes", "planes of node quantities", "state"),
     count("node_slots", "slots in each node plane", "state"),
     count("measure_every", "substeps between two looks at mouth and capture", "state"),
     state("chaser_place[#]", "m", "chaser at the last substep", shape=(3,)),

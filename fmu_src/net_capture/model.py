@@ -53,7 +53,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     thread_capacity = int(terms["threads"]) if has_threads else 0
     tensions = make_tensions(parts) if has_threads else None
     has_hardest, hardest = parts.hardest is not None, parts.hardest
-    planes, per_double = parts.planes, parts.per_double
+    per_double = parts.per_double
     properties = parts.memory.properties
 
     graph, folding, gravity, scheme, peaks = parts.graph, parts.folding, parts.gravity, parts.scheme, parts.peaks
@@ -105,7 +105,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         words = scheme.own_words(p) + masks * p.strips
         if has_wrap:
             words += wrap.words(p)
-        p.work_size = work_size(p, planes, per_double, words)
+        p.work_size = work_size(p, per_double, words)
         return 0
 
     @kernel

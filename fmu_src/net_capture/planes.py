@@ -70,8 +70,8 @@ class Memory(NamedTuple):
     reals: Any
 
 
-def make_memory(precision: str, planes: int) -> Memory:
-    """The memory of a model of that precision, with so many node planes."""
+def make_memory(precision: str) -> Memory:
+    """The memory of a model of that precision."""
     from fmu_src.lanes import of, whole
 
     reals = of(precision).reals
@@ -91,7 +91,7 @@ def make_memory(precision: str, planes: int) -> Memory:
 
         Checked  tests/net_capture/test_nets.py
         """
-        return planes * p.node_slots // per_double
+        return p.node_planes * p.node_slots // per_double
 
     @view
     def strips(p, work):
@@ -193,13 +193,13 @@ def make_memory(precision: str, planes: int) -> Memory:
 
 
 @kernel
-def work_size(p, planes, per_double, own_words):
+def work_size(p, per_double, own_words):
     """Doubles of work memory [1]: planes, tables of the graph, the scheme's own words.
 
     Checked  tests/net_capture/test_nets.py
     """
     graph = (STRIP_WORDS + STRIP_NUMBERS) * p.strips + p.rim_nodes + 2 * p.net_corners + p.apex_nodes
-    return planes * p.node_slots // per_double + graph + FACE_WORDS * p.net_faces + own_words
+    return p.node_planes * p.node_slots // per_double + graph + FACE_WORDS * p.net_faces + own_words
 
 
 @kernel

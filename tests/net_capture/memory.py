@@ -59,7 +59,7 @@ class Bench:
         own = self.parts.scheme.own_words(self.p) + self.parts.traits.masks * self.p.strips
         if self.parts.wrap is not None:
             own += self.parts.wrap.words(self.p)
-        self.work = np.zeros(work_size(self.p, self.parts.planes, self.parts.per_double, own))
+        self.work = np.zeros(work_size(self.p, self.parts.per_double, own))
         self.p.work_size = self.work.size
         self.parts.graph.lay_out(self.p, self.work)
 
