@@ -9,7 +9,6 @@ import typer
 from typer.core import TyperGroup
 
 from dcone_cosim.cli_options import Jobs, Json, Offline, answer, at_work, promise, results
-
 from dcone_cosim.exits import complain
 
 if TYPE_CHECKING:
@@ -36,10 +35,10 @@ Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a campaig
 
 @campaign_app.command()
 def run(
-    campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A campaign file, or the name of a shipped one.")],
+    campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A campaign's file or name.")],
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="Folder for the results; the same command goes on there with what is missing."),
+        typer.Option("-o", "--out", help="Folder for the results; the same command goes on there."),
     ] = None,
     scheduler: Annotated[
         str | None,
@@ -59,13 +58,13 @@ def run(
     ] = None,
     offline: Offline = False,
 ) -> None:
-    """Run a campaign: cases drawn from its dispersions, until there are as many, or the interval is as narrow, as asked.
+    """Run a campaign: cases drawn from its dispersions, as many as asked, or until the interval is as narrow as asked.
 
     The folder has report.html, pictures, table.parquet and table.csv with a row for each case, and the rows themselves.
     Stop it or kill it whenever you like: the same command goes on with the cases that are missing, to the same bits.
 
-    Exit code: 0 done, 2 bad input, 6 interrupted, and the cases that are done are kept, 7 some cases gave no answer, and
-    the table has the reason of each.
+    Exit code: 0 done, 2 bad input, 6 interrupted, and the cases that are done are kept, 7 some cases gave no answer,
+    and the table has the reason of each.
     """
     promise(offline)
     from dcone_cosim.campaign import commands, show

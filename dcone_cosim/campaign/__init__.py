@@ -8,7 +8,8 @@
     engine          the loop: nothing lost, nothing twice, in the order of case numbers
     stopping        when an interval is narrow enough    rare        subset sampling
     maps            points put where the boundary is     sensitivity what the spread comes from
-    outcomes        how a case came out                  answers     probabilities, percentiles, with what is known of them
+    outcomes        how a case came out                  answers     probabilities, percentiles, with their intervals
+    explained       the spread of figures                worst       cases worth looking at
     commands        from the file to the folder          page, plot, show
 
 It stands on `cases`: their store, their runner, their workers.

@@ -71,7 +71,7 @@ def answers(spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[flo
 
     Checked  tests/campaign/test_answers.py
     """
-    confidence = 0.95 if spec.until is None else spec.until.confidence
+    confidence = spec.confidence
     verdicts = [succeeded(one.row, spec.success) for one in made]
     known = [verdict for verdict in verdicts if verdict is not None]
     good, lost = sum(known), len(made) - len(known)
@@ -93,9 +93,7 @@ def _figures(
     made: Sequence[Made], confidence: float, derived: Mapping[str, Sequence[float]]
 ) -> Iterator[tuple[str, Distribution]]:
     rows = [one.row for one in made if answered(one.row)]
-    names = dict.fromkeys(
-        name for row in rows for name, value in row.figures.items() if isinstance(value, int | float)
-    )
+    names = dict.fromkeys(name for row in rows for name, value in row.figures.items() if isinstance(value, int | float))
     for name in names:
         values = [row.figures.get(name) for row in rows]
         numbers = [float(value) for value in values if isinstance(value, int | float) and math.isfinite(value)]

@@ -1,4 +1,4 @@
-"""What runs the cases: dask, here or elsewhere, or plain processes of ours. Each is an executor of `concurrent.futures`.
+"""What runs the cases: dask, here or elsewhere, or plain processes. Each is an executor of `concurrent.futures`.
 
     a local cluster     of dask, a process per core, where the extra `campaign` is installed: the default
     tcp://...           a scheduler of dask that is there already, with its workers
@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, TypeVar
 
@@ -132,8 +133,8 @@ def opened(scheduler: str | None, jobs: int | None) -> Iterator[Cluster]:
 def _here(count: int) -> Iterator[Cluster]:
     import logging
 
-    import dask
-    from distributed import Client, LocalCluster
+    dask: Any = import_module("dask")
+    distributed: Any = import_module("distributed")
 
     options = {
         "distributed.scheduler.allowed-failures": DEATHS - 1,
@@ -147,11 +148,11 @@ def _here(count: int) -> Iterator[Cluster]:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with (
         dask.config.set(options),
-        LocalCluster(
+        distributed.LocalCluster(
             n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
             host="127.0.0.1", silence_logs=logging.CRITICAL,
         ) as local,
-        Client(local, set_as_default=False) as client,
+        distributed.Client(local, set_as_default=False) as client,
     ):  # fmt: skip
         yield Cluster(_Dask(client), count, f"a local cluster of {count} processes", lambda: _need(client, "local"))
 
@@ -160,10 +161,10 @@ def _here(count: int) -> Iterator[Cluster]:
 def _elsewhere(address: str) -> Iterator[Cluster]:
     if not has_dask():
         raise InputError(f"--scheduler {address}: needs dask; pip install 'dcone-cosim[campaign]'")
-    from distributed import Client
+    distributed: Any = import_module("distributed")
 
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(f"--scheduler {address}: no scheduler there: {error}") from None
     with client:

@@ -5,22 +5,24 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from dcone_cosim import interrupts
-from dcone_cosim.campaign import cluster, show
+from dcone_cosim.campaign import cluster, explained, page, plot, show
+from dcone_cosim.campaign import inputs as inputs_module
 from dcone_cosim.campaign.answers import answers, required_diameters
 from dcone_cosim.campaign.engine import Engine, Made, Work, key_of
-from dcone_cosim.campaign import inputs as inputs_module
 from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, summary_of, table
 from dcone_cosim.campaign.inputs import Inputs, base_of, inputs_of
+from dcone_cosim.campaign.outcomes import DONE
 from dcone_cosim.campaign.reading import read
 from dcone_cosim.campaign.sampling import check_grid, count_of, points
 from dcone_cosim.campaign.shots import ground_of, run_shot
-from dcone_cosim.campaign.spec import ADAPTIVE, SALTELLI, SUBSET, Spec
+from dcone_cosim.campaign.spec import ADAPTIVE, SALTELLI, SUBSET, Spec, Success
+from dcone_cosim.campaign.worst import CASES, worst
 from dcone_cosim.cases.alone import Fmus
 from dcone_cosim.cases.case import code, content, digest
 from dcone_cosim.cases.commands import TOLD
@@ -30,10 +32,11 @@ from dcone_cosim.cases.store import STUDY, Store
 from dcone_cosim.cases.table import Entry, as_arrow, timings
 from dcone_cosim.cases.work import make_ready
 from dcone_cosim.cases.workers import cores
-from dcone_cosim.errors import CASES_FAILED, SUCCESS, InputError
 from dcone_cosim.commands import Written, run_and_write
+from dcone_cosim.errors import CASES_FAILED, SUCCESS
 from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
+from dcone_cosim.report.commands import write_page
 from dcone_cosim.run_folder import default_folder
 from dcone_cosim.run_reading import json_of
 from dcone_cosim.scene.data import Scene
@@ -109,6 +112,8 @@ def checked(path: Path) -> tuple[Spec, Scene, Inputs]:
     """A campaign held against its scene; nothing is built or run."""
     spec = read(path)
     base = base_of(spec)
+    if spec.success == Success() and not any(phase.name == "capture" for phase in base.phases):
+        spec = replace(spec, success=Success(DONE, text=DONE))
     inputs = inputs_of(spec, base)
     check_grid(spec, inputs.names, [one.points for one in inputs.inputs])
     if spec.sampler == SALTELLI and spec.correlations:
@@ -226,7 +231,10 @@ def _check_figures(spec: Spec, nominal: Row) -> None:
         for name, figures in (("indices", spec.indices), ("success", (figure,) if figure else ())):
             kept_names = [one.removesuffix(OPTIONAL) for one in spec.record]
             lacking = [one for one in figures if one.removesuffix(OPTIONAL) not in kept_names]
-            wrong += [Mistake((name,), one, f"is not kept{did_you_mean(one, kept_names)}; add it to record") for one in lacking]
+            wrong += [
+                Mistake((name,), one, f"is not kept{did_you_mean(one, kept_names)}; add it to record")
+                for one in lacking
+            ]
     if wrong:
         raise SceneError(wrong, spec.places)
 
@@ -243,8 +251,8 @@ def _written(
 ) -> Done:
     spec, made = plan.spec, engine.made
     derived = required_diameters(spec, plan.base, plan.inputs.names, made)
-    told = answers(spec, made, derived)
-    said = [*show.sentences(spec, told)]
+    told, spread = answers(spec, made, derived), explained.explained(spec, plan.inputs, made)
+    said = [*show.sentences(spec, told), *_of_sampler(spec, found), *explained.sentences(spread), *_of_cost(made)]
     content_of = {
         "campaign": spec.name,
         "title": spec.title,
@@ -253,22 +261,47 @@ def _written(
         "seed": spec.seed,
         **show.as_dict(spec, told),
         **found,
+        **explained.as_dict(spread),
         "said": said,
         "nominal": {"status": nominal.status, "figures": dict(nominal.figures)},
-        "cpu": _cost(made),
+        "cost": _cost(made),
     }
-    notes = list(plan.base.notes)
+    notes = [*plan.base.notes, *spread.notes]
     done = Done(spec.title, folder, made, content_of, said, notes)
+    worth = worst(spec, made, folder)
 
     def draw(draft: Path, about: Mapping[str, Any]) -> None:
         import pyarrow.parquet
 
         pyarrow.parquet.write_table(as_arrow(timings([Entry(one.row) for one in made])), draft / TIMINGS)
+        pictures = plot.draw(spec, plan.inputs, made, told, spread, draft) if with_figures else []
+        page.write(spec.title, said, plan.inputs, told, spread, worth, pictures, plan.text, notes, about, draft)
 
     write_report(
         folder, [plan.base], table(plan.inputs, made, derived), content_of, draw, started, done.exit_code, command
     )
     return done
+
+
+def _of_sampler(spec: Spec, found: Mapping[str, Any]) -> list[str]:
+    """What a map or a subset sampling found, in words."""
+    if "map" in found:
+        from dcone_cosim.campaign import maps
+
+        return maps.sentences(found["map"])
+    if "rare" in found:
+        from dcone_cosim.campaign import rare
+
+        return rare.sentences(spec, found["rare"])
+    return []
+
+
+def _of_cost(made: Sequence[Made]) -> list[str]:
+    told = _cost(made)
+    hours, stepping = told["all"]["value"] / 3600.0, told["stepping"]
+    if stepping is None:
+        return []
+    return [f"{len(made)} cases took {hours:.3g} CPU-h, {100.0 * stepping:.0f} % of it in the FMUs"]
 
 
 def _cost(made: Sequence[Made]) -> dict[str, Any]:
@@ -320,10 +353,17 @@ def told_of_check(path: Path) -> tuple[dict[str, Any], list[str]]:
         values = [one.value(u) for u in CHECKED]
         texts = [inputs_module.shown(one, value) for value in values]
         first.append({"input": one.name, "values": texts})
-    cases = f"{count:,} cases" if count is not None else f"cases until {spec.until.text if spec.until else ''}, {spec.most:,} at most"
+    cases = (
+        f"{count:,} cases"
+        if count is not None
+        else f"cases until {spec.until.text if spec.until else ''}, {spec.most:,} at most"
+    )
     said = [
         f"{base.name}: {cases} by {spec.sampler}, {len(inputs.inputs)} values drawn for each",
-        *(f"{row['input']}: {', '.join(row['values'])} at {', '.join(f'{100 * u:g} %' for u in CHECKED)}" for row in first),
+        *(
+            f"{row['input']}: {', '.join(row['values'])} at {', '.join(f'{100 * u:g} %' for u in CHECKED)}"
+            for row in first
+        ),
     ]
     return {"title": spec.title, "scene": base.name, "cases": count, "sampler": spec.sampler, "inputs": first}, said
 
@@ -332,8 +372,10 @@ def rerun(folder: Path, number: int, out: Path | None, progress: Progress, with_
     """Run a case of a campaign again, and write the full folder of a run."""
     found = kept(folder)
     settings = settings_of(found, number)
-    place = out if out is not None else default_folder(f"{found.spec.name}-case-{number}")
+    place = out if out is not None else folder / CASES / str(number)
     replay = any(phase.name == "capture" and phase.main.fmu is None for phase in found.base.phases)
-    return run_and_write(
+    written = run_and_write(
         str(folder / SCENE), place, progress, with_figures=with_figures, settings=settings, replay=replay
     )
+    write_page(written.folder, None, progress)
+    return written

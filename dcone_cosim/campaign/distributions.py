@@ -53,7 +53,9 @@ def _positive(given: Numbers, name: str) -> float:
 
 def _ordered(given: Numbers, *names: str) -> list[float]:
     values = [given[name] for name in names]
-    for (one, low), (two, high) in zip(zip(names, values, strict=True), list(zip(names, values, strict=True))[1:], strict=False):
+    for (one, low), (two, high) in zip(
+        zip(names, values, strict=True), list(zip(names, values, strict=True))[1:], strict=False
+    ):
         if not low <= high:
             raise Unfit(two, f"must not be less than {one}")
     if not values[0] < values[-1]:
@@ -136,8 +138,8 @@ DISCRETE = "discrete"
 
 
 def of_scipy(name: str) -> Kind | None:
-    """A continuous distribution of `scipy.stats` with its shapes as pure numbers, `loc` and `scale` in the value's unit;
-    None where there is none of that name.
+    """A continuous distribution of `scipy.stats`, its shapes pure numbers, `loc` and `scale` in the value's unit; None
+    where there is none of that name.
 
     Checked  tests/campaign/test_distributions.py
     """

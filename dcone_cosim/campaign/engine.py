@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from dcone_cosim.campaign.cluster import Cluster, SchedulerGone
@@ -30,11 +30,12 @@ Work = Callable[[Shot], Row]
 
 @dataclass(frozen=True)
 class Made:
-    """A case that has been run: its number, the values it had, SI, and its row."""
+    """A case that has been run: its number, the values it had, SI, its row, and its point of the unit cube."""
 
     number: int
     values: tuple[float, ...]
     row: Row
+    point: Point | None = field(default=None, repr=False, compare=False)
 
 
 def key_of(identity: Any, settings: Sequence[str]) -> str:
@@ -88,9 +89,8 @@ class Engine:
     ) -> None:
         self.spec, self.inputs, self._ground, self._identity = spec, inputs, ground, identity
         self._store, self._cluster, self._progress, self._work = store, cluster, progress, work
-        self._confidence = 0.95 if spec.until is None else spec.until.confidence
         self.made: list[Made] = []
-        self.tally = Tally(spec.success, self._confidence, 0)
+        self.tally = Tally(spec.success, spec.confidence, 0)
 
     def shot(self, number: int, values: Sequence[float]) -> Shot:
         """A case by its number and values."""
@@ -116,6 +116,7 @@ class Engine:
         self.tally.pace.total = most if count is not None else min(most, 1000)
         numbers_of: dict[str, list[int]] = {}
         values_of: dict[int, tuple[float, ...]] = {}
+        point_of: dict[int, Point] = {}
         rows: dict[int, Row] = {}
         stop = _Stop(spec, most)
 
@@ -128,7 +129,7 @@ class Engine:
                     return
                 values = tuple(self.inputs.values(point))
                 shot = self.shot(number, values)
-                values_of[number] = values
+                values_of[number], point_of[number] = values, point
                 if shot.key in numbers_of and numbers_of[shot.key][0] in rows:  # the same values once more
                     rows[number] = rows[numbers_of[shot.key][0]]
                 numbers_of.setdefault(shot.key, []).append(number)
@@ -144,7 +145,7 @@ class Engine:
                 self.tally.pace.total = stop.at or needed(stop.good, stop.answered, spec.until, most)  # type: ignore[arg-type]
         stop.look(rows)
         last = stop.at or len(values_of)
-        self.made = [Made(number, values_of[number], rows[number]) for number in range(1, last + 1)]
+        self.made = [Made(n, values_of[n], rows[n], point_of[n]) for n in range(1, last + 1)]
         return self.made
 
     def batch(self, points: Sequence[Point]) -> list[Made]:
@@ -157,7 +158,10 @@ class Engine:
         for row, before in self._rows(iter(shots)):
             found[row.key] = row
             self.tally.count(row, before)
-        new = [Made(shot.number, values, found[shot.key]) for shot, values in zip(shots, wanted, strict=True)]
+        new = [
+            Made(shot.number, values, found[shot.key], point)
+            for shot, values, point in zip(shots, wanted, points, strict=True)
+        ]
         self.made += new
         return new
 

@@ -100,7 +100,9 @@ def _from_table(found: Kept, number: int) -> list[float]:
     if not 1 <= number <= len(rows):
         raise InputError(f"case {number}: expected 0 for the scene as it is, or 1 to {len(rows):,}")
     return [
-        float(one.texts.index(rows[one.name][number - 1].as_py())) if one.texts else float(rows[one.name][number - 1].as_py())
+        float(one.texts.index(rows[one.name][number - 1].as_py()))
+        if one.texts
+        else float(rows[one.name][number - 1].as_py())
         for one in found.inputs.inputs
     ]
 

@@ -34,6 +34,8 @@ JITTER = "jitter"
 """Name of the input that is the solver's jitter."""
 SEEDS = 2**31 - 1
 """Seeds that the jitter may have."""
+NORMAL = ("normal", "lognormal")
+"""Distributions that are told best by their normal scores."""
 _ELEMENT = re.compile(r"(.+)\[(\d+)\]")
 _PROBES = (0.25, 0.75)
 """Where on its distribution a value is tried before anything is run."""
@@ -49,6 +51,7 @@ class Input:
     unit       SI, FMI name
     texts      of a discrete one
     points     coordinates of a grid
+    normal     whether its normal score tells it best
     """
 
     name: str
@@ -56,6 +59,7 @@ class Input:
     unit: str = "1"
     texts: tuple[str, ...] = ()
     points: tuple[float, ...] = ()
+    normal: bool = False
 
     def told(self, value: float) -> Value:
         """As a table has it."""
@@ -187,6 +191,11 @@ def inputs_of(spec: Spec, base: Scene, isolate: bool | None = None) -> Inputs:
         matrix |= {places: link.coefficient, places[::-1]: link.coefficient}  # type: ignore[dict-item]
     if spec.sampler == ADAPTIVE and not wrong and len(inputs) not in (2, 3):
         wrong.append(Mistake(("sampler",), ADAPTIVE, f"maps two or three values; {len(inputs)} are dispersed"))
+    if spec.sampler == ADAPTIVE:
+        for one in spec.dispersions:
+            if one.distribution != "uniform":
+                said = "expected uniform: a map has a least and a largest value of each, all alike"
+                wrong.append(Mistake((*one.path, "distribution"), one.distribution, said))
     factor = _factor(len(inputs), matrix)
     if matrix and factor is None:
         wrong.append(Mistake(("correlation",), None, "these coefficients contradict one another: no values have them"))
@@ -208,7 +217,7 @@ def _factor(size: int, matrix: Mapping[tuple[int, int], float]) -> npt.NDArray[n
     for (i, j), value in matrix.items():
         full[i, j] = value
     try:
-        return np.linalg.cholesky(full)
+        return np.asarray(np.linalg.cholesky(full), dtype=float)
     except np.linalg.LinAlgError:
         return None
 
@@ -246,7 +255,7 @@ class _Maker:
         for element in elements:
             quantile, unit = self._quantile(element)
             name = f"{self.key}[{element}]" if element else self.key
-            found.append(Input(name, quantile, unit, points=_grid(quantile, one)))
+            found.append(Input(name, quantile, unit, (), _grid(one), one.distribution in NORMAL))
         return found, self._writer(elements, unit)
 
     def _discrete(self) -> tuple[list[Input], Callable[[Sequence[float]], tuple[str, ...]]]:
@@ -359,7 +368,7 @@ class _Maker:
         return expected
 
 
-def _grid(quantile: Quantile, one: Dispersion) -> tuple[float, ...]:
+def _grid(one: Dispersion) -> tuple[float, ...]:
     """Coordinates of a grid's values: evenly spaced between the ends where there are such, at even shares elsewhere."""
     count = one.points
     if not count:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from dcone_cosim.campaign.spec import Success
 from dcone_cosim.cases.rows import Row
-from dcone_cosim.errors import CAPTURE_FAILED, FMU_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS
+from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS
 
 CAPTURE_OUTCOME, LASTED = "capture.outcome", "capture.lasted"
 TOLD_BY = (CAPTURE_OUTCOME, LASTED)

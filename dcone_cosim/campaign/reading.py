@@ -1,11 +1,11 @@
 """Reads a campaign from TOML; every mistake is told at once, with file, line, key and the nearest name.
 
-    title = "..."          scene = "table1-capture"      seed = 1
-    sampler = "monte-carlo"                              until = "95 % within 1 %"   # or n = 1000
-    record = ["capture.t_capture"]                       success = "captured"
-    [set.capture.ejection] number = 4                    values of the scene for all cases
-    [[dispersion]]  key = "..."  distribution = "normal"  deviation = "0.03 m/s"
-    [[correlation]] between = ["...", "..."]  coefficient = 0.5
+title = "..."          scene = "table1-capture"      seed = 1
+sampler = "monte-carlo"                              until = "95 % within 1 %"   # or n = 1000
+record = ["capture.t_capture"]                       success = "captured"
+[set.capture.ejection] number = 4                    values of the scene for all cases
+[[dispersion]]  key = "..."  distribution = "normal"  deviation = "0.03 m/s"
+[[correlation]] between = ["...", "..."]  coefficient = 0.5
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import Any
 from dcone_cosim.campaign import distributions
 from dcone_cosim.campaign.spec import (
     ADAPTIVE,
+    GRID,
     MONTE_CARLO,
     SAMPLERS,
     SUBSET,
@@ -103,9 +104,8 @@ class Reader:
             self._say(("until",), spec.until.text, why)
         if spec.until is not None and spec.n is not None:
             self._say(("n",), spec.n, "expected one of n and until")
-        if spec.until is None and spec.n is None and spec.sampler not in ("grid",) and "n" not in self.document:
-            if "until" not in self.document:
-                self._miss(("n",), 'expected how many cases, or until = "95 % within 1 %"')
+        if spec.sampler != GRID and {"n", "until"}.isdisjoint(self.document):
+            self._miss(("n",), 'expected how many cases, or until = "95 % within 1 %"')
         if spec.sampler == SUBSET and not spec.success.figure:
             text = 'expected success = { figure = "capture.enclosure.at_capture", above = 0.9 }: '
             self._miss(("success",), text + f'sampler = "{SUBSET}" needs a figure with a bound')
@@ -158,7 +158,9 @@ class Reader:
             key = self._text((*path, "key"), table.get("key"))
             word = table.get("distribution")
             if not isinstance(word, str):
-                self._missing((*path, "distribution"), word, f"expected one of {', '.join(distributions.KINDS)}, discrete")
+                self._missing(
+                    (*path, "distribution"), word, f"expected one of {', '.join(distributions.KINDS)}, discrete"
+                )
                 continue
             if word == distributions.DISCRETE:
                 yield self._discrete(path, key, table)
@@ -184,7 +186,9 @@ class Reader:
             self._missing((*path, "values"), values, "expected a list of two values or more")
             values = []
         weights = table.get("weights", [1.0] * len(values))
-        good = isinstance(weights, list) and all(isinstance(w, int | float) and not isinstance(w, bool) for w in weights)
+        good = isinstance(weights, list) and all(
+            isinstance(w, int | float) and not isinstance(w, bool) for w in weights
+        )
         if not good or len(weights) != len(values):
             self._say((*path, "weights"), table.get("weights"), "expected a number for each value")
             weights = [1.0] * len(values)

@@ -27,14 +27,12 @@ def sentences(spec: Spec, found: Answers) -> Iterator[str]:
     what = f"{100.0 * found.confidence:g} % interval"
     if found.success is not None:
         one = found.success
-        yield (
-            f"{spec.success.text}: {one.count} of {one.of} cases, probability {probability(one)}, {what} of Wilson"
-        )
+        yield (f"{spec.success.text}: {one.count} of {one.of} cases, probability {probability(one)}, {what} of Wilson")
         width = 0.5 * (one.interval[1] - one.interval[0])
         if spec.until is not None and width > spec.until.within:
-            yield f"the interval is not as narrow as asked ({spec.until.text}): {found.cases} cases are all there may be"
+            yield f"the interval is not as narrow as asked ({spec.until.text}): {found.cases} cases are all so far"
     elif found.cases:
-        yield f"{spec.success.text}: {found.good} of {found.cases} cases; these are no sample, and no probability follows"
+        yield f"{spec.success.text}: {found.good} of {found.cases} cases; they are no sample: no probability follows"
     for word, one in found.outcomes.items():
         yield f"{word}: {one.count} cases" + (f", {probability(one)}" if found.success is not None else "")
     if found.unanswered:

@@ -97,7 +97,7 @@ class Spec:
     jitter      whether the solver's jitter is one of the inputs
     record      figures that are kept; empty: all of them. One that ends in "?" may be missing
     indices     figures whose sensitivities are told
-    nominal     values of the design that the report tells beside
+    factor_of_safety    of the diameter that a line would have to have
     """
 
     name: str
@@ -117,6 +117,11 @@ class Spec:
     settings: tuple[str, ...]
     indices: tuple[str, ...]
     factor_of_safety: float
+
+    @property
+    def confidence(self) -> float:
+        """Of every interval that is told."""
+        return 0.95 if self.until is None else self.until.confidence
 
     @property
     def source(self) -> str:
