@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -17,11 +17,11 @@ from dcone_cosim.campaign.answers import answers, required_diameters
 from dcone_cosim.campaign.engine import Engine, Made, Work, key_of
 from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, summary_of, table
 from dcone_cosim.campaign.inputs import Inputs, base_of, inputs_of
-from dcone_cosim.campaign.outcomes import DONE
+from dcone_cosim.campaign.outcomes import settled
 from dcone_cosim.campaign.reading import read
 from dcone_cosim.campaign.sampling import check_grid, count_of, points
 from dcone_cosim.campaign.shots import ground_of, run_shot
-from dcone_cosim.campaign.spec import ADAPTIVE, SALTELLI, SUBSET, Spec, Success
+from dcone_cosim.campaign.spec import ADAPTIVE, SALTELLI, SUBSET, Spec
 from dcone_cosim.campaign.worst import CASES, worst
 from dcone_cosim.cases.alone import Fmus
 from dcone_cosim.cases.case import code, content, digest
@@ -112,8 +112,7 @@ def checked(path: Path) -> tuple[Spec, Scene, Inputs]:
     """A campaign held against its scene; nothing is built or run."""
     spec = read(path)
     base = base_of(spec)
-    if spec.success == Success() and not any(phase.name == "capture" for phase in base.phases):
-        spec = replace(spec, success=Success(DONE, text=DONE))
+    spec = settled(spec, base)
     inputs = inputs_of(spec, base)
     check_grid(spec, inputs.names, [one.points for one in inputs.inputs])
     if spec.sampler == SALTELLI and spec.correlations:

@@ -108,7 +108,8 @@ class Engine:
     def _idle(self) -> None:
         self._cluster.check()
         pace = self.tally.pace
-        self._progress.count("cases", pace.done, max(pace.total, pace.done), self.tally.told())
+        if pace.total:
+            self._progress.count("cases", pace.done, max(pace.total, pace.done), self.tally.told())
 
     def run(self, points: Iterator[Point], count: int | None) -> list[Made]:
         """Cases from the first on: `count` of them, or until the interval is narrow enough."""

@@ -18,7 +18,7 @@ from typing import Any
 
 from dcone_cosim.campaign.engine import Made
 from dcone_cosim.campaign.inputs import Inputs, base_of, inputs_of
-from dcone_cosim.campaign.outcomes import answered, outcome
+from dcone_cosim.campaign.outcomes import answered, outcome, settled
 from dcone_cosim.campaign.reading import parse
 from dcone_cosim.campaign.sampling import count_of, points
 from dcone_cosim.campaign.spec import ADAPTIVE, SUBSET, Spec
@@ -67,6 +67,7 @@ def kept(folder: Path) -> Kept:
         raise InputError(f"{folder} holds {told.get('kind', 'something else')}, not {KIND}")
     spec = parse(str(told["campaign"]), str(told["name"]), str(told["file"]))
     base = base_of(spec, folder / SCENE)
+    spec = settled(spec, base)
     return Kept(folder, spec, base, inputs_of(spec, base))
 
 

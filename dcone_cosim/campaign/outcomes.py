@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from dataclasses import replace
 
-from dcone_cosim.campaign.spec import Success
+from dcone_cosim.campaign.spec import Spec, Success
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS
+from dcone_cosim.scene.data import Scene
 
 CAPTURE_OUTCOME, LASTED = "capture.outcome", "capture.lasted"
 TOLD_BY = (CAPTURE_OUTCOME, LASTED)
@@ -15,6 +16,14 @@ TOLD_BY = (CAPTURE_OUTCOME, LASTED)
 BROKE, OUT_AGAIN, DONE, NOT_HANDED_OVER = "broke", "out again", "completed", "not handed over"
 CAUGHT = ("captured", "settled", "tether taut")
 """Outcomes of a capture that has come to its hand-over."""
+
+
+def settled(spec: Spec, base: Scene) -> Spec:
+    """The same with what counts as success, where it does not say that: a capture, or in a scene without one that it
+    comes to its end."""
+    if spec.success != Success() or any(phase.name == "capture" for phase in base.phases):
+        return spec
+    return replace(spec, success=Success(DONE, text=DONE))
 
 
 def answered(row: Row) -> bool:
@@ -65,7 +74,3 @@ def margin(row: Row, success: Success) -> float:
     """How far a case is on the good side of the bound, in the figure's unit; NaN where it does not have the figure."""
     value = row.figures.get(success.figure)
     return success.margin(float(value)) if isinstance(value, int | float) else math.nan
-
-
-def words(rows: Sequence[Row]) -> list[str]:
-    return [outcome(row) for row in rows]

@@ -54,19 +54,20 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
     if not figures:
         return
     table = Table(title_justify="left", box=None, pad_edge=False)
-    for place, head in enumerate(("", "mean", "spread", "5 %", "median", "95 %", "99 %", "")):
-        table.add_column(head, justify="right" if 0 < place < 7 else "left", no_wrap=True)
+    table.add_column("", overflow="fold", min_width=20)
+    for head in ("mean", "spread", "5 %", "median", "95 %", "99 %"):
+        table.add_column(head, justify="right", no_wrap=True)
     for name, one in list(figures.items())[:MOST_FIGURES]:
         numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
-        unit = "" if one["unit"] == "1" else one["unit"]
-        table.add_row(Text(name), *(_number(value) for value in numbers), unit)
+        unit = "" if one["unit"] == "1" else f" [{one['unit']}]"
+        table.add_row(Text(f"{name}{unit}"), *(_number(value) for value in numbers))
     console.print(table)
     if len(figures) > MOST_FIGURES:
         console.print(f"and {len(figures) - MOST_FIGURES} more figures in summary.json", highlight=False)
 
 
 def _number(value: Any) -> str:
-    return f"{value:.5g}" if isinstance(value, int | float) else str(value)
+    return f"{value:.4g}" if isinstance(value, int | float) else str(value)
 
 
 def as_dict(spec: Spec, found: Answers) -> dict[str, Any]:
