@@ -28,7 +28,7 @@ from dcone_cosim.scene.data import SHARED, ComponentScene, Scene
 from dcone_cosim.scene.expected import number_and_unit
 from dcone_cosim.scene.mistakes import Mistake, Mistakes, SceneError, unknown
 from dcone_cosim.scenes.reading import parse
-from dcone_cosim.units import Unit, by_name, named, si_name, spoken
+from dcone_cosim.units import PURE, Unit, by_name, named, si_name, spoken
 
 JITTER = "jitter"
 """Name of the input that is the solver's jitter."""
@@ -309,8 +309,7 @@ class _Maker:
         middle = numbers.get("mean", numbers.get("likeliest", here))
         for name, share in shares.items():
             if middle is None or math.isnan(middle):
-                text = f"a share needs the value that it is of; {self.key} has none in the scene"
-                raise _Wrong(Mistake((*one.path, name), told.get(name), text))
+                raise _Wrong(self._without_value(name))
             scale = middle if name in ("least", "most", "mean", "likeliest", "loc") else abs(middle)
             numbers[name] = scale * share
         if "within" in numbers:
@@ -325,6 +324,15 @@ class _Maker:
             return kind.make(numbers), unit
         except Unfit as error:
             raise _Wrong(Mistake((*one.path, error.name), one.told.get(error.name), str(error))) from None
+
+    def _without_value(self, name: str) -> Mistake:
+        """Of a share of what the scene does not tell: probably its key is misspelt."""
+        known = _keys(self.base)
+        if self.key not in known:
+            path = (*self.one.path, "key")
+            return unknown(path, self.one.key, f"{self.base.name} has no such key with a number", self.key, known)
+        text = f"a share needs the value that it is of; {self.key} has none in the scene"
+        return Mistake((*self.one.path, name), self.one.told.get(name), text)
 
     def _alone(self) -> float | None:
         """Value of a key that is no vector."""
@@ -357,11 +365,10 @@ class _Maker:
 
     def _one_unit(self, units: Mapping[str, Unit]) -> str:
         """FMI name of the SI unit that all are in."""
-        found = {name: si_name(unit.dimension) for name, unit in units.items() if unit.dimension is not None}
+        found = {name: si_name(unit.dimension or PURE) for name, unit in units.items()}
         expected = self.unit or next(iter(found.values()), "1")
         for name, unit in found.items():
-            same = unit == expected or by_name(unit).dimension == by_name(expected).dimension
-            if not same:
+            if (by_name(unit).dimension or PURE) != (by_name(expected).dimension or PURE):
                 told = spoken(expected) or "a pure number"
                 text = f"is in {spoken(unit) or 'no unit'}; {self.key} is in {told}"
                 raise _Wrong(Mistake((*self.one.path, name), self.one.told.get(name), text))
@@ -411,6 +418,15 @@ def _named(base: Scene, key: str) -> tuple[float | None, str, bool]:
     return None, "", False
 
 
+def _keys(base: Scene) -> list[str]:
+    """Keys of all numbers of the scene's own phases."""
+    return [
+        f"{phase.name}.{name.partition('[')[0]}" if not name.startswith(f"{SHARED}.") else name
+        for phase in base.phases
+        for name in phase.main.values
+    ]
+
+
 def _unit_of(component: ComponentScene, name: str) -> str:
     if not component.model:
         return ""
@@ -433,7 +449,7 @@ def _tried(spec: Spec, base: Scene, one: Dispersion, made: Sequence[Input], grou
     for place, number in enumerate(made):
         points = [(i + 0.5) / len(number.texts) for i in range(len(number.texts))] if number.texts else _PROBES
         values = list(map(float, range(len(number.texts)))) if number.texts else [number.value(u) for u in points]
-        found: dict[str, str] = {}
+        found: dict[str, tuple[str, float]] = {}
         for value in values:
             whole = [one_of.value(0.5) for one_of in made]
             whole[place] = value
@@ -443,8 +459,8 @@ def _tried(spec: Spec, base: Scene, one: Dispersion, made: Sequence[Input], grou
             except InputError as error:
                 yield _refusal(base, one, told, error)
                 return
-            same = found.setdefault(digest(reach(scene)), told)
-            if same != told:
+            same, before = found.setdefault(digest(reach(scene)), (told, value))
+            if before != value:
                 text = (
                     f"{same} and {told} come to the same in {base.name}: nothing that reaches an FMU differs; "
                     "expected a key that changes something"

@@ -10,6 +10,8 @@ from dcone_cosim.cases.rows import Row
 from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS
 from dcone_cosim.scene.data import Scene
 
+LOST_AGAIN = "no:"
+"""How `capture.lasted` begins of a target that came out again."""
 CAPTURE_OUTCOME, LASTED = "capture.outcome", "capture.lasted"
 TOLD_BY = (CAPTURE_OUTCOME, LASTED)
 """Figures that say how a case came out; they are always kept."""
@@ -51,7 +53,7 @@ def outcome(row: Row) -> str:
         return DONE
     if row.exit_code == CAPTURE_FAILED:
         return told
-    if str(row.figures.get(LASTED, "")).startswith("no"):
+    if str(row.figures.get(LASTED, "")).startswith(LOST_AGAIN):
         return OUT_AGAIN
     return "captured" if told in CAUGHT and row.figures.get(LASTED) else told
 
