@@ -296,18 +296,13 @@ def _of_sampler(spec: Spec, found: Mapping[str, Any]) -> list[str]:
 
 
 def _of_cost(made: Sequence[Made]) -> list[str]:
-    told = _cost(made)
-    hours, stepping = told["all"]["value"] / 3600.0, told["stepping"]
-    if stepping is None:
-        return []
-    return [f"{len(made)} cases took {hours:.3g} CPU-h, {100.0 * stepping:.0f} % of it in the FMUs"]
+    hours = _cost(made)["value"] / 3600.0
+    return [f"{len(made)} cases took {hours:.3g} CPU-h"] if hours > 0.0 else []
 
 
 def _cost(made: Sequence[Made]) -> dict[str, Any]:
-    """Processor time of all cases [s], and the share of it that FMUs were stepped in [1]."""
-    cpu = sum(one.row.timings.get("cpu", 0.0) for one in made)
-    stepping = sum(one.row.timings.get("stepping", 0.0) for one in made)
-    return {"all": {"value": cpu, "unit": "s"}, "stepping": stepping / cpu if cpu > 0.0 else None}
+    """Processor time of all cases [s]."""
+    return {"value": sum(one.row.timings.get("cpu", 0.0) for one in made), "unit": "s"}
 
 
 def shown(folder: Path) -> tuple[str, list[str], Mapping[str, Any], dict[str, Any]]:

@@ -16,6 +16,8 @@ from dcone_cosim.campaign.outcomes import answered, succeeded
 from dcone_cosim.campaign.sensitivity import Indices, Surrogate, sobol_indices, surrogates
 from dcone_cosim.campaign.spec import RANDOM, SALTELLI, Spec
 
+NOTHING = 0.9
+"""Error of a surrogate from which on it explains nothing [1]."""
 SUCCESS = "success"
 """Name of the figure that is 1 where a case came out as is wanted, else 0."""
 
@@ -82,6 +84,9 @@ def sentences(found: Explained) -> Iterator[str]:
         yield f"{one.figure}: {first.name} takes part in {share:.0f} % of its variance (+- {error:.0f} %)"
     for name, fitted in found.surrogates.items():
         best = min(fitted, key=lambda surrogate: surrogate.error)
+        if best.error >= NOTHING:
+            yield f"{name}: no surrogate explains it; its pattern is below the jitter, or needs more cases"
+            continue
         yield (
             f"{name}: a {best.kind} explains {100.0 * (1.0 - best.error):.0f} % of the variance of cases it has not "
             "seen; the rest is jitter, or finer than it can be"

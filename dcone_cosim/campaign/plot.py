@@ -11,7 +11,7 @@ import numpy as np
 
 from dcone_cosim.campaign.answers import Answers
 from dcone_cosim.campaign.engine import Made
-from dcone_cosim.campaign.explained import Explained
+from dcone_cosim.campaign.explained import NOTHING, Explained
 from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.outcomes import succeeded
 from dcone_cosim.campaign.spec import ADAPTIVE, GRID, Spec
@@ -94,7 +94,7 @@ def _figures(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, s
         if not numbers:
             axes.set_visible(False)
             continue
-        axes.hist(numbers, bins=BINS, color=style.NET, alpha=0.8)
+        axes.hist(numbers, bins=min(BINS, max(5, round(math.sqrt(len(numbers))))), color=style.NET, alpha=0.8)
         for p in one.percentiles[:3]:
             axes.axvline(p.value, color=style.BULLET, lw=0.9, ls="--")
         unit = "" if one.unit == "1" else f" [{one.unit}]"
@@ -140,7 +140,7 @@ def _sensitivity(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answer
     ]
     for name, fitted in spread.surrogates.items():
         chaos = next((one for one in fitted if one.indices), None)
-        if chaos is not None:
+        if chaos is not None and chaos.error < NOTHING:
             left = 1.0 - chaos.error  # indices are shares of what the polynomial explains
             rows = [(key, left * first, 0.0, left * total, 0.0) for key, (first, total) in chaos.indices.items()]
             bars.append((name, [*rows, ("not explained", chaos.error, 0.0, chaos.error, 0.0)]))
@@ -148,10 +148,10 @@ def _sensitivity(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answer
     if not bars:
         return None
     names = max((len(rows) for _, rows in bars), default=1)
-    height = 0.9 + 0.32 * names + 0.5
+    height = 1.05 + 0.32 * names + 0.5
     figure = style.new_figure(9.2, height)
     grid = figure.subplots(1, len(bars), squeeze=False)
-    figure.subplots_adjust(left=0.22, right=0.98, bottom=0.5 / height, top=1 - 0.85 / height, wspace=0.9)
+    figure.subplots_adjust(left=0.22, right=0.98, bottom=0.65 / height, top=1 - 0.85 / height, wspace=0.9)
     for axes, (figure_name, rows) in zip(grid.flat, bars, strict=True):
         places = np.arange(len(rows))[::-1]
         axes.barh(places + 0.18, [r[3] for r in rows], 0.34, xerr=[r[4] for r in rows], color=style.NET, label="total")
@@ -159,7 +159,7 @@ def _sensitivity(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answer
             places - 0.18, [r[1] for r in rows], 0.34, xerr=[r[2] for r in rows], color=style.ACCENT, label="alone"
         )
         axes.set_yticks(places, [r[0] for r in rows], fontsize=7, parse_math=False)
-        axes.set_xlabel(f"share of the variance of {figure_name}", fontsize=8, parse_math=False)
+        axes.set_xlabel(f"share of the variance of\n{figure_name}", fontsize=8, parse_math=False)
         axes.set_xlim(left=0.0)
         style.legend(axes, 2)
     return figure

@@ -80,9 +80,8 @@ def _in_one_line(error: InputError) -> str:
 
 
 def _tell(case: Case, result: RunResult, timings: Mapping[str, float], kept: tuple[str, ...]) -> Row:
-    """The row with the figures that are asked for, those that say how it came out, and what stepping its FMUs cost."""
-    stepping = sum(max(phase.cpu, 0.0) for phase in result.phases.values())
-    row = tell_summary(case, result, {**timings, "stepping": stepping})
+    """The row with the figures that are asked for, and those that say how it came out."""
+    row = tell_summary(case, result, timings)
     if not kept:
         return row
     wanted = {*kept, *TOLD_BY}
