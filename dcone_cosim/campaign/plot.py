@@ -117,7 +117,9 @@ def _map(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, sprea
         x, y = ([one.values[place] for one in made] for place in (i, j))
         if len(inputs.inputs) == 2 and spec.sampler == ADAPTIVE and len({v for v in verdicts if v is not None}) == 2:
             levels = [float(v is True) for v in verdicts]
-            axes.tricontourf(x, y, levels, levels=[-0.01, 0.5, 1.01], colors=[style.BULLET, style.ACCENT], alpha=0.18)
+            axes.tricontourf(
+                _triangles(x, y), levels, levels=[-0.01, 0.5, 1.01], colors=[style.BULLET, style.ACCENT], alpha=0.18
+            )
         for verdict, colour, label, mark in (
             (True, style.ACCENT, spec.success.text, "o"),
             (False, style.BULLET, "not", "x"),
@@ -128,9 +130,19 @@ def _map(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, sprea
                 axes.plot([x[n] for n in chosen], [y[n] for n in chosen], mark, color=colour, ms=3.5, label=label)
         for place, put in ((i, axes.set_xlabel), (j, axes.set_ylabel)):
             one = inputs.inputs[place]
+            axes.locator_params(nbins=5)
             put(one.name + ("" if one.unit == "1" else f" [{one.unit}]"), fontsize=8, parse_math=False)
         style.legend(axes)
     return figure
+
+
+def _triangles(x: Sequence[float], y: Sequence[float]) -> Any:
+    """Triangles between points whose axes have units of their own: each is as long as the other for them."""
+    from matplotlib.tri import Triangulation
+    from scipy.spatial import Delaunay
+
+    scaled = np.column_stack([(np.asarray(v) - min(v)) / np.ptp(v) for v in (x, y)])
+    return Triangulation(x, y, Delaunay(scaled).simplices)
 
 
 def _sensitivity(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, spread: Explained) -> Any:

@@ -57,6 +57,7 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
     table.add_column("", overflow="fold", min_width=20)
     for head in ("mean", "spread", "5 %", "median", "95 %", "99 %"):
         table.add_column(head, justify="right", no_wrap=True)
+    figures = {name: one for name, one in figures.items() if one["standard_deviation"] != 0.0}
     for name, one in list(figures.items())[:MOST_FIGURES]:
         numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
         unit = "" if one["unit"] == "1" else f" [{one['unit']}]"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -62,7 +63,7 @@ def worst(spec: Spec, made: Sequence[Made], folder: Path) -> list[Worth]:
         Worth(
             number,
             "; ".join(reasons),
-            f"dcone campaign rerun {folder.as_posix()} {number}",
+            f"dcone campaign rerun {shlex.quote(folder.as_posix())} {number}",
             f"{CASES}/{number}/report.html",
         )
         for number, reasons in sorted(why.items())
