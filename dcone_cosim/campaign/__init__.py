@@ -1,7 +1,8 @@
 """Campaigns: a scene whose values are uncertain, run until its probabilities are known.
 
     reading         a campaign file into a `Spec`, every mistake told at once with its line
-    distributions   what a value may be drawn from      inputs      the numbers that are drawn, held against the scene
+    distributions   what a value may be drawn from      making      the inputs of a dispersion, SI
+    inputs          the numbers that are drawn          applied     held against the scene before anything is run
     sampling        points of the unit cube by case number, and how they are correlated
     shots           a case as little data; what a worker does with it
     cluster         what runs them: dask, here or elsewhere, or plain processes

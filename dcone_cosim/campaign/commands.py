@@ -14,9 +14,10 @@ from dcone_cosim import interrupts
 from dcone_cosim.campaign import cluster, explained, page, plot, show
 from dcone_cosim.campaign import inputs as inputs_module
 from dcone_cosim.campaign.answers import answers, required_diameters
+from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.engine import Engine, Made, Work, key_of
 from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, summary_of, table
-from dcone_cosim.campaign.inputs import Inputs, base_of, inputs_of
+from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.outcomes import settled
 from dcone_cosim.campaign.reading import read
 from dcone_cosim.campaign.sampling import check_grid, count_of, points

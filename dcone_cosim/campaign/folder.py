@@ -16,8 +16,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.engine import Made
-from dcone_cosim.campaign.inputs import Inputs, base_of, inputs_of
+from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.outcomes import answered, outcome, settled
 from dcone_cosim.campaign.reading import parse
 from dcone_cosim.campaign.sampling import count_of, points

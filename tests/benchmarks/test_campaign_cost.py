@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from fmpy.fmi1 import _FMU
 
+from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.cluster import Cluster
 from dcone_cosim.campaign.engine import Engine
-from dcone_cosim.campaign.inputs import base_of, inputs_of
 from dcone_cosim.campaign.reading import read
 from dcone_cosim.campaign.sampling import monte_carlo
 from dcone_cosim.campaign.shipped import shipped

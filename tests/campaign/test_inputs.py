@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.stats import kendalltau
 
-from dcone_cosim.campaign.inputs import Inputs, base_of, inputs_of
+from dcone_cosim.campaign.applied import base_of, inputs_of
+from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.sampling import monte_carlo
 from dcone_cosim.loading import load
 from dcone_cosim.scene.mistakes import SceneError
