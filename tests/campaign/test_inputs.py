@@ -149,3 +149,22 @@ def test_what_is_wrong_in_set() -> None:
 def test_no_such_scene() -> None:
     with pytest.raises(SceneError, match="did you mean 'table2-deorbit'"):
         made(dispersion("removal.thrust.level", TENTH), TOW.replace("table2-deorbit", "table2-deorbits"))
+
+
+def test_jitter_is_an_input() -> None:
+    """Each case has a seed of its own, in the FMU, and the micrometre that it moves."""
+    inputs = made("jitter = true\n", NET)
+    assert inputs.names == ["jitter"]
+    found = [
+        load("table1-capture", inputs.settings(inputs.values(np.array([u])))).phases[0].main.values for u in (0.2, 0.7)
+    ]
+    assert [one["solver.seed"] for one in found] == [float(int(u * (2**31 - 1))) for u in (0.2, 0.7)]
+    assert [one["solver.jitter[1]"] for one in found] == [1e-6, 1e-6]
+
+
+def test_within() -> None:
+    """Both ways about the scene's own value."""
+    inputs = made(dispersion("removal.tether.damping_ratio", 'distribution = "uniform"\nwithin = "20 %"'))
+    assert [inputs.inputs[0].value(u) for u in (0.0, 0.5, 1.0)] == pytest.approx([0.04, 0.05, 0.06], rel=1e-12)
+    inputs = made(dispersion("removal.start.separation", 'distribution = "uniform"\nwithin = "50 cm"'))
+    assert [inputs.inputs[0].value(u) for u in (0.0, 1.0)] == pytest.approx([9.5, 10.5], rel=1e-12)

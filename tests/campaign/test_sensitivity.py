@@ -75,8 +75,11 @@ def test_noise_is_not_explained() -> None:
     pytest.importorskip("openturns")
     points = np.array([monte_carlo(3, number, 2) for number in range(1, 301)])
     noise = np.random.default_rng(1).normal(size=300) * math.sqrt(1.0 / 12.0)
-    chaos, _ = surrogates(("x", "y"), (False, False), points, points[:, 0] + noise)
+    chaos, process = surrogates(("x", "y"), (False, False), points, points[:, 0] + noise)
     assert chaos.error == pytest.approx(0.5, abs=0.1)
+    assert 0.45 < process.error < 1.2, "judged by what it was fitted to, it would explain all"
+    few, _ = surrogates(("x", "y"), (False, False), points[:40], noise[:40])
+    assert few.error > 0.95, "nothing but noise"
     assert chaos.indices["x"][1] > 0.9
 
 
