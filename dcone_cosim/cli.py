@@ -9,6 +9,7 @@ import typer
 
 from dcone_cosim import cli_cases, exits
 from dcone_cosim.cli_cache import cache_app
+from dcone_cosim.cli_campaign import campaign_app
 from dcone_cosim.cli_cases import cases_app
 from dcone_cosim.cli_options import (
     SCENE_HELP,
@@ -39,6 +40,7 @@ app = typer.Typer(
 app.add_typer(cache_app, name="cache")
 app.add_typer(runs_app)
 app.add_typer(cases_app)
+app.add_typer(campaign_app, name="campaign")
 app.add_typer(tracks_app)
 app.add_typer(pages_app)
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
-from typing import Protocol
+from typing import Any, Protocol
 
 from dcone_cosim import interrupts
-from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.rows import FAULT, Row, lost
 from dcone_cosim.cases.work import run_case
 from dcone_cosim.cases.workers import WorkerDied
@@ -19,6 +18,13 @@ from dcone_cosim.errors import FAILED_AFTER, Interrupted
 
 LOOK = 0.2
 """How often to see whether a signal has come [s]."""
+
+
+class Keyed(Protocol):
+    """A case, whatever else it is: all that the loop asks of it is the hash under which its row is kept."""
+
+    @property
+    def key(self) -> str: ...
 
 
 class Rows(Protocol):
@@ -55,16 +61,16 @@ class Runner:
         store: Rows,
         executor: Executor,
         ahead: int,
-        work: Callable[[Case], Row] = run_case,
+        work: Callable[[Any], Row] = run_case,
         idle: Callable[[], object] = lambda: None,
     ) -> None:
         self._store, self._executor, self._ahead, self._work, self._idle = store, executor, ahead, work, idle
 
-    def row(self, case: Case) -> Row:
+    def row(self, case: Keyed) -> Row:
         """The row of one case."""
         return next(row for row, _ in self.rows([case]))
 
-    def rows(self, cases: Iterable[Case]) -> Iterator[tuple[Row, bool]]:
+    def rows(self, cases: Iterable[Keyed]) -> Iterator[tuple[Row, bool]]:
         """The row of each case, as they come, and whether it was there before; a case that comes twice has one.
 
         Raises `Interrupted` at a signal: what is in the store stays, what is being run is given up.

@@ -1,0 +1,163 @@
+"""What a campaign comes to: how probable each outcome is, and how figures are distributed, with what is known of it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dcone_cosim.campaign.engine import Made
+from dcone_cosim.campaign.outcomes import answered, outcome, succeeded
+from dcone_cosim.campaign.spec import RANDOM, Spec
+from dcone_cosim.cases.statistics import Share, share
+from dcone_cosim.scene.data import Scene
+
+PERCENTS = (5.0, 50.0, 95.0, 99.0)
+"""Percentiles that are told."""
+MARGIN, DIAMETER, REQUIRED = "line.margin_of_safety", "tether.diameter", "line.diameter_required"
+
+
+@dataclass(frozen=True)
+class Percentile:
+    """A percentile of a figure, and the interval that holds it; NaN where there are too few cases to bound it."""
+
+    percent: float
+    value: float
+    interval: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A figure over the cases that have it.
+
+    of        cases that have it;  lacking   those that give an answer and do not
+    """
+
+    unit: str
+    of: int
+    lacking: int
+    mean: float
+    deviation: float
+    percentiles: tuple[Percentile, ...]
+
+
+@dataclass
+class Answers:
+    """All of it.
+
+    success      share of the cases that give an answer; None where the cases are no sample
+    bounds       the share, had every case without an answer failed, and had it succeeded
+    outcomes     of the cases that give an answer
+    unanswered   statuses of the others, and how many there are
+    """
+
+    confidence: float
+    cases: int
+    success: Share | None = None
+    good: int = 0
+    bounds: tuple[float, float] = (math.nan, math.nan)
+    outcomes: Mapping[str, Share] = field(default_factory=dict)
+    unanswered: Mapping[str, int] = field(default_factory=dict)
+    figures: Mapping[str, Distribution] = field(default_factory=dict)
+
+
+def answers(spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[float]]) -> Answers:
+    """What the cases come to.
+
+    derived    figures that follow from a case's others, one for each case, in m
+
+    Checked  tests/campaign/test_answers.py
+    """
+    confidence = spec.confidence
+    verdicts = [succeeded(one.row, spec.success) for one in made]
+    known = [verdict for verdict in verdicts if verdict is not None]
+    good, lost = sum(known), len(made) - len(known)
+    words = Counter(outcome(one.row) for one in made if answered(one.row))
+    sample = spec.sampler in RANDOM
+    count = sum(words.values())
+    found = Answers(confidence, len(made), good=good)
+    found.unanswered = dict(Counter(one.row.status for one in made if not answered(one.row)).most_common())
+    found.outcomes = {word: share(number, count, confidence) for word, number in words.most_common()}
+    if known and sample:
+        found.success = share(good, len(known), confidence)
+        found.bounds = (good / len(made), (good + lost) / len(made))
+    if sample:
+        found.figures = dict(_figures(made, confidence, derived))
+    return found
+
+
+def _figures(
+    made: Sequence[Made], confidence: float, derived: Mapping[str, Sequence[float]]
+) -> Iterator[tuple[str, Distribution]]:
+    rows = [one.row for one in made if answered(one.row)]
+    names = dict.fromkeys(name for row in rows for name, value in row.figures.items() if isinstance(value, int | float))
+    for name in names:
+        values = [row.figures.get(name) for row in rows]
+        numbers = [float(value) for value in values if isinstance(value, int | float) and math.isfinite(value)]
+        unit = next((row.units[name] for row in rows if name in row.units), "1")
+        if numbers:
+            yield name, distribution(numbers, unit, len(rows) - len(numbers), confidence)
+    for name, column in derived.items():
+        numbers = [value for value in column if math.isfinite(value)]
+        if numbers:
+            yield name, distribution(numbers, "m", len(rows) - len(numbers), confidence)
+
+
+def distribution(numbers: Sequence[float], unit: str, lacking: int, confidence: float) -> Distribution:
+    """Mean, spread and percentiles of a figure.
+
+    Checked  tests/campaign/test_answers.py
+    """
+    ordered = np.sort(np.asarray(numbers, dtype=float))
+    found = tuple(percentile(ordered, percent, confidence) for percent in PERCENTS)
+    deviation = float(np.std(ordered, ddof=1)) if len(ordered) > 1 else math.nan
+    return Distribution(unit, len(ordered), lacking, float(np.mean(ordered)), deviation, found)
+
+
+def percentile(ordered: np.ndarray, percent: float, confidence: float) -> Percentile:
+    """A percentile with an interval that asks nothing of the distribution: two of the ordered values, such that
+
+        P(B <= l - 1) <= (1 - c)/2,   P(B >= u) <= (1 - c)/2,   B ~ binomial(n, p)
+
+    Source   H. A. David and H. N. Nagaraja, Order Statistics, 3rd edition, section 7.1
+    Checked  tests/campaign/test_answers.py
+    """
+    from scipy.stats import binom
+
+    n, p, tail = len(ordered), percent / 100.0, 0.5 * (1.0 - confidence)
+    low = int(binom.ppf(tail, n, p))  # the largest l with P(B <= l - 1) <= tail, counted from 1
+    high = int(binom.ppf(1.0 - tail, n, p)) + 1
+    interval = (
+        float(ordered[low - 1]) if low >= 1 else math.nan,
+        float(ordered[high - 1]) if high <= n else math.nan,
+    )
+    return Percentile(percent, float(np.percentile(ordered, percent)), interval)
+
+
+def required_diameters(spec: Spec, base: Scene, names: Sequence[str], made: Sequence[Made]) -> dict[str, list[float]]:
+    """Diameter [m] that a tow's line would have to have to bear its largest tug of each case with the factor of safety.
+
+        T ~ d,   sigma = T / A ~ 1/d,   so   d_req = d F / (1 + MS)
+
+    Valid    the largest tug is a snap whose preload is small beside it, its speed that of the case
+    Source   as `report.told.diameters`
+    Checked  tests/campaign/test_answers.py
+    """
+    found = {}
+    for phase in base.phases:
+        own, key = phase.setting(DIAMETER), f"{phase.name}.{DIAMETER}"
+        figure = f"{phase.name}.{MARGIN}"
+        if not own or not any(figure in one.row.figures for one in made):
+            continue
+        place = names.index(key) if key in names else None
+        column = []
+        for one in made:
+            margin = one.row.figures.get(figure)
+            diameter = own if place is None else one.values[place]
+            known = isinstance(margin, int | float) and answered(one.row)
+            column.append(diameter * spec.factor_of_safety / (1.0 + float(margin)) if known else math.nan)  # type: ignore[arg-type]
+        found[f"{phase.name}.{REQUIRED}"] = column
+    return found

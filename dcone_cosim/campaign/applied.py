@@ -1,0 +1,185 @@
+"""Dispersions held against the scene before anything is run.
+
+A dispersion whose key the scene does not have, or that changes nothing that reaches an FMU, is a mistake told with its
+line: a campaign whose dispersions are never applied would look as good as any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dcone_cosim.campaign.inputs import JITTER, Group, Input, Inputs
+from dcone_cosim.campaign.making import Maker, Wrong
+from dcone_cosim.campaign.spec import ADAPTIVE, Dispersion, Spec
+from dcone_cosim.cases import ensemble
+from dcone_cosim.cases.case import content, digest
+from dcone_cosim.errors import InputError
+from dcone_cosim.loading import load, shipped
+from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene.mistakes import Mistake, Mistakes, SceneError, unknown
+from dcone_cosim.scenes.reading import parse
+
+SEEDS = 2**31 - 1
+"""Seeds that the jitter may have."""
+_PROBES = (0.25, 0.75)
+"""Where on its distribution a value is tried before anything is run."""
+
+
+def base_of(spec: Spec, kept: Path | None = None) -> Scene:
+    """The scene with what the campaign sets in it; mistakes are told where the campaign's file has them.
+
+    kept    file of that scene as a campaign's folder has it, with its values set already
+    """
+    if kept is not None:
+        return load(str(kept))
+    beside = Path(spec.source).parent / spec.scene
+    name = spec.scene if spec.scene in shipped() or not beside.exists() else str(beside)
+    if name.lower().endswith(".ssp"):
+        raise _wrong(spec, [Mistake(("scene",), spec.scene, "expected a scene in TOML; a package has no campaign")])
+    try:
+        load(name)
+    except SceneError:
+        raise
+    except InputError as error:
+        raise _wrong(spec, [Mistake(("scene",), spec.scene, str(error))]) from None
+    try:
+        return load(name, spec.settings)
+    except SceneError as error:
+        found = [Mistake(("set", *one.path), one.given, one.expected) for one in error.mistakes]
+        raise _wrong(spec, found) from None
+    except InputError as error:
+        raise _wrong(spec, [Mistake(("set",), None, str(error))]) from None
+
+
+def _wrong(spec: Spec, mistakes: Sequence[Mistake]) -> SceneError:
+    return SceneError(mistakes, spec.places)
+
+
+def inputs_of(spec: Spec, base: Scene, isolate: bool | None = None) -> Inputs:
+    """The inputs of a campaign, each tried in the scene; a `SceneError` of the campaign's file lists every mistake.
+
+    Checked  tests/campaign/test_inputs.py
+    """
+    wrong = Mistakes()
+    taken: dict[str, Dispersion] = {}
+    inputs: list[Input] = []
+    groups: list[Group] = []
+    matrix: dict[tuple[int, int], float] = {}
+    for one in spec.dispersions:
+        other = next((key for key in taken if _overlap(key, one.key)), None)
+        if other is not None:
+            wrong.append(Mistake((*one.path, "key"), one.key, f"{other} is dispersed above; expected each key once"))
+            continue
+        taken[one.key] = one
+        try:
+            made, write = Maker(spec, base, one).made()
+        except Wrong as error:
+            wrong.extend(error.mistakes)
+            continue
+        places = tuple(range(len(inputs), len(inputs) + len(made)))
+        inputs += made
+        groups.append(Group(places, write))
+        if one.together:
+            if not -1.0 < one.together < 1.0 or len(made) < 2:
+                text = "expected a number between -1 and 1, of a vector's elements"
+                wrong.append(Mistake((*one.path, "together"), one.together, text))
+            matrix |= {(i, j): one.together for i in places for j in places if i != j}
+        wrong.extend(_tried(spec, base, one, made, groups[-1]))
+    if spec.jitter:
+        inputs.append(Input(JITTER, lambda u: float(min(int(u * SEEDS), SEEDS - 1)), points=()))
+        groups.append(Group((len(inputs) - 1,), lambda values: ensemble.jitter(base, int(values[0]))))
+        try:
+            ensemble.jitter(base, 0)
+        except InputError as error:
+            wrong.append(Mistake(("jitter",), True, str(error)))
+    names = [one.name for one in inputs]
+    for link in spec.correlations:
+        places = tuple(names.index(name) for name in link.between if name in names)
+        if len(places) < 2:
+            absent = [name for name in link.between if name not in names]
+            wrong.append(unknown((*link.path, "between"), absent[0], "is not dispersed", absent[0], names))
+            continue
+        matrix |= {places: link.coefficient, places[::-1]: link.coefficient}  # type: ignore[dict-item]
+    if spec.sampler == ADAPTIVE and not wrong and len(inputs) not in (2, 3):
+        wrong.append(Mistake(("sampler",), ADAPTIVE, f"maps two or three values; {len(inputs)} are dispersed"))
+    if spec.sampler == ADAPTIVE:
+        for one in spec.dispersions:
+            if one.distribution != "uniform":
+                said = "expected uniform: a map has a least and a largest value of each, all alike"
+                wrong.append(Mistake((*one.path, "distribution"), one.distribution, said))
+    factor = _factor(len(inputs), matrix)
+    if matrix and factor is None:
+        wrong.append(Mistake(("correlation",), None, "these coefficients contradict one another: no values have them"))
+    if wrong:
+        raise _wrong(spec, wrong)
+    return Inputs(tuple(inputs), tuple(groups), factor)
+
+
+def _overlap(one: str, other: str) -> bool:
+    """Whether two keys set the same: a vector and an element of it, or twice the same."""
+    plain = [key.partition("[")[0] for key in (one, other)]
+    return one == other or (plain[0] == plain[1] and ("[" not in one or "[" not in other))
+
+
+def _factor(size: int, matrix: Mapping[tuple[int, int], float]) -> npt.NDArray[np.float64] | None:
+    if not matrix:
+        return None
+    full = np.eye(size)
+    for (i, j), value in matrix.items():
+        full[i, j] = value
+    try:
+        return np.asarray(np.linalg.cholesky(full), dtype=float)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def reach(scene: Scene) -> Any:
+    """All of a scene that reaches an FMU, as plain data: parameters, inputs, terms, tables, texts."""
+    told = content(scene)["phases"]
+    parts = ("model", "terms", "fmu", "parameters", "texts", "tables", "tolerance")
+    return [
+        [{name: part.get(name) for name in parts} for part in (phase["main"], *phase.get("others", []))]
+        for phase in told
+    ]
+
+
+def _tried(spec: Spec, base: Scene, one: Dispersion, made: Sequence[Input], group: Group) -> Iterator[Mistake]:
+    """Whether each number of a dispersion can be set in the scene, and changes what reaches an FMU."""
+    for place, number in enumerate(made):
+        points = [(i + 0.5) / len(number.texts) for i in range(len(number.texts))] if number.texts else _PROBES
+        values = list(map(float, range(len(number.texts)))) if number.texts else [number.value(u) for u in points]
+        found: dict[str, tuple[str, float]] = {}
+        for value in values:
+            whole = [one_of.value(0.5) for one_of in made]
+            whole[place] = value
+            told = number.told(value).given
+            try:
+                scene = parse(base.text, base.name, base.source, Path(base.source).parent, group.write(whole))
+            except InputError as error:
+                yield _refusal(base, one, told, error)
+                return
+            same, before = found.setdefault(digest(reach(scene)), (told, value))
+            if before != value:
+                text = (
+                    f"{same} and {told} come to the same in {base.name}: nothing that reaches an FMU differs; "
+                    "expected a key that changes something"
+                )
+                yield Mistake((*one.path, "key"), number.name, text)
+                return
+
+
+def _refusal(base: Scene, one: Dispersion, told: str, error: InputError) -> Mistake:
+    """Why the scene does not take a value, in the campaign's terms."""
+    if not isinstance(error, SceneError):
+        return Mistake((*one.path, "key"), one.key, f"{base.name} does not take {told}: {error}")
+    first = error.mistakes[0]
+    known = [f"{one.key.rpartition('.')[0]}.{name}" for name in first.known] if first.name else []
+    if first.name:
+        return unknown((*one.path, "key"), one.key, f"{base.name} has no such key", one.key, known)
+    where = ".".join(map(str, first.path))
+    return Mistake((*one.path, "key"), one.key, f"{base.name} does not take {told}: {where} {first.expected}")

@@ -1,0 +1,179 @@
+"""What runs the cases: dask, here or elsewhere, or plain processes. Each is an executor of `concurrent.futures`.
+
+    a local cluster     of dask, a process per core, where the extra `campaign` is installed: the default
+    tcp://...           a scheduler of dask that is there already, with its workers
+    processes           `cases.workers`; also the default without dask
+
+The rows are the same with each. A worker that dies takes no case with it: the case is given to another one, and only
+one on which `DEATHS` workers have died is a row that says so. dask is imported only here, and only when it is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, TypeVar
+
+from dcone_cosim.cases.workers import ONE_CORE, WorkerDied, Workers, cores
+from dcone_cosim.errors import DconeError, InputError
+
+T = TypeVar("T")
+PROCESSES = "processes"
+DEATHS = 3
+"""Workers that may die on a case."""
+AHEAD = 3
+"""Cases that are handed out for each worker."""
+PATIENCE = "20 s"
+"""How long to wait for a scheduler."""
+
+
+class SchedulerGone(DconeError):
+    """The scheduler of the cluster has ended or cannot be reached."""
+
+    exit_code = 6
+
+
+class Cluster:
+    """What runs cases, and how many at a time."""
+
+    def __init__(self, executor: Executor, count: int, what: str, check: Callable[[], None] = lambda: None) -> None:
+        self.executor, self.count, self.what, self.check = executor, count, what, check
+
+    @property
+    def ahead(self) -> int:
+        return AHEAD * self.count
+
+
+class Persistent(Executor):
+    """An executor that gives a task again to another worker when one has died on it."""
+
+    def __init__(self, behind: Executor, deaths: int = DEATHS) -> None:
+        self._behind, self._deaths = behind, deaths
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        outer: Future[T] = Future()
+        self._give(outer, 1, fn, args, kwargs)
+        return outer
+
+    def _give(self, outer: Future[T], attempt: int, fn: Callable[..., T], args: Any, kwargs: Any) -> None:
+        def done(inner: Future[T]) -> None:
+            try:
+                result = inner.result()
+            except WorkerDied as error:
+                if attempt < self._deaths:
+                    with suppress(RuntimeError):  # all are being sent home
+                        self._give(outer, attempt + 1, fn, args, kwargs)
+                        return
+                outer.set_exception(error)
+            except BaseException as error:
+                outer.set_exception(error)
+            else:
+                outer.set_result(result)
+
+        self._behind.submit(fn, *args, **kwargs).add_done_callback(done)
+
+
+class _Dask(Executor):
+    """A client of dask as an executor; a task is under a name of its own, so that none is taken for another."""
+
+    def __init__(self, client: Any) -> None:
+        self._client, self._number = client, 0
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        from distributed.scheduler import KilledWorker
+
+        outer: Future[T] = Future()
+        outer.set_running_or_notify_cancel()
+        self._number += 1
+        inner = self._client.submit(fn, *args, key=f"case-{id(self)}-{self._number}", pure=False, **kwargs)
+
+        def done(finished: Any) -> None:
+            if finished.status == "finished":
+                outer.set_result(finished.result())
+                return
+            error = finished.exception() if finished.status == "error" else None
+            if error is None:
+                outer.set_exception(SchedulerGone("the scheduler is gone"))
+            elif isinstance(error, KilledWorker):
+                outer.set_exception(WorkerDied("died on it, and so did those that it was given to after it"))
+            else:
+                outer.set_exception(error)
+
+        inner.add_done_callback(done)
+        return outer
+
+
+def has_dask() -> bool:
+    return find_spec("distributed") is not None
+
+
+@contextmanager
+def opened(scheduler: str | None, jobs: int | None) -> Iterator[Cluster]:
+    """What runs the cases, for as long as they are run.
+
+    scheduler   "" or None for the default, `processes`, or the address of a scheduler
+    jobs        processes here, one per core for None; of a scheduler that is there already it is its own affair
+    """
+    count = jobs or cores()
+    if scheduler and scheduler != PROCESSES:
+        with _elsewhere(scheduler) as cluster:
+            yield cluster
+    elif scheduler == PROCESSES or not has_dask():
+        with Workers(count) as workers:
+            yield Cluster(Persistent(workers), count, f"{count} processes")
+    else:
+        with _here(count) as cluster:
+            yield cluster
+
+
+@contextmanager
+def _here(count: int) -> Iterator[Cluster]:
+    import logging
+
+    dask: Any = import_module("dask")
+    distributed: Any = import_module("distributed")
+
+    options = {
+        "distributed.scheduler.allowed-failures": DEATHS - 1,
+        "distributed.worker.memory.target": False,
+        "distributed.worker.memory.spill": False,
+        "distributed.worker.memory.pause": False,
+        "distributed.worker.memory.terminate": False,
+        "distributed.nanny.environ": dict(ONE_CORE),
+    }
+    for name in ("distributed.nanny", "distributed.worker", "distributed.scheduler", "distributed.core"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    with (
+        dask.config.set(options),
+        distributed.LocalCluster(
+            n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
+            host="127.0.0.1", silence_logs=logging.CRITICAL,
+        ) as local,
+        distributed.Client(local, set_as_default=False) as client,
+    ):  # fmt: skip
+        yield Cluster(_Dask(client), count, f"a local cluster of {count} processes", lambda: _need(client, "local"))
+
+
+@contextmanager
+def _elsewhere(address: str) -> Iterator[Cluster]:
+    if not has_dask():
+        raise InputError(f"--scheduler {address}: needs dask; pip install 'dcone-cosim[campaign]'")
+    distributed: Any = import_module("distributed")
+
+    try:
+        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise InputError(f"--scheduler {address}: no scheduler there: {error}") from None
+    with client:
+        count = sum(client.nthreads().values())
+        if not count:
+            raise InputError(f"--scheduler {address}: it has no workers yet; start some, and give the command again")
+        yield Cluster(_Dask(client), count, f"{count} workers of {address}", lambda: _need(client, address))
+
+
+def _need(client: Any, address: str) -> None:
+    if client.status not in ("running", "newly-created"):
+        raise SchedulerGone(f"the scheduler {address} is gone")

@@ -1,0 +1,103 @@
+"""A campaign's answers in words, on the terminal, and as plain data for machines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from dcone_cosim.campaign.answers import Answers, Distribution
+from dcone_cosim.campaign.spec import Spec
+from dcone_cosim.cases.statistics import Share
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+MOST_FIGURES = 30
+"""Figures whose percentiles are printed."""
+
+
+def probability(found: Share) -> str:
+    """ "0.949 (0.923 to 0.966)"."""
+    return f"{found.share:.4g} ({found.interval[0]:.4g} to {found.interval[1]:.4g})"
+
+
+def sentences(spec: Spec, found: Answers) -> Iterator[str]:
+    """What came out, in words."""
+    what = f"{100.0 * found.confidence:g} % interval"
+    if found.success is not None:
+        one = found.success
+        yield (f"{spec.success.text}: {one.count} of {one.of} cases, probability {probability(one)}, {what} of Wilson")
+        width = 0.5 * (one.interval[1] - one.interval[0])
+        if spec.until is not None and width > spec.until.within:
+            yield f"the interval is not as narrow as asked ({spec.until.text}): {found.cases} cases are all so far"
+    elif found.cases:
+        yield f"{spec.success.text}: {found.good} of {found.cases} cases; they are no sample: no probability follows"
+    for word, one in found.outcomes.items():
+        yield f"{word}: {one.count} cases" + (f", {probability(one)}" if found.success is not None else "")
+    if found.unanswered:
+        told = ", ".join(f"{count} {status}" for status, count in found.unanswered.items())
+        yield f"no answer from {sum(found.unanswered.values())} of {found.cases} cases: {told}"
+        if found.success is not None:
+            low, high = found.bounds
+            yield f"had all of them failed, the share were {low:.4g}, had all succeeded {high:.4g}"
+
+
+def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any]], console: Console) -> None:
+    """Print sentences and percentiles."""
+    from rich.table import Table
+    from rich.text import Text
+
+    console.print(Text(title, style="bold"))
+    for line in said:
+        console.print(Text(f"  {line}"), highlight=False)
+    if not figures:
+        return
+    table = Table(title_justify="left", box=None, pad_edge=False)
+    table.add_column("", overflow="fold", min_width=20)
+    for head in ("mean", "spread", "5 %", "median", "95 %", "99 %"):
+        table.add_column(head, justify="right", no_wrap=True)
+    figures = {name: one for name, one in figures.items() if one["standard_deviation"] != 0.0}
+    for name, one in list(figures.items())[:MOST_FIGURES]:
+        numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
+        unit = "" if one["unit"] == "1" else f" [{one['unit']}]"
+        table.add_row(Text(f"{name}{unit}"), *(_number(value) for value in numbers))
+    console.print(table)
+    if len(figures) > MOST_FIGURES:
+        console.print(f"and {len(figures) - MOST_FIGURES} more figures in summary.json", highlight=False)
+
+
+def _number(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, int | float) else str(value)
+
+
+def as_dict(spec: Spec, found: Answers) -> dict[str, Any]:
+    """For machines, numbers with all their digits."""
+    return {
+        "cases": found.cases,
+        "confidence": found.confidence,
+        "success": spec.success.text,
+        "succeeded": found.good,
+        "probability": None if found.success is None else _share(found.success),
+        "outcomes": {word: _share(one) for word, one in found.outcomes.items()},
+        "no_answer": dict(found.unanswered),
+        "figures": {name: _distribution(one) for name, one in found.figures.items()},
+    }
+
+
+def _share(one: Share) -> dict[str, Any]:
+    return {"count": one.count, "of": one.of, "share": one.share, "interval": list(one.interval)}
+
+
+def _distribution(one: Distribution) -> dict[str, Any]:
+    return {
+        "unit": one.unit,
+        "count": one.of,
+        "lacking": one.lacking,
+        "mean": one.mean,
+        "standard_deviation": one.deviation,
+        "percentiles": {
+            f"{p.percent:g}": {"value": p.value, "interval": [None if math.isnan(x) else x for x in p.interval]}
+            for p in one.percentiles
+        },
+    }

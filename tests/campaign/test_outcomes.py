@@ -1,0 +1,57 @@
+"""How a case came out, and whether that is success."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from dcone_cosim.campaign.outcomes import margin, outcome, succeeded
+from dcone_cosim.campaign.spec import Success
+from dcone_cosim.cases.rows import Row, lost, refused
+
+
+def row(exit_code: int = 0, status: str = "completed", **figures: Any) -> Row:
+    return Row("k", status, exit_code, "", {name.replace("__", "."): value for name, value in figures.items()})
+
+
+SEEN = "yes, for the 5 s to the end of the phase"
+
+
+@pytest.mark.parametrize(
+    ("one", "word", "good"),
+    [
+        (row(capture__outcome="captured", capture__lasted=SEEN), "captured", True),
+        (row(capture__outcome="settled", capture__lasted=SEEN), "captured", True),
+        (row(capture__outcome="captured", capture__lasted="not seen: the phase ends here"), "captured", True),
+        (
+            row(capture__outcome="slipped off", capture__lasted="no: the target was out again 3 s later"),
+            "out again",
+            False,
+        ),
+        (row(8, "overloaded", capture__outcome="captured", capture__lasted=SEEN), "broke", False),
+        (row(3, "capture failed", capture__outcome="missed"), "missed", False),
+        (row(3, "capture failed", capture__outcome="flying"), "flying", False),
+        (row(4, "hand-off refused", capture__outcome="captured"), "not handed over", False),
+        (row(), "completed", True),
+        (row(5, "FMU failed"), "FMU failed", None),
+        (lost("k", "died"), "lost", None),
+        (refused("k", "no"), "refused", None),
+    ],
+)
+def test_words(one: Row, word: str, good: bool | None) -> None:
+    assert (outcome(one), succeeded(one, Success())) == (word, good)
+
+
+def test_a_bound() -> None:
+    below = Success("", "removal.peak", 50.0, False, "peak below 50 N")
+    assert [succeeded(row(removal__peak=value), below) for value in (49.0, 51.0, math.nan)] == [True, False, None]
+    assert succeeded(row(5, "FMU failed", removal__peak=1.0), below) is None
+    assert margin(row(removal__peak=47.0), below) == 3.0
+    assert math.isnan(margin(row(removal__peak="none"), below))
+
+
+def test_another_outcome() -> None:
+    assert succeeded(row(3, "capture failed", capture__outcome="missed"), Success("missed")) is True
+    assert succeeded(row(capture__outcome="captured", capture__lasted=SEEN), Success("missed")) is False
