@@ -62,8 +62,12 @@ IMPLEMENTED = {
     "ends": ("watched",),
     "break": ("breaks",),
     "level": ("settled",),
-    "oblateness": ("J2",),
+    "oblateness": ("J2", "J4"),
     "air": ("exponential",),
+    "third_bodies": ("sun_and_moon", "sun", "moon"),
+    "shadow": ("cylinder", "cone"),
+    "sunlight": ("pressure",),
+    "power": ("solar",),
     **KINDS,
 }
 """Terms that are composed here."""
@@ -102,7 +106,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     level = make_settled(derivative, reel, bodies, held, places) if settles else RESOLVED
     events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events)
-    acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
+    acting = together((reel.acting, thrust.acting, perturbing.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
@@ -138,6 +142,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_target_share = r.target_mass / r.state_total_mass
         r.state_reduced_mass = reduced_mass(r.chaser_mass, r.target_mass)
         environment.begin(record)
+        perturbing.begin(record)
         code = bodies.begin(record)
         if code != 0:
             return fail(record, code, 0.0)
@@ -180,7 +185,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         trajectory.restart(record, work, 0.0)
         r.state_since = 0.0
         separation, length, _ = bodies.line(record, end)
-        publish(record, end, separation, length, speed, 0.0)
+        publish(record, end, separation, length, speed, 0.0, 0.0)
         if r.state_taut:
             begin_tug(record, 0.0, speed)
             note_pull(record, r.tether_tension)
@@ -239,7 +244,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if radius >= 0.0:
             return fail(record, blame(record, GROUND, 0, radius), time)
         thrust.weigh(record, here)
-        publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin))
+        publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin), time)
         thrust.publish(record, here, time)
         level.publish(record)
         aocs.publish(record, here)
@@ -353,7 +358,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             r.state_since = since
             thrust.put(record, force, force_rate)
         else:
-            publish(record, here, separation, length, speed, 0.0)
+            publish(record, here, separation, length, speed, 0.0, r.state_published)
         reel.prepare(record, command, command_rate, 0.0)
         r.state_taut = taut
         level.put(record, settled)

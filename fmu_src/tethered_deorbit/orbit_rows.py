@@ -1,14 +1,35 @@
-"""The variables of what disturbs an orbit: the flattening of the Earth's field, and the air."""
+"""The variables of what disturbs an orbit: the Earth's field, the air, Sun and Moon, light and shadow."""
 
 from __future__ import annotations
 
 from fmu_src.interface import Group, Term
-from fmu_src.rows import at_least_zero, output, parameter, positive, state, vector
+from fmu_src.rows import at_least_zero, count, output, parameter, positive, state, vector
 from fmu_src.tethered_deorbit import stress
 
 _ROOM = (
     vector("state.pole", "1", "the Earth's axis along the axes of the step", "state"),
     state("state.perturbing[#][#]", "1", "room for vectors", shape=(5, 3)),
+)
+
+FIFTY_YEARS = 50.0 * 365.25 * 86400.0
+EPOCH = parameter(
+    "orbit.epoch",
+    "s",
+    "when the instance begins: UTC since 2000-01-01 12:00, in days of 86400 s; a scene says a date. The axes are the "
+    "mean equator and equinox of then",
+    9496.5 * 86400.0,
+    -FIFTY_YEARS,
+    FIFTY_YEARS,
+    date=True,
+)
+"""As it stands, 2026-01-01 00:00 UTC."""
+
+SKY = (
+    EPOCH,
+    vector("state.sun", "m", "place of the Sun along the axes of the step", "state"),
+    vector("state.moon", "m", "and of the Moon", "state"),
+    state("state.sky[#][#]", "m", "places between which these are interpolated", shape=(8, 3)),
+    state("state.sky_window", "1", "hour of the tow for which they are, from 0"),
 )
 
 OBLATENESS = Group(
@@ -17,7 +38,12 @@ OBLATENESS = Group(
             "the Earth is flattened: its second zonal harmonic acts on each of the two bodies",
             _ROOM,
             extremes=stress.OBLATENESS,
-        )
+        ),
+        "J4": Term(
+            "the same, with the third and the fourth zonal harmonic",
+            _ROOM,
+            extremes=stress.OBLATENESS,
+        ),
     },
     selector="zonal",
     optional=True,
@@ -48,4 +74,76 @@ AIR = Group(
     selector="law",
     optional=True,
     follows=lambda terms, values: "exponential",
+)  # fmt: skip
+
+THIRD_BODIES = Group(
+    {
+        which: Term(
+            f"the gravity of {who} acts on each of the two bodies", (*SKY, *_ROOM), extremes=stress.THIRD_BODIES
+        )
+        for which, who in (("sun_and_moon", "Sun and Moon"), ("sun", "the Sun"), ("moon", "the Moon"))
+    },
+    selector="which",
+    optional=True,
+    follows=lambda terms, values: "sun_and_moon",
+)
+
+_SHADOW = (
+    *SKY,
+    output("shadow.lit", "1", "share of the Sun's disc that is seen from the centre of mass", 1.0),
+    output("shadow.time", "s", "in shadow, in part or whole, since the start of this instance", 1000.0),
+    count("shadow.count", "how often the pair has been in shadow"),
+    state("state.zone", "1", "0 light, 1 penumbra, 2 umbra", kind="Integer"),
+    state("state.lit", "1", "share of the Sun's disc that is seen"),
+    state("state.shadows", "1", "how often the pair has been in shadow", kind="Integer"),
+    state("state.dark_since", "s", "when it last entered the shadow"),
+    state("state.dark_time", "s", "in shadow, but for the present one"),
+)
+
+SHADOW = Group(
+    {
+        "cylinder": Term("the Earth's shadow is a cylinder", _SHADOW, extremes=stress.SHADOW),
+        "cone": Term("the Earth's shadow has an umbra, and a penumbra in which part of the Sun is seen", _SHADOW,
+                     extremes=stress.SHADOW),
+    },
+    selector="shape",
+    optional=True,
+    follows=lambda terms, values: "cone",
+)  # fmt: skip
+
+SUNLIGHT = Group(
+    {
+        "pressure": Term(
+            "the Sun's light presses on each of the two bodies, as much of it as the Earth lets pass",
+            (
+                at_least_zero("sunlight.coefficient", "1", "1 for a body that swallows all light, 2 for a mirror that "
+                              "faces it", 1.3, 10.0),
+                at_least_zero("sunlight.chaser_area", "m2", "that the chaser shows the Sun", 10.0, 1e6),
+                at_least_zero("sunlight.target_area", "m2", "that the target shows the Sun", 10.0, 1e6),
+                output("sunlight.chaser_force", "N", "on the chaser, away from the Sun", 1e-4),
+                output("sunlight.target_force", "N", "on the target, away from the Sun", 1e-4),
+            ),
+            needs=("shadow",),
+            extremes=stress.SUNLIGHT,
+        ),
+    },
+    selector="law",
+    optional=True,
+    follows=lambda terms, values: "pressure",
+)  # fmt: skip
+
+POWER = Group(
+    {
+        "solar": Term(
+            "the thruster's power comes from the Sun: in shadow, penumbra included, there is what batteries give",
+            (
+                parameter("power.battery_share", "1", "of engine.power_limit that there is in shadow", 0.0, 0.0, 1.0),
+            ),
+            needs=("engine", "shadow"),
+            extremes=stress.POWER,
+        ),
+    },
+    selector="source",
+    optional=True,
+    follows=lambda terms, values: "solar",
 )  # fmt: skip

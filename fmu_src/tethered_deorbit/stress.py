@@ -151,7 +151,22 @@ AIR = (
     Extreme("one body as thin as air", "it is blown away from the other", "longer",
             {"orbit.altitude": 400e3, "air.target_area": 1e4}, duration=HOUR),
 )  # fmt: skip
-"""Of what disturbs an orbit."""
+THIRD_BODIES = (
+    Extreme("as high as the Moon", "it draws as hard as the Earth does, or harder", "longer",
+            {"orbit.altitude": 350e6, "orbit.inclination": math.radians(28.6)}, duration=5.0 * DAY, macro_step=600.0),
+)  # fmt: skip
+SHADOW = (
+    Extreme("a shadow that is grazed", "the Sun just touches the Earth's rim, orbit after orbit", "longer",
+            {"orbit.inclination": math.radians(62.0), "orbit.raan": math.radians(-90.0)}),
+)  # fmt: skip
+SUNLIGHT = (
+    Extreme("a sail of a square kilometre", "light as strong as the tide", "longer", {"sunlight.target_area": 1e6}),
+)  # fmt: skip
+POWER = (
+    Extreme("no battery", "the thrust stops and comes back at once, at every edge of the shadow", "longer",
+            {"power.battery_share": 0.0, "thrust.level": -0.1}, needs=("thrust",)),
+)  # fmt: skip
+"""Of what disturbs an orbit, and of what hangs on light."""
 
 BURNS = (
     Extreme("pulses of a millisecond", "a thousand times shorter than what they shake", "orbit",

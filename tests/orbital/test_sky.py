@@ -33,7 +33,7 @@ def true_place(body: str, times: Any, epoch: Any) -> Any:
 @pytest.mark.filterwarnings("ignore:.*dubious year")
 @pytest.mark.parametrize("start", STARTS)
 @pytest.mark.parametrize(
-    "body, place, most, mean", [("sun", sun_place, 0.0105, 0.005), ("moon", moon_place, 0.02, 0.008)]
+    ("body", "place", "most", "mean"), [("sun", sun_place, 0.0105, 0.005), ("moon", moon_place, 0.02, 0.008)]
 )
 def test_sun_and_moon_stand_where_astropy_has_them(body: str, place: Any, most: float, mean: float, start: str) -> None:
     with iers.conf.set_temp("auto_download", False):

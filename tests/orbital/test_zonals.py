@@ -49,7 +49,7 @@ def exactly(r: list[Decimal], third: float, fourth: float) -> list[Decimal]:
     return [along * x / radius - (axial if i == 2 else 0) for i, x in enumerate(r)]
 
 
-@pytest.mark.parametrize("third, fourth", [(THIRD, 0.0), (0.0, FOURTH)])
+@pytest.mark.parametrize(("third", "fourth"), [(THIRD, 0.0), (0.0, FOURTH)])
 @pytest.mark.parametrize("offset", [(7.0, -3.0, 9.0), (0.0, 0.0, 12.0), (-4e3, 1e4, 2e3), (1e-3, 0.0, 0.0)])
 @pytest.mark.parametrize("position", PLACES)
 def test_difference_without_cancellation(position: Any, offset: Any, third: float, fourth: float) -> None:

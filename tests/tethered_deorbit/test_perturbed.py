@@ -108,7 +108,7 @@ def test_axes_change_nothing() -> None:
         record["state_turning"][0] = turning
         back = Rotation.from_rotvec(turning * elapsed)
         there, rate = back.inv().apply(state.reshape(-1, 3)).ravel(), np.zeros(12)
-        add(record, there, rate, elapsed)
+        add(record, there, rate, elapsed, elapsed)
         found.append(back.apply(rate.reshape(-1, 3)).ravel())
     assert found[0][9:] == pytest.approx(found[1][9:], rel=1e-9)
     assert found[0][3:6] == pytest.approx(found[1][3:6], rel=1e-12)
