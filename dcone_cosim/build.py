@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
@@ -337,6 +338,15 @@ def extremes(model: str, terms: Mapping[str, str]) -> list[Extreme]:
     groups = CATALOGUE[model].groups
     of_parts = [one for group, term in terms.items() for one in groups[group].terms[term].extremes]
     return [*of_parts, *STRESSES[model].EXTREMES]
+
+
+def air_of(
+    values: Mapping[str, float], terms: Mapping[str, str]
+) -> Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]] | None:
+    """Function of altitudes [m]: the density of the air that a tow of ours has, in the mean [kg/m^3]; None without."""
+    from fmu_src.tethered_deorbit.environment.air import mean_density
+
+    return mean_density(values, terms)
 
 
 def target_distance(

@@ -32,6 +32,7 @@ from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEM
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
+from fmu_src.tethered_deorbit.release import releasable
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.sights import Sights
 from fmu_src.tethered_deorbit.start import make_start
@@ -61,6 +62,7 @@ IMPLEMENTED = {
     "aocs": ("wheels",),
     "ends": ("watched",),
     "break": ("breaks",),
+    "release": ("time", "altitude", "perigee"),
     "level": ("settled",),
     "oblateness": ("J2", "J4"),
     "air": ("exponential",),
@@ -91,6 +93,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     spin = PAIR + ATTITUDE - 3 if terms["target"] != "point" else -1
     sights = Sights(layout.reel, spin, bodies.line, environment.frame)
     reel = breakable(make_reel(terms["reel"], interface, sights), terms, bodies.line)
+    reel = releasable(reel, terms, interface)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)

@@ -45,6 +45,8 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
     for group, key in ORBITAL.items():
         if group in terms and terms.get("environment") == "none":
             yield f"{group}.{key}", terms[group], "needs an orbit; leave the table out, or environment.field = none"
+    if terms.get("release") in ("altitude", "perigee") and terms.get("environment") == "none":
+        yield f"release.{terms['release']}", terms["release"], "needs an orbit; take release.when = time"
     if "power" in terms and terms.get("engine") == "chemical":
         yield "power.source", terms["power"], "feeds an electric engine; take engine.kind = electric"
     if "level" in terms and terms["reel"] not in SETTLING_LAWS:

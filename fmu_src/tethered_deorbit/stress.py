@@ -188,6 +188,11 @@ BREAKING = (
     Extreme("a line as weak as a cobweb", "it breaks as soon as it is taut", "pushes",
             {"break.strength": 1e-9, "break.flies_on": True}),
 )  # fmt: skip
+RELEASE_AT = (
+    Extreme("cut as it begins", "a line that is never there", "pushes", {"release.at": 0.0}, duration=HOUR),
+    Extreme("cut in the middle of a tug", "what it had stored is gone", "pushes", {"release.at": 1119.5},
+            duration=HOUR),
+)  # fmt: skip
 AOCS = (
     Extreme("a loop of 10 rad/s", "quicker than most lines", "longer",
             {"aocs.frequency": 10.0, "aocs.torque_limit": 1e5, "aocs.momentum_limit": 1e7}, duration=0.25 * HOUR),

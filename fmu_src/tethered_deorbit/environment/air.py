@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from fmu_src.tethered_deorbit.environment.disturbing import Disturbing
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_ROTATION_RATE
 from orbital.kernel import kernel
 from orbital.perturbations import air_density, altitude_of, drag_acceleration
 from orbital.vectors import Array
+
+Rows = npt.NDArray[np.float64]
 
 
 @kernel
@@ -74,6 +80,17 @@ def publish_drag(record: Any, time: float) -> None:
     density = of_air(record, r.target_radius - EARTH_EQUATORIAL_RADIUS)
     speed = drag_acceleration(out, r.target_position, r.target_velocity, r.state_pole, EARTH_ROTATION_RATE, 0.0)
     r.air_target_drag = half * r.air_target_area * density * speed * speed
+
+
+def mean_density(values: Mapping[str, float], terms: Mapping[str, str]) -> Callable[[Rows], Rows] | None:
+    """Function of altitudes [m] that gives the density of a scene's air [kg/m^3], for what is averaged; None without.
+
+    values        parameters by FMI name, SI
+    """
+    if terms.get("air") != "exponential":
+        return None
+    base, at, scale = (values[f"air.{name}"] for name in ("base_density", "base_altitude", "scale_height"))
+    return lambda altitude: base * np.exp((at - altitude) / scale)
 
 
 EXPONENTIAL = Disturbing(add_drag, publish_drag)
