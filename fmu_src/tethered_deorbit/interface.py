@@ -26,7 +26,7 @@ from fmu_src.rows import (
 from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, RELEASE, SCHEMES
-from fmu_src.tethered_deorbit.orbit_rows import AIR, OBLATENESS, POWER, SHADOW, SUNLIGHT, THIRD_BODIES
+from fmu_src.tethered_deorbit.orbit_rows import AIR, ELECTRODYNAMIC, OBLATENESS, POWER, SHADOW, SUNLIGHT, THIRD_BODIES
 from fmu_src.tethered_deorbit.reel_rows import REELS
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.surface import NO_BODY
@@ -385,6 +385,7 @@ MODEL = Model(
         "shadow": SHADOW,
         "sunlight": SUNLIGHT,
         "power": POWER,
+        "electrodynamic": ELECTRODYNAMIC,
         "target": TARGETS,
         "chaser": CHASERS,
         "aocs": AOCS,

@@ -65,11 +65,12 @@ IMPLEMENTED = {
     "release": ("time", "altitude", "perigee"),
     "level": ("settled",),
     "oblateness": ("J2", "J4"),
-    "air": ("exponential",),
+    "air": ("exponential", "nrlmsis"),
     "third_bodies": ("sun_and_moon", "sun", "moon"),
     "shadow": ("cylinder", "cone"),
     "sunlight": ("pressure",),
     "power": ("solar",),
+    "electrodynamic": ("dipole",),
     **KINDS,
 }
 """Terms that are composed here."""
@@ -85,7 +86,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     interface = MODEL.interface(terms)
     terms = interface.terms
     check_implemented(MODEL, IMPLEMENTED, terms)
-    environment, perturbing = make_environment(terms["environment"], interface), make_perturbing(terms)
+    environment, perturbing = make_environment(terms["environment"], interface), make_perturbing(interface)
     command_slot = next(interface.references[name] for name in INPUTS if name in interface.references)
     limits = make_limits(interface, *LIMITED)
     layout = layout_of(terms, *components(terms["reel"]))

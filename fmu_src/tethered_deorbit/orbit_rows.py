@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fmu_src.interface import Group, Term
 from fmu_src.rows import at_least_zero, count, output, parameter, positive, state, vector
-from fmu_src.tethered_deorbit import stress
+from fmu_src.tethered_deorbit import air_table, stress
 
 _ROOM = (
     vector("state.pole", "1", "the Earth's axis along the axes of the step", "state"),
@@ -50,6 +50,15 @@ OBLATENESS = Group(
     follows=lambda terms, values: "J2",
 )
 
+_DRAG = (
+    at_least_zero("air.drag_coefficient", "1", "of both bodies", 2.2, 10.0),
+    at_least_zero("air.chaser_area", "m2", "that the chaser shows the air", 10.0, 1e6),
+    at_least_zero("air.target_area", "m2", "that the target shows the air", 10.0, 1e6),
+    output("air.density", "kg/m3", "at the centre of mass", 1e-12),
+    output("air.chaser_drag", "N", "on the chaser", 1e-4),
+    output("air.target_drag", "N", "on the target", 1e-4),
+)
+
 AIR = Group(
     {
         "exponential": Term(
@@ -60,15 +69,22 @@ AIR = Group(
                 parameter("air.base_altitude", "m", "above the equatorial radius", 400e3, 0.0, 2e6, display_unit="km"),
                 positive("air.scale_height", "m", "over which the density falls to 1/e", 58.515e3, 1e6,
                          display_unit="km"),
-                at_least_zero("air.drag_coefficient", "1", "of both bodies", 2.2, 10.0),
-                at_least_zero("air.chaser_area", "m2", "that the chaser shows the air", 10.0, 1e6),
-                at_least_zero("air.target_area", "m2", "that the target shows the air", 10.0, 1e6),
-                output("air.density", "kg/m3", "at the centre of mass", 1e-12),
-                output("air.chaser_drag", "N", "on the chaser", 1e-4),
-                output("air.target_drag", "N", "on the target", 1e-4),
+                *_DRAG,
                 *_ROOM,
             ),
             extremes=stress.AIR,
+        ),
+        "nrlmsis": Term(
+            "air by NRLMSIS 2.1 at the epoch, for the solar flux and the geomagnetic index that the scene says",
+            (*_DRAG, *SKY, *_ROOM),
+            tables=(air_table.TABLE,),
+            asked=(
+                positive("air.f107", "1", "flux of the Sun at 10.7 cm the day before, in 1e-22 W/(m2 Hz)", 150.0, 1e3),
+                positive("air.f107_average", "1", "its mean over 81 days about the epoch", 150.0, 1e3),
+                parameter("air.ap", "1", "planetary index of the Earth's magnetic field, of the day", 15.0, 0.0, 400.0),
+            ),
+            lay=air_table.lay,
+            extremes=stress.MSIS,
         ),
     },
     selector="law",
@@ -146,4 +162,37 @@ POWER = Group(
     selector="source",
     optional=True,
     follows=lambda terms, values: "solar",
+)  # fmt: skip
+
+ELECTRODYNAMIC = Group(
+    {
+        "dipole": Term(
+            "the line conducts, and the Earth's field, a tilted dipole that turns with it, drives a current through it",
+            (
+                EPOCH,
+                positive("electrodynamic.resistance", "ohm", "of the line and its contactors", 100.0, 1e9),
+                at_least_zero("electrodynamic.contactor_drop", "V", "voltage that both plasma contactors take", 30.0,
+                              1e5),
+                positive("electrodynamic.contactor_radius", "m", "of the sphere from which a contactor draws electrons",
+                         10.0, 1e4),
+                at_least_zero("electrodynamic.current_limit", "A", "that the line may carry", 2.0, 1e4),
+                at_least_zero("electrodynamic.electron_density", "1/m3", "of the plasma; 1e9 to 1e12 by altitude, time "
+                              "of day and Sun", 1e11, 1e14),
+                positive("electrodynamic.electron_temperature", "K", "of the plasma", 1500.0, 1e6),
+                output("electrodynamic.field", "T", "magnetic flux density at the middle of the line", 3e-5),
+                output("electrodynamic.emf", "V", "induced between its ends, positive from the chaser to the target",
+                       100.0),
+                output("electrodynamic.current", "A", "through it, from the chaser to the target", 1.0),
+                output("electrodynamic.power", "W", "that the current takes from the orbit", 100.0),
+                output("electrodynamic.force", "N", "on it", 0.01),
+                vector("state.dipole", "1", "direction of the dipole along the axes of the step", "state"),
+                vector("state.field", "T", "where the line is", "state"),
+                *_ROOM,
+            ),
+            extremes=stress.ELECTRODYNAMIC,
+        ),
+    },
+    selector="field",
+    optional=True,
+    follows=lambda terms, values: "dipole",
 )  # fmt: skip

@@ -14,7 +14,7 @@ from fmu_src.tethered_deorbit.reel_refusals import of_reel
 Refusal = tuple[str, str, str]
 """FMI name, its value as text, what was expected."""
 NOTCH = 2
-ORBITAL = {"oblateness": "zonal", "air": "law", "third_bodies": "which", "shadow": "shape"}
+ORBITAL = {"oblateness": "zonal", "air": "law", "third_bodies": "which", "shadow": "shape", "electrodynamic": "field"}
 """Groups that mean nothing without an orbit, and the key by which a scene names their terms."""
 
 
@@ -47,6 +47,12 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
             yield f"{group}.{key}", terms[group], "needs an orbit; leave the table out, or environment.field = none"
     if terms.get("release") in ("altitude", "perigee") and terms.get("environment") == "none":
         yield f"release.{terms['release']}", terms["release"], "needs an orbit; take release.when = time"
+    if "electrodynamic" in terms and (terms.get("target"), terms.get("chaser")) != ("point", "point"):
+        yield (
+            "electrodynamic.field",
+            terms["electrodynamic"],
+            "spans two points; take target.body and chaser.body = point",
+        )
     if "power" in terms and terms.get("engine") == "chemical":
         yield "power.source", terms["power"], "feeds an electric engine; take engine.kind = electric"
     if "level" in terms and terms["reel"] not in SETTLING_LAWS:

@@ -239,7 +239,7 @@ def make_thrust(
         Checked  tests/tethered_deorbit/test_ramps.py, test_release.py
         """
         r = record[0]
-        if released:  # noqa: SIM102 - a field that only such a record has
+        if released:
             if r.state_released and r.release_stops_thrust:
                 return 0.0, 0.0
         return r.thrust_level + r.thrust_offset, r.rate_thrust_offset

@@ -82,7 +82,7 @@ def added(terms: Mapping[str, str], turning: Any, elapsed: float, time: float = 
     for name, value in zip(("sunlight_chaser_area", "sunlight_target_area"), AREAS, strict=True):
         if name in record.dtype.names:
             record[name] = value
-    perturbing = make_perturbing(MODEL.interface(terms).terms)
+    perturbing = make_perturbing(MODEL.interface(terms))
     record = record.view(np.recarray)
     perturbing.begin(record)
     back, rate = Rotation.from_rotvec(turning * elapsed), np.zeros(20)

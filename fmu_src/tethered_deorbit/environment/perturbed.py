@@ -6,18 +6,23 @@ is pointed to is turned along with them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from fmu_src.interface import Interface
+from fmu_src.tables import make_reader
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
-from fmu_src.tethered_deorbit.environment import air, sky, sunlight, zonals
+from fmu_src.tethered_deorbit.air_table import NAME
+from fmu_src.tethered_deorbit.environment import air, electrodynamic, msis, sky, sunlight, zonals
 from fmu_src.tethered_deorbit.environment.disturbing import Disturbing, together
 from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.turning import turn_vectors_back
 from orbital.kernel import kernel
 from orbital.vectors import Array
 
-GROUPS = ("oblateness", "air", "third_bodies", "shadow", "sunlight")
+GROUPS = ("oblateness", "air", "third_bodies", "shadow", "sunlight", "electrodynamic")
+TURNS = ("oblateness", "air", "electrodynamic")
+"""Groups that know the Earth's axis."""
 SKY = ("third_bodies", "shadow")
 """Groups that look at the sky."""
 
@@ -56,8 +61,9 @@ def point_axis(record: Any, elapsed: float) -> None:
     turn_vectors_back(record, -elapsed, pole, 3)
 
 
-def make_perturbing(terms: Mapping[str, str]) -> Perturbing:
+def make_perturbing(interface: Interface) -> Perturbing:
     """The kernels of what is named among `GROUPS`; ValueError where there is no orbit to disturb."""
+    terms = interface.terms
     named = [group for group in GROUPS if group in terms]
     if not named:
         return Perturbing()
@@ -65,12 +71,15 @@ def make_perturbing(terms: Mapping[str, str]) -> Perturbing:
         raise ValueError(f"{named[0]} = {terms[named[0]]!r} needs an orbit, and environment = 'none' has none")
     parts: list[Disturbing] = []
     acting = IDLE
-    looks = any(group in terms for group in SKY)
+    looks = any(group in terms for group in SKY) or terms.get("air") == "nrlmsis"
     point_sky = sky.make_point_sky("moon" in terms.get("third_bodies", "")) if looks else nothing
     if "oblateness" in terms:
         parts.append(zonals.ZONALS[terms["oblateness"]])
     if "air" in terms:
-        parts.append(air.EXPONENTIAL)
+        tabled = terms["air"] == "nrlmsis"
+        parts.append(
+            air.make_air(msis.make_density(make_reader(interface.tables, NAME)) if tabled else air.exponential)
+        )
     if "third_bodies" in terms:
         parts.append(sky.make_attraction(terms["third_bodies"]))
     if "shadow" in terms:
@@ -78,8 +87,11 @@ def make_perturbing(terms: Mapping[str, str]) -> Perturbing:
         parts.append(shadow)
     if "sunlight" in terms:
         parts.append(sunlight.PRESSURE)
+    if "electrodynamic" in terms:
+        parts.append(electrodynamic.make_electrodynamic(terms))
     all_of_them = together(parts)
-    point = point_axis if "oblateness" in terms or "air" in terms else nothing
+    point = point_axis if any(group in terms for group in TURNS) else nothing
+    point_dipole = electrodynamic.point_dipole if "electrodynamic" in terms else nothing
 
     @kernel
     def add(record: Any, state: Array, rate: Array, since: float, elapsed: float) -> None:
@@ -88,7 +100,9 @@ def make_perturbing(terms: Mapping[str, str]) -> Perturbing:
         Checked  tests/tethered_deorbit/test_perturbed.py, test_sky.py
         """
         point(record, elapsed)
-        point_sky(record, record[0].state_begin + (since - record[0].state_since), elapsed)
+        now = record[0].state_begin + (since - record[0].state_since)
+        point_sky(record, now, elapsed)
+        point_dipole(record, now, elapsed)
         all_of_them.add(record, state, rate)
 
     @kernel
@@ -99,6 +113,7 @@ def make_perturbing(terms: Mapping[str, str]) -> Perturbing:
         """
         point(record, 0.0)
         point_sky(record, time, 0.0)
+        point_dipole(record, time, 0.0)
         all_of_them.publish(record, time)
 
     @kernel
