@@ -191,6 +191,13 @@ def designed(
     return found
 
 
+def lays(model: str, terms: Mapping[str, str], sources: Mapping[str, Any]) -> bool:
+    """Whether parts of a model of ours make tables: of these that a scene gives, or of its values alone."""
+    groups = CATALOGUE[model].groups
+    parts = [groups[group].terms[name] for group, name in terms.items()]
+    return any(part.lay is not None and (sources or not part.sources) for part in parts)
+
+
 def laid(model: str, values: Mapping[str, Any], sources: Mapping[str, Any], terms: Mapping[str, str]) -> Laid | Refusal:
     """Tables, and parameters that follow, that the parts of a model of ours make of what a scene gives them; or why
     they make none.

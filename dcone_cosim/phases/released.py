@@ -95,7 +95,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         yield Finding(phase, "return_distance", "nearest return of the bodies", back.distance, "m")
         yield Finding(phase, "return_time", "that was at", back.after, "s")
     main = next(one.main for one in run.scene.phases if one.name == phase)
-    values = {**main.defaults, **run.parameters.get(phase, {})}
+    values = {**main.asked, **main.defaults, **run.parameters.get(phase, {})}
     for body in ("chaser", "target"):
         names = [f"{body}.{what}{each}" for what in ("position", "velocity") for each in EACH]
         if not set(names) <= last.keys():

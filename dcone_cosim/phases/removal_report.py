@@ -74,6 +74,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_approach(phase, result)
     yield from _of_lowering(run, phase, result)
     yield from _of_safety(run, phase, result)
+    yield from _of_environment(phase, result, last)
     yield from released.findings(run, phase, result)
     yield from _of_reel(run, phase, last)
     if "level.settled" in last:
@@ -89,6 +90,22 @@ def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Ite
     if times and len(result.recorder) > 1:
         share = float(np.mean(result.recorder["level.settled"]))
         yield Finding(phase, "settled_share", "share of the rows at rest", share)
+
+
+def _of_environment(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:
+    """What the pair has had of light, and what a line that conducts has taken from its orbit."""
+    elapsed = result.end - result.start
+    if "shadow.time" in last and elapsed > 0.0:
+        yield Finding(phase, "shadows", "times in the Earth's shadow", int(last["shadow.count"]))
+        yield Finding(phase, "shadow_share", "share of the time in it", last["shadow.time"] / elapsed)
+    columns = result.recorder
+    if "electrodynamic.power" in columns and len(columns) > 1:
+        for key, label, unit in (("emf", "voltage", "V"), ("current", "current", "A"), ("force", "force on it", "N")):
+            largest = float(np.max(np.abs(columns[f"electrodynamic.{key}"])))
+            yield Finding(phase, f"electrodynamic_{key}", f"largest {label}, line that conducts", largest, unit)
+        power, time = columns["electrodynamic.power"], columns["time"]
+        mean = float(np.trapezoid(power, time) / (time[-1] - time[0]))
+        yield Finding(phase, "electrodynamic_power", "mean power it takes from the orbit (of rows)", mean, "W")
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
@@ -182,7 +199,7 @@ def _of_reel(run: RunResult, phase: str, last: Mapping[str, float]) -> Iterator[
                 yield Finding(phase, row.key, row.label, row.value, row.unit, shown_in=shown_in)
 
 
-NEAR = 1e-4
+NEAR = 1e-3
 """Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
 
 

@@ -195,7 +195,7 @@ class Expected:
             try:
                 date = datetime.fromisoformat(value.strip())
             except ValueError:
-                if number_and_unit(value) is not None:
+                if (number_and_unit(value) or (0.0, ""))[1].isalpha():
                     return self._quantity(value)[0]
             else:
                 return ((date if date.tzinfo else date.replace(tzinfo=UTC)) - J2000).total_seconds()

@@ -94,7 +94,7 @@ def make_air(density_at: Callable[..., Any]) -> Disturbing:
 def mean_density(values: Mapping[str, float], terms: Mapping[str, str]) -> Callable[[Rows], Rows] | None:
     """Function of altitudes [m] that gives the density of a scene's air [kg/m^3], for what is averaged; None without.
 
-    values        parameters by FMI name, SI
+    values        parameters by FMI name, SI, and what only the scene knows
     """
     if terms.get("air") == "nrlmsis":
         return mean_profile(values)
