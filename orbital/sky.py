@@ -49,7 +49,12 @@ _LATITUDE = np.array((
 
 @kernel
 def _centuries(time: float) -> float:
-    """Julian centuries of terrestrial time since J2000."""
+    """Julian centuries of terrestrial time since J2000.
+
+    time          UTC since 2000-01-01 12:00                     [s]
+
+    Checked  tests/orbital/test_sky.py
+    """
     return (time + TT_LESS_UTC) / CENTURY
 
 
@@ -58,6 +63,8 @@ def _to_equator(out: Array, longitude: float, latitude: float, distance: float, 
     """out = place [m] in the equator and equinox of the epoch, from the ecliptic and equinox of date [deg].
 
     The ecliptic itself turns by 0.013 deg per century, which is left out.
+
+    Checked  tests/orbital/test_sky.py
     """
     t, t0 = _centuries(time), _centuries(epoch)
     longitude -= _PRECESSION[0] * (t - t0) + _PRECESSION[1] * (t * t - t0 * t0)
