@@ -178,7 +178,7 @@ def test_an_orbit_by_scipy_and_astropy() -> None:
     off = np.linalg.norm(i.array("center_position") - end[:3])
     moved = np.linalg.norm(end[:3] - turned_by(begin, days * DAY, axis))
     assert moved > 3e4
-    assert off < 2e-4 * moved
+    assert off < 2e-5 * moved
     assert i["energy.orbital"] != energy
     assert i["shadow.count"] == 3
     assert i["shadow.lit"] == 1.0
