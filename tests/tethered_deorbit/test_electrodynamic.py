@@ -34,7 +34,8 @@ def field(place: np.ndarray, seconds: float) -> np.ndarray:
 
 
 @pytest.mark.usefixtures("plain")
-def test_forces_on_both_ends() -> None:
+@pytest.mark.parametrize("resistance", [100.0, 2000.0])
+def test_forces_on_both_ends(resistance: float) -> None:
     """Each end bears half of I rho x B; the power of it against the turning air is -I E. In turned axes the same."""
     terms = {"reel": "locked", "electrodynamic": "dipole"}
     found = []
@@ -43,7 +44,7 @@ def test_forces_on_both_ends() -> None:
         record["state_total_mass"] = 3000.0
         record["state_chaser_share"], record["state_target_share"] = MASSES / 3000.0
         record["state_turning"][0], record["state_begin"] = turning, 500.0 - elapsed
-        record["orbit_epoch"] = low.EPOCH
+        record["orbit_epoch"], record["electrodynamic_resistance"] = low.EPOCH, resistance
         back = Rotation.from_rotvec(turning * elapsed)
         there, rate = back.inv().apply(STATE.reshape(-1, 3)).ravel(), np.zeros(12)
         make_perturbing(MODEL.interface(terms)).add(record.view(np.recarray), there, rate, elapsed, elapsed)
@@ -57,11 +58,12 @@ def test_forces_on_both_ends() -> None:
     middle, velocity = 0.5 * (chaser + target), 0.5 * (speeds[0] + speeds[1])
     b, wind = field(middle, 500.0), velocity - np.cross(SPIN, middle)
     emf = np.cross(wind, b) @ STATE[6:9]
-    current = np.sign(emf) * min((abs(emf) - 30.0) / 100.0, 1.2110807)
+    current = np.sign(emf) * min((abs(emf) - 30.0) / resistance, 1.2110807)
     total = force.sum(axis=0)
     assert total == pytest.approx(current * np.cross(STATE[6:9], b), rel=1e-4, abs=1e-6)
     assert total @ wind == pytest.approx(-current * emf, rel=1e-4)
-    assert total @ wind < -100.0
+    assert total @ wind < -50.0
+    assert (abs(current) == 1.2110807) == (resistance == 100.0)
 
 
 def test_what_it_takes_from_the_orbit() -> None:

@@ -31,7 +31,7 @@ def make_shadow(shape: str, point_sky: Callable[..., Any]) -> tuple[Disturbing, 
     point_sky     as in `sky.make_point_sky`
 
     Valid    both bodies in the light at once: 20 km of line pass an edge within 3 s. A shadow that is grazed for less
-             than a fiftieth of a radian of the orbit may be missed
+             than a twentieth of a radian of the orbit may be missed
     Checked  tests/tethered_deorbit/test_sky.py
     """
     cone = shape == "cone"
