@@ -81,3 +81,14 @@ def test_a_line_that_would_be_cut_at_once_is_refused() -> None:
     assert i["release.released"]
     assert i["release.time"] == 0.0
     assert math.isfinite(i["separation"])
+
+
+def test_a_line_that_is_cut_slack_never_goes_taut() -> None:
+    i = tow("time", release__at=0.5, release__stops_thrust=False)
+    i.step(0.2)
+    assert not i["tether.taut"]
+    for _ in range(20):
+        i.step(10.0)
+        assert i["tether.tension_peak"] == 0.0
+    assert i["tether.tug_count"] == 0
+    assert i["separation"] > 12.0
