@@ -1,4 +1,4 @@
-"""The Earth's magnetic field as a tilted dipole, and what it does to a conductor that is moved through it."""
+"""The Earth's magnetic field, as a tilted dipole or by its harmonics, and what it does to a conductor."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def dipole_field(out: Array, position: Array, north: Array) -> None:
     position      r      from the Earth's centre                 [m]        (3,)
     north         m      unit vector to the pole in the north    [-]        (3,)
 
-    Valid    within a quarter of the whole field in low orbit, where the other terms are largest
+    Valid    to 30 % of the whole field in the mean over low orbits, to 77 % over the South Atlantic at 400 km
     Source   potential of the three coefficients of degree 1
     Checked  tests/orbital/test_magnetism.py, against the gradient of that
     """
@@ -83,3 +83,53 @@ def tether_current(
     flux = ELECTRON_CHARGE * density * math.sqrt(BOLTZMANN * temperature / (2.0 * math.pi * ELECTRON_MASS))
     size = min(max(0.0, abs(emf) - drop) / resistance, min(limit, 4.0 * math.pi * radius * radius * flux))
     return size if emf >= 0.0 else -size
+
+
+@kernel
+def harmonic_field(out: Array, position: Array, coefficients: Array, room: Array, degree: int) -> None:
+    """out = magnetic flux density [T] of a field given by its harmonics, in axes that turn with the Earth.
+
+        B = -grad a sum_nm (g_nm V_nm + h_nm W_nm),   V_nm + i W_nm = (a/r)^(n+1) P_nm(sin lat) exp(i m lon)
+
+    position      r      in the same axes, the first through Greenwich   [m]  (3,)
+    coefficients  g, h   of polynomials that are not normalised  [T]        (2, degree + 1, degree + 1)
+    room                 for V and W                             [-]        (2 degree + 4, degree + 2)
+
+    Valid    outside the core's sources, |r| > 0
+    Source   Cunningham's recursion, as in Montenbruck and Gill, Satellite orbits (2000), eq. 3.29 to 3.33
+    Checked  tests/orbital/test_magnetism.py, against the dipole and the gradient of a quadrupole;
+             tests/tethered_deorbit/test_field.py, against ppigrf
+    """
+    a = REFERENCE_RADIUS
+    square = dot(position, position)
+    x, y, z = position[0] * a / square, position[1] * a / square, position[2] * a / square
+    fall = a * a / square
+    v, w = room[0 : degree + 2], room[degree + 2 : 2 * degree + 4]
+    v[0, 0], w[0, 0] = a / math.sqrt(square), 0.0
+    for m in range(degree + 2):
+        if m > 0:
+            odd = 2.0 * m - 1.0
+            v[m, m] = odd * (x * v[m - 1, m - 1] - y * w[m - 1, m - 1])
+            w[m, m] = odd * (x * w[m - 1, m - 1] + y * v[m - 1, m - 1])
+        for n in range(m + 1, degree + 2):
+            up, down = (2.0 * n - 1.0) / (n - m) * z, (n + m - 1.0) / (n - m) * fall
+            v[n, m] = up * v[n - 1, m]
+            w[n, m] = up * w[n - 1, m]
+            if n > m + 1:
+                v[n, m] -= down * v[n - 2, m]
+                w[n, m] -= down * w[n - 2, m]
+    first, second, third = 0.0, 0.0, 0.0
+    for n in range(1, degree + 1):
+        for m in range(n + 1):
+            g, h = coefficients[0, n, m], coefficients[1, n, m]
+            third -= (n - m + 1.0) * (g * v[n + 1, m] + h * w[n + 1, m])
+            if m == 0:
+                first -= g * v[n + 1, 1]
+                second -= g * w[n + 1, 1]
+            else:
+                weight = (n - m + 1.0) * (n - m + 2.0)
+                first += 0.5 * weight * (g * v[n + 1, m - 1] + h * w[n + 1, m - 1])
+                first -= 0.5 * (g * v[n + 1, m + 1] + h * w[n + 1, m + 1])
+                second += 0.5 * weight * (h * v[n + 1, m - 1] - g * w[n + 1, m - 1])
+                second += 0.5 * (h * v[n + 1, m + 1] - g * w[n + 1, m + 1])
+    out[0], out[1], out[2] = -first, -second, -third

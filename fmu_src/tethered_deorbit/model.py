@@ -70,7 +70,7 @@ IMPLEMENTED = {
     "shadow": ("cylinder", "cone"),
     "sunlight": ("pressure",),
     "power": ("solar",),
-    "electrodynamic": ("dipole",),
+    "electrodynamic": ("dipole", "igrf"),
     **KINDS,
 }
 """Terms that are composed here."""

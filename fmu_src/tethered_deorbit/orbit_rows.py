@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fmu_src.interface import Group, Term
 from fmu_src.rows import at_least_zero, count, output, parameter, positive, state, vector
-from fmu_src.tethered_deorbit import air_table, stress
+from fmu_src.tethered_deorbit import air_table, field_table, stress
 
 _ROOM = (
     vector("state.pole", "1", "the Earth's axis along the axes of the step", "state"),
@@ -164,31 +164,45 @@ POWER = Group(
     follows=lambda terms, values: "solar",
 )  # fmt: skip
 
+_CONDUCTING = (
+    EPOCH,
+    positive("electrodynamic.resistance", "ohm", "of the line and its contactors", 100.0, 1e9),
+    at_least_zero("electrodynamic.contactor_drop", "V", "voltage that both plasma contactors take", 30.0, 1e5),
+    positive("electrodynamic.contactor_radius", "m", "of the sphere from which a contactor draws electrons", 10.0, 1e4),
+    at_least_zero("electrodynamic.current_limit", "A", "that the line may carry", 2.0, 1e4),
+    at_least_zero("electrodynamic.electron_density", "1/m3", "of the plasma; 1e9 to 1e12 by altitude, time of day and "
+                  "Sun", 1e11, 1e14),
+    positive("electrodynamic.electron_temperature", "K", "of the plasma", 1500.0, 1e6),
+    output("electrodynamic.field", "T", "magnetic flux density at the middle of the line", 3e-5),
+    output("electrodynamic.emf", "V", "induced between its ends, positive from the chaser to the target", 100.0),
+    output("electrodynamic.current", "A", "through it, from the chaser to the target", 1.0),
+    output("electrodynamic.power", "W", "that the current takes from the orbit", 100.0),
+    output("electrodynamic.force", "N", "on it", 0.01),
+    vector("state.field", "T", "where the line is", "state"),
+)  # fmt: skip
+
 ELECTRODYNAMIC = Group(
     {
         "dipole": Term(
             "the line conducts, and the Earth's field, a tilted dipole that turns with it, drives a current through it",
             (
-                EPOCH,
-                positive("electrodynamic.resistance", "ohm", "of the line and its contactors", 100.0, 1e9),
-                at_least_zero("electrodynamic.contactor_drop", "V", "voltage that both plasma contactors take", 30.0,
-                              1e5),
-                positive("electrodynamic.contactor_radius", "m", "of the sphere from which a contactor draws electrons",
-                         10.0, 1e4),
-                at_least_zero("electrodynamic.current_limit", "A", "that the line may carry", 2.0, 1e4),
-                at_least_zero("electrodynamic.electron_density", "1/m3", "of the plasma; 1e9 to 1e12 by altitude, time "
-                              "of day and Sun", 1e11, 1e14),
-                positive("electrodynamic.electron_temperature", "K", "of the plasma", 1500.0, 1e6),
-                output("electrodynamic.field", "T", "magnetic flux density at the middle of the line", 3e-5),
-                output("electrodynamic.emf", "V", "induced between its ends, positive from the chaser to the target",
-                       100.0),
-                output("electrodynamic.current", "A", "through it, from the chaser to the target", 1.0),
-                output("electrodynamic.power", "W", "that the current takes from the orbit", 100.0),
-                output("electrodynamic.force", "N", "on it", 0.01),
+                *_CONDUCTING,
                 vector("state.dipole", "1", "direction of the dipole along the axes of the step", "state"),
-                vector("state.field", "T", "where the line is", "state"),
                 *_ROOM,
             ),
+            extremes=stress.ELECTRODYNAMIC,
+        ),
+        "igrf": Term(
+            "the line conducts, and the Earth's field by IGRF at the epoch drives a current through it",
+            (
+                *_CONDUCTING,
+                vector("state.meridian", "1", "direction of Greenwich along the axes of the step", "state"),
+                state("state.harmonics[#][#]", "1", "room for harmonics",
+                      shape=(2 * field_table.DEGREE + 4, field_table.DEGREE + 2)),
+                *_ROOM,
+            ),
+            tables=(field_table.TABLE,),
+            lay=field_table.lay,
             extremes=stress.ELECTRODYNAMIC,
         ),
     },

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from orbital.magnetism import dipole_field, dipole_north, tether_current
+from orbital.magnetism import dipole_field, dipole_north, harmonic_field, tether_current
 
 A = 6371.2e3
 
@@ -53,3 +53,26 @@ def test_current() -> None:
     expected = 1.602e-19 * 1e11 * speed / 4.0 * 4.0 * math.pi * 100.0
     assert tether_current(1030.0, 100.0, 30.0, 5.0, 1e11, 1500.0, 10.0) == pytest.approx(expected, rel=1e-3)
     assert expected == pytest.approx(1.21, abs=0.01)
+
+
+def test_harmonics_are_the_gradient_of_their_potential() -> None:
+    """Degree 1 is the dipole; a term of degree 3 and order 2, against differences of its potential written out."""
+    x, out, room = np.array([4e6, -3e6, 5e6]), np.zeros(3), np.zeros((10, 5))
+    rows = np.zeros((2, 4, 4))
+    rows[0, 1, :2], rows[1, 1, 1] = (-29404.8e-9, -1450.9e-9), 4652.5e-9
+    harmonic_field(out, x, rows, room, 3)
+    slope = [(potential(x + 100.0 * e) - potential(x - 100.0 * e)) / 200.0 for e in np.eye(3)]
+    assert out == pytest.approx(-np.array(slope), rel=1e-7)
+
+    def sectorial(x: Any) -> float:
+        """P_32 = 15 sin(lat) cos^2(lat), at twice the longitude."""
+        r = np.linalg.norm(x)
+        return float(
+            A * (A / r) ** 4 * 15.0 * x[2] / r**3 * (2e-9 * (x[0] ** 2 - x[1] ** 2) + 3e-9 * 2.0 * x[0] * x[1])
+        )
+
+    rows[:] = 0.0
+    rows[0, 3, 2], rows[1, 3, 2] = 2e-9, 3e-9
+    harmonic_field(out, x, rows, room, 3)
+    slope = [(sectorial(x + 100.0 * e) - sectorial(x - 100.0 * e)) / 200.0 for e in np.eye(3)]
+    assert out == pytest.approx(-np.array(slope), rel=1e-6)

@@ -2,16 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fmu_src.tethered_deorbit.environment.disturbing import Disturbing
+from fmu_src.tethered_deorbit.field_table import DEGREE
 from fmu_src.tethered_deorbit.turning import turn_vectors_back
 from orbital.constants import EARTH_ROTATION_RATE
 from orbital.kernel import kernel
-from orbital.magnetism import dipole_field, dipole_north, tether_current
+from orbital.magnetism import dipole_field, dipole_north, harmonic_field, tether_current
 from orbital.sky import greenwich_angle
 from orbital.vectors import Array, cross, dot, norm
+
+
+@kernel
+def point_greenwich(record: Any, time: float, elapsed: float) -> None:
+    """Direction of the meridian of Greenwich on the equator along the axes of the step, in `state.meridian`.
+
+    Arguments as in `point_dipole`.
+
+    Checked  tests/tethered_deorbit/test_field.py
+    """
+    r = record[0]
+    angle = greenwich_angle(r.orbit_epoch + time, r.orbit_epoch)
+    r.state_meridian[0], r.state_meridian[1], r.state_meridian[2] = math.cos(angle), math.sin(angle), 0.0
+    turn_vectors_back(record, -elapsed, r.state_meridian, 3)
+
+
+@kernel
+def dipole(record: Any, position: Array) -> None:
+    """The dipole's field at a place [m], in `state.field` [T]; after `point_dipole`.
+
+    Checked  tests/tethered_deorbit/test_electrodynamic.py
+    """
+    dipole_field(record[0].state_field, position, record[0].state_dipole)
+
+
+def make_igrf(reader: Any) -> Callable[..., Any]:
+    """The kernel `igrf(record, position)`, which writes `state.field` [T]; after `point_axis` and `point_greenwich`.
+
+    reader        of the table of coefficients
+
+    Checked  tests/tethered_deorbit/test_field.py
+    """
+
+    @kernel
+    def igrf(record: Any, position: Array) -> None:
+        """The field by its harmonics, along the axes of the step.
+
+        position      from the Earth's centre                    [m]        (3,)
+
+        Checked  tests/tethered_deorbit/test_field.py
+        """
+        r = record[0]
+        east, place, found = r.state_perturbing[0], r.state_perturbing[1], r.state_field
+        cross(east, r.state_pole, r.state_meridian)
+        place[0], place[1], place[2] = dot(position, r.state_meridian), dot(position, east), dot(position, r.state_pole)
+        harmonic_field(found, place, reader(r), r.state_harmonics, DEGREE)
+        x, y, z = found[0], found[1], found[2]
+        for i in range(3):
+            found[i] = x * r.state_meridian[i] + y * east[i] + z * r.state_pole[i]
+
+    return igrf
 
 
 @kernel
@@ -28,8 +81,10 @@ def point_dipole(record: Any, time: float, elapsed: float) -> None:
     turn_vectors_back(record, -elapsed, r.state_dipole, 3)
 
 
-def make_electrodynamic(terms: Mapping[str, str]) -> Disturbing:
-    """What the current does to the pair; after `point_axis` and `point_dipole`.
+def make_electrodynamic(terms: Mapping[str, str], field: Callable[..., Any]) -> Disturbing:
+    """What the current does to the pair; after `point_axis` and what the field wants.
+
+    field         kernel (record, position): the field there, in `state.field`
 
         E = (u x B) . rho,   u = v - w p x r at the middle of the line,   F = I rho x B,   half of it on each body
 
@@ -54,7 +109,7 @@ def make_electrodynamic(terms: Mapping[str, str]) -> Disturbing:
         r = record[0]
         speed, push = r.state_perturbing[0], r.state_perturbing[1]
         pole = r.state_pole
-        dipole_field(r.state_field, position, r.state_dipole)
+        field(record, position)
         cross(speed, pole, position)
         for i in range(3):
             speed[i] = velocity[i] - EARTH_ROTATION_RATE * speed[i]

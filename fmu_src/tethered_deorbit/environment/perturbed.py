@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
 from fmu_src.tables import make_reader
+from fmu_src.tethered_deorbit import field_table
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.air_table import NAME
 from fmu_src.tethered_deorbit.environment import air, electrodynamic, msis, sky, sunlight, zonals
@@ -25,6 +26,8 @@ TURNS = ("oblateness", "air", "electrodynamic")
 """Groups that know the Earth's axis."""
 SKY = ("third_bodies", "shadow")
 """Groups that look at the sky."""
+FIELDS = {"dipole": electrodynamic.point_dipole, "igrf": electrodynamic.point_greenwich}
+"""What has to be pointed to for a magnetic field."""
 
 
 class Perturbing(NamedTuple):
@@ -88,10 +91,13 @@ def make_perturbing(interface: Interface) -> Perturbing:
     if "sunlight" in terms:
         parts.append(sunlight.PRESSURE)
     if "electrodynamic" in terms:
-        parts.append(electrodynamic.make_electrodynamic(terms))
+        field: Callable[..., Any] = electrodynamic.dipole
+        if terms["electrodynamic"] == "igrf":
+            field = electrodynamic.make_igrf(make_reader(interface.tables, field_table.NAME))
+        parts.append(electrodynamic.make_electrodynamic(terms, field))
     all_of_them = together(parts)
     point = point_axis if any(group in terms for group in TURNS) else nothing
-    point_dipole = electrodynamic.point_dipole if "electrodynamic" in terms else nothing
+    point_field = FIELDS[terms["electrodynamic"]] if "electrodynamic" in terms else nothing
 
     @kernel
     def add(record: Any, state: Array, rate: Array, since: float, elapsed: float) -> None:
@@ -102,7 +108,7 @@ def make_perturbing(interface: Interface) -> Perturbing:
         point(record, elapsed)
         now = record[0].state_begin + (since - record[0].state_since)
         point_sky(record, now, elapsed)
-        point_dipole(record, now, elapsed)
+        point_field(record, now, elapsed)
         all_of_them.add(record, state, rate)
 
     @kernel
@@ -113,7 +119,7 @@ def make_perturbing(interface: Interface) -> Perturbing:
         """
         point(record, 0.0)
         point_sky(record, time, 0.0)
-        point_dipole(record, time, 0.0)
+        point_field(record, time, 0.0)
         all_of_them.publish(record, time)
 
     @kernel
