@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from dcone_cosim.cache import Times
 from dcone_cosim.errors import FmuError, InputError
@@ -190,6 +191,13 @@ def designed(
     return found
 
 
+def lays(model: str, terms: Mapping[str, str], sources: Mapping[str, Any]) -> bool:
+    """Whether parts of a model of ours make tables: of these that a scene gives, or of its values alone."""
+    groups = CATALOGUE[model].groups
+    parts = [groups[group].terms[name] for group, name in terms.items()]
+    return any(part.lay is not None and (sources or not part.sources) for part in parts)
+
+
 def laid(model: str, values: Mapping[str, Any], sources: Mapping[str, Any], terms: Mapping[str, str]) -> Laid | Refusal:
     """Tables, and parameters that follow, that the parts of a model of ours make of what a scene gives them; or why
     they make none.
@@ -337,6 +345,15 @@ def extremes(model: str, terms: Mapping[str, str]) -> list[Extreme]:
     groups = CATALOGUE[model].groups
     of_parts = [one for group, term in terms.items() for one in groups[group].terms[term].extremes]
     return [*of_parts, *STRESSES[model].EXTREMES]
+
+
+def air_of(
+    values: Mapping[str, float], terms: Mapping[str, str]
+) -> Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]] | None:
+    """Function of altitudes [m]: the density of the air that a tow of ours has, in the mean [kg/m^3]; None without."""
+    from fmu_src.tethered_deorbit.environment.air import mean_density
+
+    return mean_density(values, terms)
 
 
 def target_distance(

@@ -16,6 +16,8 @@ SHOWN_IN = {
     "m/day": 1.0 / 86400.0,
     "deg/s": math.pi / 180.0,
     "deg": math.pi / 180.0,
+    "day": 86400.0,
+    "yr": 365.25 * 86400.0,
 }
 """Units that a person reads more easily, and how much of the SI unit each is."""
 

@@ -105,6 +105,9 @@ class HandoffRecord:
             self.line_parameters = line_parameters(self.line, component.variables)
         anomaly = advanced(self.phase.setting("orbit.true_anomaly") or 0.0, self.handed.turning[2] * self.time)
         begun = {"orbit.true_anomaly": anomaly, "start.condition": self.phase.choice("start.condition", HANDED_OVER)}
+        epoch = self.phase.setting("orbit.epoch")
+        if epoch is not None and "orbit.epoch" in component.variables:
+            begun["orbit.epoch"] = epoch + self.time
         return self.handed.parameters | begun | self.line_parameters | self.turning
 
     @property

@@ -48,6 +48,7 @@ class Variable:
                  its own inputs
     at_start     of an output: inputs that its value at the start depends on, beside those of `partials`
     fills        a scene may give fewer elements: the last one is repeated
+    date         an instant: the value counts from 2000-01-01 12:00 UTC [s], and a scene may say the date
     """
 
     name: str
@@ -68,6 +69,7 @@ class Variable:
     partials: tuple[tuple[str, str], ...] = ()
     at_start: tuple[str, ...] = ()
     fills: bool = False
+    date: bool = False
 
     def __post_init__(self) -> None:
         if self.name.count(INDEX) != len(self.shape):

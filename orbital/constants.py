@@ -17,6 +17,11 @@ EARTH_EQUATORIAL_RADIUS = 6378137.0
 # system (Lemoine et al., NASA/TP-1998-206861).
 EARTH_J2 = math.sqrt(5.0) * 4.84165371736e-4
 
+# Third and fourth zonal harmonics, unnormalised [-]. EGM96: -sqrt(7) C30 and -sqrt(9) C40 with C30 = 9.57254173792e-7,
+# C40 = 5.39873863789e-7 (Lemoine et al., NASA/TP-1998-206861).
+EARTH_J3 = -math.sqrt(7.0) * 9.57254173792e-7
+EARTH_J4 = -3.0 * 5.39873863789e-7
+
 # Sidereal rotation rate of the Earth [rad/s]. WGS 84, NGA.STND.0036 table 3.1. Drives an atmosphere that turns with it.
 EARTH_ROTATION_RATE = 7.292115e-5
 
@@ -39,3 +44,13 @@ SUN_MEAN_MOTION = 2.0 * math.pi / TROPICAL_YEAR
 # Solar radiation pressure on a perfect absorber at one astronomical unit [Pa]: 1361 W/m^2 over c = 299792458 m/s.
 # IAU 2015 Resolution B3, nominal total solar irradiance.
 SOLAR_RADIATION_PRESSURE = 1361.0 / 299792458.0
+
+# Gravitational parameters of Sun and Moon [m^3/s^2]. DE440 (Park et al., Astronomical Journal 161 (2021) 105).
+SUN_MU = 1.3271244004127942e20
+MOON_MU = 4.902800118e12
+
+# Astronomical unit [m], exact: IAU 2012 Resolution B2.
+ASTRONOMICAL_UNIT = 149597870700.0
+
+# Radius of the Sun [m]. IAU 2015 Resolution B3, nominal.
+SUN_RADIUS = 695700000.0

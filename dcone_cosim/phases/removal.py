@@ -64,7 +64,7 @@ class Tow(Phase):
         ("optional", ("tether.tension_peak", "tether.tension_least", "tether.impulse")),
         ("optional", ("approach.distance", "approach.time", "tether.taut", "tether.tug_count")),
         ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
-        ("optional", ("break.broken", "break.time")),
+        ("optional", ("break.broken", "break.time", "release.released", "release.time")),
         ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
         ("hand-over", tuple(f"{whose}{each}" for whose in _STATES for each in EACH)),
     )

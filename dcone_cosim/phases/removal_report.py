@@ -7,14 +7,16 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from dcone_cosim import build
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
-from dcone_cosim.phases import passive
+from dcone_cosim.phases import passive, released
 from dcone_cosim.phases.end import of_end
 from dcone_cosim.phases.tension import last_orbit, orbital_period
 from dcone_cosim.results import PhaseResult, RunResult
+from orbital.constants import EARTH_MU
 
 UNKNOWN_EXTENT = 1.0
 """How far a body of which nothing is known is taken to reach from its centre of mass [m]."""
@@ -70,8 +72,10 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         if name in last:
             yield Finding(phase, name, label, last[name], unit, shown_in=shown_in)
     yield from _of_approach(phase, result)
-    yield from _of_lowering(phase, result)
+    yield from _of_lowering(run, phase, result)
     yield from _of_safety(run, phase, result)
+    yield from _of_environment(phase, result, last)
+    yield from released.findings(run, phase, result)
     yield from _of_reel(run, phase, last)
     if "level.settled" in last:
         yield from _of_level(phase, result, last)
@@ -86,6 +90,22 @@ def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Ite
     if times and len(result.recorder) > 1:
         share = float(np.mean(result.recorder["level.settled"]))
         yield Finding(phase, "settled_share", "share of the rows at rest", share)
+
+
+def _of_environment(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:
+    """What the pair has had of light, and what a line that conducts has taken from its orbit."""
+    elapsed = result.end - result.start
+    if "shadow.time" in last and elapsed > 0.0:
+        yield Finding(phase, "shadows", "times in the Earth's shadow", int(last["shadow.count"]))
+        yield Finding(phase, "shadow_share", "share of the time in it", last["shadow.time"] / elapsed)
+    columns = result.recorder
+    if "electrodynamic.power" in columns and len(columns) > 1:
+        for key, label, unit in (("emf", "voltage", "V"), ("current", "current", "A"), ("force", "force on it", "N")):
+            largest = float(np.max(np.abs(columns[f"electrodynamic.{key}"])))
+            yield Finding(phase, f"electrodynamic_{key}", f"largest {label}, line that conducts", largest, unit)
+        power, time = columns["electrodynamic.power"], columns["time"]
+        mean = float(np.trapezoid(power, time) / (time[-1] - time[0]))
+        yield Finding(phase, "electrodynamic_power", "mean power it takes from the orbit (of rows)", mean, "W")
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
@@ -143,8 +163,9 @@ def _of_safety(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Find
 
 
 def unsafe(run: RunResult, phase: str, result: PhaseResult, reach: float | None) -> Iterator[str]:
-    """Whether the bodies may meet if the tow stops on the way."""
+    """Whether the bodies may meet if the tow stops on the way, or where the line has been cut."""
     needs = room(run.parameters.get(phase, {}), reach)
+    yield from released.returning(phase, result, needs)
     for found in passive.worst(result.passive, needs):
         if found.meets:
             yield (
@@ -178,11 +199,29 @@ def _of_reel(run: RunResult, phase: str, last: Mapping[str, float]) -> Iterator[
                 yield Finding(phase, row.key, row.label, row.value, row.unit, shown_in=shown_in)
 
 
-NEAR = 1e-4
+NEAR = 1e-3
 """Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
 
 
-def _of_lowering(phase: str, result: PhaseResult) -> Iterator[Finding]:
+def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.float64]:
+    """Semi-major axis of the pair (rows,) [m]: osculating, or where the Earth is flattened, by the orbit's energy.
+
+        a = -mu M/(2 E),   E with the potential of the flattening in it
+
+    The osculating one breathes by kilometres there, twice a revolution, and two samples of it tell nothing.
+    """
+    recorder = result.recorder
+    main = next(one.main for one in run.scene.phases if one.name == phase)
+    values = run.parameters.get(phase, {})
+    known = {"chaser.mass", "target.mass"} <= values.keys() and "energy.orbital" in recorder
+    if main.fmu is not None or "oblateness" not in main.terms or not known:
+        return recorder["center.semi_major_axis"]
+    mass = values["chaser.mass"] + values["target.mass"]
+    used = recorder["chaser.propellant"] if "engine" in main.terms else 0.0
+    return np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
+
+
+def _of_lowering(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Finding]:
     """How far the semi-major axis of the pair fell, where that is an orbit's.
 
     Gravity on the pair is not that on its mass at the centre: it differs by (3/2) (s/r)^2 at most, and moves the
@@ -192,7 +231,7 @@ def _of_lowering(phase: str, result: PhaseResult) -> Iterator[Finding]:
     recorder = result.recorder
     if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
         return
-    axis = recorder["center.semi_major_axis"]
+    axis = axis_of(run, phase, result)
     share = float(np.max(recorder["separation"])) / float(np.min(axis))
     if not 0.0 <= share <= NEAR:
         text = f"not reported: chaser and target are up to {share:.2g} of the orbit's radius apart, more than {NEAR:g}"
@@ -252,6 +291,11 @@ def own_events(result: PhaseResult) -> Iterator[Event]:
     last = result.recorder.last() if len(result.recorder) else {}
     if last.get("break.broken"):
         yield Event(result.name, "line breaks", last["break.time"])
+    if last.get("release.released"):
+        yield Event(result.name, "line cut", last["release.time"])
+        back = released.after_the_cut(result)
+        if back is not None:
+            yield Event(result.name, "bodies return nearest", back.after)
 
 
 def _is_taut_from_start(result: PhaseResult) -> bool:

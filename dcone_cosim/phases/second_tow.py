@@ -45,6 +45,7 @@ from orbital.rotations import from_matrix, multiply
 BODIES = ("chaser", "target")
 AXES = ("x", "y", "z")
 TENSION = "tether.tension"
+EPOCH = "orbit.epoch"
 SPIN = tuple(f"target.spin{each}" for each in EACH)
 TURNED = (*(f"target.attitude[{i}]" for i in (1, 2, 3, 4)), *(f"target.rate{each}" for each in EACH))
 ROUNDING = 8.0 * 2.0**-52
@@ -137,6 +138,9 @@ class TowHandover:
         found = begun_again(self.left) | {"start.condition": self.phase.choice("start.condition", HANDED_OVER)}
         if ATTACHMENT in component.variables and ATTACHMENT in self.left:
             found[ATTACHMENT] = self.left[ATTACHMENT]
+        epoch = self.left.get(EPOCH, self.phase.setting(EPOCH))
+        if EPOCH in component.variables and epoch is not None:
+            found[EPOCH] = epoch + self.time
         if self.turns:
             inertial = self.phase.choice(RATE_FRAME, "inertial")
             found |= turning_again(self.left, inertial)
@@ -219,7 +223,7 @@ class SecondTow(Tow):
         *(f"{body}.{of}{each}" for body in (*BODIES, "center") for of in ("position", "velocity") for each in EACH),
         *RELATIVE,
     )
-    takes_too = (ATTACHMENT, *TURNING_SETS, *CENTER, *SHAPE.values(), *SPIN, *TURNED)
+    takes_too = (ATTACHMENT, EPOCH, *TURNING_SETS, *CENTER, *SHAPE.values(), *SPIN, *TURNED)
     tugs_file = "second_tow_tugs"
     figure_names = ("second_tow_orbital_radius.png", "second_tow_tether_tension.png")
 

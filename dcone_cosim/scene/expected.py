@@ -10,9 +10,11 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 
 from dcone_cosim.units import NO_UNIT, Unit, by_name, like, named, spoken
 
+J2000 = datetime(2000, 1, 1, 12, tzinfo=UTC)
 LARGEST_INTEGER = 2**31 - 1
 """An FMI Integer has 32 bits."""
 _QUANTITY = re.compile(r"\s*([+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|nan|inf))\s*([^\d\s].*)?", re.DOTALL)
@@ -48,6 +50,7 @@ class Expected:
     minimum    least permitted SI value; `open_minimum` excludes the bound itself
     relative   the value is a difference: 5 deg_C are 5 K
     share      a pure number that may be told in per cent
+    date       an instant that may be told as its date: the SI value counts from 2000-01-01 12:00 UTC, days of 86400 s
     refusal    why else an SI value is refused, or None
     display_unit  FMI unit in which a person would write it, "" for the unit itself
     """
@@ -65,6 +68,7 @@ class Expected:
     relative: bool = False
     share: bool = False
     fills: bool = False
+    date: bool = False
 
     def read(self, value: object) -> float | list[float]:
         """SI value, or text, or `Unexpected`."""
@@ -99,6 +103,8 @@ class Expected:
             return f"a whole number, such as {self.example}"
         if self.share:
             return f'a share, such as "{self.example}" or a bare number'
+        if self.date:
+            return 'a date in UTC, such as "2026-03-20 14:46"'
         if self.unit == "1":
             return f"a bare number, such as {self.example}"
         return f'{by_name(self.unit).noun} with its unit, such as "{self.example}"'
@@ -118,7 +124,9 @@ class Expected:
             if not isinstance(value, bool):
                 raise Unexpected(f"expected {self._wanted()}")
             return float(value)
-        if self.share and isinstance(value, str):
+        if self.date:
+            number, unit = self._instant(value), NO_UNIT
+        elif self.share and isinstance(value, str):
             number, unit = self._per_cent(value), NO_UNIT
         else:
             number, unit = (self._bare(value), NO_UNIT) if self.unit == "1" else self._quantity(value)
@@ -156,6 +164,9 @@ class Expected:
             return "true" if value else "false"
         if self.kind == "Integer":
             return str(int(value))
+        if self.date:
+            text = f'"{(J2000 + timedelta(seconds=value)).strftime("%Y-%m-%d %H:%M:%S.%f").rstrip("0").rstrip(".")}"'
+            return text if self._instant(text[1:-1]) == value else f'"{value!r} s"'
         if self.unit == "1":
             return repr(value)
         for shown in dict.fromkeys((self.display_unit or self.unit, self.unit)):
@@ -177,6 +188,18 @@ class Expected:
         else:
             return None
         return f"must be {words} {unit.from_si(bound):.10g}{'' if unit is NO_UNIT else f' {unit.name}'}"
+
+    def _instant(self, value: object) -> float:
+        """Seconds from J2000 to a date in UTC, or as they are told with a unit."""
+        if isinstance(value, str):
+            try:
+                date = datetime.fromisoformat(value.strip())
+            except ValueError:
+                if (number_and_unit(value) or (0.0, ""))[1].isalpha():
+                    return self._quantity(value)[0]
+            else:
+                return ((date if date.tzinfo else date.replace(tzinfo=UTC)) - J2000).total_seconds()
+        raise Unexpected(f"expected {self._wanted()}, in quotes")
 
     def _per_cent(self, value: str) -> float:
         number, unit = number_and_unit(value) or (math.nan, "")

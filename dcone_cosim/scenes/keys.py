@@ -193,6 +193,7 @@ def expected_of(row: build.Variable) -> Expected:
         row.refusal,
         row.display_unit,
         fills=row.fills,
+        date=row.date,
     )
 
 

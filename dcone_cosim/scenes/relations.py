@@ -96,7 +96,7 @@ def laid(scene: Scene, document: dict[str, Any]) -> tuple[Scene, list[Mistake]]:
     found: list[Mistake] = []
     for phase in scene.phases:
         main = phase.main
-        if not main.sources:
+        if main.fmu is not None or not build.lays(main.model, main.terms, main.sources):
             continue
         answer = build.laid(main.model, {**main.values, **main.asked}, main.sources, main.terms)
         if isinstance(answer, build.Refusal):

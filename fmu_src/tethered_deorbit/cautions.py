@@ -29,6 +29,8 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
         axis = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]
         for sentence in low(axis * (1.0 - values["orbit.eccentricity"]) - EARTH_EQUATORIAL_RADIUS):
             yield Caution("orbit.altitude", f"the perigee at {sentence}" if values["orbit.eccentricity"] else sentence)
+    if "orbit.epoch" in values and "orbit.epoch" not in given:
+        yield Caution("orbit.epoch", "not given; Sun, Moon and the Earth's turning are those from 2026-01-01 00:00 UTC")
     yield from _unstable(values, terms)
     yield from heavily_damped("tether.damping_ratio", values.get("tether.damping_ratio"), "the line's going taut")
     if "thrust" not in terms:

@@ -18,11 +18,12 @@ from fmu_src.tethered_deorbit.interface import (
     PERIGEE_RAISED,
     WRAPPED_UP,
 )
+from fmu_src.tethered_deorbit.kinematics import perigee_radius
 from fmu_src.tethered_deorbit.layout import PAIR
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.constants import EARTH_EQUATORIAL_RADIUS
 from orbital.kernel import kernel
 from orbital.rotations import rotate_inverse
-from orbital.vectors import Array, cross, dot, norm
+from orbital.vectors import Array, dot, norm
 
 ENDS = (CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE)
 """Faults with which a part ends a run: the outputs are then those of that instant."""
@@ -167,24 +168,6 @@ def make_ends(terms: Mapping[str, str], line: Callable[..., Any], interface: Int
         return float(gap_to_target(record, state) - record[0].ends_chaser_extent)
 
     @kernel
-    def perigee(record: Any, state: Array) -> float:
-        """Distance of the osculating perigee of the centre of mass from the Earth's centre [m].
-
-            p/(1 + e),   p = h^2/mu,   e = |v x h/mu - r/|r||
-
-        Source   conic in its focal parameter; e from the eccentricity vector, without the cancellation of 1 - p/a
-        Checked  tests/tethered_deorbit/test_ends.py
-        """
-        r = record[0]
-        momentum, eccentric = r.state_vector[0], r.state_vector[1]
-        cross(momentum, state[0:3], state[3:6])
-        cross(eccentric, state[3:6], momentum)
-        radius = norm(state[0:3])
-        for i in range(3):
-            eccentric[i] = eccentric[i] / EARTH_MU - state[i] / radius
-        return dot(momentum, momentum) / EARTH_MU / (1.0 + norm(eccentric))
-
-    @kernel
     def met(record: Any, state: Array) -> tuple[int, int, float]:
         """What has been met, by its fault or 0; the value reference that says where; how it stands, SI.
 
@@ -195,7 +178,7 @@ def make_ends(terms: Mapping[str, str], line: Callable[..., Any], interface: Int
             altitude = norm(state[0:3]) - EARTH_EQUATORIAL_RADIUS
             if altitude <= r.ends_altitude:
                 return CAME_DOWN, altitude_slot, altitude
-            lowest = perigee(record, state) - EARTH_EQUATORIAL_RADIUS
+            lowest = perigee_radius(record, state) - EARTH_EQUATORIAL_RADIUS
             if lowest <= r.ends_perigee:
                 return PERIGEE_LOW, perigee_slot, lowest
             if lowest >= r.ends_raised_perigee:

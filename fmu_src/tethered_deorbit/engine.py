@@ -15,6 +15,7 @@ from orbital.constants import STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.oscillators import reduced_mass
 from orbital.rigid import extreme_moments, inertia_matrix, invert_symmetric
+from orbital.shadow import LIT
 from orbital.vectors import Array, dot, matrix_vector
 
 
@@ -60,6 +61,7 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
     """The kernels of the scene's engine; IDEAL where it names none.
 
         electric    |F| <= 2 eta P/(Isp g0),   power drawn = |F| Isp g0/(2 eta)
+                    of solar power, P falls to a share of itself in shadow
         chemical    any F
         both        dm_c/dt = -|F|/(Isp g0), until the tank is empty
 
@@ -76,7 +78,7 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
     """
     if "engine" not in terms:
         return IDEAL
-    spent, electric = layout.spent, terms["engine"] == "electric"
+    spent, electric, solar = layout.spent, terms["engine"] == "electric", "power" in terms
     tank_slot, radius_slot = (interface.references[f"engine.{name}"] for name in ("propellant", "tank_radius"))
     turns = terms["chaser"] != "point"
     w_at = PAIR + (ATTITUDE if terms["target"] != "point" else 0) + 4
@@ -149,6 +151,8 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
             return 0.0
         if electric:
             most = 2.0 * r.engine_efficiency * r.engine_power_limit / exhaust_speed(record)
+            if solar:
+                most *= 1.0 if r.state_zone == LIT else r.power_battery_share
             return float(max(-most, min(most, force)))
         return force
 

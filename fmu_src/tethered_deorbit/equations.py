@@ -47,7 +47,7 @@ def make_equations(
         """
         thrust.weigh(record, state)
         environment.add_gravity(record, state, rate)
-        perturbing.add(record, state, rate, elapsed)
+        perturbing.add(record, state, rate, since, elapsed)
         bodies.move(record, state, rate)
         thrust.add(record, state, rate, since)
         aocs.add(record, state, rate, elapsed)

@@ -25,8 +25,8 @@ from fmu_src.rows import (
 )
 from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
-from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, SCHEMES
-from fmu_src.tethered_deorbit.orbit_rows import AIR, OBLATENESS
+from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, RELEASE, SCHEMES
+from fmu_src.tethered_deorbit.orbit_rows import AIR, ELECTRODYNAMIC, OBLATENESS, POWER, SHADOW, SUNLIGHT, THIRD_BODIES
 from fmu_src.tethered_deorbit.reel_rows import REELS
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.surface import NO_BODY
@@ -43,7 +43,7 @@ BAD_INERTIA, BAD_ATTITUDE, TOO_MANY_TURNS, BODIES_MET = 18, 19, 20, 21
 CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE, ENDS_AT_START, NO_ARCS, NO_ATTITUDE = range(
     22, 31
 )
-NO_VERTICAL, BAD_SCHEDULE = 31, 32
+NO_VERTICAL, BAD_SCHEDULE, RELEASED_AT_START = 31, 32, 34
 
 FAULTS = (
     Fault(NOT_FINITE, "error", "the state is no longer finite; look at the parameters and inputs last set"),
@@ -100,6 +100,7 @@ FAULTS = (
     Fault(NO_BODY, "error", "the corners of the target span no body: they lie in a plane, or are one"),
     Fault(NO_VERTICAL, "error", "gains on the angle need a local vertical, and there is no orbit", True),
     Fault(BAD_SCHEDULE, "error", "times of a schedule must increase", True),
+    Fault(RELEASED_AT_START, "error", "the line would be cut as the tow begins: it is as low already", True),
 )
 
 
@@ -380,11 +381,17 @@ MODEL = Model(
         "environment": ENVIRONMENTS,
         "oblateness": OBLATENESS,
         "air": AIR,
+        "third_bodies": THIRD_BODIES,
+        "shadow": SHADOW,
+        "sunlight": SUNLIGHT,
+        "power": POWER,
+        "electrodynamic": ELECTRODYNAMIC,
         "target": TARGETS,
         "chaser": CHASERS,
         "aocs": AOCS,
         "ends": ENDS,
         "break": BREAKING,
+        "release": RELEASE,
         "level": LEVELS,
         "solver": SCHEMES,
     },

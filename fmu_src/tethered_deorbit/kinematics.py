@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from orbital.constants import EARTH_MU
 from orbital.kernel import kernel
-from orbital.vectors import Array, dot, norm
+from orbital.vectors import Array, cross, dot, norm
 
 
 @kernel
@@ -69,3 +70,22 @@ def turning_share(record: Any, position: Array, velocity: Array, length: float) 
     y = velocity[2] * position[0] - velocity[0] * position[2]
     z = velocity[0] * position[1] - velocity[1] * position[0]
     return float((w[0] * x + w[1] * y + w[2] * z) / length)
+
+
+@kernel
+def perigee_radius(record: Any, state: Array) -> float:
+    """Distance of the osculating perigee of the centre of mass from the Earth's centre [m].
+
+        p/(1 + e),   p = h^2/mu,   e = |v x h/mu - r/|r||
+
+    Source   conic in its focal parameter; e from the eccentricity vector, without the cancellation of 1 - p/a
+    Checked  tests/tethered_deorbit/test_ends.py
+    """
+    r = record[0]
+    momentum, eccentric = r.state_vector[0], r.state_vector[1]
+    cross(momentum, state[0:3], state[3:6])
+    cross(eccentric, state[3:6], momentum)
+    radius = norm(state[0:3])
+    for i in range(3):
+        eccentric[i] = eccentric[i] / EARTH_MU - state[i] / radius
+    return dot(momentum, momentum) / EARTH_MU / (1.0 + norm(eccentric))

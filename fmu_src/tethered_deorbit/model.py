@@ -32,6 +32,7 @@ from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEM
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
+from fmu_src.tethered_deorbit.release import releasable
 from fmu_src.tethered_deorbit.schemes import SCHEMES
 from fmu_src.tethered_deorbit.sights import Sights
 from fmu_src.tethered_deorbit.start import make_start
@@ -61,9 +62,15 @@ IMPLEMENTED = {
     "aocs": ("wheels",),
     "ends": ("watched",),
     "break": ("breaks",),
+    "release": ("time", "altitude", "perigee"),
     "level": ("settled",),
-    "oblateness": ("J2",),
-    "air": ("exponential",),
+    "oblateness": ("J2", "J4"),
+    "air": ("exponential", "nrlmsis"),
+    "third_bodies": ("sun_and_moon", "sun", "moon"),
+    "shadow": ("cylinder", "cone"),
+    "sunlight": ("pressure",),
+    "power": ("solar",),
+    "electrodynamic": ("dipole", "igrf"),
     **KINDS,
 }
 """Terms that are composed here."""
@@ -79,7 +86,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     interface = MODEL.interface(terms)
     terms = interface.terms
     check_implemented(MODEL, IMPLEMENTED, terms)
-    environment, perturbing = make_environment(terms["environment"], interface), make_perturbing(terms)
+    environment, perturbing = make_environment(terms["environment"], interface), make_perturbing(interface)
     command_slot = next(interface.references[name] for name in INPUTS if name in interface.references)
     limits = make_limits(interface, *LIMITED)
     layout = layout_of(terms, *components(terms["reel"]))
@@ -87,6 +94,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     spin = PAIR + ATTITUDE - 3 if terms["target"] != "point" else -1
     sights = Sights(layout.reel, spin, bodies.line, environment.frame)
     reel = breakable(make_reel(terms["reel"], interface, sights), terms, bodies.line)
+    reel = releasable(reel, terms, interface)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
@@ -102,7 +110,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     level = make_settled(derivative, reel, bodies, held, places) if settles else RESOLVED
     events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events)
-    acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
+    acting = together((reel.acting, thrust.acting, perturbing.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
@@ -138,6 +146,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r.state_target_share = r.target_mass / r.state_total_mass
         r.state_reduced_mass = reduced_mass(r.chaser_mass, r.target_mass)
         environment.begin(record)
+        perturbing.begin(record)
         code = bodies.begin(record)
         if code != 0:
             return fail(record, code, 0.0)
@@ -180,7 +189,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         trajectory.restart(record, work, 0.0)
         r.state_since = 0.0
         separation, length, _ = bodies.line(record, end)
-        publish(record, end, separation, length, speed, 0.0)
+        publish(record, end, separation, length, speed, 0.0, 0.0)
         if r.state_taut:
             begin_tug(record, 0.0, speed)
             note_pull(record, r.tether_tension)
@@ -239,7 +248,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if radius >= 0.0:
             return fail(record, blame(record, GROUND, 0, radius), time)
         thrust.weigh(record, here)
-        publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin))
+        publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin), time)
         thrust.publish(record, here, time)
         level.publish(record)
         aocs.publish(record, here)
@@ -353,7 +362,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             r.state_since = since
             thrust.put(record, force, force_rate)
         else:
-            publish(record, here, separation, length, speed, 0.0)
+            publish(record, here, separation, length, speed, 0.0, r.state_published)
         reel.prepare(record, command, command_rate, 0.0)
         r.state_taut = taut
         level.put(record, settled)

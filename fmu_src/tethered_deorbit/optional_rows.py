@@ -72,6 +72,41 @@ BREAKING = Group(
     follows=lambda terms, values: "breaks",
 )  # fmt: skip
 
+_RELEASE = (
+    Variable("release.stops_thrust", "1", "parameter", "the thruster stops as the line is cut", True, kind="Boolean"),
+    flag("release.released", "the line is cut"),
+    peak("release.time", "s", "when it was cut, since the start of this instance; zero before"),
+    state("state.released", "1", "the line is cut", kind="Integer"),
+)
+
+RELEASE = Group(
+    {
+        "time": Term(
+            "the line is cut at a time, and both bodies fly on",
+            (at_least_zero("release.at", "s", "when", 3600.0, 1e10), *_RELEASE),
+            extremes=stress.RELEASE_AT,
+        ),
+        "altitude": Term(
+            "the line is cut where the centre of mass comes down to an altitude, and both bodies fly on",
+            (
+                parameter("release.altitude", "m", "of the centre of mass, at which", 200e3, NOWHERE, EVERYWHERE,
+                          display_unit="km"),
+                *_RELEASE,
+            ),
+        ),
+        "perigee": Term(
+            "the line is cut where the osculating perigee comes down to an altitude, and both bodies fly on",
+            (
+                parameter("release.perigee", "m", "altitude of the perigee of the centre of mass, at which", 120e3,
+                          NOWHERE, EVERYWHERE, display_unit="km"),
+                *_RELEASE,
+            ),
+        ),
+    },
+    selector="when",
+    optional=True,
+)  # fmt: skip
+
 _FORCE = (
     output("thrust.force", "N", "in use, along the direction; negative against it", 0.01, "rate.thrust_force"),
     rate("thrust_force", "N/s"),

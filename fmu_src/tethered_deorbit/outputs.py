@@ -83,12 +83,15 @@ def make_publish(
     impulse = layout.impulse
 
     @kernel
-    def publish(record: Any, state: Array, separation: float, length: float, rate: float, since: float) -> None:
+    def publish(
+        record: Any, state: Array, separation: float, length: float, rate: float, since: float, time: float
+    ) -> None:
         """Outputs at one instant; `state` as in `layout`, and `state.taut`, the line's condition there.
 
         separation    s      of the centres of mass              [m]
         length, rate  of the line                                [m], [m/s]
         since         time   since the inputs in force began to move  [s]
+        time                 since the start of the instance     [s]
 
         energy.relative = m_r (hill_jacobi + k d^2/(2 m_r)) + that of the bodies' turning,   d = l - l0 while taut (a
         locked reel's elastic energy)
@@ -112,7 +115,7 @@ def make_publish(
             r.target_position[i] = state[i] + r.state_chaser_share * position[i]
             r.target_velocity[i] = state[3 + i] + r.state_chaser_share * velocity[i]
         environment.publish(record)
-        perturbing.publish(record)
+        perturbing.publish(record, time)
         turning = environment.frame(record, r.center_position, r.center_velocity)
         relative_to_orbital(r.relative_position, r.relative_velocity, r.state_basis, turning, position, velocity)
         r.tether_angle = math.atan2(r.relative_position[1], r.relative_position[0])

@@ -14,6 +14,8 @@ from fmu_src.tethered_deorbit.reel_refusals import of_reel
 Refusal = tuple[str, str, str]
 """FMI name, its value as text, what was expected."""
 NOTCH = 2
+ORBITAL = {"oblateness": "zonal", "air": "law", "third_bodies": "which", "shadow": "shape", "electrodynamic": "field"}
+"""Groups that mean nothing without an orbit, and the key by which a scene names their terms."""
 
 
 def refusals(terms: Mapping[str, str], values: Mapping[str, float], handed_over: bool) -> Iterator[Refusal]:
@@ -40,9 +42,19 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         yield from _of_tank(terms, values)
     if "burn" in terms:
         yield from _of_burns(terms, values)
-    for group, key in (("oblateness", "zonal"), ("air", "law")):
+    for group, key in ORBITAL.items():
         if group in terms and terms.get("environment") == "none":
             yield f"{group}.{key}", terms[group], "needs an orbit; leave the table out, or environment.field = none"
+    if terms.get("release") in ("altitude", "perigee") and terms.get("environment") == "none":
+        yield f"release.{terms['release']}", terms["release"], "needs an orbit; take release.when = time"
+    if "electrodynamic" in terms and (terms.get("target"), terms.get("chaser")) != ("point", "point"):
+        yield (
+            "electrodynamic.field",
+            terms["electrodynamic"],
+            "spans two points; take target.body and chaser.body = point",
+        )
+    if "power" in terms and terms.get("engine") == "chemical":
+        yield "power.source", terms["power"], "feeds an electric engine; take engine.kind = electric"
     if "level" in terms and terms["reel"] not in SETTLING_LAWS:
         text = f"a line settles with reel.law = {' or '.join(SETTLING_LAWS)} alone; leave the table out, or take that"
         yield "level.detail", terms["level"], text

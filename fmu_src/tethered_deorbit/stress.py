@@ -151,7 +151,34 @@ AIR = (
     Extreme("one body as thin as air", "it is blown away from the other", "longer",
             {"orbit.altitude": 400e3, "air.target_area": 1e4}, duration=HOUR),
 )  # fmt: skip
-"""Of what disturbs an orbit."""
+MSIS = (
+    Extreme("below the table of the air", "at 95 km, for a moment", "longer",
+            {"orbit.altitude": 101e3, "air.chaser_area": 100.0}, duration=60.0, macro_step=5.0),
+    Extreme("above the table of the air", "where hardly any is left", "longer", {"orbit.altitude": 5e6},
+            duration=HOUR),
+)  # fmt: skip
+THIRD_BODIES = (
+    Extreme("as high as the Moon", "it draws as hard as the Earth does, or harder", "longer",
+            {"orbit.altitude": 350e6, "orbit.inclination": math.radians(28.6)}, duration=5.0 * DAY, macro_step=600.0),
+)  # fmt: skip
+SHADOW = (
+    Extreme("a shadow that is grazed", "the Sun just touches the Earth's rim, orbit after orbit", "longer",
+            {"orbit.inclination": math.radians(62.0), "orbit.raan": math.radians(-90.0)}),
+)  # fmt: skip
+SUNLIGHT = (
+    Extreme("a sail of a square kilometre", "light as strong as the tide", "longer", {"sunlight.target_area": 1e6}),
+)  # fmt: skip
+ELECTRODYNAMIC = (
+    Extreme("a short circuit", "a milliohm, and nothing that limits the current but the plasma", "longer",
+            {"electrodynamic.resistance": 1e-3, "electrodynamic.current_limit": 1e4,
+             "electrodynamic.electron_density": 1e13}, duration=HOUR),
+    Extreme("no plasma", "no electrons, no current", "longer", {"electrodynamic.electron_density": 0.0}, duration=HOUR),
+)  # fmt: skip
+POWER = (
+    Extreme("no battery", "the thrust stops and comes back at once, at every edge of the shadow", "longer",
+            {"power.battery_share": 0.0, "thrust.level": -0.1}, needs=("thrust",)),
+)  # fmt: skip
+"""Of what disturbs an orbit, and of what hangs on light."""
 
 BURNS = (
     Extreme("pulses of a millisecond", "a thousand times shorter than what they shake", "orbit",
@@ -172,6 +199,11 @@ ENGINES = (
 BREAKING = (
     Extreme("a line as weak as a cobweb", "it breaks as soon as it is taut", "pushes",
             {"break.strength": 1e-9, "break.flies_on": True}),
+)  # fmt: skip
+RELEASE_AT = (
+    Extreme("cut as it begins", "a line that is never there", "pushes", {"release.at": 0.0}, duration=HOUR),
+    Extreme("cut in the middle of a tug", "what it had stored is gone", "pushes", {"release.at": 1119.5},
+            duration=HOUR),
 )  # fmt: skip
 AOCS = (
     Extreme("a loop of 10 rad/s", "quicker than most lines", "longer",

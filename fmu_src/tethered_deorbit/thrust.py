@@ -230,13 +230,18 @@ def make_thrust(
         mass: float = r.state_propellant + impulse / exhaust
         return mass
 
+    released = "release" in terms
+
     @kernel
     def asked(record: Any) -> tuple[float, float]:
-        """What level and input say: force [N] and its rate [N/s].
+        """What level and input say: force [N] and its rate [N/s]; nothing where it stopped as the line was cut.
 
-        Checked  tests/tethered_deorbit/test_ramps.py
+        Checked  tests/tethered_deorbit/test_ramps.py, test_release.py
         """
         r = record[0]
+        if released:
+            if r.state_released and r.release_stops_thrust:
+                return 0.0, 0.0
         return r.thrust_level + r.thrust_offset, r.rate_thrust_offset
 
     @kernel

@@ -9,6 +9,10 @@ from fmu_src.trade import Rung
 
 NUMERICS = ("solver",)
 BESIDE: tuple[str, ...] = ()
+DISTURBED = frozenset({"oblateness", "air", "third_bodies", "sunlight", "electrodynamic"})
+"""Groups that disturb an orbit."""
+ALWAYS = "pushes"
+"""A criterion that holds of every line."""
 FACTORS = (1e6, 1e5, 1e4, 1e3, 1e2, 10.0, 1.0, 0.1, 0.01)
 """Of the tolerances over their defaults. The finest is for references: below it rounding is all that changes."""
 
@@ -28,8 +32,14 @@ def whole(terms: Mapping[str, str]) -> bool:
 
 
 def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
-    """All criteria mean something with all schemes."""
-    return {}
+    """All criteria mean something with all schemes; an orbit that is disturbed keeps neither its axis nor the integral
+    of the relative motion, and a line that is cut holds nothing."""
+    found: dict[str, str] = {}
+    if DISTURBED & terms.keys():
+        found |= dict.fromkeys(("orbit", "jacobi", "jacobi_falls"), ALWAYS)
+    if "release" in terms:
+        found |= dict.fromkeys(("longer", "orbit", "jacobi", "jacobi_falls"), ALWAYS)
+    return found
 
 
 def reference(terms: Mapping[str, str]) -> Mapping[str, str]:

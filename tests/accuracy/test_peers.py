@@ -109,6 +109,7 @@ def test_a_peer_is_tried_only_on_what_it_can_compute(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(peers, "find_spec", lambda name: object())
     assert names("mission") == []
     assert names("reel-control") == []
+    assert names("electric-tug") == names("edt") == names("release-and-cut") == []
     assert names("table2-deorbit") == [peer.name for peer in tow.PEERS]
     assert "MuJoCo" not in names("deployment")  # too many nodes for it
     assert "MuJoCo" in names("deployment", "capture.net.mesh=2 m")

@@ -42,6 +42,16 @@ RIGID = '[removal.chaser]\nbody = "rigid"\nmass = "2000 kg"'
             ["removal.level.detail", "settled", "reel.law = locked alone"],
             ('law = "commanded"', 'law = "locked"'),
         ),
+        (
+            '[removal.environment]\nfield = "none"\n[removal.third_bodies]\nwhich = "moon"',
+            ["removal.third_bodies.which", "moon", "needs an orbit"],
+            ('[removal.environment]\nfield = "none"', ""),
+        ),
+        (
+            '[removal.engine]\nkind = "chemical"\n[removal.shadow]\nshape = "cone"\n[removal.power]\nsource = "solar"',
+            ["removal.power.source", "solar", "engine.kind = electric"],
+            ('kind = "chemical"', 'kind = "electric"'),
+        ),
     ],
 )  # fmt: skip
 def test_what_does_not_go_together(tables: str, said: Sequence[str], mended: tuple[str, str]) -> None:

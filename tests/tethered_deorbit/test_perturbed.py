@@ -103,12 +103,12 @@ def test_axes_change_nothing() -> None:
     record = MODEL.interface(TERMS).make_record()
     record["state_total_mass"] = 3000.0
     record["state_chaser_share"], record["state_target_share"] = 2.0 / 3.0, 1.0 / 3.0
-    add, found = make_perturbing(MODEL.interface(TERMS).terms).add, []
+    add, found = make_perturbing(MODEL.interface(TERMS)).add, []
     for turning, elapsed in ((np.zeros(3), 0.0), (np.array([2e-3, -3e-3, 1e-3]), 40.0)):
         record["state_turning"][0] = turning
         back = Rotation.from_rotvec(turning * elapsed)
         there, rate = back.inv().apply(state.reshape(-1, 3)).ravel(), np.zeros(12)
-        add(record, there, rate, elapsed)
+        add(record, there, rate, elapsed, elapsed)
         found.append(back.apply(rate.reshape(-1, 3)).ravel())
     assert found[0][9:] == pytest.approx(found[1][9:], rel=1e-9)
     assert found[0][3:6] == pytest.approx(found[1][3:6], rel=1e-12)

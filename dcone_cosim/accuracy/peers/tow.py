@@ -45,14 +45,20 @@ class Problem(NamedTuple):
     instants: Array
 
 
+KNOWN = frozenset({"reel", "thrust", "environment", "target", "chaser", "ends", "level", "solver"})
+"""Groups that a peer may leave out, or that change no motion until the tow ends: engine, air and all else it lacks."""
+
+
 def able(phase: PhaseScene) -> bool:
-    """A locked reel, thrust along the track or none, a central field, two points; a line that is slack at the start."""
+    """A locked reel, thrust along the track or none, a central field and nothing else, two points; a line that is slack
+    at the start."""
     terms = phase.main.terms
     return (
         terms.get("reel") == "locked"
         and terms.get("thrust", "along_track") == "along_track"
         and terms.get("environment", "central") == "central"
         and terms.get("target", "point") == terms.get("chaser", "point") == "point"
+        and terms.keys() <= KNOWN
         and not phase.connections
     )
 

@@ -1,43 +1,52 @@
-"""What disturbs the orbit of a pair about the Earth: the flattening of its field, and the air, each where it is named.
+"""What disturbs the orbit of a pair: the Earth's field, the air, Sun and Moon, and light, each where it is named.
 
-Both know the Earth's axis, which the laws of a step's axes do not: these turn with a taut line, and the axis is turned
-along with them.
+All know the Earth's axis, Sun and Moon, which the laws of a step's axes do not: these turn with a taut line, and what
+is pointed to is turned along with them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from fmu_src.interface import Interface
+from fmu_src.tables import make_reader
+from fmu_src.tethered_deorbit import field_table
+from fmu_src.tethered_deorbit.acting import IDLE, Acting
+from fmu_src.tethered_deorbit.air_table import NAME
+from fmu_src.tethered_deorbit.environment import air, electrodynamic, msis, sky, sunlight, zonals
+from fmu_src.tethered_deorbit.environment.disturbing import Disturbing, together
 from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.turning import turn_vectors_back
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_J2, EARTH_MU, EARTH_ROTATION_RATE
 from orbital.kernel import kernel
-from orbital.perturbations import (
-    air_density,
-    altitude_of,
-    differential_flattening,
-    drag_acceleration,
-    flattening_acceleration,
-    flattening_energy,
-)
-from orbital.vectors import Array, dot
+from orbital.vectors import Array
 
-FLATTENING = EARTH_J2 * EARTH_EQUATORIAL_RADIUS * EARTH_EQUATORIAL_RADIUS
-GROUPS = ("oblateness", "air")
+GROUPS = ("oblateness", "air", "third_bodies", "shadow", "sunlight", "electrodynamic")
+TURNS = ("oblateness", "air", "electrodynamic")
+"""Groups that know the Earth's axis."""
+SKY = ("third_bodies", "shadow")
+"""Groups that look at the sky."""
+FIELDS = {"dipole": electrodynamic.point_dipole, "igrf": electrodynamic.point_greenwich}
+"""What has to be pointed to for a magnetic field."""
 
 
 class Perturbing(NamedTuple):
     """Kernels; as it stands, of an orbit that nothing disturbs.
 
-    add(record, state, rate, elapsed)   to the rate under gravity, `elapsed` [s] after the begin of the step
-    publish(record)                     outputs, and the potential in `energy.orbital`, from those of bodies and centre
+    begin(record)                             before all others
+    add(record, state, rate, since, elapsed)  to the rate under gravity, `elapsed` [s] after the begin of the step and
+                                              `since` after the inputs in force began to move
+    publish(record, time)                     outputs, and the potential in `energy.orbital`, from those of bodies and
+                                              centre, at a time since the start of the instance [s]
     differentiate(record, center, velocity)   the part of the potential in the rate of that
+    acting                                    where light comes and goes
     """
 
+    begin: Callable[..., Any] = nothing
     add: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
+    acting: Acting = IDLE
 
 
 @kernel
@@ -55,152 +64,73 @@ def point_axis(record: Any, elapsed: float) -> None:
     turn_vectors_back(record, -elapsed, pole, 3)
 
 
-@kernel
-def add_flattening(record: Any, state: Array, rate: Array) -> None:
-    """Add the second zonal harmonic to the rate of the pair [m/s^2]; after `point_axis`.
-
-        R'' += a(R) + (m_c da_c + m_t da_t)/M,   rho'' += da_t - da_c
-
-    da_c and da_t are the differences between the bodies and the centre, which have opposite signs.
-
-    state, rate   R, V, rho, rho'  of `layout`                   (12,)
-
-    Source   `orbital.perturbations`
-    Checked  tests/tethered_deorbit/test_perturbed.py
-    """
-    r = record[0]
-    own, chaser, target = r.state_perturbing[0], r.state_perturbing[1], r.state_perturbing[2]
-    offset = r.state_perturbing[3]
-    flattening_acceleration(own, state[0:3], r.state_pole, EARTH_MU, FLATTENING)
-    for i in range(3):
-        offset[i] = -r.state_target_share * state[6 + i]
-    differential_flattening(chaser, state[0:3], offset, r.state_pole, EARTH_MU, FLATTENING)
-    for i in range(3):
-        offset[i] = r.state_chaser_share * state[6 + i]
-    differential_flattening(target, state[0:3], offset, r.state_pole, EARTH_MU, FLATTENING)
-    for i in range(3):
-        rate[3 + i] += own[i] + (r.state_chaser_share * chaser[i] + r.state_target_share * target[i])
-        rate[9 + i] += target[i] - chaser[i]
-
-
-@kernel
-def add_drag(record: Any, state: Array, rate: Array) -> None:
-    """Add the drag of both bodies to the rate of the pair [m/s^2]; after `point_axis`.
-
-        R'' += (m_c a_c + m_t a_t)/M,   rho'' += a_t - a_c
-
-    Unlike gravity it is no difference of great accelerations: bodies of other shape bear another drag.
-
-    state, rate   R, V, rho, rho'  of `layout`                   (12,)
-
-    Source   `orbital.perturbations`
-    Checked  tests/tethered_deorbit/test_perturbed.py
-    """
-    r = record[0]
-    chaser, target = r.state_perturbing[1], r.state_perturbing[2]
-    position, velocity = r.state_perturbing[3], r.state_perturbing[4]
-    for i in range(3):
-        position[i] = state[i] - r.state_target_share * state[6 + i]
-        velocity[i] = state[3 + i] - r.state_target_share * state[9 + i]
-    half = 0.5 * r.air_drag_coefficient / r.state_total_mass
-    density = of_air(record, altitude_of(position, EARTH_EQUATORIAL_RADIUS))
-    drag_acceleration(
-        chaser, position, velocity, r.state_pole, EARTH_ROTATION_RATE,
-        half * r.air_chaser_area / r.state_chaser_share * density,
-    )  # fmt: skip
-    for i in range(3):
-        position[i] = state[i] + r.state_chaser_share * state[6 + i]
-        velocity[i] = state[3 + i] + r.state_chaser_share * state[9 + i]
-    density = of_air(record, altitude_of(position, EARTH_EQUATORIAL_RADIUS))
-    drag_acceleration(
-        target, position, velocity, r.state_pole, EARTH_ROTATION_RATE,
-        half * r.air_target_area / r.state_target_share * density,
-    )  # fmt: skip
-    for i in range(3):
-        rate[3 + i] += r.state_chaser_share * chaser[i] + r.state_target_share * target[i]
-        rate[9 + i] += target[i] - chaser[i]
-
-
-@kernel
-def of_air(record: Any, altitude: float) -> float:
-    """Density of the air at an altitude [m], as the scene has it [kg/m^3].
-
-    Checked  tests/tethered_deorbit/test_perturbed.py: an orbit decays
-    """
-    r = record[0]
-    return float(air_density(altitude, r.air_base_density, r.air_base_altitude, r.air_scale_height))
-
-
-@kernel
-def publish_flattening(record: Any) -> None:
-    """The potential of the flattening belongs to the energy of the orbit [J].
-
-    Checked  tests/tethered_deorbit/test_perturbed.py: energy is kept
-    """
-    r = record[0]
-    point_axis(record, 0.0)
-    r.energy_orbital += r.state_total_mass * flattening_energy(r.center_position, r.state_pole, EARTH_MU, FLATTENING)
-
-
-@kernel
-def differentiate_flattening(record: Any, center: Array, velocity: Array) -> None:
-    """And its rate is what the acceleration of the centre does not account for [W].
-
-    Checked  tests/tethered_deorbit/test_perturbed.py: derivatives
-    """
-    r = record[0]
-    point_axis(record, 0.0)
-    own = r.state_perturbing[0]
-    flattening_acceleration(own, center, r.state_pole, EARTH_MU, FLATTENING)
-    r.rate_energy_orbital -= r.state_total_mass * dot(velocity, own)
-
-
-@kernel
-def publish_drag(record: Any) -> None:
-    """Density at the centre of mass [kg/m^3], and the drag of both bodies [N].
-
-    Checked  tests/tethered_deorbit/test_perturbed.py
-    """
-    r = record[0]
-    point_axis(record, 0.0)
-    r.air_density = of_air(record, r.altitude)
-    out, half = r.state_perturbing[0], 0.5 * r.air_drag_coefficient
-    density = of_air(record, r.chaser_radius - EARTH_EQUATORIAL_RADIUS)
-    speed = drag_acceleration(out, r.chaser_position, r.chaser_velocity, r.state_pole, EARTH_ROTATION_RATE, 0.0)
-    r.air_chaser_drag = half * r.air_chaser_area * density * speed * speed
-    density = of_air(record, r.target_radius - EARTH_EQUATORIAL_RADIUS)
-    speed = drag_acceleration(out, r.target_position, r.target_velocity, r.state_pole, EARTH_ROTATION_RATE, 0.0)
-    r.air_target_drag = half * r.air_target_area * density * speed * speed
-
-
-def make_perturbing(terms: Mapping[str, str]) -> Perturbing:
+def make_perturbing(interface: Interface) -> Perturbing:
     """The kernels of what is named among `GROUPS`; ValueError where there is no orbit to disturb."""
+    terms = interface.terms
     named = [group for group in GROUPS if group in terms]
     if not named:
         return Perturbing()
     if terms["environment"] == "none":
         raise ValueError(f"{named[0]} = {terms[named[0]]!r} needs an orbit, and environment = 'none' has none")
-    flat, air = "oblateness" in terms, "air" in terms
-    first_add, second_add = add_flattening if flat else nothing, add_drag if air else nothing
-    first_publish, second_publish = publish_flattening if flat else nothing, publish_drag if air else nothing
+    parts: list[Disturbing] = []
+    acting = IDLE
+    looks = any(group in terms for group in SKY) or terms.get("air") == "nrlmsis"
+    point_sky = sky.make_point_sky("moon" in terms.get("third_bodies", "")) if looks else nothing
+    if "oblateness" in terms:
+        parts.append(zonals.ZONALS[terms["oblateness"]])
+    if "air" in terms:
+        tabled = terms["air"] == "nrlmsis"
+        parts.append(
+            air.make_air(msis.make_density(make_reader(interface.tables, NAME)) if tabled else air.exponential)
+        )
+    if "third_bodies" in terms:
+        parts.append(sky.make_attraction(terms["third_bodies"]))
+    if "shadow" in terms:
+        shadow, acting = sunlight.make_shadow(terms["shadow"], point_sky)
+        parts.append(shadow)
+    if "sunlight" in terms:
+        parts.append(sunlight.PRESSURE)
+    if "electrodynamic" in terms:
+        field: Callable[..., Any] = electrodynamic.dipole
+        if terms["electrodynamic"] == "igrf":
+            field = electrodynamic.make_igrf(make_reader(interface.tables, field_table.NAME))
+        parts.append(electrodynamic.make_electrodynamic(terms, field))
+    all_of_them = together(parts)
+    point = point_axis if any(group in terms for group in TURNS) else nothing
+    point_field = FIELDS[terms["electrodynamic"]] if "electrodynamic" in terms else nothing
 
     @kernel
-    def add(record: Any, state: Array, rate: Array, elapsed: float) -> None:
+    def add(record: Any, state: Array, rate: Array, since: float, elapsed: float) -> None:
         """See `Perturbing`.
 
-        Checked  tests/tethered_deorbit/test_perturbed.py
+        Checked  tests/tethered_deorbit/test_perturbed.py, test_sky.py
         """
-        point_axis(record, elapsed)
-        first_add(record, state, rate)
-        second_add(record, state, rate)
+        point(record, elapsed)
+        now = record[0].state_begin + (since - record[0].state_since)
+        point_sky(record, now, elapsed)
+        point_field(record, now, elapsed)
+        all_of_them.add(record, state, rate)
 
     @kernel
-    def publish(record: Any) -> None:
+    def publish(record: Any, time: float) -> None:
         """See `Perturbing`.
 
-        Checked  tests/tethered_deorbit/test_perturbed.py
+        Checked  tests/tethered_deorbit/test_perturbed.py, test_sky.py
         """
-        first_publish(record)
-        second_publish(record)
+        point(record, 0.0)
+        point_sky(record, time, 0.0)
+        point_field(record, time, 0.0)
+        all_of_them.publish(record, time)
 
-    return Perturbing(add, publish, differentiate_flattening if flat else nothing)
+    @kernel
+    def differentiate(record: Any, center: Array, velocity: Array) -> None:
+        """See `Perturbing`.
+
+        Checked  tests/tethered_deorbit/test_perturbed.py: derivatives
+        """
+        point(record, 0.0)
+        all_of_them.differentiate(record, center, velocity)
+
+    begin = sky.forget_sky if looks else nothing
+    told = differentiate if all_of_them.differentiate is not nothing else nothing
+    return Perturbing(begin, add, publish, told, acting)

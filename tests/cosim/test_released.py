@@ -1,0 +1,129 @@
+"""Where two bodies go that no line holds: their nearest return, and their apsides."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from dcone_cosim.phases.passive import conic
+from dcone_cosim.phases.released import apsides, findings, nearest_return, returning
+from dcone_cosim.phases.removal_report import axis_of
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+
+
+def test_nearest_return_of_two_orbits() -> None:
+    """Between rows a minute apart: against a search over the orbits themselves."""
+    r = EARTH_EQUATORIAL_RADIUS + 500e3
+    v = float(np.sqrt(EARTH_MU / r))
+    first = np.array([r, 0.0, 0.0]), np.array([0.0, v, 0.0])
+    second = np.array([r + 20.0, 5.0, 3.0]), np.array([0.4, v - 0.03, 0.2])
+    time = np.arange(0.0, 12000.0, 60.0)
+    (p, u), (q, w) = conic(*first, time), conic(*second, time)
+
+    def apart(t: float) -> float:
+        (a, _), (b, _) = conic(*first, np.array([t])), conic(*second, np.array([t]))
+        return float(np.linalg.norm(b - a))
+
+    found = nearest_return(time, q - p, w - u)
+    assert found is not None
+    best = minimize_scalar(
+        apart, bounds=(found.after - 90.0, found.after + 90.0), method="bounded", options={"xatol": 1e-6}
+    )
+    assert found.distance == pytest.approx(best.fun, rel=1e-4)
+    assert found.after == pytest.approx(best.x, abs=0.1)
+    assert found.after > 100.0
+    assert found.distance < min(apart(t) for t in time[2:] if apart(t - 60.0) > apart(t) < apart(t + 60.0))
+
+
+def test_none_of_what_drifts_apart() -> None:
+    time = np.linspace(0.0, 100.0, 11)
+    away = np.outer(1.0 + time, [1.0, 0.0, 0.0])
+    assert nearest_return(time, away, np.tile([1.0, 0.0, 0.0], (11, 1))) is None
+
+
+def test_apsides() -> None:
+    low, high = EARTH_EQUATORIAL_RADIUS + 200e3, EARTH_EQUATORIAL_RADIUS + 600e3
+    axis = 0.5 * (low + high)
+    speed = float(np.sqrt(EARTH_MU * (2.0 / high - 1.0 / axis)))
+    found = apsides(np.array([0.0, high, 0.0]), np.array([0.0, 0.0, speed]))
+    assert found == pytest.approx((axis, (high - low) / (high + low), 200e3, 600e3), rel=1e-9)
+
+
+class Rows(dict[str, Any]):
+    """As much of a recorder as reports look at."""
+
+    @property
+    def names(self) -> list[str]:
+        return list(self)
+
+    def last(self) -> dict[str, float]:
+        return {name: float(column[-1]) for name, column in self.items()}
+
+    def __len__(self) -> int:
+        return len(self["time"])
+
+
+def told(terms: Mapping[str, str], columns: Mapping[str, Any], values: Mapping[str, float]) -> tuple[Any, Any]:
+    main = SimpleNamespace(terms=terms, defaults={}, asked={}, fmu=None)
+    run = SimpleNamespace(
+        scene=SimpleNamespace(phases=[SimpleNamespace(name="removal", main=main)]), parameters={"removal": values}
+    )
+    rows = Rows(columns)
+    return run, SimpleNamespace(recorder=rows, start=0.0, end=float(rows["time"][-1]), name="removal")
+
+
+def test_a_flattened_earth_lowers_no_orbit_by_itself() -> None:
+    """An axis that breathes by 20 km, at an energy that stays; with an engine the pair's mass falls beside it."""
+    time = np.linspace(0.0, 6000.0, 101)
+    breathing = 7.178e6 + 1e4 * np.cos(2.0 * np.pi * time / 4500.0)
+    used = time / 600.0
+    for engine in ({}, {"engine": "electric"}):
+        mass = 3000.0 - (used if engine else 0.0)
+        columns = {
+            "time": time, "center.semi_major_axis": breathing, "separation": np.full(101, 12.0), "altitude": time,
+            "energy.orbital": -0.5 * EARTH_MU * mass / (7.178e6 - 0.1 * time), "chaser.propellant": used,
+        }  # fmt: skip
+        values = {"chaser.mass": 2000.0, "target.mass": 1000.0}
+        run, result = told({"oblateness": "J2", **engine}, columns, values)
+        assert axis_of(run, "removal", result) == pytest.approx(7.178e6 - 0.1 * time, rel=1e-12)
+        run, result = told(engine, columns, values)
+        assert axis_of(run, "removal", result) == pytest.approx(breathing)
+
+
+def test_what_is_told_of_two_bodies_that_no_line_holds() -> None:
+    """The nearest return counts from the cut, a pass before it does not; each body has its apsides and its lifetime."""
+    time = np.arange(0.0, 1001.0, 10.0)
+    place = np.stack([np.abs(time - 605.0) - 0.0, np.full(101, 30.0), np.zeros(101)], axis=1)
+    speed = np.stack([np.sign(time - 605.0), np.zeros(101), np.zeros(101)], axis=1)
+    early = time < 300.0
+    place[early] = np.stack([time[early] - 100.0, np.full(early.sum(), 3.0), np.zeros(early.sum())], axis=1)
+    speed[early] = 1.0, 0.0, 0.0
+    radius = EARTH_EQUATORIAL_RADIUS + 250e3
+    columns = {"time": time, "release.released": (time >= 320.0).astype(float), "release.time": np.full(101, 320.0)}
+    for k in range(3):
+        columns[f"relative.position[{k + 1}]"], columns[f"relative.velocity[{k + 1}]"] = place[:, k], speed[:, k]
+        for body in ("chaser", "target"):
+            columns[f"{body}.position[{k + 1}]"] = np.full(101, (radius, 0.0, 0.0)[k])
+            columns[f"{body}.velocity[{k + 1}]"] = np.full(101, (0.0, np.sqrt(EARTH_MU / radius), 0.0)[k])
+    values = {
+        "chaser.mass": 2000.0, "target.mass": 1000.0, "air.drag_coefficient": 2.2, "air.chaser_area": 0.0,
+        "air.target_area": 10.0, "air.base_density": 7e-11, "air.base_altitude": 250e3, "air.scale_height": 45e3,
+    }  # fmt: skip
+    run, result = told({"air": "exponential", "release": "time"}, columns, values)
+    found = {row.key: row for row in findings(run, "removal", result)}
+    assert found["released_at"].value == 320.0
+    assert 600.0 <= found["return_time"].value <= 610.0
+    assert found["return_distance"].value == pytest.approx(30.0, abs=6.0)
+    assert found["chaser_perigee"].value == pytest.approx(250e3, abs=1.0)
+    assert "chaser_lifetime" not in found
+    assert 1.0 < found["target_lifetime"].value / 86400.0 < 60.0
+    assert list(returning("removal", result, 20.0)) == []
+    assert "may meet" in next(returning("removal", result, 50.0))
+    columns["release.released"] = np.zeros(101)
+    run, result = told({}, columns, values)
+    assert [row.value for row in findings(run, "removal", result)] == ["not within the run"]
