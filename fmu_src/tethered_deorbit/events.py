@@ -200,6 +200,9 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
 
         Checked  tests/tethered_deorbit/test_extremes.py: the range of a vibration
         """
+        if held.mapped(record):
+            step = record[0].state_step
+            return held.span(record, first * step, last * step)
         ensure_dense(record, work)
         low, here = first, at(record, work, first)
         least = largest = here[TENSION]

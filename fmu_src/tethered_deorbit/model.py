@@ -26,6 +26,7 @@ from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
 from fmu_src.tethered_deorbit.level import RESOLVED, UNHELD
 from fmu_src.tethered_deorbit.levels.course import make_held
+from fmu_src.tethered_deorbit.levels.event_map import make_event_map, mapping
 from fmu_src.tethered_deorbit.levels.settled import make_settled
 from fmu_src.tethered_deorbit.minded import LIMITED
 from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEMES
@@ -61,7 +62,7 @@ IMPLEMENTED = {
     "aocs": ("wheels",),
     "ends": ("watched",),
     "break": ("breaks",),
-    "level": ("settled",),
+    "level": ("settled", "event_map"),
     "oblateness": ("J2",),
     "air": ("exponential",),
     **KINDS,
@@ -93,15 +94,20 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     if "level" in terms and terms["reel"] not in SETTLING_LAWS:
         raise ValueError(f"{MODEL.name}: no line settles with reel = {terms['reel']!r}")
     settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
+    maps = settles and terms["level"] == "event_map"
     held = make_held(reel, bodies) if settles else UNHELD
+    if maps:
+        held = mapping(held)
     inertial, derivative = make_equations(environment, perturbing, reel, thrust, bodies, aocs, held, layout)
     scheme = SCHEMES[terms["solver"]](
         derivative, make_squared_error(bodies, held), layout.moving, layout.size - layout.moving
     )
     places = places_of(layout, scheme)
-    level = make_settled(derivative, reel, bodies, held, places) if settles else RESOLVED
+    level = RESOLVED
+    if settles:
+        level = (make_event_map if maps else make_settled)(derivative, reel, bodies, held, places)
     events = make_events(reel, bodies, held, scheme, places)
-    extremes = make_extremes(events)
+    extremes = make_extremes(events, held)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)

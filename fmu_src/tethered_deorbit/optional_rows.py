@@ -224,6 +224,19 @@ SCHEMES = Group(
     default="dop853",
 )
 
+_SETTLED = (
+    flag("level.settled", "the vibration of the line has died, and steps go over it"),
+    peak("level.settled_since", "s", "from when on; zero while it is not so"),
+    count("level.times_settled", "how often the line has settled"),
+    state("state.settled", "1", "the line is held on its course", kind="Integer"),
+    state("state.settled_since", "s", "when it last settled"),
+    state("state.times_settled", "1", "how often it has", kind="Integer"),
+    state("state.next_look", "s", "when it may have settled, at the earliest"),
+    state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(4,)),
+    state("state.course_span", "s", "over which that is drawn"),
+    state("state.moved_mass", "kg", "that the line moves at the begin of a settled step"),
+)  # fmt: skip
+
 SETTLING_LAWS, SETTLING_SCHEMES = ("locked",), ("dop853",)
 """Laws of the line whose vibration can be stepped over once it has died, and schemes that do: `radau` needs not, and
 `gauss` is there as a second opinion."""
@@ -233,17 +246,27 @@ LEVELS = Group(
         "settled": Term(
             "every tug is resolved, and a damped line that has come to rest is held where the load has it: its "
             "vibration is stepped over once it has died",
+            _SETTLED,
+        ),
+        "event_map": Term(
+            "free flight from tug to tug, every tug and every vibration in closed form, a rigid dumbbell once that has "
+            "died; followed where the bound of its error is exceeded",
             (
-                flag("level.settled", "the vibration of the line has died, and steps go over it"),
-                peak("level.settled_since", "s", "from when on; zero while it is not so"),
-                count("level.times_settled", "how often the line has settled"),
-                state("state.settled", "1", "the line is held on its course", kind="Integer"),
-                state("state.settled_since", "s", "when it last settled"),
-                state("state.times_settled", "1", "how often it has", kind="Integer"),
-                state("state.next_look", "s", "when it may have settled, at the earliest"),
-                state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(4,)),
-                state("state.course_span", "s", "over which that is drawn"),
-                state("state.moved_mass", "kg", "that the line moves at the begin of a settled step"),
+                parameter("level.peak_error", "1", "bound of the relative error of a tug's peak and of its time, up to "
+                          "which tugs are in closed form", 1e-3, 0.0, 1.0),
+                *_SETTLED,
+                Variable("level.now", "1", "output", "0: free flight; 1: every vibration followed; 2: vibrating in closed "
+                         "form; 3: rigid dumbbell", 0, kind="Integer", minimum=0, maximum=3),
+                output("level.free", "s", "time in free flight, since the start", 1000.0),
+                output("level.followed", "s", "time with every vibration followed", 1000.0),
+                output("level.mapped", "s", "time with the vibration in closed form", 1000.0),
+                output("level.dumbbell", "s", "time as a rigid dumbbell", 1000.0),
+                peak("level.error", "1", "largest bound of a tug's relative error so far"),
+                state("state.level_now", "1", "mode of the current step", kind="Integer"),
+                state("state.level_times[#]", "s", "spent in each mode, up to the end of the step", shape=(4,)),
+                state("state.level_error", "1", "largest bound so far"),
+                state("state.vibration[#]", "1", "place [m] and rate [m/s] at the begin of the step", shape=(2,)),
+                state("state.bounces", "1", "the step ends where the line goes slack", kind="Integer"),
             ),
         ),
     },

@@ -1,0 +1,326 @@
+"""A tow from event to event: free flight, tugs and vibration in closed form, a rigid dumbbell once that has died.
+
+A taut line is on its slow course at once, see `settled`, and vibrates about it in closed form, see `vibration`: the
+state of a step is that of the pair on the course, whose steps follow the orbit, and the vibration is put onto what is
+seen of it. So a tug is one step, to the instant at which its tension falls to zero, and lasts as long as it does: the
+load of tide, thrust and turning acts on it all the while. Radial shifts keep the angular momentum of the pair,
+
+    s -> s + v,   s' -> s' + v',   u x rho' -> u x rho' s/(s + v)
+
+What is given up is what the vibration does to its own load. Of a pair that turns at w on an orbit of the rate n
+
+    dA/dl = w^2 + 3 n^2,   dA/dw dw/dl = -4 w^2        so that   e = 4 (w^2 + n^2)/(k/m)
+
+bounds by how much the square of its frequency is wrong, and peak and time of a tug by as much at most. Where e exceeds
+`level.peak_error`, where the line hardly vibrates at all (damping above 0.9 of the critical), or where the slow
+solution neglects too much, every vibration is followed as ever, and `settled` is what there is.
+
+Source   slow solution of a linear oscillator and its free vibration; ours
+Checked  tests/tethered_deorbit/test_event_map.py
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.layout import Places
+from fmu_src.tethered_deorbit.level import Held, Level
+from fmu_src.tethered_deorbit.levels.settled import NEXT_LOOK, SURE, make_settled
+from fmu_src.tethered_deorbit.levels.slow import make_slow
+from fmu_src.tethered_deorbit.levels.vibration import lets_go, tension_span, vibration_at
+from orbital.kernel import kernel
+from orbital.vectors import Array, dot
+
+FREE, FOLLOWED, MAPPED, DUMBBELL = range(4)
+"""What a step was, by `level.now`."""
+MODES = 4
+MOST_DAMPED = 0.9
+"""Damping ratio up to which a vibration is mapped: near the critical one its closed form loses its digits."""
+FIRST = 0.02
+"""First step of a line that is mapped, in radians of the pace; a tug within it ends it."""
+WORTH = 0.1
+"""Share of a resolved step that a mapped one has to have."""
+FIRST_FOLLOWED = 0.3
+"""First step of a line that is followed again, in radians of its motion."""
+SHORTEST = 1.0e-6
+"""Least time of a tug, in radians of the line's motion."""
+
+
+@kernel
+def mapped(record: Any) -> bool:
+    """Whether the line is on its course, and vibrates about it in closed form or not at all.
+
+    Checked  tests/tethered_deorbit/test_event_map.py
+    """
+    return bool(record[0].state_settled == 1)
+
+
+@kernel
+def bounces(record: Any) -> bool:
+    """Whether the step ends where the line goes slack.
+
+    Checked  tests/tethered_deorbit/test_event_map.py
+    """
+    r = record[0]
+    return bool(r.state_settled == 1 and r.state_bounces == 1)
+
+
+@kernel
+def beyond(record: Any, elapsed: float) -> float:
+    """Impulse of the vibration [N s] since the begin of the step, a time ago [s].
+
+        integral of T_v = -m (v'(t) - v'(0))
+
+    Checked  tests/tethered_deorbit/test_event_map.py: impulse
+    """
+    r = record[0]
+    m = r.state_moved_mass
+    _, rate = vibration_at(
+        r.state_vibration[0], r.state_vibration[1], m, r.state_damping, r.state_stiffness, elapsed
+    )
+    return float(m * (r.state_vibration[1] - rate))
+
+
+def mapping(held: Held) -> Held:
+    """What is held, with its vibration."""
+    return held._replace(mapped=mapped, bounces=bounces, beyond=beyond, span=tension_span)
+
+
+def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places) -> Level:
+    """The kernels of the level for one set of equations, whose rate of the impulse is the tension.
+
+    Valid    points; see `refusals`
+    Checked  tests/tethered_deorbit/test_event_map.py
+    """
+    begin_state, end_state, stages, size = places.begin, places.end, places.stages, places.size
+    impulse = places.impulse
+    settled = make_settled(derivative, reel, bodies, held, places)
+    draw, span_of, neglected, tolerance, off_course, _ = make_slow(derivative, reel, bodies, places)
+
+    @kernel
+    def shift(state: Array, longer: float, faster: float) -> None:
+        """Take from the line what it is too long [m] and lengthens too fast [m/s]; its angular momentum stays.
+
+        Checked  tests/tethered_deorbit/test_event_map.py: angular momentum
+        """
+        rho, rate = state[6:9], state[9:12]
+        apart = math.sqrt(dot(rho, rho))
+        if not apart > longer:
+            return
+        along = dot(rho, rate) / apart
+        nearer = (apart - longer) / apart
+        for i in range(3):
+            across = rate[i] - along * rho[i] / apart
+            rate[i] = across / nearer + (along - faster) * rho[i] / apart
+        for i in range(3):
+            rho[i] *= nearer
+
+    @kernel
+    def bound(record: Any, state: Array) -> float:
+        """Relative error of a tug's peak, at most [-].
+
+            e = 4 (w^2 + n^2)/(k/m),   w = |rho x rho'|/s^2
+
+        Checked  tests/tethered_deorbit/test_event_map.py: a pair that whirls
+        """
+        r = record[0]
+        rho, rate = state[6:9], state[9:12]
+        square = dot(rho, rho)
+        radial = dot(rho, rate)
+        turn = max(0.0, dot(rate, rate) - radial * radial / square) / square
+        return float(4.0 * (turn + r.state_pace * r.state_pace) * bodies.mass_now(record, state) / r.state_stiffness)
+
+    @kernel
+    def begin(record: Any) -> None:
+        """Nothing is held, and no time has passed in any mode.
+
+        Checked  tests/tethered_deorbit/test_event_map.py
+        """
+        r = record[0]
+        for i in range(MODES):
+            r.state_level_times[i] = 0.0
+        r.state_level_now = FREE
+        r.state_vibration[0] = 0.0
+        r.state_vibration[1] = 0.0
+        r.state_bounces = 0
+        r.state_level_error = 0.0
+        settled.begin(record)
+        publish(record)
+
+    @kernel
+    def restart(record: Any, time: float) -> None:
+        """From a time on [s] what the steps had run ahead did not happen.
+
+        Checked  tests/tethered_deorbit/test_event_map.py: a changed thrust
+        """
+        r = record[0]
+        r.state_level_times[r.state_level_now] -= max(0.0, r.state_end - time)
+        settled.restart(record, time)
+        r.state_next_look = time
+        r.state_vibration[0] = 0.0
+        r.state_vibration[1] = 0.0
+        r.state_bounces = 0
+
+    @kernel
+    def book(record: Any) -> None:
+        """A step has been taken: its time counts for its mode.
+
+        Checked  tests/tethered_deorbit/test_event_map.py: times of the modes
+        """
+        r = record[0]
+        now = FREE
+        if r.state_taut:
+            now = FOLLOWED
+            if r.state_settled == 1:
+                now = DUMBBELL if r.state_vibration[0] == 0.0 and r.state_vibration[1] == 0.0 else MAPPED
+        r.state_level_now = now
+        r.state_level_times[now] += r.state_step
+
+    @kernel
+    def publish(record: Any) -> None:
+        """Which mode it is, and how long each has been, up to the communication point.
+
+        Checked  tests/tethered_deorbit/test_event_map.py: times of the modes
+        """
+        r = record[0]
+        settled.publish(record)
+        now = r.state_level_now
+        r.level_now = now
+        ahead = r.state_end - r.state_published
+        times = r.state_level_times
+        r.level_free = times[FREE] - (ahead if now == FREE else 0.0)
+        r.level_followed = times[FOLLOWED] - (ahead if now == FOLLOWED else 0.0)
+        r.level_mapped = times[MAPPED] - (ahead if now == MAPPED else 0.0)
+        r.level_dumbbell = times[DUMBBELL] - (ahead if now == DUMBBELL else 0.0)
+        r.level_error = r.state_level_error
+
+    @kernel
+    def carry(record: Any, work: Array) -> None:
+        """The vibration from one step to the next, its impulse booked; below the tolerance it has died.
+
+        Checked  tests/tethered_deorbit/test_event_map.py: impulse
+        """
+        r = record[0]
+        vibration = r.state_vibration
+        if vibration[0] == 0.0 and vibration[1] == 0.0:
+            return
+        m, c, k = r.state_moved_mass, r.state_damping, r.state_stiffness
+        place, speed = vibration_at(vibration[0], vibration[1], m, c, k, r.state_step)
+        if math.sqrt(place * place + m / k * speed * speed) <= tolerance(record):
+            work[begin_state + impulse] += m * vibration[1]
+            vibration[0] = 0.0
+            vibration[1] = 0.0
+            r.state_times_settled += 1
+            r.state_settled_since = r.state_begin
+        else:
+            work[begin_state + impulse] += m * (vibration[1] - speed)
+            vibration[0] = place
+            vibration[1] = speed
+
+    @kernel
+    def look(record: Any, work: Array, step: float, limit: float, cap: float) -> float:
+        """Put a line that has gone taut on its course, and what it is off it into its vibration.
+
+        step, limit   step that is meant, and the longest one allowed   [s]
+        cap           longest step while the line is followed    [s]
+
+        Returns the step to try [s].
+
+        Checked  tests/tethered_deorbit/test_event_map.py
+        """
+        r = record[0]
+        if r.state_settled == 1:
+            carry(record, work)
+            return step
+        if r.state_command_rate != 0.0 or not r.state_begin >= r.state_next_look:
+            return step
+        start = work[begin_state:end_state]
+        m, c, k = bodies.mass_now(record, start), r.state_damping, r.state_stiffness
+        error = bound(record, start)
+        if error <= r.level_peak_error and c <= 2.0 * MOST_DAMPED * math.sqrt(k * m):
+            first = FIRST / r.state_pace
+            mass = draw(record, work, span_of(record, first))
+            if neglected(record, mass) <= SURE * tolerance(record):
+                longer, faster = off_course(record, work)
+                r.state_moved_mass = mass
+                r.state_vibration[0] = longer
+                r.state_vibration[1] = faster
+                r.state_level_error = max(r.state_level_error, error)
+                return min(first, limit)
+            r.state_settled = 0
+        return float(settled.look(record, work, step, limit, cap))
+
+    @kernel
+    def leave(record: Any, work: Array, step: float, cap: float) -> float:
+        """Follow every vibration where a step of a line on its course gains nothing.
+
+        Checked  tests/tethered_deorbit/test_event_map.py: a pair that whirls
+        """
+        r = record[0]
+        if r.state_settled == 0 or step >= WORTH * cap:
+            return step
+        longer, faster = r.state_vibration[0], r.state_vibration[1]
+        start = work[begin_state:end_state]
+        shift(start, -longer, -faster)
+        r.state_settled = 0
+        r.state_vibration[0] = 0.0
+        r.state_vibration[1] = 0.0
+        r.state_bounces = 0
+        r.state_next_look = r.state_begin + NEXT_LOOK / r.state_frequency
+        derivative(record, start, work[stages : stages + size], 0.0)
+        return min(cap, FIRST_FOLLOWED / r.state_frequency)
+
+    @kernel
+    def prepare(record: Any, work: Array, step: float, cap: float) -> float:
+        """Draw the course of a step [s], put its begin there, and end it where the line goes slack.
+
+        cap           longest step of a line that is followed    [s]
+
+        Returns the step to take [s].
+
+        Checked  tests/tethered_deorbit/test_event_map.py
+        """
+        r = record[0]
+        if r.state_settled == 0:
+            return step
+        for i in range(3):
+            r.state_turning[i] = 0.0
+        r.state_moved_mass = draw(record, work, span_of(record, step))
+        longer, faster = off_course(record, work)
+        start = work[begin_state:end_state]
+        shift(start, longer, faster)
+        if neglected(record, r.state_moved_mass) > tolerance(record):
+            return float(leave(record, work, 0.0, cap))
+        r.state_bounces = 0
+        slack = lets_go(record, step)
+        if slack < math.inf:
+            r.state_bounces = 1
+            step = min(step, max(slack, SHORTEST / r.state_frequency))
+        derivative(record, start, work[stages : stages + size], 0.0)
+        return step
+
+    @kernel
+    def place(
+        record: Any, state: Array, tension: float, elapsed: float, length: float, speed: float
+    ) -> tuple[float, float]:
+        """Put a state, as it is, where the line is as it vibrates; returns its length [m] and rate [m/s].
+
+        tension       of the line on its course                  [N]
+        elapsed       since the begin of the step                [s]
+        length, speed of the line in this state, as last seen    [m], [m/s]
+
+        Checked  tests/tethered_deorbit/test_event_map.py
+        """
+        r = record[0]
+        there, rate, _ = held.along(record, tension, elapsed)
+        v, faster = vibration_at(
+            r.state_vibration[0], r.state_vibration[1], r.state_moved_mass, r.state_damping, r.state_stiffness, elapsed
+        )
+        shift(state, length - there - v, speed - rate - faster)
+        return there + v, rate + faster
+
+    return Level(begin, restart, look, prepare, settled.missed, leave, place, settled.put, publish, book)
