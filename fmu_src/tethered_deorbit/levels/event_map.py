@@ -3,9 +3,10 @@
 A taut line is on its slow course at once, see `settled`, and vibrates about it in closed form, see `vibration`: the
 state of a step is that of the pair on the course, whose steps follow the orbit, and the vibration is put onto what is
 seen of it. So a tug is one step, to the instant at which its tension falls to zero, and lasts as long as it does: the
-load of tide, thrust and turning acts on it all the while. Radial shifts keep the angular momentum of the pair,
+load of tide, thrust and turning acts on it all the while. Longer by v, the pair keeps its angular momentum and turns
+the slower,
 
-    s -> s + v,   s' -> s' + v',   u x rho' -> u x rho' s/(s + v)
+    s -> s + v,   s' -> s' + v',   u x rho' -> u x rho' s/(s + v),   and falls behind by 2 w/s times the integral of v
 
 What is given up is what the vibration does to its own load. Of a pair that turns at w on an orbit of the rate n
 
@@ -31,9 +32,9 @@ from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.level import Held, Level
 from fmu_src.tethered_deorbit.levels.settled import NEXT_LOOK, SURE, make_settled
 from fmu_src.tethered_deorbit.levels.slow import make_slow
-from fmu_src.tethered_deorbit.levels.vibration import lets_go, tension_span, vibration_at
+from fmu_src.tethered_deorbit.levels.vibration import lets_go, swept, tension_span, vibration_at
 from orbital.kernel import kernel
-from orbital.vectors import Array, dot
+from orbital.vectors import Array, dot, norm
 
 FREE, FOLLOWED, MAPPED, DUMBBELL = range(4)
 """What a step was, by `level.now`."""
@@ -46,6 +47,8 @@ WORTH = 0.1
 """Share of a resolved step that a mapped one has to have."""
 FIRST_FOLLOWED = 0.3
 """First step of a line that is followed again, in radians of its motion."""
+PROBE = 1.0e-3
+"""Share of the line by which it is lengthened to see what its load gains."""
 SHORTEST = 1.0e-6
 """Least time of a tug, in radians of the line's motion."""
 
@@ -73,16 +76,15 @@ def bounces(record: Any) -> bool:
 def beyond(record: Any, elapsed: float) -> float:
     """Impulse of the vibration [N s] since the begin of the step, a time ago [s].
 
-        integral of T_v = -m (v'(t) - v'(0))
+        integral of T_v = k (integral of v) + c (v(t) - v(0))
 
     Checked  tests/tethered_deorbit/test_event_map.py: impulse
     """
     r = record[0]
-    m = r.state_moved_mass
-    _, rate = vibration_at(
-        r.state_vibration[0], r.state_vibration[1], m, r.state_damping, r.state_stiffness, elapsed
-    )
-    return float(m * (r.state_vibration[1] - rate))
+    place, speed = r.state_vibration[0], r.state_vibration[1]
+    m, c, q = r.state_moved_mass, r.state_damping, r.state_firmness
+    there, rate = vibration_at(place, speed, m, c, q, elapsed)
+    return float(r.state_stiffness * swept(place, speed, there, rate, m, c, q) + c * (there - place))
 
 
 def mapping(held: Held) -> Held:
@@ -97,6 +99,7 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
     Checked  tests/tethered_deorbit/test_event_map.py
     """
     begin_state, end_state, stages, size = places.begin, places.end, places.stages, places.size
+    here_state, slope_state, low = places.here, places.slope, places.low
     impulse = places.impulse
     settled = make_settled(derivative, reel, bodies, held, places)
     draw, span_of, neglected, tolerance, off_course, _ = make_slow(derivative, reel, bodies, places)
@@ -120,6 +123,29 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
             rho[i] *= nearer
 
     @kernel
+    def fall_behind(record: Any, state: Array, longer: float) -> None:
+        """What the vibration has done to the pair across its line: it has turned by less, and what pulls across has had
+        more of an arm.
+
+        longer        integral of the vibration over the time    [m s]
+
+        Checked  tests/tethered_deorbit/test_event_map.py: energy, times of tugs
+        """
+        r = record[0]
+        rho, rate = state[6:9], state[9:12]
+        angle = 2.0 * longer / r.state_length
+        square = dot(rho, rho)
+        if not square > 0.0:
+            return
+        along = dot(rho, rate) / square
+        across = max(0.0, dot(rate, rate) / square - along * along)
+        for i in range(3):
+            a = rate[i] - along * rho[i]
+            rate[i] -= angle * (along * a - across * rho[i])
+            rho[i] -= angle * a
+            rate[i] += longer * r.state_leverage[i]
+
+    @kernel
     def bound(record: Any, state: Array) -> float:
         """Relative error of a tug's peak, at most [-].
 
@@ -133,6 +159,38 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         radial = dot(rho, rate)
         turn = max(0.0, dot(rate, rate) - radial * radial / square) / square
         return float(4.0 * (turn + r.state_pace * r.state_pace) * bodies.mass_now(record, state) / r.state_stiffness)
+
+    @kernel
+    def probe(record: Any, work: Array) -> None:
+        """What load and angular momentum gain as the line lengthens, the pair then turning the slower.
+
+            q = k - dP/dl,   leverage = (d(l a)/dl)/l,   a the acceleration across the line
+
+        Valid    what is linear in the length: centrifugal force, tide, thrust
+        Source   ours
+        Checked  tests/tethered_deorbit/test_event_map.py: energy
+        """
+        r = record[0]
+        start, there, rate = work[begin_state:end_state], work[here_state:slope_state], work[slope_state:low]
+        derivative(record, start, rate, 0.0)
+        load = rate[impulse]
+        unit, gained = r.state_vector[0], r.state_leverage
+        apart = norm(start[6:9])
+        for i in range(3):
+            unit[i] = start[6 + i] / apart
+        along = dot(unit, rate[9:12])
+        for i in range(3):
+            gained[i] = -apart * (rate[9 + i] - along * unit[i])
+        for i in range(size):
+            there[i] = start[i]
+        more = PROBE * r.state_length
+        shift(there, -more, 0.0)
+        derivative(record, there, rate, 0.0)
+        r.state_firmness = r.state_stiffness - (rate[impulse] - load) / more
+        along = dot(unit, rate[9:12])
+        for i in range(3):
+            gained[i] += (apart + more) * (rate[9 + i] - along * unit[i])
+            gained[i] /= more * apart
 
     @kernel
     def begin(record: Any) -> None:
@@ -208,18 +266,18 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         vibration = r.state_vibration
         if vibration[0] == 0.0 and vibration[1] == 0.0:
             return
-        m, c, k = r.state_moved_mass, r.state_damping, r.state_stiffness
-        place, speed = vibration_at(vibration[0], vibration[1], m, c, k, r.state_step)
-        if math.sqrt(place * place + m / k * speed * speed) <= tolerance(record):
-            work[begin_state + impulse] += m * vibration[1]
-            vibration[0] = 0.0
-            vibration[1] = 0.0
+        m, c, q = r.state_moved_mass, r.state_damping, r.state_firmness
+        place, speed = vibration_at(vibration[0], vibration[1], m, c, q, r.state_step)
+        if math.sqrt(place * place + m / q * speed * speed) <= tolerance(record):
+            place = 0.0
+            speed = 0.0
             r.state_times_settled += 1
             r.state_settled_since = r.state_begin
-        else:
-            work[begin_state + impulse] += m * (vibration[1] - speed)
-            vibration[0] = place
-            vibration[1] = speed
+        longer = swept(vibration[0], vibration[1], place, speed, m, c, q)
+        work[begin_state + impulse] += r.state_stiffness * longer + c * (place - vibration[0])
+        fall_behind(record, work[begin_state:end_state], longer)
+        vibration[0] = place
+        vibration[1] = speed
 
     @kernel
     def look(record: Any, work: Array, step: float, limit: float, cap: float) -> float:
@@ -243,14 +301,21 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         error = bound(record, start)
         if error <= r.level_peak_error and c <= 2.0 * MOST_DAMPED * math.sqrt(k * m):
             first = FIRST / r.state_pace
+            # the load is that of the line at rest: its vibration is taken out before it is drawn
+            for i in range(4):
+                r.state_course[i] = 0.0
+            stretch, speed = off_course(record, work)
+            shift(start, stretch, speed)
             mass = draw(record, work, span_of(record, first))
+            longer, faster = off_course(record, work)
             if neglected(record, mass) <= SURE * tolerance(record):
-                longer, faster = off_course(record, work)
+                shift(start, longer, faster)
                 r.state_moved_mass = mass
-                r.state_vibration[0] = longer
-                r.state_vibration[1] = faster
+                r.state_vibration[0] = stretch + longer
+                r.state_vibration[1] = speed + faster
                 r.state_level_error = max(r.state_level_error, error)
                 return min(first, limit)
+            shift(start, -stretch, -speed)
             r.state_settled = 0
         return float(settled.look(record, work, step, limit, cap))
 
@@ -296,6 +361,7 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         if neglected(record, r.state_moved_mass) > tolerance(record):
             return float(leave(record, work, 0.0, cap))
         r.state_bounces = 0
+        probe(record, work)
         slack = lets_go(record, step)
         if slack < math.inf:
             r.state_bounces = 1
@@ -317,9 +383,9 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         """
         r = record[0]
         there, rate, _ = held.along(record, tension, elapsed)
-        v, faster = vibration_at(
-            r.state_vibration[0], r.state_vibration[1], r.state_moved_mass, r.state_damping, r.state_stiffness, elapsed
-        )
+        a, b, m, c, q = r.state_vibration[0], r.state_vibration[1], r.state_moved_mass, r.state_damping, r.state_firmness
+        v, faster = vibration_at(a, b, m, c, q, elapsed)
+        fall_behind(record, state, swept(a, b, v, faster, m, c, q))
         shift(state, length - there - v, speed - rate - faster)
         return there + v, rate + faster
 

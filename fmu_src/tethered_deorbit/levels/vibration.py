@@ -3,9 +3,9 @@ and between what its tension lies.
 
 Of a line on its course x_s with the tension T_s, what is left of its stretch is free of any load,
 
-    m v'' + c v' + k v = 0        T = T_s + k v + c v' = T_s - m v''
+    m v'' + c v' + q v = 0,   q = k - m dA/dl        T = T_s + k v + c v'
 
-so that it is known at every instant from v and v' at one. Of a line that has just gone taut at a speed w it is
+where A, the load over m, changes with the length, the turning of the pair slowing down as it grows. So v is known at every instant from v and v' at one. Of a line that has just gone taut at a speed w it is
 v = -x_s, v' = w - x_s': half a turn of it is a tug.
 
 Source   free damped oscillator
@@ -32,13 +32,13 @@ def vibration_at(
     """Free vibration v [m] and its rate [m/s] after a time.
 
         v  = exp(-g t) (a cos w t + (b + g a)/w sin w t)
-        v' = exp(-g t) (b cos w t - (g b + (k/m) a)/w sin w t),   g = c/2m,   w^2 = k/m - g^2
+        v' = exp(-g t) (b cos w t - (g b + (q/m) a)/w sin w t),   g = c/2m,   w^2 = q/m - g^2
 
     place, speed  a, b   at t = 0                                [m], [m/s]
-    mass, damping, stiffness  m, c, k                            [kg], [N s/m], [N/m]
+    mass, damping, stiffness  m, c, q                            [kg], [N s/m], [N/m]
     elapsed       t                                              [s]
 
-    Valid    c < 2 sqrt(k m)
+    Valid    c < 2 sqrt(q m)
     Source   free damped oscillator
     Checked  tests/tethered_deorbit/test_event_map.py: against its equation
     """
@@ -55,6 +55,23 @@ def vibration_at(
 
 
 @kernel
+def swept(
+    place: float, speed: float, there: float, rate: float, mass: float, damping: float, stiffness: float
+) -> float:
+    """Integral of a free vibration over time [m s], from what it is at both ends.
+
+        integral of v = -(m (v' - b) + c (v - a))/q
+
+    place, speed  a, b   at the begin                            [m], [m/s]
+    there, rate   v, v'  at the end                              [m], [m/s]
+
+    Source   the integral of its equation
+    Checked  tests/tethered_deorbit/test_event_map.py: against its equation
+    """
+    return -(mass * (rate - speed) + damping * (there - place)) / stiffness
+
+
+@kernel
 def pull_at(record: Any, elapsed: float) -> float:
     """Tension of a mapped line, not clamped [N], a time after the begin of the step [s].
 
@@ -65,7 +82,9 @@ def pull_at(record: Any, elapsed: float) -> float:
     r = record[0]
     k, c = r.state_stiffness, r.state_damping
     x, rate, _ = course(record, elapsed)
-    v, faster = vibration_at(r.state_vibration[0], r.state_vibration[1], r.state_moved_mass, c, k, elapsed)
+    v, faster = vibration_at(
+        r.state_vibration[0], r.state_vibration[1], r.state_moved_mass, c, r.state_firmness, elapsed
+    )
     return float(k * (x + v) + c * (rate + faster))
 
 
@@ -76,15 +95,16 @@ def first_turn(record: Any) -> tuple[float, float]:
         T_v = R exp(-g t) cos(w t - p),   least at w t - p = pi - atan(g/w)
 
     Valid    a vibration there is
-    Source   T_v is a free vibration itself, with T_v(0) = k a + c b, T_v'(0) = k b - c T_v(0)/m
+    Source   T_v is a free vibration itself, with T_v(0) = k a + c b, T_v'(0) = k b - c (q a + c b)/m
     Checked  tests/tethered_deorbit/test_event_map.py: the first tug's end
     """
     r = record[0]
-    k, c, m = r.state_stiffness, r.state_damping, r.state_moved_mass
+    k, c, m, q = r.state_stiffness, r.state_damping, r.state_moved_mass, r.state_firmness
+    place, speed = r.state_vibration[0], r.state_vibration[1]
     decay = 0.5 * c / m
-    turn = math.sqrt(k / m - decay * decay)
-    pull = k * r.state_vibration[0] + c * r.state_vibration[1]
-    rate = k * r.state_vibration[1] - c * pull / m
+    turn = math.sqrt(q / m - decay * decay)
+    pull = k * place + c * speed
+    rate = k * speed - c * (q * place + c * speed) / m
     phase = math.atan2((rate + decay * pull) / turn, pull)
     half = math.pi / turn
     least = (math.pi - math.atan(decay / turn) + phase) / turn
