@@ -20,6 +20,15 @@ UNKNOWN_EXTENT = 1.0
 """How far a body of which nothing is known is taken to reach from its centre of mass [m]."""
 
 
+MODES = {
+    "free": "share of the time in free flight",
+    "followed": "share with every vibration followed",
+    "mapped": "share with the vibration in closed form",
+    "dumbbell": "share as a rigid dumbbell",
+}
+"""Ways in which a tow is computed, by the output `level.*` with the time spent so."""
+
+
 class Approach(NamedTuple):
     """Least distance of the two centres of mass [m], when since the phase began [s], and whether from rows alone."""
 
@@ -75,6 +84,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_reel(run, phase, last)
     if "level.settled" in last:
         yield from _of_level(phase, result, last)
+    if "level.now" in last:
+        yield from _of_modes(phase, last)
 
 
 def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:
@@ -86,6 +97,16 @@ def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Ite
     if times and len(result.recorder) > 1:
         share = float(np.mean(result.recorder["level.settled"]))
         yield Finding(phase, "settled_share", "share of the rows at rest", share)
+
+
+def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
+    """How long the tow was computed in which way, and how much a tug may be off by that."""
+    times = {mode: last[f"level.{mode}"] for mode in MODES}
+    whole = sum(times.values())
+    for mode, told in MODES.items():
+        if times[mode] > 0.0:
+            yield Finding(phase, f"level_{mode}", told, times[mode] / whole)
+    yield Finding(phase, "level_error", "tugs by these are off by at most, relative", last["level.error"])
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:

@@ -202,7 +202,8 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
         """
         if held.mapped(record):
             step = record[0].state_step
-            return held.span(record, first * step, last * step)
+            low, high = held.span(record, first * step, last * step)
+            return float(low), float(high)
         ensure_dense(record, work)
         low, here = first, at(record, work, first)
         least = largest = here[TENSION]

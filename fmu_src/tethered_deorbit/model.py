@@ -29,7 +29,7 @@ from fmu_src.tethered_deorbit.levels.course import make_held
 from fmu_src.tethered_deorbit.levels.event_map import make_event_map, mapping
 from fmu_src.tethered_deorbit.levels.settled import make_settled
 from fmu_src.tethered_deorbit.minded import LIMITED
-from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEMES
+from fmu_src.tethered_deorbit.optional_rows import POINTS_ONLY, SETTLING_LAWS, SETTLING_SCHEMES, not_mapped
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
@@ -93,6 +93,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
     if "level" in terms and terms["reel"] not in SETTLING_LAWS:
         raise ValueError(f"{MODEL.name}: no line settles with reel = {terms['reel']!r}")
+    if terms.get("level") in POINTS_ONLY:
+        for group, term in not_mapped(terms).items():
+            raise ValueError(f"{MODEL.name}: level = {terms['level']!r} does not go with {group} = {term!r}")
     settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
     maps = settles and terms["level"] == "event_map"
     held = make_held(reel, bodies) if settles else UNHELD
@@ -247,9 +250,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         thrust.weigh(record, here)
         publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin))
         thrust.publish(record, here, time)
-        level.publish(record)
         aocs.publish(record, here)
         r.state_published = time
+        level.publish(record)
         r.state_changes = 0
         extremes.publish(record)
         return 0

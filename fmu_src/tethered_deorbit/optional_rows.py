@@ -4,6 +4,7 @@ and how it is solved."""
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from fmu_src.interface import Group, Term, Variable
 from fmu_src.rows import (
@@ -240,6 +241,16 @@ _SETTLED = (
 SETTLING_LAWS, SETTLING_SCHEMES = ("locked",), ("dop853",)
 """Laws of the line whose vibration can be stepped over once it has died, and schemes that do: `radau` needs not, and
 `gauss` is there as a second opinion."""
+
+POINTS_ONLY = ("event_map",)
+"""Levels of two points on a line that does not break, by the one scheme: what they cannot carry is refused."""
+
+
+def not_mapped(terms: Mapping[str, str]) -> dict[str, str]:
+    """What of a tow those levels cannot carry: group and term."""
+    carried = {"target": ("point",), "chaser": ("point",), "solver": SETTLING_SCHEMES, "break": ()}
+    return {group: terms[group] for group, ok in carried.items() if group in terms and terms[group] not in ok}
+
 
 LEVELS = Group(
     {
