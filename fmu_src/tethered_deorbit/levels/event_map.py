@@ -31,7 +31,7 @@ from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.level import Held, Level
 from fmu_src.tethered_deorbit.levels.settled import NEXT_LOOK, SURE, make_settled
-from fmu_src.tethered_deorbit.levels.slow import make_slow
+from fmu_src.tethered_deorbit.levels.slow import SPAN, make_slow
 from fmu_src.tethered_deorbit.levels.vibration import lets_go, swept, tension_span, vibration_at
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
@@ -42,13 +42,15 @@ MODES = 4
 MOST_DAMPED = 0.9
 """Damping ratio up to which a vibration is mapped: near the critical one its closed form loses its digits."""
 FIRST = 0.02
-"""First step of a line that is mapped, in radians of the pace; a tug within it ends it."""
+"""First step of a line that is mapped, in radians of how its load changes; a tug within it ends it."""
 WORTH = 0.1
 """Share of a resolved step that a mapped one has to have."""
 FIRST_FOLLOWED = 0.3
 """First step of a line that is followed again, in radians of its motion."""
 PROBE = 1.0e-3
 """Share of the line by which it is lengthened to see what its load gains."""
+MOST_DRAWN = 4
+"""Courses drawn of a line that has gone taut, each from where the one before has it."""
 SHORTEST = 1.0e-6
 """Least time of a tug, in radians of the line's motion."""
 
@@ -102,7 +104,7 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
     here_state, slope_state, low = places.here, places.slope, places.low
     impulse = places.impulse
     settled = make_settled(derivative, reel, bodies, held, places)
-    draw, span_of, neglected, tolerance, off_course, _ = make_slow(derivative, reel, bodies, places)
+    draw, _, neglected, tolerance, off_course, _ = make_slow(derivative, reel, bodies, places)
 
     @kernel
     def shift(state: Array, longer: float, faster: float) -> None:
@@ -146,10 +148,10 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
             rate[i] += longer * r.state_leverage[i]
 
     @kernel
-    def bound(record: Any, state: Array) -> float:
-        """Relative error of a tug's peak, at most [-].
+    def pace(record: Any, state: Array) -> float:
+        """How fast the load changes [rad/s].
 
-            e = 4 (w^2 + n^2)/(k/m),   w = |rho x rho'|/s^2
+            sqrt(w^2 + n^2),   w = |rho x rho'|/s^2
 
         Checked  tests/tethered_deorbit/test_event_map.py: a pair that whirls
         """
@@ -158,7 +160,7 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         square = dot(rho, rho)
         radial = dot(rho, rate)
         turn = max(0.0, dot(rate, rate) - radial * radial / square) / square
-        return float(4.0 * (turn + r.state_pace * r.state_pace) * bodies.mass_now(record, state) / r.state_stiffness)
+        return math.sqrt(turn + r.state_pace * r.state_pace)
 
     @kernel
     def neglects(record: Any, mass: float) -> float:
@@ -262,8 +264,10 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         Checked  tests/tethered_deorbit/test_event_map.py: times of the modes
         """
         r = record[0]
-        settled.publish(record)
         now = r.state_level_now
+        r.level_settled = 1 if now == DUMBBELL else 0
+        r.level_settled_since = r.state_settled_since if now == DUMBBELL else 0.0
+        r.level_times_settled = r.state_times_settled
         r.level_now = now
         ahead = r.state_end - r.state_published
         times = r.state_level_times
@@ -315,20 +319,27 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
             return step
         start = work[begin_state:end_state]
         m, c, k = bodies.mass_now(record, start), r.state_damping, r.state_stiffness
-        error = bound(record, start)
+        turning = pace(record, start)
+        error = 4.0 * turning * turning * m / k
         if error <= r.level_peak_error and c <= 2.0 * MOST_DAMPED * math.sqrt(k * m):
-            first = FIRST / r.state_pace
-            # the load is that of the line at rest: its vibration is taken out before it is drawn
+            first = FIRST / turning
+            # The load is that of the line at rest, where its course has it: it is drawn once its vibration is out.
             for i in range(4):
                 r.state_course[i] = 0.0
             stretch, speed = off_course(record, work)
             shift(start, stretch, speed)
-            mass = draw(record, work, span_of(record, first))
-            longer, faster = off_course(record, work)
-            r.state_vibration[0] = stretch + longer
-            r.state_vibration[1] = speed + faster
-            if neglects(record, mass) <= SURE:
+            mass, longer = m, math.inf
+            for _ in range(MOST_DRAWN):
+                mass = draw(record, work, first)
+                longer, faster = off_course(record, work)
                 shift(start, longer, faster)
+                stretch += longer
+                speed += faster
+                if error * abs(longer) <= tolerance(record):
+                    break
+            r.state_vibration[0] = stretch
+            r.state_vibration[1] = speed
+            if neglects(record, mass) <= SURE and error * abs(longer) <= tolerance(record):
                 r.state_moved_mass = mass
                 r.state_level_error = max(r.state_level_error, error)
                 return float(min(first, limit))
@@ -373,7 +384,7 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
             return step
         for i in range(3):
             r.state_turning[i] = 0.0
-        r.state_moved_mass = draw(record, work, span_of(record, step))
+        r.state_moved_mass = draw(record, work, max(step, SPAN / pace(record, work[begin_state:end_state])))
         longer, faster = off_course(record, work)
         start = work[begin_state:end_state]
         shift(start, longer, faster)
