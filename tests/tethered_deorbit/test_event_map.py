@@ -71,7 +71,7 @@ def test_a_day_is_that_which_is_followed() -> None:
     assert mapped["level.settled"]
     # within two time constants of the vibration per decade, from 0.6 N to 4e-8 N
     assert own[-1, 0] < mapped["level.settled_since"] < own[-1, 0] + 400.0
-    assert mapped["level.error"] < 1e-5
+    assert mapped["level.error"] < 2e-5
 
 
 def test_the_same_bits_whatever_the_macro_step() -> None:
@@ -167,20 +167,27 @@ def test_a_snap_without_a_field(zeta: float) -> None:
 
 @pytest.mark.usefixtures("plain")
 def test_a_pair_that_whirls_is_followed() -> None:
-    """At 0.1 rad/s its bound is 0.7 %: followed with less allowed, and mapped within it with more."""
+    """At 0.03 rad/s its bound is 1.2e-3, of turning and of what holds it: followed with less allowed, else mapped."""
     peaks = []
-    for allowed in (1e-3, 1e-2):
+    for allowed in (1e-3, 2e-3):
         i = PlainInstance(
             MODEL,
             {"reel": "locked", "environment": "none", "level": "event_map"},
             {"start.condition": HANDED_OVER, "start_relative_position": (0.0, 11.999, 0.0),
-             "start_relative_velocity": (1.2, 0.05, 0.0), "level.peak_error": allowed},
+             "start_relative_velocity": (0.36, 0.05, 0.0), "level.peak_error": allowed},
         )  # fmt: skip
         i.step(2.0)
         peaks.append(i["tug[1].peak"])
-    assert i["level.error"] == pytest.approx(4.0 * 0.01 * REDUCED / STIFFNESS, rel=0.02)
-    assert i["level.mapped"] > 0.0
-    assert peaks[1] == pytest.approx(peaks[0], rel=i["level.error"])
+        assert (i["level.mapped"] > 0.0) == (allowed == 2e-3)
+    assert i["level.error"] == pytest.approx(4.0 * 2.0 * 0.03**2 * REDUCED / STIFFNESS, rel=0.02)
+    assert peaks[1] == pytest.approx(peaks[0], rel=1e-3 * i["level.error"])
+
+
+def test_a_hard_push_across_the_line_is_followed() -> None:
+    i = tow(MAPPED, thrust__level=-1e4)
+    i.step(300.0)
+    assert i["tether.tug_count"] > 1
+    assert i["level.mapped"] == 0.0 < i["level.followed"]
 
 
 def test_a_free_vibration() -> None:

@@ -8,11 +8,13 @@ the slower,
 
     s -> s + v,   s' -> s' + v',   u x rho' -> u x rho' s/(s + v),   and falls behind by 2 w/s times the integral of v
 
-What is given up is what the vibration does to its own load. Of a pair that turns at w on an orbit of the rate n
+The vibration changes its own load. Of a pair that turns at w on an orbit of the rate n
 
-    dA/dl = w^2 + 3 n^2,   dA/dw dw/dl = -4 w^2        so that   e = 4 (w^2 + n^2)/(k/m)
+    dA/dl <= w^2 + 3 n^2 - 4 w^2        so that   e = 4 (w^2 + n^2)/(k/m)
 
-bounds by how much the square of its frequency is wrong, and peak and time of a tug by as much at most. Where e exceeds
+is how much the square of its frequency would be wrong by. It is not: dA/dl is put into it, see `probe`. What is left is
+of second order, and e, with w^2 + n^2 + a/s for what pushes the pair to turn, bounds by how much peak and time of a tug
+may be wrong. Where e exceeds
 `level.peak_error`, where the line hardly vibrates at all (damping above 0.9 of the critical), or where the slow
 solution neglects too much, every vibration is followed as ever, and `settled` is what there is.
 
@@ -148,10 +150,10 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
             rate[i] += longer * r.state_leverage[i]
 
     @kernel
-    def pace(record: Any, state: Array) -> float:
-        """How fast the load changes [rad/s].
+    def turns(record: Any, state: Array) -> float:
+        """Square of how fast pair and orbit turn [rad^2/s^2].
 
-            sqrt(w^2 + n^2),   w = |rho x rho'|/s^2
+            w^2 + n^2,   w = |rho x rho'|/s^2
 
         Checked  tests/tethered_deorbit/test_event_map.py: a pair that whirls
         """
@@ -160,7 +162,20 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         square = dot(rho, rho)
         radial = dot(rho, rate)
         turn = max(0.0, dot(rate, rate) - radial * radial / square) / square
-        return math.sqrt(turn + r.state_pace * r.state_pace)
+        return float(turn + r.state_pace * r.state_pace)
+
+    @kernel
+    def pushes(record: Any, work: Array) -> float:
+        """Square of how fast what acts on the pair would turn it [rad^2/s^2]; after `derivative` of the line at rest.
+
+            (|a| + |P|/m)/s,   a the acceleration of a line that keeps its length
+
+        Checked  tests/tethered_deorbit/test_event_map.py: a hard push across the line
+        """
+        rate = work[slope_state:low]
+        apart = norm(work[begin_state + 6 : begin_state + 9])
+        load = abs(rate[impulse]) / bodies.mass_now(record, work[begin_state:end_state])
+        return float((norm(rate[9:12]) + load) / apart)
 
     @kernel
     def neglects(record: Any, mass: float) -> float:
@@ -319,17 +334,20 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
             return step
         start = work[begin_state:end_state]
         m, c, k = bodies.mass_now(record, start), r.state_damping, r.state_stiffness
-        turning = pace(record, start)
-        error = 4.0 * turning * turning * m / k
+        error = 4.0 * turns(record, start) * m / k
         if error <= r.level_peak_error and c <= 2.0 * MOST_DAMPED * math.sqrt(k * m):
-            first = FIRST / turning
             # The load is that of the line at rest, where its course has it: it is drawn once its vibration is out.
             for i in range(4):
                 r.state_course[i] = 0.0
             stretch, speed = off_course(record, work)
             shift(start, stretch, speed)
+            r.state_settled = 1
+            derivative(record, start, work[slope_state:low], 0.0)
+            turning = turns(record, start) + pushes(record, work)
+            error = 4.0 * turning * m / k
+            first = FIRST / math.sqrt(turning)
             mass, longer = m, math.inf
-            for _ in range(MOST_DRAWN):
+            for _ in range(MOST_DRAWN if error <= r.level_peak_error else 0):
                 mass = draw(record, work, first)
                 longer, faster = off_course(record, work)
                 shift(start, longer, faster)
@@ -384,7 +402,7 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
             return step
         for i in range(3):
             r.state_turning[i] = 0.0
-        r.state_moved_mass = draw(record, work, max(step, SPAN / pace(record, work[begin_state:end_state])))
+        r.state_moved_mass = draw(record, work, max(step, SPAN / math.sqrt(turns(record, work[begin_state:end_state]))))
         longer, faster = off_course(record, work)
         start = work[begin_state:end_state]
         shift(start, longer, faster)
