@@ -20,11 +20,12 @@ from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
-from fmu_src.tethered_deorbit.idle import nothing
+from fmu_src.tethered_deorbit.idle import never, nothing
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
 from fmu_src.tethered_deorbit.level import RESOLVED, UNHELD
+from fmu_src.tethered_deorbit.levels.averaged import leapt, make_averaged, make_leap
 from fmu_src.tethered_deorbit.levels.course import make_held
 from fmu_src.tethered_deorbit.levels.event_map import make_event_map, mapping
 from fmu_src.tethered_deorbit.levels.settled import make_settled
@@ -62,7 +63,7 @@ IMPLEMENTED = {
     "aocs": ("wheels",),
     "ends": ("watched",),
     "break": ("breaks",),
-    "level": ("settled", "event_map"),
+    "level": ("settled", "event_map", "averaged"),
     "oblateness": ("J2",),
     "air": ("exponential",),
     **KINDS,
@@ -97,7 +98,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         for group, term in not_mapped(terms).items():
             raise ValueError(f"{MODEL.name}: level = {terms['level']!r} does not go with {group} = {term!r}")
     settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
-    maps = settles and terms["level"] == "event_map"
+    maps, leaps = settles and terms["level"] in POINTS_ONLY, settles and terms["level"] == "averaged"
     held = make_held(reel, bodies) if settles else UNHELD
     if maps:
         held = mapping(held)
@@ -109,6 +110,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     level = RESOLVED
     if settles:
         level = (make_event_map if maps else make_settled)(derivative, reel, bodies, held, places)
+    leap = never
+    if leaps:
+        level, leap = make_averaged(level), make_leap(derivative, "engine" in terms, layout)
     events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events, held)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))
@@ -258,6 +262,28 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         return 0
 
     @kernel
+    def carry_over(record: Any, work: Array, target: float) -> bool:
+        """Carry the pair over many revolutions up to a communication point [s]; false where it is to be stepped.
+
+        Checked  tests/tethered_deorbit/test_averaged.py
+        """
+        r = record[0]
+        now = r.state_end
+        here = work[here_state:slope_state]
+        trajectory.state_at(record, work, now, here)
+        later = leap(record, here, work[slope_state:low_error], now, target)
+        if not later > now:
+            return False
+        if acts and (acting.due(record) <= later or not acting.holds(record, here, 0.0)):
+            r.state_next_leap = target
+            return False
+        for i in range(size):
+            work[end_state + i] = here[i]
+        leapt(record, now, later)
+        trajectory.restart(record, work, later)
+        return True
+
+    @kernel
     def step_to(record: Any, work: Array, time: float, step: float, anew: bool) -> int:
         """Take a macro step, or go on with it; it is left after a slice of steps, and nothing is then half done.
 
@@ -310,6 +336,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             # A moving input is known up to the communication point only: there the last step ends.
             if moving and r.state_end == target:
                 break
+            if leaps and not moving and event == 0 and carry_over(record, work, target):
+                continue
             longest = target - r.state_end if moving else math.inf
             if acts:
                 longest = min(longest, acting.due(record) - r.state_end)

@@ -38,9 +38,9 @@ from fmu_src.tethered_deorbit.levels.vibration import lets_go, swept, tension_sp
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
-FREE, FOLLOWED, MAPPED, DUMBBELL = range(4)
+FREE, FOLLOWED, MAPPED, DUMBBELL, AVERAGED = range(5)
 """What a step was, by `level.now`."""
-MODES = 4
+MODES = 5
 MOST_DAMPED = 0.9
 """Damping ratio up to which a vibration is mapped: near the critical one its closed form loses its digits."""
 FIRST = 0.02
@@ -431,7 +431,13 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         """
         r = record[0]
         there, rate, _ = held.along(record, tension, elapsed)
-        a, b, m, c, q = r.state_vibration[0], r.state_vibration[1], r.state_moved_mass, r.state_damping, r.state_firmness
+        a, b, m, c, q = (
+            r.state_vibration[0],
+            r.state_vibration[1],
+            r.state_moved_mass,
+            r.state_damping,
+            r.state_firmness,
+        )
         v, faster = vibration_at(a, b, m, c, q, elapsed)
         fall_behind(record, state, swept(a, b, v, faster, m, c, q))
         shift(state, length - there - v, speed - rate - faster)

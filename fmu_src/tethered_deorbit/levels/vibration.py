@@ -5,8 +5,9 @@ Of a line on its course x_s with the tension T_s, what is left of its stretch is
 
     m v'' + c v' + q v = 0,   q = k - m dA/dl        T = T_s + k v + c v'
 
-where A, the load over m, changes with the length, the turning of the pair slowing down as it grows. So v is known at every instant from v and v' at one. Of a line that has just gone taut at a speed w it is
-v = -x_s, v' = w - x_s': half a turn of it is a tug.
+where A, the load over m, changes with the length, the turning of the pair slowing down as it grows. So v is known at
+every instant from v and v' at one. Of a line that has just gone taut at a speed w it is v = -x_s, v' = w - x_s': half a
+turn of it is a tug.
 
 Source   free damped oscillator
 Checked  tests/tethered_deorbit/test_event_map.py
