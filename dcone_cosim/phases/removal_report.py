@@ -25,6 +25,7 @@ MODES = {
     "followed": "share with every vibration followed",
     "mapped": "share with the vibration in closed form",
     "dumbbell": "share as a rigid dumbbell",
+    "averaged": "share over many revolutions at once",
 }
 """Ways in which a tow is computed, by the output `level.*` with the time spent so."""
 
@@ -101,12 +102,15 @@ def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Ite
 
 def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
     """How long the tow was computed in which way, and how much a tug may be off by that."""
-    times = {mode: last[f"level.{mode}"] for mode in MODES}
+    times = {mode: last.get(f"level.{mode}", 0.0) for mode in MODES}
     whole = sum(times.values())
     for mode, told in MODES.items():
         if times[mode] > 0.0:
             yield Finding(phase, f"level_{mode}", told, times[mode] / whole)
-    yield Finding(phase, "level_error", "tugs by these are off by at most, relative", last["level.error"])
+    yield Finding(phase, "level_error", "bound of a tug's relative error", last["level.error"])
+    if times["averaged"] > 0.0:
+        yield Finding(phase, "level_revolutions", "revolutions so taken", round(last["level.revolutions"]))
+        yield Finding(phase, "level_average_error", "bound of their relative error", last["level.average_error"])
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:

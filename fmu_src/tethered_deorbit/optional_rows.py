@@ -297,6 +297,7 @@ LEVELS = Group(
             "free flight from tug to tug, every tug and every vibration in closed form, a rigid dumbbell once that has "
             "died; followed where the bound of its error is exceeded",
             (_now(3, "3: rigid dumbbell"), *_MAPPED),
+            extremes=stress.MAPPED,
         ),
         "averaged": Term(
             "as event_map; and a rigid dumbbell that cannot go slack is carried over many revolutions at once, between "
@@ -318,6 +319,7 @@ LEVELS = Group(
                 state("state.swing[#]", "1", "see levels.libration", shape=(7,)),
                 state("state.waves[#][#]", "1", "see levels.libration", shape=(2, 24)),
             ),
+            extremes=stress.AVERAGED,
         ),
     },
     selector="detail",
