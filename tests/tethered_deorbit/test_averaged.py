@@ -23,8 +23,7 @@ AXIS = EARTH_EQUATORIAL_RADIUS + 800e3
 RATE = math.sqrt(EARTH_MU / AXIS**3)
 LENGTH, PUSH = 12.0, 0.01 / 2000.0 / 12.0
 swing, along_swing, place_of, energy_of = (
-    kernel.py_func
-    for kernel in (libration.swing, libration.along_swing, libration.place_of, libration.energy_of)
+    kernel.py_func for kernel in (libration.swing, libration.along_swing, libration.place_of, libration.energy_of)
 )
 
 
