@@ -133,11 +133,12 @@ def test_a_line_that_cannot_settle_is_refused() -> None:
 def test_a_line_settles_while_a_tank_empties(plain: None) -> None:
     """It moves the mass that is there: by the one of the begin its course would be off by what was lost."""
     angle = math.radians(20.0)
+    place = (12.0 * math.cos(angle), 12.0 * math.sin(angle), 0.0)
     i = PlainInstance(
         MODEL,
         {"reel": "locked", "thrust": "along_track", "engine": "chemical", "level": "settled"},
         {"thrust.level": -0.01, "thrust.specific_impulse": 0.001, "engine.propellant": 1500.0,
-         "start.condition": HANDED_OVER, "start_relative_position": (12.0 * math.cos(angle), 12.0 * math.sin(angle), 0.0)},
+         "start.condition": HANDED_OVER, "start_relative_position": place},
     )  # fmt: skip
     i.step(600.0)
     assert i["chaser.propellant"] == pytest.approx(0.01 / (0.001 * 9.80665) * 600.0)
