@@ -24,13 +24,9 @@ from fmu_src.tethered_deorbit.idle import never, nothing
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
-from fmu_src.tethered_deorbit.level import RESOLVED, UNHELD
-from fmu_src.tethered_deorbit.levels.averaged import leapt, make_averaged, make_leap
-from fmu_src.tethered_deorbit.levels.course import make_held
-from fmu_src.tethered_deorbit.levels.event_map import make_event_map, mapping
-from fmu_src.tethered_deorbit.levels.settled import make_settled
+from fmu_src.tethered_deorbit.levels.averaged import leapt
+from fmu_src.tethered_deorbit.levels.choosing import check_level, make_held_of, make_level
 from fmu_src.tethered_deorbit.minded import LIMITED
-from fmu_src.tethered_deorbit.optional_rows import POINTS_ONLY, SETTLING_LAWS, SETTLING_SCHEMES, not_mapped
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
@@ -92,27 +88,15 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
-    if "level" in terms and terms["reel"] not in SETTLING_LAWS:
-        raise ValueError(f"{MODEL.name}: no line settles with reel = {terms['reel']!r}")
-    if terms.get("level") in POINTS_ONLY:
-        for group, term in not_mapped(terms).items():
-            raise ValueError(f"{MODEL.name}: level = {terms['level']!r} does not go with {group} = {term!r}")
-    settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
-    maps, leaps = settles and terms["level"] in POINTS_ONLY, settles and terms["level"] == "averaged"
-    held = make_held(reel, bodies) if settles else UNHELD
-    if maps:
-        held = mapping(held)
+    check_level(MODEL.name, terms)
+    held = make_held_of(terms, reel, bodies)
     inertial, derivative = make_equations(environment, perturbing, reel, thrust, bodies, aocs, held, layout)
     scheme = SCHEMES[terms["solver"]](
         derivative, make_squared_error(bodies, held), layout.moving, layout.size - layout.moving
     )
     places = places_of(layout, scheme)
-    level = RESOLVED
-    if settles:
-        level = (make_event_map if maps else make_settled)(derivative, reel, bodies, held, places)
-    leap = never
-    if leaps:
-        level, leap = make_averaged(level), make_leap(derivative, "engine" in terms, layout)
+    level, leap = make_level(terms, derivative, reel, bodies, held, layout, places)
+    leaps = leap is not never
     events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events, held)
     acting = together((reel.acting, thrust.acting, make_ends(terms, bodies.line, interface)))

@@ -269,21 +269,17 @@ _MAPPED = (
 )  # fmt: skip
 
 POINTS_ONLY = ("event_map", "averaged")
-"""Levels of two points on a line that does not break, by the one scheme: what they cannot carry is refused."""
+"""Levels of two points: what else they cannot carry is refused."""
+NO_BREAK, NO_SWAY = ("break",), ("break", "burn", "plume", "oblateness", "air")
+"""Groups with which the one and the other do not go together."""
 
 
 def not_mapped(terms: Mapping[str, str]) -> dict[str, str]:
-    """What of a tow those levels cannot carry: group and term."""
-    carried: dict[str, tuple[str, ...]] = {
-        "target": ("point",),
-        "chaser": ("point",),
-        "solver": SETTLING_SCHEMES,
-        "break": (),
-    }
+    """What of a tow such a level cannot carry: group and term."""
+    carried = {"target": "point", "chaser": "point"}
     if terms.get("level") == "averaged":
-        carried |= {"thrust": ("along_track",), "environment": ("central",)}
-        carried |= dict.fromkeys(("oblateness", "air", "burn", "plume"), ())
-    return {group: terms[group] for group, ok in carried.items() if group in terms and terms[group] not in ok}
+        carried |= {"thrust": "along_track", "environment": "central"}
+    return {group: terms[group] for group, term in carried.items() if terms.get(group, term) != term}
 
 
 LEVELS = Group(
@@ -297,6 +293,7 @@ LEVELS = Group(
             "free flight from tug to tug, every tug and every vibration in closed form, a rigid dumbbell once that has "
             "died; followed where the bound of its error is exceeded",
             (_now(3, "3: rigid dumbbell"), *_MAPPED),
+            excludes=NO_BREAK,
             extremes=stress.MAPPED,
         ),
         "averaged": Term(
@@ -319,6 +316,7 @@ LEVELS = Group(
                 state("state.swing[#]", "1", "see levels.libration", shape=(7,)),
                 state("state.waves[#][#]", "1", "see levels.libration", shape=(2, 24)),
             ),
+            excludes=NO_SWAY,
             extremes=stress.AVERAGED,
         ),
     },

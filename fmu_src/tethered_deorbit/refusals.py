@@ -48,7 +48,9 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         yield "level.detail", terms["level"], text
     if terms.get("level") in POINTS_ONLY:
         for group, term in not_mapped(terms).items():
-            text = f"does not go with {group} = {term}: it carries two points on a line that does not break, by dop853"
+            text = f"does not go with {group} = {term}: it carries two points"
+            if terms["level"] == "averaged":
+                text += ", central gravity and thrust along_track"
             yield "level.detail", terms["level"], text
     yield from of_reel(values, terms)
 

@@ -62,18 +62,25 @@ def test_what_does_not_go_together(tables: str, said: Sequence[str], mended: tup
 @pytest.mark.parametrize(
     ("level", "tables", "said"),
     [
-        ("event_map", '[removal.break]\nstrength = "100 N"', "break = breaks"),
-        ("event_map", '[removal.solver]\nscheme = "gauss"', "solver = gauss"),
-        ("averaged", '[removal.oblateness]\nzonal = "J2"', "oblateness = J2"),
-        ("averaged", '[removal.plume]\nface = "4 m"', "plume = beam"),
+        ("event_map", '[removal.break]\nstrength = "100 N"', "removal.break"),
+        ("event_map", "rigid", "target = rigid"),
+        ("averaged", '[removal.oblateness]\nzonal = "J2"', "removal.oblateness"),
+        ("averaged", '[removal.plume]\nface = "4 m"', "removal.plume"),
+        ("averaged", "tether", "thrust = tether"),
     ],
 )
 def test_what_a_level_cannot_carry(level: str, tables: str, said: str) -> None:
     text = f'{TABLE_2}\n[removal.level]\ndetail = "{level}"\n'
-    with pytest.raises(InputError) as caught:
-        parse(f"{text}{tables}\n", "wrong", "wrong.toml")
-    assert all(word in str(caught.value) for word in ("removal.level.detail", level, said, "wrong.toml"))
     parse(text, "right", "right.toml")
+    if tables == "rigid":
+        wrong = text.replace("[removal.target]", '[removal.target]\nbody = "rigid"')
+    elif tables == "tether":
+        wrong = text.replace('direction = "along_track"', 'direction = "tether"')
+    else:
+        wrong = f"{text}{tables}\n"
+    with pytest.raises(InputError) as caught:
+        parse(wrong, "wrong", "wrong.toml")
+    assert all(word in str(caught.value) for word in ("removal.level", level, said, "wrong.toml"))
 
 
 def test_rows_lie_on_the_grid_of_the_macro_steps() -> None:

@@ -119,7 +119,7 @@ def test_where_its_bound_is_exceeded_it_is_stepped() -> None:
 
 @pytest.mark.parametrize(
     ("more", "said"),
-    [({"oblateness": "J2"}, "oblateness = 'J2'"), ({"thrust": "tether"}, "thrust = 'tether'"),
+    [({"oblateness": "J2"}, "cannot go together with oblateness"), ({"thrust": "tether"}, "thrust = 'tether'"),
      ({"environment": "none"}, "environment = 'none'"), ({"target": "rigid"}, "target = 'rigid'")],
 )  # fmt: skip
 def test_what_it_cannot_carry_is_refused(more: Mapping[str, str], said: str) -> None:

@@ -138,8 +138,8 @@ def test_where_the_bound_is_exceeded_it_is_followed() -> None:
 
 @pytest.mark.parametrize(
     ("more", "said"),
-    [({"target": "rigid"}, "target = 'rigid'"), ({"break": "breaks"}, "break = 'breaks'"),
-     ({"solver": "gauss"}, "solver = 'gauss'"), ({"reel": "commanded"}, "no line settles")],
+    [({"target": "rigid"}, "target = 'rigid'"), ({"break": "breaks"}, "cannot go together with break"),
+     ({"chaser": "rigid"}, "chaser = 'rigid'"), ({"reel": "commanded"}, "no line settles")],
 )  # fmt: skip
 def test_what_it_cannot_carry_is_refused(more: Mapping[str, str], said: str) -> None:
     with pytest.raises(ValueError, match=said):

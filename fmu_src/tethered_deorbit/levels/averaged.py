@@ -27,7 +27,7 @@ from typing import Any
 
 from fmu_src.tethered_deorbit.layout import StateLayout
 from fmu_src.tethered_deorbit.level import Level
-from fmu_src.tethered_deorbit.levels.event_map import AVERAGED, DUMBBELL
+from fmu_src.tethered_deorbit.levels.counted import AVERAGED, DUMBBELL
 from fmu_src.tethered_deorbit.levels.libration import (
     ACTION,
     LARGEST,

@@ -32,15 +32,13 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.level import Held, Level
+from fmu_src.tethered_deorbit.levels.counted import counted
 from fmu_src.tethered_deorbit.levels.settled import NEXT_LOOK, SURE, make_settled
 from fmu_src.tethered_deorbit.levels.slow import SPAN, make_slow
 from fmu_src.tethered_deorbit.levels.vibration import lets_go, swept, tension_span, vibration_at
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
 
-FREE, FOLLOWED, MAPPED, DUMBBELL, AVERAGED = range(5)
-"""What a step was, by `level.now`."""
-MODES = 5
 MOST_DAMPED = 0.9
 """Damping ratio up to which a vibration is mapped: near the critical one its closed form loses its digits."""
 FIRST = 0.02
@@ -228,69 +226,29 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
 
     @kernel
     def begin(record: Any) -> None:
-        """Nothing is held, and no time has passed in any mode.
+        """Nothing is held.
 
         Checked  tests/tethered_deorbit/test_event_map.py
         """
         r = record[0]
-        for i in range(MODES):
-            r.state_level_times[i] = 0.0
-        r.state_level_now = FREE
         r.state_vibration[0] = 0.0
         r.state_vibration[1] = 0.0
         r.state_bounces = 0
         r.state_level_error = 0.0
         settled.begin(record)
-        publish(record)
 
     @kernel
     def restart(record: Any, time: float) -> None:
-        """From a time on [s] what the steps had run ahead did not happen.
+        """From a time on [s] every vibration is sought anew.
 
         Checked  tests/tethered_deorbit/test_event_map.py: a changed thrust
         """
-        r = record[0]
-        r.state_level_times[r.state_level_now] -= max(0.0, r.state_end - time)
         settled.restart(record, time)
+        r = record[0]
         r.state_next_look = time
         r.state_vibration[0] = 0.0
         r.state_vibration[1] = 0.0
         r.state_bounces = 0
-
-    @kernel
-    def book(record: Any) -> None:
-        """A step has been taken: its time counts for its mode.
-
-        Checked  tests/tethered_deorbit/test_event_map.py: times of the modes
-        """
-        r = record[0]
-        now = FREE
-        if r.state_taut:
-            now = FOLLOWED
-            if r.state_settled == 1:
-                now = DUMBBELL if r.state_vibration[0] == 0.0 and r.state_vibration[1] == 0.0 else MAPPED
-        r.state_level_now = now
-        r.state_level_times[now] += r.state_step
-
-    @kernel
-    def publish(record: Any) -> None:
-        """Which mode it is, and how long each has been, up to the communication point.
-
-        Checked  tests/tethered_deorbit/test_event_map.py: times of the modes
-        """
-        r = record[0]
-        now = r.state_level_now
-        r.level_settled = 1 if now == DUMBBELL else 0
-        r.level_settled_since = r.state_settled_since if now == DUMBBELL else 0.0
-        r.level_times_settled = r.state_times_settled
-        r.level_now = now
-        ahead = r.state_end - r.state_published
-        times = r.state_level_times
-        r.level_free = times[FREE] - (ahead if now == FREE else 0.0)
-        r.level_followed = times[FOLLOWED] - (ahead if now == FOLLOWED else 0.0)
-        r.level_mapped = times[MAPPED] - (ahead if now == MAPPED else 0.0)
-        r.level_dumbbell = times[DUMBBELL] - (ahead if now == DUMBBELL else 0.0)
-        r.level_error = r.state_level_error
 
     @kernel
     def carry(record: Any, work: Array) -> None:
@@ -443,4 +401,4 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
         shift(state, length - there - v, speed - rate - faster)
         return there + v, rate + faster
 
-    return Level(begin, restart, look, prepare, settled.missed, leave, place, settled.put, publish, book)
+    return counted(Level(begin, restart, look, prepare, settled.missed, leave, place, settled.put))
