@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -16,11 +16,13 @@ from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import DconeError, FmuError, Interrupted
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
+from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
 from dcone_cosim.phases import chaos, passive, removal_criteria, removal_quantities, removal_report, tow_clip
 from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
+from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.plots import tow
 from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import Handover, PhaseResult, RunResult
@@ -43,12 +45,23 @@ RELATIVE = tuple(f"relative.{what}{each}" for what in ("position", "velocity") f
 _TURNING = tuple(dict.fromkeys(name.partition("[")[0] for name in (*TURNING_SETS, *CENTER, *SHAPE.values())))
 
 
+@dataclass(frozen=True)
+class TowOptions(passive.PassiveOptions):
+    """What concerns the master of a tow, how it is recorded included.
+
+    record_every    time from row to row of the table [s]; 0: a row at every communication point
+    """
+
+    record_every: float = 0.0
+
+
 class Tow(Phase):
     """What all tows of two bodies are, wherever they begin: what they want of their FMU, and what is told of them."""
 
     model = "tethered_deorbit"
     examples = ("60 s", "1 day")
     keys: Mapping[str, Expected] = {
+        "record_every": Expected("s", example="1 h", minimum=1e-3),
         "safety_every": Expected("s", example="10 min", minimum=1e-3),
         "safety_horizon": Expected("s", example="3 h", minimum=1e-3),
     }
@@ -94,8 +107,26 @@ class Tow(Phase):
             if path[:2] == (*own, "parameters") and self.takes_over(variable):
                 yield Mistake(path, given_at(document.tables, path), text)
 
-    def options(self, found: Mapping[str, Any], main: Main | None) -> passive.PassiveOptions:
-        return passive.PassiveOptions(**found)
+    def options(self, found: Mapping[str, Any], main: Main | None) -> TowOptions:
+        return TowOptions(**found)
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        """Rows lie on the grid of the macro steps."""
+        every = own.options.record_every if own.options is not None else 0.0
+        steps = every / own.macro_step
+        if every > 0.0 and not (round(steps) >= 1 and math.isclose(steps, round(steps), rel_tol=1e-9)):
+            path = (own.name, "record_every")
+            text = f"must be a whole number of macro steps, {own.macro_step:g} s each"
+            yield Mistake(path, given_at(tables, path), text)
+
+    def loop(self, stage: Stage, component: Steppable, start: float) -> PhaseLoop:
+        loop = super().loop(stage, component, start)
+        assert isinstance(loop, PhaseLoop), "that of `Phase`"
+        every = stage.phase.options.record_every if stage.phase.options is not None else 0.0
+        steps = round(every / stage.phase.macro_step)
+        if steps > 1:
+            loop.thin(steps)
+        return loop
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """What becomes of the pair if it stops on the way."""
@@ -188,6 +219,7 @@ class Removal(Tow):
     def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
         """The one line of two phases: the same length in both, and more than the least it has to span at the shot: from
         the chaser to the nearest point that a target of that size can have, however it lies."""
+        yield from super().value_faults(before, own, tables)
         if before is None:
             return
         paths: dict[str, Path] = {p: (p, *n.split(".")) for p, n in ((before.name, LINE), (own.name, REST_LENGTH))}

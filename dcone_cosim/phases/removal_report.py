@@ -22,6 +22,16 @@ UNKNOWN_EXTENT = 1.0
 """How far a body of which nothing is known is taken to reach from its centre of mass [m]."""
 
 
+MODES = {
+    "free": "share of the time in free flight",
+    "followed": "share with every vibration followed",
+    "mapped": "share with the vibration in closed form",
+    "dumbbell": "share as a rigid dumbbell",
+    "averaged": "share over many revolutions at once",
+}
+"""Ways in which a tow is computed, by the output `level.*` with the time spent so."""
+
+
 class Approach(NamedTuple):
     """Least distance of the two centres of mass [m], when since the phase began [s], and whether from rows alone."""
 
@@ -79,6 +89,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_reel(run, phase, last)
     if "level.settled" in last:
         yield from _of_level(phase, result, last)
+    if "level.now" in last:
+        yield from _of_modes(phase, last)
 
 
 def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:
@@ -106,6 +118,19 @@ def _of_environment(phase: str, result: PhaseResult, last: Mapping[str, float]) 
         power, time = columns["electrodynamic.power"], columns["time"]
         mean = float(np.trapezoid(power, time) / (time[-1] - time[0]))
         yield Finding(phase, "electrodynamic_power", "mean power it takes from the orbit (of rows)", mean, "W")
+
+
+def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
+    """How long the tow was computed in which way, and how much a tug may be off by that."""
+    times = {mode: last.get(f"level.{mode}", 0.0) for mode in MODES}
+    whole = sum(times.values())
+    for mode, told in MODES.items():
+        if times[mode] > 0.0:
+            yield Finding(phase, f"level_{mode}", told, times[mode] / whole)
+    yield Finding(phase, "level_error", "bound of a tug's relative error", last["level.error"])
+    if times["averaged"] > 0.0:
+        yield Finding(phase, "level_revolutions", "revolutions so taken", round(last["level.revolutions"]))
+        yield Finding(phase, "level_average_error", "bound of their relative error", last["level.average_error"])
 
 
 def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:

@@ -105,7 +105,8 @@ def take_up(component: Holding, read: Readable, result: PhaseResult, state: Kept
 
 
 class PhaseLoop:
-    """Steps a component for the duration of a phase, records a row at every communication point, and gathers its tugs.
+    """Steps a component for the duration of a phase, records a row at every communication point, or at every so many of
+    them, and gathers its tugs. A row has the extremes of all steps since the one before.
 
     start        time the FMU is told to begin at [s]
     origin       in that time, what the times of the result are counted from [s]
@@ -125,6 +126,7 @@ class PhaseLoop:
         self.progress = progress
         self.keeper: Keeper | None = None
         self._next = 0
+        self._every = 1
         self.read = self.component.row(
             output_names(component.variables, without=(NODE_PREFIX, THREAD_PREFIX, TUG_PREFIX))
         )
@@ -143,6 +145,12 @@ class PhaseLoop:
             result.outcome = "stopped"
         return result
 
+    def thin(self, every: int) -> None:
+        """Record one row for so many steps, and the last."""
+        self._every = every
+        rows = grid_steps(self.duration, self.macro_step) // every + 2
+        self.result.recorder = Recorder(self.read.names, self.component.variables, rows)
+
     def _record(self, time: float) -> None:
         self.result.recorder.add(time, self.read())
         self.component.begin_row()
@@ -156,7 +164,12 @@ class PhaseLoop:
             self._offer(0, start)
         interrupts.arm()
         for i in range(self._next, steps):
-            interrupts.check(result.name, start + i * self.macro_step)
+            try:
+                interrupts.check(result.name, start + i * self.macro_step)
+            except Interrupted:
+                if i % self._every:
+                    self._record(start + i * self.macro_step)
+                raise
             end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
             begun = origin + (start + i * self.macro_step)
             try:
@@ -165,9 +178,10 @@ class PhaseLoop:
                 self._record_end(own.time)
                 raise
             result.steps += 1
-            self._record(end)
-            if end == start + (i + 1) * self.macro_step:
-                self._offer(i + 1, end)
+            if (i + 1) % self._every == 0 or i == steps - 1:
+                self._record(end)
+                if end == start + (i + 1) * self.macro_step:
+                    self._offer(i + 1, end)
             self.progress.at(end)
         result.outcome = COMPLETED
 

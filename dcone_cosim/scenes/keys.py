@@ -121,6 +121,7 @@ MEANING: Mapping[str, str] = {
     "duration": "the phase ends after this at the latest",
     "hand_over": "what ends the capture and begins the next phase; none: flown to its end",
     "safety_every": "look every so often what becomes of the pair if the thrust stops or the line is cut",
+    "record_every": "keep a row of the results only so often, with the largest and least of every step in it",
     "safety_horizon": "for how long the pair is followed from there",
     "replay_every": "time from frame to frame of a replay of the net, which `dcone run --replay` sets",
     "after_capture": "go on for this long after the capture, when no phase follows",

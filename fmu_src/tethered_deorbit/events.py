@@ -200,6 +200,10 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
 
         Checked  tests/tethered_deorbit/test_extremes.py: the range of a vibration
         """
+        if held.mapped(record):
+            step = record[0].state_step
+            low, high = held.span(record, first * step, last * step)
+            return float(low), float(high)
         ensure_dense(record, work)
         low, here = first, at(record, work, first)
         least = largest = here[TENSION]

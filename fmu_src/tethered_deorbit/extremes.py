@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.events import RATE, RATE_SLOPE, SEPARATION, TENSION, TENSION_SLOPE, Events
+from fmu_src.tethered_deorbit.level import Held
 from fmu_src.tethered_deorbit.outputs import note_pull
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -34,7 +35,7 @@ class Extremes(NamedTuple):
     publish: Callable[..., Any]
 
 
-def make_extremes(events: Events) -> Extremes:
+def make_extremes(events: Events, held: Held) -> Extremes:
     """The kernels for one law of the line and one integrator.
 
     Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
@@ -111,7 +112,7 @@ def make_extremes(events: Events) -> Extremes:
         still = max(abs(begin_change), abs(end_change)) <= 4.0 * r.state_stiffness * r.state_taut_tolerance
         steady = max(abs(begin_change - change), abs(end_change - change)) <= 0.25 * abs(change)
         short = (begin_change >= 0.0) == (end_change >= 0.0) and r.state_step * r.state_frequency < 1.5
-        if not (complete and (still or steady or short)):
+        if held.mapped(record) or not (complete and (still or steady or short)):
             least, largest = events.tension_range(record, work, 0.0, last)
         note_pull(record, largest)
         if complete and not r.state_tug_begun:

@@ -47,11 +47,19 @@ class Held(NamedTuple):
     tension(record, state, rate, separation, length, speed, elapsed) -> T   of the free rate of a state; the rest as of
                                                  `Bodies.second`, `elapsed` [s] after the begin of the step
     along(record, tension, elapsed) -> (l, l', l'')   the line there [m], [m/s], [m/s2]
+    mapped(record) -> bool                       whether it vibrates about that length, in closed form
+    bounces(record) -> bool                      whether such a line goes slack at the end of the step
+    beyond(record, elapsed) -> J                 impulse of that vibration since the begin of the step [N s]
+    span(record, first, last) -> (least, largest)   tension between two instants of the step [N]
     """
 
     settled: Callable[..., Any] = never
     tension: Callable[..., Any] = zero
     along: Callable[..., Any] = no_line
+    mapped: Callable[..., Any] = never
+    bounces: Callable[..., Any] = never
+    beyond: Callable[..., Any] = zero
+    span: Callable[..., Any] = no_place
 
 
 class Level(NamedTuple):
@@ -69,6 +77,7 @@ class Level(NamedTuple):
                                        is [m], [m/s]; in place
     put(record, settled)               whether the line is held
     publish(record)                    outputs of its own
+    book(record)                       a step has been taken
     """
 
     begin: Callable[..., Any] = nothing
@@ -80,6 +89,7 @@ class Level(NamedTuple):
     place: Callable[..., Any] = no_place
     put: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
+    book: Callable[..., Any] = nothing
 
 
 RESOLVED, UNHELD = Level(), Held()

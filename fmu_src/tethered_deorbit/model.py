@@ -20,15 +20,13 @@ from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
-from fmu_src.tethered_deorbit.idle import nothing
+from fmu_src.tethered_deorbit.idle import never, nothing
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
-from fmu_src.tethered_deorbit.level import RESOLVED, UNHELD
-from fmu_src.tethered_deorbit.levels.course import make_held
-from fmu_src.tethered_deorbit.levels.settled import make_settled
+from fmu_src.tethered_deorbit.levels.averaged import leapt
+from fmu_src.tethered_deorbit.levels.choosing import check_level, make_held_of, make_level
 from fmu_src.tethered_deorbit.minded import LIMITED
-from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS, SETTLING_SCHEMES
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
@@ -63,7 +61,7 @@ IMPLEMENTED = {
     "ends": ("watched",),
     "break": ("breaks",),
     "release": ("time", "altitude", "perigee"),
-    "level": ("settled",),
+    "level": ("settled", "event_map", "averaged"),
     "oblateness": ("J2", "J4"),
     "air": ("exponential", "nrlmsis"),
     "third_bodies": ("sun_and_moon", "sun", "moon"),
@@ -98,18 +96,17 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
-    if "level" in terms and terms["reel"] not in SETTLING_LAWS:
-        raise ValueError(f"{MODEL.name}: no line settles with reel = {terms['reel']!r}")
-    settles = "level" in terms and terms["solver"] in SETTLING_SCHEMES
-    held = make_held(reel, bodies) if settles else UNHELD
+    check_level(MODEL.name, terms)
+    held = make_held_of(terms, reel, bodies)
     inertial, derivative = make_equations(environment, perturbing, reel, thrust, bodies, aocs, held, layout)
     scheme = SCHEMES[terms["solver"]](
         derivative, make_squared_error(bodies, held), layout.moving, layout.size - layout.moving
     )
     places = places_of(layout, scheme)
-    level = make_settled(derivative, reel, bodies, held, places) if settles else RESOLVED
+    level, leap = make_level(terms, derivative, reel, bodies, held, layout, places)
+    leaps = leap is not never
     events = make_events(reel, bodies, held, scheme, places)
-    extremes = make_extremes(events)
+    extremes = make_extremes(events, held)
     acting = together((reel.acting, thrust.acting, perturbing.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
@@ -250,12 +247,34 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         thrust.weigh(record, here)
         publish(record, here, separation, length, speed, r.state_since + (time - r.state_begin), time)
         thrust.publish(record, here, time)
-        level.publish(record)
         aocs.publish(record, here)
         r.state_published = time
+        level.publish(record)
         r.state_changes = 0
         extremes.publish(record)
         return 0
+
+    @kernel
+    def carry_over(record: Any, work: Array, target: float) -> bool:
+        """Carry the pair over many revolutions up to a communication point [s]; false where it is to be stepped.
+
+        Checked  tests/tethered_deorbit/test_averaged.py
+        """
+        r = record[0]
+        now = r.state_end
+        here = work[here_state:slope_state]
+        trajectory.state_at(record, work, now, here)
+        later = leap(record, here, work[slope_state:low_error], now, target)
+        if not later > now:
+            return False
+        if acts and (acting.due(record) <= later or not acting.holds(record, here, 0.0)):
+            r.state_next_leap = target
+            return False
+        for i in range(size):
+            work[end_state + i] = here[i]
+        leapt(record, now, later)
+        trajectory.restart(record, work, later)
+        return True
 
     @kernel
     def step_to(record: Any, work: Array, time: float, step: float, anew: bool) -> int:
@@ -310,6 +329,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             # A moving input is known up to the communication point only: there the last step ends.
             if moving and r.state_end == target:
                 break
+            if leaps and not moving and event == 0 and carry_over(record, work, target):
+                continue
             longest = target - r.state_end if moving else math.inf
             if acts:
                 longest = min(longest, acting.due(record) - r.state_end)

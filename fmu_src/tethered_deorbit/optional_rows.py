@@ -4,6 +4,7 @@ and how it is solved."""
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from fmu_src.interface import Group, Term, Variable
 from fmu_src.rows import (
@@ -259,27 +260,99 @@ SCHEMES = Group(
     default="dop853",
 )
 
+_SETTLED = (
+    flag("level.settled", "the vibration of the line has died, and steps go over it"),
+    peak("level.settled_since", "s", "from when on; zero while it is not so"),
+    count("level.times_settled", "how often the line has settled"),
+    state("state.settled", "1", "the line is held on its course", kind="Integer"),
+    state("state.settled_since", "s", "when it last settled"),
+    state("state.times_settled", "1", "how often it has", kind="Integer"),
+    state("state.next_look", "s", "when it may have settled, at the earliest"),
+    state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(4,)),
+    state("state.course_span", "s", "over which that is drawn"),
+    state("state.moved_mass", "kg", "that the line moves at the begin of a settled step"),
+)  # fmt: skip
+
 SETTLING_LAWS, SETTLING_SCHEMES = ("locked",), ("dop853",)
 """Laws of the line whose vibration can be stepped over once it has died, and schemes that do: `radau` needs not, and
 `gauss` is there as a second opinion."""
+
+
+def _now(last: int, named: str) -> Variable:
+    """Which way of computing it is just now."""
+    told = f"0: free flight; 1: every vibration followed; 2: vibrating in closed form; {named}"
+    return Variable("level.now", "1", "output", told, 0, kind="Integer", minimum=0, maximum=last)
+
+
+_MAPPED = (
+    parameter("level.peak_error", "1", "bound of the relative error of a tug's peak and of its time, up to "
+              "which tugs are in closed form", 1e-3, 0.0, 1.0),
+    *_SETTLED,
+    output("level.free", "s", "time in free flight, since the start", 1000.0),
+    output("level.followed", "s", "time with every vibration followed", 1000.0),
+    output("level.mapped", "s", "time with the vibration in closed form", 1000.0),
+    output("level.dumbbell", "s", "time as a rigid dumbbell", 1000.0),
+    peak("level.error", "1", "largest bound of a tug's relative error so far"),
+    state("state.level_now", "1", "mode of the current step", kind="Integer"),
+    state("state.level_times[#]", "s", "spent in each mode, up to the end of the step", shape=(5,)),
+    state("state.level_error", "1", "largest bound so far"),
+    state("state.vibration[#]", "1", "place [m] and rate [m/s] at the begin of the step", shape=(2,)),
+    state("state.firmness", "N/m", "of the line, less what its load gains as it lengthens"),
+    state("state.leverage[#]", "1/s2", "gain of the rate across the line over its lengthening for a time",
+          shape=(3,)),
+    state("state.bounces", "1", "the step ends where the line goes slack", kind="Integer"),
+)  # fmt: skip
+
+POINTS_ONLY = ("event_map", "averaged")
+"""Levels of two points: what else they cannot carry is refused."""
+NO_BREAK, NO_SWAY = ("break",), ("break", "burn", "plume", "oblateness", "air")
+"""Groups with which the one and the other do not go together."""
+
+
+def not_mapped(terms: Mapping[str, str]) -> dict[str, str]:
+    """What of a tow such a level cannot carry: group and term."""
+    carried = {"target": "point", "chaser": "point"}
+    if terms.get("level") == "averaged":
+        carried |= {"thrust": "along_track", "environment": "central"}
+    return {group: terms[group] for group, term in carried.items() if terms.get(group, term) != term}
+
 
 LEVELS = Group(
     {
         "settled": Term(
             "every tug is resolved, and a damped line that has come to rest is held where the load has it: its "
             "vibration is stepped over once it has died",
+            _SETTLED,
+        ),
+        "event_map": Term(
+            "free flight from tug to tug, every tug and every vibration in closed form, a rigid dumbbell once that has "
+            "died; followed where the bound of its error is exceeded",
+            (_now(3, "3: rigid dumbbell"), *_MAPPED),
+            excludes=NO_BREAK,
+            extremes=stress.MAPPED,
+        ),
+        "averaged": Term(
+            "as event_map; and a rigid dumbbell that cannot go slack is carried over many revolutions at once, between "
+            "communication points",
             (
-                flag("level.settled", "the vibration of the line has died, and steps go over it"),
-                peak("level.settled_since", "s", "from when on; zero while it is not so"),
-                count("level.times_settled", "how often the line has settled"),
-                state("state.settled", "1", "the line is held on its course", kind="Integer"),
-                state("state.settled_since", "s", "when it last settled"),
-                state("state.times_settled", "1", "how often it has", kind="Integer"),
-                state("state.next_look", "s", "when it may have settled, at the earliest"),
-                state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(4,)),
-                state("state.course_span", "s", "over which that is drawn"),
-                state("state.moved_mass", "kg", "that the line moves at the begin of a settled step"),
+                _now(4, "3: rigid dumbbell; 4: many revolutions at once"),
+                *_MAPPED,
+                parameter("level.average_tolerance", "1", "eccentricity, and square of the angle across the orbit's "
+                          "plane, up to which there are leaps", 1e-3, 0.0, 0.1),
+                output("level.averaged", "s", "time over which many revolutions were taken at once", 1000.0),
+                peak("level.average_error", "1", "largest of that at a leap so far"),
+                output("level.revolutions", "1", "so taken", 10.0),
+                state("state.leapt_to", "s", "end of the last leap"),
+                state("state.next_leap", "s", "before this no leap is tried"),
+                state("state.average_error", "1", "largest so far"),
+                state("state.revolutions", "1", "taken at once"),
+                state("state.leap[#][#]", "1", "orbit and swing at three instants of a leap", shape=(3, 10)),
+                state("state.leap_range[#]", "1", "tensions, error and revolutions of the last leap", shape=(4,)),
+                state("state.swing[#]", "1", "see levels.libration", shape=(7,)),
+                state("state.waves[#][#]", "1", "see levels.libration", shape=(2, 24)),
             ),
+            excludes=NO_SWAY,
+            extremes=stress.AVERAGED,
         ),
     },
     selector="detail",

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
-from fmu_src.tethered_deorbit.optional_rows import SETTLING_LAWS
+from fmu_src.tethered_deorbit.optional_rows import POINTS_ONLY, SETTLING_LAWS, not_mapped
 from fmu_src.tethered_deorbit.reel_refusals import of_reel
 
 Refusal = tuple[str, str, str]
@@ -58,6 +58,12 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
     if "level" in terms and terms["reel"] not in SETTLING_LAWS:
         text = f"a line settles with reel.law = {' or '.join(SETTLING_LAWS)} alone; leave the table out, or take that"
         yield "level.detail", terms["level"], text
+    if terms.get("level") in POINTS_ONLY:
+        for group, term in not_mapped(terms).items():
+            text = f"does not go with {group} = {term}: it carries two points"
+            if terms["level"] == "averaged":
+                text += ", central gravity and thrust along_track"
+            yield "level.detail", terms["level"], text
     yield from of_reel(values, terms)
 
 

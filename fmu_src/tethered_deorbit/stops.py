@@ -23,6 +23,7 @@ from fmu_src.tethered_deorbit.events import (
 )
 from fmu_src.tethered_deorbit.idle import always
 from fmu_src.tethered_deorbit.layout import Places
+from fmu_src.tethered_deorbit.level import Held
 from fmu_src.tethered_deorbit.tolerances import ROUNDING
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -47,6 +48,7 @@ def make_stop(
     scheme: AdaptiveScheme,
     events: Events,
     acting: Acting,
+    held: Held,
     places: Places,
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The kernels `begin(record, work)`, to be called at the begin of a step, and `stop(record, work, longest)`, which
@@ -209,7 +211,9 @@ def make_stop(
         """
         r = record[0]
         keep_end(record, work)
-        looked = not quiet(record)
+        looked = not (held.mapped(record) or quiet(record))
+        if held.bounces(record):
+            r.state_event = LINE
         if looked:
             fraction = events.find_change(record, work)
             # Where moving inputs end a step, a change in its last digit is for the next to judge: they may turn round.

@@ -205,6 +205,21 @@ RELEASE_AT = (
     Extreme("cut in the middle of a tug", "what it had stored is gone", "pushes", {"release.at": 1119.5},
             duration=HOUR),
 )  # fmt: skip
+MAPPED = (
+    Extreme("tugs that are followed all the same", "a bound that no tug keeps", "longer", {"level.peak_error": 0.0}),
+    Extreme("tugs on a line as soft as the orbit is quick", "a bound that every tug keeps", "longer",
+            {"level.peak_error": 1.0, "tether.youngs_modulus": 1e7}),
+    Extreme("ten days of tugs that never stop", "each takes its bit of the energy, or gives it", "longer",
+            {"tether.damping_ratio": 0.0}, duration=10.0 * DAY, scatters="after half a day the times of undamped tugs "
+            "hang on the last digit"),
+)  # fmt: skip
+AVERAGED = (
+    *MAPPED,
+    Extreme("a hundred days in ten", "each carried over at once", "orbit", duration=100.0 * DAY, macro_step=10.0 * DAY),
+    Extreme("leaps on an ellipse", "none: its bound is exceeded", "longer",
+            {"orbit.eccentricity": 0.1, "orbit.altitude": _axis_less_radius(0.1)}, duration=10.0 * DAY, macro_step=DAY),
+)  # fmt: skip
+"""Of levels of detail."""
 AOCS = (
     Extreme("a loop of 10 rad/s", "quicker than most lines", "longer",
             {"aocs.frequency": 10.0, "aocs.torque_limit": 1e5, "aocs.momentum_limit": 1e7}, duration=0.25 * HOUR),

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from fmu_src.tethered_deorbit.interface import SOLVER
 from fmu_src.trade import Rung
 
+LOOSEST = 0.1
+"""Bound of a level's error that is never exceeded [1]."""
 NUMERICS = ("solver",)
 BESIDE: tuple[str, ...] = ()
 DISTURBED = frozenset({"oblateness", "air", "third_bodies", "sunlight", "electrodynamic"})
@@ -17,12 +19,19 @@ FACTORS = (1e6, 1e5, 1e4, 1e3, 1e2, 10.0, 1.0, 0.1, 0.01)
 """Of the tolerances over their defaults. The finest is for references: below it rounding is all that changes."""
 
 
+BOUNDS = {"event_map": ("level.peak_error",), "averaged": ("level.peak_error", "level.average_tolerance")}
+"""Of levels of detail: what they may err by, and go by the same factor. For references nothing is left to them."""
+
+
 def rungs(values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
-    """All tolerances by one factor, each within its bounds."""
+    """All tolerances by one factor, each within its bounds, and those of a level of detail."""
     found = []
     for factor in FACTORS:
         chosen = {row.name: factor * float(row.starts()[0]) for row in SOLVER}
-        found.append(Rung(factor, {row.name: min(max(chosen[row.name], row.minimum), row.maximum) for row in SOLVER}))
+        settings = {row.name: min(max(chosen[row.name], row.minimum), row.maximum) for row in SOLVER}
+        for name in BOUNDS.get(terms.get("level", ""), ()):
+            settings[name] = min(factor * values[name], LOOSEST) if factor > FACTORS[-1] else 0.0
+        found.append(Rung(factor, settings))
     return found
 
 

@@ -117,7 +117,7 @@ def make_trajectory(
         r.state_end = r.state_begin + step
         r.state_dense_ready = 0
 
-    begin_step, stop = make_stop(attempt, bodies, scheme, events, acting, places)
+    begin_step, stop = make_stop(attempt, bodies, scheme, events, acting, held, places)
 
     @kernel
     def advance(record: Any, work: Array, longest: float) -> int:
@@ -201,6 +201,7 @@ def make_trajectory(
             r.state_next_step = min(r.state_next_step, grown * step)
         r.state_error = error
         stop(record, work, longest)
+        level.book(record)
         return 0
 
     @kernel
@@ -242,6 +243,8 @@ def make_trajectory(
             length, speed = level.place(record, there, tension_at(record, work, time), since, length, speed)
         for i in range(moving):
             out[i] = there[i]
+        if held.mapped(record):
+            out[impulse] += held.beyond(record, since)
         turn_back(record, since, out)
         bodies.turn_back(record, since, out)
         return separation, length, speed

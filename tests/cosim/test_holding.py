@@ -107,6 +107,24 @@ def test_rows_before_an_fmu_ends_itself() -> None:
     check_rows(result)
 
 
+@pytest.mark.parametrize(
+    ("every", "duration", "rows"), [(4, 24.0, [0.0, 12.0, 24.0]), (5, 33.0, [0.0, 15.0, 30.0, 33.0])]
+)
+def test_rows_that_are_thinned_keep_every_peak(every: int, duration: float, rows: list[float]) -> None:
+    """A row for so many macro steps, and the last: with the extremes of all of them."""
+    component = Pulling()
+    component.enter_initialisation(0.0)
+    component.exit_initialisation()
+    loop = PhaseLoop(component, 3.0, 0.0, duration, Progress())  # type: ignore[arg-type]
+    loop.thin(every)
+    result = loop.run()
+    assert result.recorder["time"].tolist() == rows
+    assert result.steps == round(duration / 3.0)
+    check_rows(result)
+    whole = tow(Pulling(), 3.0, duration).recorder
+    assert result.recorder[PEAKS[0]].max() == whole[PEAKS[0]].max()
+
+
 class Telling(Pulling):
     """One that has the outputs of its end, and says so."""
 

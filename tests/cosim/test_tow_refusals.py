@@ -69,6 +69,39 @@ def test_what_does_not_go_together(tables: str, said: Sequence[str], mended: tup
     parse(text.replace(*mended), "right", "right.toml")
 
 
+@pytest.mark.parametrize(
+    ("level", "tables", "said"),
+    [
+        ("event_map", '[removal.break]\nstrength = "100 N"', "removal.break"),
+        ("event_map", "rigid", "target = rigid"),
+        ("averaged", '[removal.oblateness]\nzonal = "J2"', "removal.oblateness"),
+        ("averaged", '[removal.plume]\nface = "4 m"', "removal.plume"),
+        ("averaged", "tether", "thrust = tether"),
+    ],
+)
+def test_what_a_level_cannot_carry(level: str, tables: str, said: str) -> None:
+    text = f'{TABLE_2}\n[removal.level]\ndetail = "{level}"\n'
+    parse(text, "right", "right.toml")
+    if tables == "rigid":
+        wrong = text.replace("[removal.target]", '[removal.target]\nbody = "rigid"')
+    elif tables == "tether":
+        wrong = text.replace('direction = "along_track"', 'direction = "tether"')
+    else:
+        wrong = f"{text}{tables}\n"
+    with pytest.raises(InputError) as caught:
+        parse(wrong, "wrong", "wrong.toml")
+    assert all(word in str(caught.value) for word in ("removal.level", level, said, "wrong.toml"))
+
+
+def test_rows_lie_on_the_grid_of_the_macro_steps() -> None:
+    text = TABLE_2.replace('macro_step = "60 s"', 'macro_step = "60 s"\nrecord_every = "90 s"')
+    with pytest.raises(InputError, match=r"removal\.record_every = .*90 s.*whole number of macro steps, 60 s each"):
+        parse(text, "wrong", "wrong.toml")
+    options = parse(text.replace('"90 s"', '"1 h"'), "right", "right.toml").phases[0].options
+    assert options is not None
+    assert options.record_every == 3600.0
+
+
 def test_an_empty_chaser_is_a_body() -> None:
     """1000 kg m2 about each axis, of which 100 kg at 3.16 m are all."""
     text = TABLE_2.replace('[removal.chaser]\nmass = "2000 kg"', RIGID)

@@ -13,6 +13,9 @@ from fmu_src.tethered_deorbit.levels.course import slow_solution
 from fmu_src.tethered_deorbit.model import make_entry
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.oscillators import line_stiffness, reduced_mass
+from tests.plain import PlainInstance, plain
+
+__all__ = ["plain"]
 
 TERMS = {"reel": "locked", "thrust": "along_track"}
 SETTLED = TERMS | {"level": "settled"}
@@ -125,6 +128,26 @@ def test_a_line_that_cannot_settle_is_refused() -> None:
     for reel in ("linear", "commanded", "libration"):
         with pytest.raises(ValueError, match=f"no line settles with reel = '{reel}'"):
             make_entry(SETTLED | {"reel": reel})
+
+
+def test_a_line_settles_while_a_tank_empties(plain: None) -> None:
+    """It moves the mass that is there: by the one of the begin its course would be off by what was lost."""
+    angle = math.radians(20.0)
+    place = (12.0 * math.cos(angle), 12.0 * math.sin(angle), 0.0)
+    i = PlainInstance(
+        MODEL,
+        {"reel": "locked", "thrust": "along_track", "engine": "chemical", "level": "settled"},
+        {"thrust.level": -0.01, "thrust.specific_impulse": 0.001, "engine.propellant": 1500.0,
+         "start.condition": HANDED_OVER, "start_relative_position": place},
+    )  # fmt: skip
+    i.step(600.0)
+    assert i["chaser.propellant"] == pytest.approx(0.01 / (0.001 * 9.80665) * 600.0)
+    assert i["level.settled"]
+    mass = reduced_mass(2000.0 - i["chaser.propellant"], 1000.0)
+    load = i["tether.tension"] / STIFFNESS
+    assert i["tether.length"] - 12.0 == pytest.approx(load, rel=1e-3)
+    swing = 3.0 * (EARTH_MU / (EARTH_EQUATORIAL_RADIUS + 800e3) ** 3) * math.cos(i["tether.angle"]) ** 2
+    assert i["tether.tension"] == pytest.approx(mass * 12.0 * swing, rel=0.25)
 
 
 def test_slow_solution() -> None:

@@ -41,6 +41,7 @@ class Bodies(NamedTuple):
     squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
     pace(record, state) -> n                    by which the tolerance of velocities across a taut line follows [rad/s]
     moved_mass(record, state) -> m              that the line has to move where it is [kg]; after `seen`
+    mass_now(record, state) -> m                the same, with what the tank has lost [kg]
     longest(record, state) -> h                 longest step [s] that these coordinates bear, and over which the way of
                                                 the line can be followed
     publish(record, state)                      outputs of their own
@@ -81,6 +82,7 @@ class Bodies(NamedTuple):
     squared_error: Callable[..., Any]
     pace: Callable[..., Any]
     moved_mass: Callable[..., Any]
+    mass_now: Callable[..., Any]
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]

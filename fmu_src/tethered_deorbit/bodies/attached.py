@@ -360,6 +360,7 @@ def make_attached(
         squared_error=bounds.squared_error,
         pace=bounds.pace,
         moved_mass=bounds.moved_mass,
+        mass_now=bounds.moved_mass,
         publish=publish,
         energy=energy,
         differentiate=differentiate,

@@ -50,6 +50,16 @@ def moved_mass(record: Any, state: Array) -> float:
 
 
 @kernel
+def mass_now(record: Any, state: Array) -> float:
+    """The same as the tank empties [kg].
+
+    Checked  tests/tethered_deorbit/test_settled.py: an engine
+    """
+    mass: float = record[0].state_reduced_mass
+    return mass
+
+
+@kernel
 def line_length(record: Any, separation: float) -> float:
     """Length of the line between its attachments [m]; negative where the chaser is nearer than the target's.
 
@@ -191,6 +201,7 @@ def make_points(interface: Interface) -> Bodies:
         squared_error=zero,
         pace=pace,
         moved_mass=moved_mass,
+        mass_now=mass_now,
         publish=nothing,
         energy=zero,
         differentiate=zero,

@@ -85,7 +85,7 @@ def make_held(reel: Reel, bodies: Bodies) -> Held:
         """
         free, _, _ = bodies.second(record, state, rate, separation, length, speed, 0.0)
         _, _, bend = course(record, elapsed)
-        return float(bodies.moved_mass(record, state)) * float(free - bend)
+        return float(bodies.mass_now(record, state)) * float(free - bend)
 
     @kernel
     def along(record: Any, tension: float, elapsed: float) -> tuple[float, float, float]:
@@ -163,7 +163,7 @@ def make_draw(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, places
         turn_load = 4.5 * (last_load - load + 3.0 * (second_load - third_load)) / (span * span * span)
         slope_load = (0.5 * (-11.0 * load + 18.0 * second_load - 9.0 * third_load) + last_load) / span
         here = seen(record, start, 0.0)
-        mass = float(bodies.moved_mass(record, here))
+        mass = float(bodies.mass_now(record, here))
         _, _, _, stiffness, damping = line(record, 0.0)
         slow_solution(r.state_course, load, slope_load, bend_load, turn_load, mass, damping, stiffness)
         r.state_course_span = span

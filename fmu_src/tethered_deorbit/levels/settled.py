@@ -35,7 +35,8 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.level import Held, Level
-from fmu_src.tethered_deorbit.levels.course import course, make_draw
+from fmu_src.tethered_deorbit.levels.course import course
+from fmu_src.tethered_deorbit.levels.slow import make_slow
 from fmu_src.tethered_deorbit.tolerances import ROUNDING
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
@@ -46,8 +47,6 @@ SURE = 0.25
 """Share of what may be neglected that a line neglects at most as it settles, so that it does not go to and fro."""
 NEXT_LOOK = 30.0
 """Radians of the vibration after which the line is looked at, at the earliest."""
-SPAN = 0.01
-"""Shortest time over which a course is drawn, in radians of the pace: over a shorter one rounding would bend it."""
 LEFT_BY_CUBIC = 0.004
 """What a cubic through four even points leaves of a smooth curve, over its own cubic term: 6 (1/81)/24, and a third
 more, where the curve does not turn within the step."""
@@ -61,7 +60,7 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
     begin_state, end_state = places.begin, places.end
     stages, size, last, impulse = places.stages, places.size, places.last, places.impulse
     line, seen = reel.at_rest, bodies.seen
-    draw = make_draw(derivative, reel, bodies, places)
+    draw, span_of, neglected, tolerance, off_course, shift = make_slow(derivative, reel, bodies, places)
 
     @kernel
     def put(record: Any, on: bool) -> None:
@@ -103,52 +102,6 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
         r.level_settled = r.state_settled
         r.level_settled_since = r.state_settled_since if r.state_settled else 0.0
         r.level_times_settled = r.state_times_settled
-
-    @kernel
-    def off_course(record: Any, work: Array) -> tuple[float, float]:
-        """By how much the line at the begin of the step is longer than on its course [m], and lengthens faster [m/s].
-
-        Checked  tests/tethered_deorbit/test_settled.py
-        """
-        here = seen(record, work[begin_state:end_state], 0.0)
-        _, length, speed = bodies.measure(record, here)
-        rest, _, _, _, _ = line(record, 0.0)
-        stretch, rate, _ = course(record, 0.0)
-        return length - rest - stretch, speed - rate
-
-    @kernel
-    def span_of(record: Any, step: float) -> float:
-        """Time over which a course is drawn for a step [s].
-
-        Checked  tests/tethered_deorbit/test_settled.py
-        """
-        r = record[0]
-        return float(max(step, SPAN / r.state_pace))
-
-    @kernel
-    def neglected(record: Any, mass: float) -> float:
-        """Bound of what the slow solution leaves out [m], for a moved mass [kg].
-
-            (2 m c/k^2 + (c/k)^3 + (m/k)^2/h) |x'''|,   h the time over which the course is drawn
-
-        Valid    courses whose third derivative changes by no more than itself over h
-        Source   terms of third and fourth order of the transfer function
-        Checked  tests/tethered_deorbit/test_settled.py: a load that sways
-        """
-        r = record[0]
-        _, _, _, stiffness, damping = line(record, 0.0)
-        lag, inertia = damping / stiffness, mass / stiffness
-        share = 2.0 * inertia * lag + lag * lag * lag + inertia * inertia / r.state_course_span
-        return float(share * 6.0 * abs(r.state_course[3]))
-
-    @kernel
-    def tolerance(record: Any) -> float:
-        """Of the stretch [m].
-
-        Checked  tests/tethered_deorbit/test_settled.py
-        """
-        r = record[0]
-        return float(r.state_taut_tolerance + ROUNDING * r.state_length)
 
     @kernel
     def look(record: Any, work: Array, step: float, limit: float, cap: float) -> float:
@@ -203,25 +156,6 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
         restart(record, r.state_begin)
         derivative(record, work[begin_state:end_state], work[stages : stages + size], 0.0)
         return cap
-
-    @kernel
-    def shift(state: Array, x: float, y: float, z: float, longer: float, faster: float) -> None:
-        """Take from the line what it is too long [m] and lengthens too fast [m/s], along itself.
-
-        state         in the coordinates of the step, or as it is, of `layout`
-        x, y, z       direction of the line, of any length
-
-        Checked  tests/tethered_deorbit/test_settled.py
-        """
-        distance = math.sqrt(x * x + y * y + z * z)
-        if distance > 0.0:
-            share, rate = longer / distance, faster / distance
-            state[6] -= share * x
-            state[7] -= share * y
-            state[8] -= share * z
-            state[9] -= rate * x
-            state[10] -= rate * y
-            state[11] -= rate * z
 
     @kernel
     def prepare(record: Any, work: Array, step: float, cap: float) -> float:
