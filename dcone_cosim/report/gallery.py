@@ -56,7 +56,7 @@ def make(scenes: Sequence[str], out: Path, progress: Progress, full: bool = Fals
             if not folder.is_dir():
                 run_and_write(scene, folder, progress, settings=[] if full else cuts(scene), replay=True)
             if not page.is_file():
-                write_page(folder, page, progress)
+                write_page(folder, page, progress, live=True)
         except InputError as error:
             failed[name] = str(error)
     return _index(out, [name for name in known if name not in failed]), failed

@@ -10,23 +10,34 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim.phases import kind_of
-from dcone_cosim.report import links, packing, scripts, told
+from dcone_cosim.report import links, live, packing, scripts, told
+from dcone_cosim.progress import Progress
 from dcone_cosim.report.forces import PICTURE, ForceMap
 from dcone_cosim.report.links import Linked
+from dcone_cosim.report.live import Live
 from dcone_cosim.reports import pages
 from dcone_cosim.reports.warnings import warnings
 from dcone_cosim.run_reading import provenance_of, read_run
 
 PICTURES = {"capture": "capture_in_space.png", "removal": "tether_tension.png", "second_tow": "second_tow_tension.png"}
 """What is shown of a phase where a clip cannot be: in print, and without WebGL."""
+NOT_ASKED = "it was made without"
+"""Why a page has no model."""
 LEAST_TONE = 0.36
 """Where on its scale the colour map begins: darker than that is not seen on the dark ground of a clip."""
 
 
-def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: bool = True) -> str:
+def of_folder(
+    folder: Path,
+    place: Path,
+    linked: Sequence[Linked] = (),
+    whole: bool = True,
+    progress: Progress | None = None,
+) -> str:
     """The page of the run of a folder, to be put at `place`; `InputError` where it is no run.
 
     whole    all of it; otherwise the replay alone, with the tugs
+    progress    is told of what is built; with none the model is not put into the page
     """
     run, about = read_run(folder), provenance_of(folder)
     here = shlex.quote(f"./{folder.absolute().name}")  # a bare name may be that of a scene
@@ -45,6 +56,11 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
     for name, chart in charts:
         chart["key"] = f"{name}-{chart['key']}"
     data = {"clips": clips, "charts": [chart for _, chart in charts], "colours": colours()}
+    model: Live | str = NOT_ASKED
+    if whole and progress is not None:
+        model = live.of_folder(folder, run, progress)
+    if isinstance(model, Live):
+        data["live"] = {**model.told, "folder": here}
     values: dict[str, Any] = {
         "title": run.scene.title,
         "status": run.status,
@@ -71,6 +87,9 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
             "trust": told.trust(run),
             "linked": [links.shown(kind, linked, place, run.scene.name) for kind in links.COMMANDS],
             "governs": links.governing(linked),
+            "live": None if isinstance(model, str) else model,
+            "no_live": model if isinstance(model, str) else "",
+            "worker": "" if isinstance(model, str) else live.worker(),
             "scene": run.scene.text,
             "forces": None if forces is None else forces.hardest(),
             "force_picture": picture_of(folder / PICTURE),

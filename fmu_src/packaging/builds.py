@@ -43,7 +43,7 @@ from fmu_src.packaging import (
     tools,
 )
 from fmu_src.packaging.description import Experiment
-from fmu_src.packaging.platforms import PLATFORMS, WIN64, Platform, host
+from fmu_src.packaging.platforms import KNOWN, WIN64, Platform, host
 
 PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
 """What settles by its version what comes out: the tools, and this package, whose version the description tells."""
@@ -159,7 +159,7 @@ def described(interface: Interface, library: str, experiment: Experiment) -> dic
 
 def kernels(cache: Path, name: str, key: str) -> bytes | None:
     """IR from an FMU of the same origin for another platform, if there is one."""
-    for platform in PLATFORMS.values():
+    for platform in KNOWN.values():
         path = cache / kept.file_name(name, key, platform)
         if not kept.fault(path):
             with zipfile.ZipFile(path) as archive:

@@ -2,8 +2,9 @@
 
 const KINDS = { f4: Float32Array, f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
 
-/** The numbers of a packed array, flat; codes where it is one of codes. */
+/** The numbers of a packed array, flat; codes where it is one of codes. An array that is none is given back. */
 export function unpack(packed) {
+  if (ArrayBuffer.isView(packed)) return packed;
   const text = atob(packed.data);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);

@@ -2,16 +2,20 @@
 
 import { Chart } from "dcone/chart";
 
+import { Live } from "dcone/live";
+
 const data = JSON.parse(document.getElementById("data").textContent);
 
 /** For whoever looks from outside: the parts of the page, as they stand. */
-window.dcone = { charts: {}, replays: {}, faults: [], ready: 0 };
+window.dcone = { charts: {}, replays: {}, live: null, faults: [], ready: 0 };
 const ready = () => {
   window.dcone.ready = performance.now();
   document.documentElement.dataset.ready = "true";
 };
 
 for (const chart of data.charts) window.dcone.charts[chart.key] = new Chart(document.getElementById(`chart-${chart.key}`), chart);
+
+if (data.live) window.dcone.live = new Live(document.getElementById("live"), data.live);
 
 if (data.clips.length) {
   const fall = (error) => {
