@@ -57,11 +57,11 @@ def _net(result: PhaseResult, drawing: build.Drawing | None) -> tuple[Net | None
     if frames is not None and frames.times and len(frames.nodes[0]):
         nodes, times = np.array(frames.nodes), frames.times
         tensions = np.array(frames.tensions) if len(frames.ends) else None
-        threads = frames.ends - 1 if len(frames.ends) else _drawn(drawing, nodes.shape[1])
+        threads = frames.ends - 1 if len(frames.ends) else drawn_threads(drawing, nodes.shape[1])
         notes = [] if tensions is not None else ["the FMU tells no tensions of its threads: they have no colour"]
     elif len(shots.times) >= SEVERAL:
         nodes, times = np.array(shots.nodes), shots.times
-        tensions, threads = None, _drawn(drawing, nodes.shape[1])
+        tensions, threads = None, drawn_threads(drawing, nodes.shape[1])
         notes = [f"{len(times)} snapshots of the net, without tensions: `{AGAIN}` keeps it in full, with them"]
     else:
         every = max(1, round(1.0 / PER_SECOND / max(float(time[1] - time[0]), 1e-12)))
@@ -72,7 +72,7 @@ def _net(result: PhaseResult, drawing: build.Drawing | None) -> tuple[Net | None
     return Net(nodes, threads, tensions, rim), rows, notes
 
 
-def _drawn(drawing: build.Drawing | None, count: int) -> Array:
+def drawn_threads(drawing: build.Drawing | None, count: int) -> Array:
     """Threads from knot to knot where the net is one of ours, (threads, 2)."""
     pairs = [pair for line in drawing[0] for pair in pairwise(line)] if drawing is not None else []
     found = np.array(pairs, dtype=np.int64).reshape(-1, 2)

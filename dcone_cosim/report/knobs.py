@@ -24,6 +24,8 @@ SHOT = "bullets.speed"
 EACH = tuple(f"[{i}]" for i in (1, 2, 3))
 SPIN = tuple(f"target.start_rate{each}" for each in EACH)
 REST_LENGTH = "tether.rest_length"
+SLOWEST, FASTEST = 0.7, 1.4
+"""Shares of the shot's speed between which its momentum alone is followed."""
 DIGITS = 12
 """Of a value as it is shown, so that what a scene says as 0.1 is 0.1."""
 
@@ -48,6 +50,14 @@ ROWS = (
     Row(REST_LENGTH, "its length", "m", 0.5, 5.0, True),
     Row("thrust.level", "thrust", "N", 0.0, 5.0),
 )
+"""Of a tow."""
+SHOTS = (
+    Row(SHOT, "speed of the bullets", "m/s", 0.5, 2.0),
+    Row("bullets.angle", "angle of the shot", "deg", 0.25, 2.0),
+    Row("bullets.mass", "mass of a bullet", "kg", 0.25, 4.0, True),
+    Row("net.damping_ratio", "damping ratio of the threads", "1", 0.1, 10.0, True),
+)
+"""Of a shot."""
 
 
 @dataclass(frozen=True)
@@ -104,6 +114,15 @@ def knobs_of(phase: PhaseScene, bounds: Mapping[str, tuple[float, float]], run: 
     yield from _spin(phase.name, values, bounds, run, before)
 
 
+def knobs_of_shot(phase: PhaseScene, bounds: Mapping[str, tuple[float, float]]) -> Iterator[Knob]:
+    """Those that a shot has."""
+    values = {**phase.main.defaults, **phase.main.parameters}
+    for row in SHOTS:
+        value = values.get(row.name, math.nan)
+        if row.name in bounds and math.isfinite(value) and value:
+            yield _own(phase.name, row, value, bounds[row.name], "")
+
+
 def _shown(si: float, factor: float) -> float:
     return float(f"{si / factor:.{DIGITS}g}")
 
@@ -144,7 +163,7 @@ def _shot(record: HandoffRecord, run: RunResult, before: str) -> Iterator[Knob]:
     text = "the net is not shot again: its places and instants stay, velocities follow the shot's momentum"
     yield Knob(
         f"{before}.{SHOT}", "speed of the shot", "m/s", 1.0, _shown(speed, 1.0),
-        _shown(0.5 * speed, 1.0), _shown(2.0 * speed, 1.0), False, sets, again=True, estimate=text,
+        _shown(SLOWEST * speed, 1.0), _shown(FASTEST * speed, 1.0), False, sets, again=True, estimate=text,
     )  # fmt: skip
 
 

@@ -1,36 +1,32 @@
-"""The model inside a page: the tow of a run as WebAssembly, with what may be moved, so that it is simulated anew there.
+"""The models inside a page: the tow of a run and its shot, to be simulated anew there as values are moved.
 
-The library is that of the FMU, from the same IR, for a browser; values and tables are those of the run. What a page
-needs is made here; `templates/worker` steps it, `templates/scripts/live.js` shows it.
+`templates/worker` steps them, `templates/scripts/live.js` and `shot.js` show them. A tow is shown by its tugs, a shot
+by its net in space.
 """
 
 from __future__ import annotations
 
-import base64
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 
 from dcone_cosim import build, loads
-from dcone_cosim.apart import ours, phases_apart
-from dcone_cosim.errors import DconeError
-from dcone_cosim.loading import load
+from dcone_cosim.contract import FAILED_OUTCOMES, NODE_PREFIX, OUTCOMES, THREAD_PREFIX, bullets
 from dcone_cosim.phases import kind_of
+from dcone_cosim.phases.capture_clip import drawn_threads
 from dcone_cosim.plots.style import time_axis
 from dcone_cosim.progress import Progress
 from dcone_cosim.report import packing
-from dcone_cosim.report.knobs import Knob, knobs_of
+from dcone_cosim.report.carried import Carried, carry
+from dcone_cosim.report.knobs import Knob, knobs_of, knobs_of_shot
 from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import PhaseScene
-from dcone_cosim.scratch import Scratch
 from dcone_cosim.transaction import HandoffRecord
 
-MODEL = "tethered_deorbit"
+TOW, NET = "tethered_deorbit", "net_capture"
 LONGEST = 86400.0
 """Of a tow, what is simulated in a page [s]."""
 FACTOR = 2.0
@@ -38,20 +34,24 @@ FACTOR = 2.0
 DRAWN = ("tether.tension", "separation")
 LARGEST = ("tether.tension_peak", "tether.tension")
 """Outputs of which the first that there is tells the largest tension."""
-COUNTED = "tether.tug_count"
+PER_SECOND = 25.0
+"""Frames of a shot."""
+FIGURES = ("mouth.area", "thread.tension_max", "t_capture")
+"""What is told of a shot, where its FMU tells it."""
 WORKER = Path(__file__).parents[1] / "templates" / "worker"
-SCRIPTS = ("fmu", "tow", "worker")
-"""Of the worker, in order: they are one script there, since an import map does not reach into a worker."""
+SCRIPTS = {"tow": ("fmu", "tow", "tower"), "shot": ("fmu", "net", "shooter")}
+"""Of each worker, in order: they are one script there, since an import map does not reach into a worker."""
 
 
 @dataclass(frozen=True)
 class Live:
-    """What of a run can be simulated in its page.
+    """What of a phase can be simulated in its page.
 
-    phase     the tow
-    told       for `live.js`: the model, the plan of the tow, its line, its tugs, what may be moved
+    phase      which
+    told       for its script: the model, the plan, what may be moved
     knobs      what may be moved
     duration   that is simulated, in words;  whole   whether that is all of it
+    sizing     the command that tells what else sizes the line
     """
 
     phase: str
@@ -59,93 +59,91 @@ class Live:
     knobs: tuple[Knob, ...]
     duration: str
     whole: bool
+    sizing: str = ""
 
 
-def of_folder(folder: Path, run: RunResult, progress: Progress) -> Live | str:
+def of_tow(folder: Path, run: RunResult, progress: Progress) -> Live | str:
     """The tow of a run as a page can simulate it, its library built first if it is not in the cache; or why it cannot.
 
     Checked  tests/report/test_live.py: the page's tugs are the FMU's
     """
-    name = next((name for name, result in run.phases.items() if len(result.recorder)
-                 and next(p for p in run.scene.phases if p.name == name).main.model == MODEL), None)  # fmt: skip
-    if name is None:
-        return "this run has no tow by our model"
-    phase = next(phase for phase in run.scene.phases if phase.name == name)
-    if phase.main.fmu is not None:
-        return f"the {name} was run by an FMU from elsewhere, of which there is no library for a page"
-    if phase.others:
-        return f"the {name} is of several FMUs that are coupled; a page steps one alone"
-    try:
-        phase = _as_run(folder, name)
-        with Scratch(build.cache_folder()) as place:
-            (file,) = build.write_fmus([ours(run.scene, phase)[phase.main.name]], [build.PAGE], place, progress.say)
-            model, bounds = _packed(file)
-    except (DconeError, OSError) as error:
-        return f"its library for a page could not be built: {error}"
-    knobs = tuple(knobs_of(phase, bounds, run))
-    plan = _plan(phase, run, model["references"])
-    divisor, unit = time_axis(plan["plan"]["duration"])
-    told = {"model": model, **plan, "knobs": [knob.told() for knob in knobs]}
-    words = f"{plan['plan']['duration'] / divisor:.4g} {unit}"
-    return Live(name, told, knobs, words, phase.duration <= LONGEST)
+    name = _of(run, TOW)
+    if not name:
+        return "this run has no tow by a model of ours"
+    carried = carry(folder, run, name, progress)
+    if isinstance(carried, str):
+        return carried
+    knobs = tuple(knobs_of(carried.phase, carried.bounds, run))
+    plan, told = _tow(carried, run)
+    told["knobs"] = [knob.told() for knob in knobs]
+    return Live(name, told, knobs, *_lasting(plan, carried.phase), f"dcone size {run.scene.name}")
 
 
-def _as_run(folder: Path, name: str) -> PhaseScene:
-    """The phase as the run began it, with the values that were handed over."""
-    scene = load(str(folder / "scene.toml"))
-    if len(scene.phases) == 1:
-        return scene.phases[0]
-    return next(phase for phase in phases_apart(scene, folder, []) if phase.name == name)
+def of_shot(folder: Path, run: RunResult, progress: Progress) -> Live | str:
+    """The shot of a run in the same way.
+
+    Checked  tests/report/test_live.py: the page's net is the FMU's
+    """
+    name = _of(run, NET)
+    if not name:
+        return "this run has no net by a model of ours"
+    if not any(output.startswith(NODE_PREFIX) for output in _outputs(run, name)):
+        return f"the FMU of its {name} tells no places of its nodes: make it with `dcone run ... --replay`"
+    carried = carry(folder, run, name, progress)
+    if isinstance(carried, str):
+        return carried
+    knobs = tuple(knobs_of_shot(carried.phase, carried.bounds))
+    plan, told = _shot(carried, run)
+    told["knobs"] = [knob.told() for knob in knobs]
+    return Live(name, told, knobs, *_lasting(plan, carried.phase))
 
 
-def _packed(file: Path) -> tuple[dict[str, Any], dict[str, tuple[float, float]]]:
-    """What a page has of an FMU: library, resources, GUID, and references of its variables; and bounds of its
-    parameters, SI."""
-    with zipfile.ZipFile(file) as archive:
-        names = archive.namelist()
-        library = next(name for name in names if name.startswith("binaries/"))
-        resources = {Path(n).name: _text(archive.read(n)) for n in names if n.startswith("resources/")}
-        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-        code = archive.read(library)
-    variables = root.findall("ModelVariables/ScalarVariable")
-    references = {str(v.get("name")): [int(str(v.get("valueReference"))), v[0].tag] for v in variables}
-    bounds = {
-        str(v.get("name")): (float(v[0].get("min", "-inf")), float(v[0].get("max", "inf")))
-        for v in variables
-        if v.get("causality") == "parameter" and v[0].tag == "Real"
-    }
-    told = {"code": _text(code), "resources": resources, "guid": root.get("guid"), "references": references}
-    return told, bounds
+def _of(run: RunResult, model: str) -> str:
+    """The first phase by a model that was run; "" for none."""
+    phases = {phase.name: phase.main for phase in run.scene.phases}
+    return next(
+        (name for name, result in run.phases.items() if len(result.recorder) and phases[name].model == model), ""
+    )
 
 
-def _text(content: bytes) -> str:
-    return base64.b64encode(content).decode()
+def _outputs(run: RunResult, name: str) -> tuple[str, ...]:
+    """Prefixes of the families of outputs that the FMU of a phase tells."""
+    terms = next(phase.main.terms for phase in run.scene.phases if phase.name == name)
+    known = {"nodes": NODE_PREFIX, "threads": THREAD_PREFIX}
+    return tuple(prefix for family, prefix in known.items() if family in terms)
 
 
-def _plan(phase: PhaseScene, run: RunResult, references: Mapping[str, Any]) -> dict[str, Any]:
+def _lasting(plan: Mapping[str, Any], phase: PhaseScene) -> tuple[str, bool]:
+    divisor, unit = time_axis(plan["duration"])
+    return f"{plan['duration'] / divisor:.4g} {unit}", phase.duration <= plan["duration"]
+
+
+def _tow(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, Any]]:
     """Times, outputs and line of the tow."""
+    phase, references = carried.phase, carried.references
     result = run.phases[phase.name]
     load = next((one for one in loads.of_run(run) if one.phase == phase.name and one.line.name == "line"), None)
-    largest = next(name for name in LARGEST if name in references)
     given = run.scene.sizing.get("factor_of_safety")
     duration = min(phase.duration, LONGEST)
     divisor, unit = time_axis(duration)
     rows = [] if result.tugs is None else [result.tugs.rows[number] for number in sorted(result.tugs.rows)]
-    return {
+    plan = {
+        "start": phase.start,
+        "step": phase.macro_step,
+        "duration": duration,
+        "whole": phase.duration,
+        "outputs": [name for name in DRAWN if name in references],
+        "largest": next(name for name in LARGEST if name in references),
+    }
+    return plan, {
         "phase": phase.name,
+        "model": carried.told(),
+        "plan": plan,
         "handed": isinstance(run.handovers.get(phase.name), HandoffRecord),
         "clock": f"time {kind_of(phase.name).clock(run).partition(',')[0]}",
         "divisor": divisor,
         "unit": unit,
         "tugs": packing.doubles(np.array(rows, dtype=float).reshape(-1, 3)),
-        "plan": {
-            "start": phase.start,
-            "step": phase.macro_step,
-            "duration": duration,
-            "whole": phase.duration,
-            "outputs": [name for name in DRAWN if name in references],
-            "largest": largest,
-        },
         "line": {
             "strength": None if load is None else load.strength,
             "factor": FACTOR if given is None else float(given),
@@ -154,6 +152,66 @@ def _plan(phase: PhaseScene, run: RunResult, references: Mapping[str, Any]) -> d
     }
 
 
-def worker() -> str:
-    """The worker's script."""
-    return "\n".join((WORKER / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS)
+def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Times and outputs of the shot, and how its net is drawn."""
+    phase, references = carried.phase, carried.references
+    result = run.phases[phase.name]
+    values = run.parameters[phase.name]
+    last = result.recorder.last()
+    nodes = int(last["net.nodes"])
+    drawing = build.net_drawing(values, phase.main.terms)
+    frames = result.frames
+    taut = frames is not None and len(frames.ends) > 0
+    ends = frames.ends - 1 if frames is not None and taut else drawn_threads(drawing, nodes)
+    bodies = _bodies(references)
+    plan = {
+        "start": phase.start,
+        "step": phase.macro_step,
+        "duration": phase.duration,
+        "every": max(phase.macro_step, 1.0 / PER_SECOND),
+        "bodies": [name for part in bodies.values() for name in part],
+        "figures": [name for name in FIGURES if name in references],
+        "nodes": [references[f"{NODE_PREFIX}{n}].position[{i}]"][0] for n in range(1, nodes + 1) for i in (1, 2, 3)],
+        "threads": [references[f"{THREAD_PREFIX}{n}].tension"][0] for n in range(1, len(ends) + 1)] if taut else [],
+        "stop": _ends_with(carried, run),
+        "outcomes": list(OUTCOMES),
+        "failed": [number for number, outcome in enumerate(OUTCOMES) if outcome in FAILED_OUTCOMES],
+    }
+    wanted = {"captured", "settled", "outcome", *FIGURES, *(name for part in bodies.values() for name in part)}
+    return plan, {
+        "phase": phase.name,
+        "model": carried.told(lambda name: name in wanted or name in carried.bounds),
+        "plan": plan,
+        "bodies": {name: len(part) for name, part in bodies.items()},
+        "rim": [] if drawing is None else list(map(int, drawing[1])),
+        "most": float(max(map(np.max, frames.tensions))) if frames is not None and taut else 0.0,
+        "floor": packing.FLOOR,
+        "ends": packing.wholes(ends),
+        "run": {name: float(np.max(result.recorder[name])) for name in FIGURES if name in result.recorder},
+        "native": {"wall": result.wall, "duration": result.end - result.start},
+    }
+
+
+def _ends_with(carried: Carried, run: RunResult) -> str:
+    """The Boolean output with which the phase ends, "" for one that goes on to its end."""
+    trigger = carried.phase.options.hand_over
+    followed = run.scene.phases[-1].name != carried.phase.name
+    return trigger if followed and trigger in carried.references else ""
+
+
+def _bodies(references: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Outputs of the bodies that are drawn, as far as they are told, by the names that `bodies.js` has for them."""
+    numbers = bullets(list(references))
+    parts = {
+        "chaser": [f"chaser.position[{i}]" for i in (1, 2, 3)],
+        "target": [f"target.position[{i}]" for i in (1, 2, 3)],
+        "attitude": [f"target.attitude[{i}]" for i in (1, 2, 3, 4)],
+        "line": [f"vertex.position[{i}]" for i in (1, 2, 3)],
+        "bullets": [f"bullet[{b}].position[{i}]" for b in numbers for i in (1, 2, 3)],
+    }
+    return {name: part for name, part in parts.items() if part and all(one in references for one in part)}
+
+
+def worker(which: str) -> str:
+    """The script of a worker."""
+    return "\n".join((WORKER / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS[which])

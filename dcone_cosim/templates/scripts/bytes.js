@@ -14,7 +14,7 @@ export function unpack(packed) {
 /** Positions: `at(frame)` fills a Float32Array with those of a frame, as (x, y, z) of the scene. */
 export class Places {
   constructor(packed) {
-    this.values = unpack(packed);
+    this.values = unpack(packed.values ?? packed);
     this.count = packed.shape.length === 3 ? packed.shape[1] : 1;
     this.low = packed.low || [0, 0, 0];
     this.step = packed.step || [1, 1, 1];
@@ -39,7 +39,7 @@ export class Places {
 /** Tensions as codes of a logarithmic scale: 0 is slack, 255 the largest. */
 export class Tensions {
   constructor(packed) {
-    this.codes = unpack(packed);
+    this.codes = unpack(packed.codes ?? packed);
     this.count = packed.shape.length === 2 ? packed.shape[1] : 1;
     this.most = packed.most;
     this.floor = packed.floor;

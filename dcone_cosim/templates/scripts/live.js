@@ -2,70 +2,7 @@
 
 import { spoken, unpack } from "dcone/bytes";
 import { Chart } from "dcone/chart";
-
-const STEPS = 400;
-const DIGITS = 3;
-
-const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-const rounded = (value) => Number(value.toPrecision(DIGITS));
-/** A number as a command line takes it. */
-const plain = (value) => String(value);
-
-/** A value that may be moved: a slider and a number, which follow one another. */
-class Knob {
-  constructor(root, told, moved) {
-    this.told = told;
-    this.value = told.value;
-    this.slider = root.querySelector("input[type=range]");
-    this.number = root.querySelector("input[type=number]");
-    Object.assign(this.slider, { min: 0, max: STEPS, step: 1 });
-    this.number.step = "any";
-    this.slider.addEventListener("input", () => { this.put(this.at(Number(this.slider.value)), false); moved(); });
-    this.number.addEventListener("change", () => {
-      const value = this.number.valueAsNumber;
-      this.put(Number.isFinite(value) ? value : this.told.value);
-      moved();
-    });
-    this.put(told.value);
-  }
-
-  get moved() { return this.value !== this.told.value; }
-
-  /** The value at a place of the slider; the run's own near its place. */
-  at(place) {
-    if (place === this.place(this.told.value)) return this.told.value;
-    const { low, high, log } = this.told, share = place / STEPS;
-    return rounded(log ? low * Math.pow(high / low, share) : low + share * (high - low));
-  }
-
-  place(value) {
-    const { low, high, log } = this.told;
-    const share = log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
-    return Math.round(STEPS * Math.min(Math.max(share || 0, 0), 1));
-  }
-
-  put(value, slide = true) {
-    this.value = value;
-    if (slide) this.slider.value = this.place(value);
-    this.number.value = value;
-    this.slider.setAttribute("aria-valuetext", `${plain(value)} ${this.told.unit}`);
-    this.slider.closest(".knob").classList.toggle("moved", this.moved);
-  }
-
-  /** What the model gets, by name. */
-  get values() {
-    const si = this.told.factor === 1 ? this.value : this.told.factor * this.value;
-    return Object.fromEntries(Object.entries(this.told.sets).map(([name, [offset, slope]]) => [name, slope === 1 && offset === 0 ? si : offset + slope * si]));
-  }
-
-  /** The settings that make the same run in a shell. */
-  get settings() {
-    const { key, also, unit, shares } = this.told, end = unit ? ` ${unit}` : "";
-    const one = (value) => `${plain(value)}${end}`;
-    const text = shares.length ? `[${shares.map((share) => `'${one(Number((share * this.value).toPrecision(12)))}'`).join(", ")}]` : one(this.value);
-    return [key, ...also].map((name) => `--set ${name}="${text}"`);
-  }
-}
+import { Knob, workerOf } from "dcone/knob";
 
 /** A figure in two columns: of the run, and as moved. */
 const FIGURES = {
@@ -114,17 +51,10 @@ export class Live {
 
   begin() {
     try {
-      const blob = URL.createObjectURL(new Blob([document.getElementById("worker").textContent], { type: "text/javascript" }));
-      this.worker = new Worker(blob);
+      this.worker = workerOf("tow", this.told, (told) => this.hear(told), (text) => this.fail(text));
     } catch (error) {
       this.fail(`this browser gives the page no worker: ${error.message}`);
-      return;
     }
-    this.worker.onerror = (event) => this.fail(event.message || "the worker does not run");
-    this.worker.onmessage = ({ data }) => this.hear(data);
-    const { code, resources, ...rest } = this.told.model;
-    const model = { ...rest, code: bytesOf(code).buffer, resources: Object.fromEntries(Object.entries(resources).map(([name, text]) => [name, bytesOf(text)])) };
-    this.worker.postMessage({ model, plan: this.told.plan, line: this.told.line });
   }
 
   fail(text) {

@@ -7,7 +7,7 @@ import { Live } from "dcone/live";
 const data = JSON.parse(document.getElementById("data").textContent);
 
 /** For whoever looks from outside: the parts of the page, as they stand. */
-window.dcone = { charts: {}, replays: {}, live: null, faults: [], ready: 0 };
+window.dcone = { charts: {}, replays: {}, live: null, shot: null, faults: [], ready: 0 };
 const ready = () => {
   window.dcone.ready = performance.now();
   document.documentElement.dataset.ready = "true";
@@ -15,7 +15,7 @@ const ready = () => {
 
 for (const chart of data.charts) window.dcone.charts[chart.key] = new Chart(document.getElementById(`chart-${chart.key}`), chart);
 
-if (data.live) window.dcone.live = new Live(document.getElementById("live"), data.live);
+if (data.live) window.dcone.live = new Live(document.getElementById("live-tow"), data.live);
 
 if (data.clips.length) {
   const fall = (error) => {
@@ -28,6 +28,14 @@ if (data.clips.length) {
         window.dcone.replays[clip.key] = new Replay(document.getElementById(`replay-${clip.key}`), clip, data.colours);
       } catch (error) { fall(error); }
     }
+    if (data.shot) return import("dcone/shot").then(({ ShotView }) => {
+      const own = window.dcone.replays[data.shot.phase], clip = data.clips.find((one) => one.key === data.shot.phase);
+      try {
+        if (own) window.dcone.shot = new ShotView(document.getElementById("live-shot"), data.shot, data.colours, own.bodies.box, clip.surface);
+      } catch (error) { fall(error); }
+      ready();
+    });
     ready();
+    return null;
   }, (error) => { fall(error); ready(); });
 } else ready();

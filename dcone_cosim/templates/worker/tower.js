@@ -1,4 +1,4 @@
-// The worker of a page: it holds the model, and simulates the tow for the latest values that it is given.
+// The worker of the tow: it holds the model, and simulates the tow for the latest values that it is given.
 
 const DIAMETER = "tether.diameter";
 let fmu = null, plan = null, line = null, latest = 0;

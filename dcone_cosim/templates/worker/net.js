@@ -1,0 +1,59 @@
+// The net in a page: its FMU stepped from the shot, a frame at every so many steps.
+
+const AT = 1e-9;
+
+/** A shot that is under way. */
+class Shot {
+  /**
+   * plan    start, step, duration, every [s]; bodies (names of outputs that every frame has); nodes, threads (references
+   *         of positions and tensions); stop (the Boolean output with which it ends, "" for none); figures (names told of each frame)
+   */
+  constructor(fmu, plan, values) {
+    this.fmu = fmu;
+    this.plan = plan;
+    fmu.reset();
+    fmu.begin(values, plan.start);
+    this.read = fmu.shotReader ??= fmu.reader([...plan.bodies, ...plan.figures, ...plan.nodes, ...plan.threads]);
+    this.steps = Math.max(1, Math.ceil(plan.duration / plan.step - 1e-9));
+    this.done = 0;
+    this.following = 0;
+    this.over = false;
+    this.outcome = 0;
+  }
+
+  get time() { return Math.min(this.done * this.plan.step, this.plan.duration); }
+
+  /** The next frame: time, bodies, figures, nodes, tensions; null once the shot is over. */
+  next() {
+    const { plan, fmu } = this;
+    while (!this.over) {
+      const due = this.time >= this.following * plan.every - AT, last = this.done === this.steps || this.ended;
+      if (due || last) {
+        this.following = Math.floor((this.time + AT) / plan.every) + 1;
+        const frame = this.frame();
+        if (last) this.over = true; else this.advance();
+        return frame;
+      }
+      this.advance();
+    }
+    return null;
+  }
+
+  advance() {
+    const { plan, fmu } = this, begin = this.time;
+    this.done += 1;
+    const from = plan.start + begin;
+    if (!fmu.step(from, plan.start + this.time - from)) this.ended = fmu.said.at(-1) || "the model has come to its own end";
+    if (fmu.references.outcome) this.outcome = fmu.get("outcome");
+    if (plan.stop && fmu.get(plan.stop)) this.ended ??= plan.stop;
+    if (plan.failed.includes(this.outcome)) this.ended ??= plan.outcomes[this.outcome];
+  }
+
+  frame() {
+    const { plan } = this, all = this.read();
+    const cuts = [plan.bodies.length, plan.figures.length, plan.nodes.length, plan.threads.length];
+    let at = 0;
+    const [bodies, figures, nodes, tensions] = cuts.map((count) => Float32Array.from(all.subarray(at, (at += count))));
+    return { time: this.time, bodies, figures, nodes, tensions };
+  }
+}
