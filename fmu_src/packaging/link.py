@@ -24,7 +24,7 @@ FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-g0", "-Wno-ov
 SHIM_FLAGS = ("-std=c99", "-fvisibility=hidden", "-Wall", "-Wextra", "-s")
 CALLED = (
     "Instantiate SetupExperiment EnterInitializationMode ExitInitializationMode Reset FreeInstance DoStep "
-    "GetReal GetInteger GetBoolean SetReal SetInteger SetBoolean"
+    "GetReal GetInteger GetBoolean SetReal SetInteger SetBoolean GetFMUstate SetFMUstate"
 )
 """Functions of FMI that a page calls: the linker leaves out what nothing reaches."""
 FIXED = "-fno-PIC"

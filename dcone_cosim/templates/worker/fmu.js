@@ -123,6 +123,21 @@ class Fmu {
     return this.demand(this.own.fmi2DoStep(this.instance, time, size, 1), "take a step");
   }
 
+  /** Keep the state, in the place of the one that was kept before. */
+  save() {
+    if (!this.kept) {
+      this.kept = this.own.malloc(4);
+      new Uint32Array(this.own.memory.buffer, this.kept, 1)[0] = 0;
+    }
+    this.demand(this.own.fmi2GetFMUstate(this.instance, this.kept), "save its state");
+  }
+
+  /** Back to the state that was kept. */
+  restore() {
+    const [state] = new Uint32Array(this.own.memory.buffer, this.kept, 1);
+    this.demand(this.own.fmi2SetFMUstate(this.instance, state), "go back to a state");
+  }
+
   /** Back to the scene's values, in the same memory. */
   reset() {
     this.said.length = 0;

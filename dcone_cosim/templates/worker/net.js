@@ -1,4 +1,4 @@
-// The net in a page: its FMU stepped from the shot, a frame at every so many steps.
+// The net in a page: its FMU stepped from the shot to the instant of its capture, a frame at every so many steps.
 
 const AT = 1e-9;
 
@@ -16,12 +16,11 @@ class Shot {
     this.read = fmu.shotReader ??= fmu.reader([...plan.bodies, ...plan.figures, ...plan.nodes, ...plan.threads]);
     this.steps = Math.max(1, Math.ceil(plan.duration / plan.step - 1e-9));
     this.done = 0;
+    this.time = 0;
     this.following = 0;
     this.over = false;
     this.outcome = 0;
   }
-
-  get time() { return Math.min(this.done * this.plan.step, this.plan.duration); }
 
   /** The next frame: time, bodies, figures, nodes, tensions; null once the shot is over. */
   next() {
@@ -41,12 +40,28 @@ class Shot {
 
   advance() {
     const { plan, fmu } = this, begin = this.time;
+    const located = plan.stop === "captured" && fmu.references.t_capture;
     this.done += 1;
-    const from = plan.start + begin;
-    if (!fmu.step(from, plan.start + this.time - from)) this.ended = fmu.said.at(-1) || "the model has come to its own end";
+    this.time = Math.min(this.done * plan.step, plan.duration);
+    if (located) fmu.save();
+    this.step(begin, this.time);
+    if (plan.stop && !this.ended && fmu.get(plan.stop)) {
+      const there = located ? fmu.get("t_capture") : this.time;
+      if (begin < there && there < this.time) {
+        fmu.restore();
+        this.time = there;
+        this.step(begin, there);
+      }
+      this.ended ??= plan.stop;
+    }
     if (fmu.references.outcome) this.outcome = fmu.get("outcome");
-    if (plan.stop && fmu.get(plan.stop)) this.ended ??= plan.stop;
     if (plan.failed.includes(this.outcome)) this.ended ??= plan.outcomes[this.outcome];
+  }
+
+  /** Between two times since the shot. */
+  step(begin, end) {
+    const { plan, fmu } = this, from = plan.start + begin;
+    if (!fmu.step(from, plan.start + end - from)) this.ended = fmu.said.at(-1) || "the model has come to its own end";
   }
 
   frame() {
