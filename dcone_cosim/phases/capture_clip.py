@@ -29,7 +29,7 @@ def clip(run: RunResult, phase: PhaseScene, result: PhaseResult, marks: Sequence
     recorder = result.recorder
     if len(recorder) < SEVERAL or "chaser.position[1]" not in recorder:
         return None
-    values, terms = run.parameters.get(phase.name, {}), phase.main.terms
+    values, terms = {**run.parameters.get(phase.name, {}), **phase.main.made}, phase.main.terms
     net, rows, notes = _net(result, build.net_drawing(values, terms))
     surface = build.target_surface(values, terms) if "target.position[1]" in recorder else None
     numbers = bullets(recorder.names)

@@ -156,7 +156,7 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
     """Times and outputs of the shot, and how its net is drawn."""
     phase, references = carried.phase, carried.references
     result = run.phases[phase.name]
-    values = run.parameters[phase.name]
+    values = {**run.parameters[phase.name], **phase.main.made}
     last = result.recorder.last()
     nodes = int(last["net.nodes"])
     drawing = build.net_drawing(values, phase.main.terms)

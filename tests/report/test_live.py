@@ -186,7 +186,7 @@ def test_what_the_model_refuses_is_told_and_undone(asked: Asked, table2: Path) -
 def test_the_net_in_the_page_is_that_of_the_fmu(asked: Asked, kept: Path) -> None:
     """Every knot of every frame to the bit of a single, every tension to the code that a page has of it."""
     asked.browser.open(page_of(kept))
-    asked.wait(f"{SHOT}.state === 'ready'")
+    asked.wait(f"{SHOT}?.state === 'ready'")
     assert asked.browser.ask(f"{SHOT}.replay.playing") is False
     asked.browser.ask("document.querySelector('#live-shot [data-part=shoot]').click()")
     asked.wait("document.getElementById('live-shot').dataset.done")

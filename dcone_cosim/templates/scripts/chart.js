@@ -59,6 +59,7 @@ export class Chart {
     });
     const ends = this.series.flatMap((row) => (row.x.length ? [row.x[0], row.x[row.x.length - 1]] : []));
     this.all = ends.length ? [Math.min(...ends), Math.max(...ends)] : [0, 1];
+    if (this.data.range) this.all = [...this.data.range];
     if (this.all[0] === this.all[1]) this.all[1] = this.all[0] + 1;
     this.shown = [...this.all];
   }

@@ -32,7 +32,7 @@ export class Live {
     part("reset").addEventListener("click", () => { for (const knob of this.knobs) knob.put(knob.told.value); this.ask(); });
     this.factor.addEventListener("change", () => { this.results.run = null; this.ask(); });
     const { phase, clock, unit } = data;
-    this.chart = new Chart(part("chart"), { key: `${phase}-live`, title: "Tension of the line", clock, unit: "N", xUnit: unit, log: true, marks: [], series: this.series() });
+    this.chart = new Chart(part("chart"), { key: `${phase}-live`, title: "Tension of the line", clock, unit: "N", xUnit: unit, log: true, range: [0, data.plan.duration / data.divisor], marks: [], series: this.series() });
     this.tell();
     this.begin();
   }

@@ -28,14 +28,13 @@ if (data.clips.length) {
         window.dcone.replays[clip.key] = new Replay(document.getElementById(`replay-${clip.key}`), clip, data.colours);
       } catch (error) { fall(error); }
     }
+    ready();
     if (data.shot) return import("dcone/shot").then(({ ShotView }) => {
       const own = window.dcone.replays[data.shot.phase], clip = data.clips.find((one) => one.key === data.shot.phase);
       try {
         if (own) window.dcone.shot = new ShotView(document.getElementById("live-shot"), data.shot, data.colours, own.bodies.box, clip.surface);
       } catch (error) { fall(error); }
-      ready();
     });
-    ready();
     return null;
   }, (error) => { fall(error); ready(); });
 } else ready();
