@@ -186,11 +186,14 @@ def test_what_the_model_refuses_is_told_and_undone(asked: Asked, table2: Path) -
 def test_the_net_in_the_page_is_that_of_the_fmu(asked: Asked, kept: Path) -> None:
     """Every knot of every frame to the bit of a single, every tension to the code that a page has of it."""
     asked.browser.open(page_of(kept))
+    asked.browser.ask("document.getElementById('live-shot').scrollIntoView()")
     asked.wait(f"{SHOT}?.state === 'ready'")
     assert asked.browser.ask(f"{SHOT}.replay.playing") is False
     asked.browser.ask("document.querySelector('#live-shot [data-part=shoot]').click()")
     asked.wait("document.getElementById('live-shot').dataset.done")
     assert "Unmoved it is the run again, bit for bit" in asked.said("status", "live-shot")
+    asked.browser.ask(f"{SHOT}.replay.parts.speed.value = '30'")
+    asked.wait(f"!{SHOT}.replay.playing && {SHOT}.replay.frame === {SHOT}.held - 1")
     nodes = pd.read_parquet(kept / "replay_nodes.parquet")
     frames = nodes["time"].nunique()
     wanted = nodes[[f"position[{i}]" for i in (1, 2, 3)]].to_numpy(np.float32).ravel()

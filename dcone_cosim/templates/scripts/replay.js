@@ -134,7 +134,7 @@ export class Replay {
       if (!this.playing) return;
       const time = from + ((now - began) / 1000) * Number(this.parts.speed.value);
       let next = this.frame;
-      while (next + 1 < this.times.length && this.times[next + 1] <= time) next++;
+      while (next < this.end && this.times[next + 1] <= time) next++;
       if (next !== this.frame) this.go(next);
       if (next === this.end && !this.growing) this.stop(); else requestAnimationFrame(step);
     };
