@@ -171,6 +171,20 @@ def test_the_diameter_it_asks_for_is_just_thick_enough(asked: Asked, table2: Pat
         assert (factor * tugs(run)[:, 1].max() <= bears * (1.0 + 1e-9)) == holds
 
 
+def test_a_length_of_two_phases_is_told_of_both(asked: Asked, mission: Path) -> None:
+    """The net has to be shot anew for it, so that nothing is gone on from, and the page says so."""
+    asked.open(page_of(mission))
+    asked.move(rest_length=15)
+    asked.settle()
+    words = shlex.split(asked.said("command"))
+    assert words[3:-2] == ["--set", "removal.tether.rest_length=15 m", "--set", "capture.tether.length=15 m"]
+    assert "shoots the net anew" in asked.said("note")
+    asked.move(speed=3.3)
+    asked.settle()
+    assert "capture.bullets.speed=3.3 m/s" in shlex.split(asked.said("command"))
+    assert "the net is not shot again" in asked.said("note")
+
+
 def test_what_the_model_refuses_is_told_and_undone(asked: Asked, table2: Path) -> None:
     asked.open(page_of(table2))
     asked.move(damping_ratio=-1)
