@@ -63,13 +63,14 @@ class Live:
 
 
 def of_tow(folder: Path, run: RunResult, progress: Progress) -> Live | str:
-    """The tow of a run as a page can simulate it, its library built first if it is not in the cache; or why it cannot.
+    """The tow of a run as a page can simulate it, its library built first if it is not in the cache; or why it cannot,
+    "" where there is none by a model of ours.
 
     Checked  tests/report/test_live.py: the page's tugs are the FMU's
     """
     name = _of(run, TOW)
     if not name:
-        return "this run has no tow by a model of ours"
+        return ""
     carried = carry(folder, run, name, progress)
     if isinstance(carried, str):
         return carried
@@ -86,7 +87,7 @@ def of_shot(folder: Path, run: RunResult, progress: Progress) -> Live | str:
     """
     name = _of(run, NET)
     if not name:
-        return "this run has no net by a model of ours"
+        return ""
     if not any(output.startswith(NODE_PREFIX) for output in _outputs(run, name)):
         return f"the FMU of its {name} tells no places of its nodes: make it with `dcone run ... --replay`"
     carried = carry(folder, run, name, progress)

@@ -22,6 +22,7 @@ from dcone_cosim.run_reading import provenance_of, read_run
 PICTURES = {"capture": "capture_in_space.png", "removal": "tether_tension.png", "second_tow": "second_tow_tension.png"}
 """What is shown of a phase where a clip cannot be: in print, and without WebGL."""
 NOT_ASKED = "the models, since it was made with --no-live"
+NOTHING = "models, since no phase of this run is by one of ours"
 """Why a page has none."""
 LEAST_TONE = 0.36
 """Where on its scale the colour map begins: darker than that is not seen on the dark ground of a clip."""
@@ -107,7 +108,9 @@ def packed(data: Mapping[str, Any]) -> dict[str, str]:
 def _shown(models: Mapping[str, Live | str], heads: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """What the template says of the models in the page, and of those that are not."""
     tow, shot = (None if isinstance(one, str) else one for one in (models.get("live"), models.get("shot")))
-    without = [one for one in models.values() if isinstance(one, str)] if models else [NOT_ASKED]
+    without = [one for one in models.values() if one and isinstance(one, str)] if models else [NOT_ASKED]
+    if not (tow or shot or without):
+        without = [NOTHING]
     clip = next((one for one in heads if shot is not None and one["key"] == shot.phase), None)
     head = (
         None if clip is None else {**clip, "key": "shot", "title": "Shot", "notes": (), "forces": False, "picture": ""}

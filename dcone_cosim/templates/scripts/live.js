@@ -4,6 +4,9 @@ import { spoken, unpack } from "dcone/bytes";
 import { Chart } from "dcone/chart";
 import { Knob, workerOf } from "dcone/knob";
 
+/** How far two numbers are apart, as a share of the larger. */
+const apart = (one, other) => (one === other ? 0 : Math.abs(one - other) / Math.max(Math.abs(one), Math.abs(other)));
+
 /** A figure in two columns: of the run, and as moved. */
 const FIGURES = {
   tugs: (told) => told.tugs.length,
@@ -100,13 +103,10 @@ export class Live {
       if (this.which === "run") { this.results = { run: told, moved: null }; this.hold(told); } else this.results.moved = told;
       this.failed = "";
     } else if (told.kind === "required") {
-      this.results[this.which].required = told.diameter * 1e3;
-      this.results[this.which].jumps = told.jumps;
-      this.seeking = false;
+      Object.assign(this.results[this.which], { sought: false, required: told.diameter * 1e3, jumps: told.jumps, why: told.why });
     } else {
       this.busy = false;
       this.failed = told.text;
-      if (this.results[this.which]) this.results[this.which].why = told.text;
     }
     this.tell();
     if (told.kind !== "required") this.chart.give(this.series());
@@ -119,10 +119,11 @@ export class Live {
     const { plan } = this.told, rows = this.recorded, n = rows.length / 3;
     if (plan.duration < plan.whole) { this.same = ""; return; }
     let off = told.tugs.length === n ? 0 : NaN;
-    for (let i = 0; i < n && off === off; i++) for (let k = 0; k < 3; k++) off = Math.max(off, Math.abs(told.tugs[i][k] / rows[3 * i + k] - 1));
+    for (let i = 0; i < n && off === off; i++) for (let k = 0; k < 3; k++) off = Math.max(off, apart(told.tugs[i][k], rows[3 * i + k]));
     this.off = off;
-    this.same = off === 0 ? `Unmoved it gives the run's ${n} tugs again, bit for bit.`
-      : off === off ? `Unmoved it gives the run's ${n} tugs again, within ${off.toExponential(0)} of each figure.`
+    const all = n === 1 ? "one tug" : `${n} tugs`;
+    this.same = off === 0 ? `Unmoved it gives the run's ${all} again, bit for bit.`
+      : off === off ? `Unmoved it gives the run's ${all} again, within ${off.toExponential(0)} of each figure.`
         : `Unmoved it gives ${told.tugs.length} tugs, where the run has ${n}.`;
   }
 
@@ -140,7 +141,7 @@ export class Live {
         const cell = this.root.querySelector(`[data-figure="${name}"] [data-of="${which}"]`);
         if (!cell) continue;
         const value = told ? of(told) : NaN;
-        cell.textContent = Number.isFinite(value) ? spoken(value) : told ? (name === "required" ? (told.why ? "none" : "…") : "–") : "";
+        cell.textContent = Number.isFinite(value) ? spoken(value) : told ? (name === "required" && told.sought ? "…" : "–") : "";
       }
       const cell = this.root.querySelector(`[data-figure="governing"] [data-of="${which}"]`);
       cell.textContent = governing(told);

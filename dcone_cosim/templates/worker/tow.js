@@ -99,7 +99,8 @@ async function requiredDiameter(strength, factor, begin, peak, peakOf, { close =
       const wanted = n > 6 ? 0.5 : share + (thick[1] < -thin[1] ? -beyond : beyond);
       at = thin[0] * Math.exp(width * Math.min(Math.max(wanted, 0.02), 0.98));
     }
-    if (at < range[0] || at > range[1]) throw new Error("no line from 1 µm to 20 cm is just thick enough");
+    if (at < range[0]) throw new Error(`a line of ${range[0] * 1e6} µm bears it too`);
+    if (at > range[1]) throw new Error(`even a line of ${range[1] * 1e2} cm does not bear it`);
     pull = await peakOf(at);
     if (pull === null) return null;
   }

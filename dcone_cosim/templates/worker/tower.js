@@ -15,8 +15,9 @@ async function take({ number, values, factor, diameter }) {
   try {
     const began = performance.now();
     const found = tow(fmu, plan, values);
-    postMessage({ number, kind: "tow", took: (performance.now() - began) / 1000, ...found });
-    if (!line.strength || !diameter || !(found.largest > 0) || found.ended) return;
+    const sought = Boolean(line.strength && diameter && found.largest > 0 && !found.ended);
+    postMessage({ number, kind: "tow", took: (performance.now() - began) / 1000, sought, ...found });
+    if (!sought) return;
     const peakOf = async (at) => {
       await breathe();
       if (number !== latest) return null;
@@ -24,7 +25,8 @@ async function take({ number, values, factor, diameter }) {
       if (tried.ended) throw new Error(tried.ended);
       return tried.largest;
     };
-    const needed = await requiredDiameter(line.strength, factor, diameter, found.largest, peakOf);
+    const unsought = (error) => ({ why: said(error) });
+    const needed = await requiredDiameter(line.strength, factor, diameter, found.largest, peakOf).catch(unsought);
     if (needed) postMessage({ number, kind: "required", ...needed });
   } catch (error) {
     if (number === latest) postMessage({ number, kind: "failed", text: said(error) });
