@@ -9,7 +9,7 @@ from __future__ import annotations
 import base64
 import zipfile
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -65,7 +65,7 @@ def carry(folder: Path, run: RunResult, name: str, progress: Progress) -> Carrie
     if phase.others:
         return f"the {name} is of several FMUs that are coupled, and a page steps one alone"
     try:
-        phase = _as_run(folder, name)
+        phase = _as_run(folder, run, name)
         with Scratch(build.cache_folder()) as place:
             (file,) = build.write_fmus([ours(run.scene, phase)[phase.main.name]], [build.PAGE], place, progress.say)
             return _read(file, phase)
@@ -73,12 +73,13 @@ def carry(folder: Path, run: RunResult, name: str, progress: Progress) -> Carrie
         return f"its library for a page could not be built: {error}"
 
 
-def _as_run(folder: Path, name: str) -> PhaseScene:
-    """The phase as the run began it, with the values that were handed over."""
+def _as_run(folder: Path, run: RunResult, name: str) -> PhaseScene:
+    """The phase as the run began it, with its own values and those that were handed over."""
     scene = load(str(folder / "scene.toml"))
-    if len(scene.phases) == 1:
-        return scene.phases[0]
-    return next(phase for phase in phases_apart(scene, folder, []) if phase.name == name)
+    phases = scene.phases if len(scene.phases) == 1 else phases_apart(scene, folder, [])
+    phase = next(phase for phase in phases if phase.name == name)
+    values = {**phase.main.parameters, **run.inputs.get(name, {}), **run.parameters[name]}
+    return replace(phase, main=replace(phase.main, parameters=values))
 
 
 def _read(file: Path, phase: PhaseScene) -> Carried:

@@ -125,14 +125,15 @@ def _tow(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, An
     result = run.phases[phase.name]
     load = next((one for one in loads.of_run(run) if one.phase == phase.name and one.line.name == "line"), None)
     given = run.scene.sizing.get("factor_of_safety")
-    duration = min(phase.duration, LONGEST)
+    whole = phase.duration if result.error is None else result.end - result.start
+    duration = min(whole, LONGEST)
     divisor, unit = time_axis(duration)
     rows = [] if result.tugs is None else [result.tugs.rows[number] for number in sorted(result.tugs.rows)]
     plan = {
         "start": phase.start,
         "step": phase.macro_step,
         "duration": duration,
-        "whole": phase.duration,
+        "whole": whole,
         "outputs": [name for name in DRAWN if name in references],
         "largest": next(name for name in LARGEST if name in references),
     }
