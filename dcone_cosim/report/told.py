@@ -68,8 +68,9 @@ def _asked(run: RunResult, load: loads.Load) -> dict[str, str] | None:
         since = "no strength is told of its threads" if load.margin is None else f"{load.phase}: {load.line.label}"
         return {"label": "did the net hold", "value": held, "unit": "", "since": since}
     if load.line.name == "line":
-        since = f"{load.phase}: {mark}{digits(load.tension, load.spread, 4)} N"
-        return {"label": "what governs the line", "value": _governing(run, load), "unit": "", "since": since}
+        value, comma, when = _governing(run, load).partition(", ")
+        since = f"{load.phase}: {mark}{digits(load.tension, load.spread, 4)} N{comma}{when}"
+        return {"label": "what governs the line", "value": value, "unit": "", "since": since}
     return None
 
 

@@ -58,9 +58,9 @@ def test_what_a_reader_asks_first_stands_at_the_top(bare: Path, tmp_path: Path) 
     tiles = {tile["label"]: tile for tile in told.chief(read_run(bare))}
     tugs = pd.read_parquet(bare / "tugs.parquet")
     hardest = tugs.loc[tugs["peak"].idxmax()]
-    assert tiles["what governs the line"]["value"] == (
-        f"tug {hardest['tug']:.0f} of {len(tugs)}, at {hardest['time']:.6g} s"
-    )
+    tile = tiles["what governs the line"]
+    assert tile["value"] == f"tug {hardest['tug']:.0f} of {len(tugs)}"
+    assert tile["since"] == f"removal: ~{hardest['peak']:.4g} N, at {hardest['time']:.6g} s"
     assert tiles["did the net hold"]["value"].startswith("yes, margin ~")
     assert tiles["did the net hold"]["since"] == "capture: a thread of the net"
     settings = (*COARSE, "capture.net.strength=1 MPa")
