@@ -6,6 +6,7 @@ by its net in space.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -176,6 +177,7 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
         "nodes": [references[f"{NODE_PREFIX}{n}].position[{i}]"][0] for n in range(1, nodes + 1) for i in (1, 2, 3)],
         "threads": [references[f"{THREAD_PREFIX}{n}].tension"][0] for n in range(1, len(ends) + 1)] if taut else [],
         "stop": _ends_with(carried, run),
+        "after": _goes_on(carried),
         "outcomes": list(OUTCOMES),
         "failed": [number for number, outcome in enumerate(OUTCOMES) if outcome in FAILED_OUTCOMES],
     }
@@ -199,6 +201,13 @@ def _ends_with(carried: Carried, run: RunResult) -> str:
     trigger = carried.phase.options.hand_over
     followed = run.scene.phases[-1].name != carried.phase.name
     return trigger if followed and trigger in carried.references else ""
+
+
+def _goes_on(carried: Carried) -> float | None:
+    """How long the phase goes on once the target is captured [s], None for as long as there is time."""
+    options = carried.phase.options
+    known = options.hand_over == "captured" and "captured" in carried.references
+    return options.after_capture if known and math.isfinite(options.after_capture) else None
 
 
 def _bodies(references: Mapping[str, Any]) -> dict[str, list[str]]:

@@ -129,7 +129,7 @@ export class ShotView {
     const same = over && !this.shot && this.told.plan.figures.filter((name) => name !== "mouth.area").every((name) => over.figures[name] === run[name]);
     const speed = this.took > 0 ? ` in ${spoken(this.took, 2)} s of computing, ${spoken(here / this.took, 2)} times as fast as it is` : "";
     this.status.textContent = this.failed ? `The model refuses that: ${this.failed}.`
-      : over ? `${spoken(over.time, 3)} s simulated${speed}; native code took ${spoken((this.told.native.wall * over.time) / this.told.native.duration, 2)} s for them. It came to: ${over.outcome || over.ended || "the end of its time"}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: compare the figures below."}`
+      : over ? `${spoken(over.time, 3)} s simulated${speed}; native code took ${spoken((this.told.native.wall * over.time) / this.told.native.duration, 2)} s for them. It came to: ${over.outcome || over.ended || "the end of its time"}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: something is rounded otherwise here, and a net is chaotic, so that these are two samples."}`
         : this.held ? `${spoken(here, 3)} s simulated${speed} …`
           : this.state === "ready" ? "Nothing is shot yet." : "…";
     const settings = this.moved.flatMap((knob) => knob.settings);

@@ -6,7 +6,8 @@ const AT = 1e-9;
 class Shot {
   /**
    * plan    start, step, duration, every [s]; bodies (names of outputs that every frame has); nodes, threads (references
-   *         of positions and tensions); stop (the Boolean output with which it ends, "" for none); figures (names told of each frame)
+   *         of positions and tensions); stop (the Boolean output with which it ends, "" for none); figures (names told
+   *         of each frame); after (how long it goes on once captured [s], null for as long as there is time)
    */
   constructor(fmu, plan, values) {
     this.fmu = fmu;
@@ -14,7 +15,7 @@ class Shot {
     fmu.reset();
     fmu.begin(values, plan.start);
     this.read = fmu.shotReader ??= fmu.reader([...plan.bodies, ...plan.figures, ...plan.nodes, ...plan.threads]);
-    this.steps = Math.max(1, Math.ceil(plan.duration / plan.step - 1e-9));
+    this.last = plan.duration;
     this.done = 0;
     this.time = 0;
     this.following = 0;
@@ -26,7 +27,7 @@ class Shot {
   next() {
     const { plan, fmu } = this;
     while (!this.over) {
-      const due = this.time >= this.following * plan.every - AT, last = this.done === this.steps || this.ended;
+      const due = this.time >= this.following * plan.every - AT, last = this.time >= this.last || this.ended;
       if (due || last) {
         this.following = Math.floor((this.time + AT) / plan.every) + 1;
         const frame = this.frame();
@@ -42,7 +43,7 @@ class Shot {
     const { plan, fmu } = this, begin = this.time;
     const located = plan.stop === "captured" && fmu.references.t_capture;
     this.done += 1;
-    this.time = Math.min(this.done * plan.step, plan.duration);
+    this.time = Math.min(this.done * plan.step, this.last);
     if (located) fmu.save();
     this.step(begin, this.time);
     if (plan.stop && !this.ended && fmu.get(plan.stop)) {
@@ -53,6 +54,10 @@ class Shot {
         this.step(begin, there);
       }
       this.ended ??= plan.stop;
+    }
+    if (!plan.stop && plan.after !== null && this.last === plan.duration && fmu.get("captured")) {
+      const at = fmu.references.t_capture ? fmu.get("t_capture") : this.time;
+      this.last = Math.min(plan.duration, Math.max(at + plan.after, this.time));
     }
     if (fmu.references.outcome) this.outcome = fmu.get("outcome");
     if (plan.failed.includes(this.outcome)) this.ended ??= plan.outcomes[this.outcome];
