@@ -26,6 +26,7 @@ from dcone_cosim.report.knobs import Knob, knobs_of, knobs_of_shot
 from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.transaction import HandoffRecord
+from orbital.tethers import DASHPOT_GOVERNS
 
 TOW, NET = "tethered_deorbit", "net_capture"
 LONGEST = 86400.0
@@ -150,6 +151,7 @@ def _tow(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, An
         "line": {
             "strength": None if load is None else load.strength,
             "factor": FACTOR if given is None else float(given),
+            "dashpot": DASHPOT_GOVERNS,
         },
         "native": {"wall": result.wall, "duration": result.end - result.start},
     }

@@ -171,6 +171,18 @@ def test_the_diameter_it_asks_for_is_just_thick_enough(asked: Asked, table2: Pat
         assert (factor * tugs(run)[:, 1].max() <= bears * (1.0 + 1e-9)) == holds
 
 
+def test_the_load_that_governs_follows(asked: Asked, table2: Path) -> None:
+    """A snap, and from a damping ratio of one half on the dashpot."""
+    asked.open(page_of(table2))
+    cell = "document.querySelector('#live-tow [data-figure=governing] [data-of={}]').textContent"
+    own = tugs(table2)
+    hardest = int(own[:, 1].argmax())
+    assert asked.browser.ask(cell.format("run")).startswith(f"snap: tug {hardest + 1} of {len(own)}, at ")
+    asked.move(damping_ratio=0.6)
+    asked.settle()
+    assert asked.browser.ask(cell.format("moved")).startswith("dashpot: tug ")
+
+
 def test_a_length_of_two_phases_is_told_of_both(asked: Asked, mission: Path) -> None:
     """The net has to be shot anew for it, so that nothing is gone on from, and the page says so."""
     asked.open(page_of(mission))

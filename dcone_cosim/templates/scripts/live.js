@@ -81,9 +81,12 @@ export class Live {
     this.busy = true;
     const moved = this.results.run ? this.moved : [];
     const values = Object.assign({}, ...moved.map((knob) => knob.values));
-    const knob = this.knobs.find((one) => one.told.sets["tether.diameter"]);
     this.which = this.results.run && moved.length ? "moved" : "run";
-    this.diameter = knob ? knob.told.factor * (moved.includes(knob) ? knob.value : knob.told.value) : 0;
+    const si = (name) => {
+      const knob = this.knobs.find((one) => one.told.sets[name]);
+      return knob ? knob.told.factor * (moved.includes(knob) ? knob.value : knob.told.value) : 0;
+    };
+    [this.diameter, this.damping] = [si("tether.diameter"), si("tether.damping_ratio")];
     this.number += 1;
     this.root.dataset.number = this.number;
     const factor = Math.max(Number(this.factor.value) || 1, 1);
@@ -100,6 +103,7 @@ export class Live {
       told.stress = area ? told.largest / area : NaN;
       told.margin = strength && told.stress ? strength / told.stress - 1 : NaN;
       told.required = NaN;
+      told.damping = this.damping;
       if (this.which === "run") { this.results = { run: told, moved: null }; this.hold(told); } else this.results.moved = told;
       this.failed = "";
     } else if (told.kind === "required") {
@@ -132,8 +136,9 @@ export class Live {
     if (!now.length) this.results.moved = null;
     const governing = (told) => {
       if (!told) return "";
-      if (told.governing) return `tug ${told.governing} of ${told.tugs.length}, at ${spoken(told.tugs[told.governing - 1][0], 6)} s`;
-      return told.largest > 0 ? `no tug: at ${spoken(told.largestAt, 6)} s` : "nothing: the line stays slack";
+      const load = told.damping >= this.told.line.dashpot ? "dashpot" : "snap";
+      if (told.governing) return `${load}: tug ${told.governing} of ${told.tugs.length}, at ${spoken(told.tugs[told.governing - 1][0], 6)} s`;
+      return told.largest > 0 ? `steady load, at ${spoken(told.largestAt, 6)} s` : "nothing: the line stays slack";
     };
     for (const which of ["run", "moved"]) {
       const told = which === "run" ? run : now.length ? moved : null;
