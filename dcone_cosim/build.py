@@ -76,6 +76,8 @@ TRADES = {NET_CAPTURE.name: net_capture_trade, TETHERED_DEORBIT.name: tethered_d
 
 STRESSES = {NET_CAPTURE.name: net_capture_stress, TETHERED_DEORBIT.name: tethered_deorbit_stress}
 """Ends of the range that belong to no part of a model, by its name."""
+PAGE = "wasm32"
+"""The platform of FMUs that a page runs, for `write_fmus`."""
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
 
@@ -553,9 +555,9 @@ def write_fmus(
     the libraries are those of the cache.
     """
     from fmu_src.packaging.builds import furnish
-    from fmu_src.packaging.platforms import PLATFORMS, archives, host
+    from fmu_src.packaging.platforms import KNOWN, archives, host
 
-    chosen = [PLATFORMS[name] for name in platforms] or [host()]
+    chosen = [KNOWN[name] for name in platforms] or [host()]
     interfaces = [_furnished(fmu) for fmu in wanted]
     keys = [(fmu.model, tuple(fmu.terms.items())) for fmu in wanted]
     unlike = list(dict.fromkeys(keys))

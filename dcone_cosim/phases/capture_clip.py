@@ -29,7 +29,7 @@ def clip(run: RunResult, phase: PhaseScene, result: PhaseResult, marks: Sequence
     recorder = result.recorder
     if len(recorder) < SEVERAL or "chaser.position[1]" not in recorder:
         return None
-    values, terms = run.parameters.get(phase.name, {}), phase.main.terms
+    values, terms = {**run.parameters.get(phase.name, {}), **phase.main.made}, phase.main.terms
     net, rows, notes = _net(result, build.net_drawing(values, terms))
     surface = build.target_surface(values, terms) if "target.position[1]" in recorder else None
     numbers = bullets(recorder.names)
@@ -57,11 +57,11 @@ def _net(result: PhaseResult, drawing: build.Drawing | None) -> tuple[Net | None
     if frames is not None and frames.times and len(frames.nodes[0]):
         nodes, times = np.array(frames.nodes), frames.times
         tensions = np.array(frames.tensions) if len(frames.ends) else None
-        threads = frames.ends - 1 if len(frames.ends) else _drawn(drawing, nodes.shape[1])
+        threads = frames.ends - 1 if len(frames.ends) else drawn_threads(drawing, nodes.shape[1])
         notes = [] if tensions is not None else ["the FMU tells no tensions of its threads: they have no colour"]
     elif len(shots.times) >= SEVERAL:
         nodes, times = np.array(shots.nodes), shots.times
-        tensions, threads = None, _drawn(drawing, nodes.shape[1])
+        tensions, threads = None, drawn_threads(drawing, nodes.shape[1])
         notes = [f"{len(times)} snapshots of the net, without tensions: `{AGAIN}` keeps it in full, with them"]
     else:
         every = max(1, round(1.0 / PER_SECOND / max(float(time[1] - time[0]), 1e-12)))
@@ -72,7 +72,7 @@ def _net(result: PhaseResult, drawing: build.Drawing | None) -> tuple[Net | None
     return Net(nodes, threads, tensions, rim), rows, notes
 
 
-def _drawn(drawing: build.Drawing | None, count: int) -> Array:
+def drawn_threads(drawing: build.Drawing | None, count: int) -> Array:
     """Threads from knot to knot where the net is one of ours, (threads, 2)."""
     pairs = [pair for line in drawing[0] for pair in pairwise(line)] if drawing is not None else []
     found = np.array(pairs, dtype=np.int64).reshape(-1, 2)

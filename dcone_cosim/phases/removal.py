@@ -180,7 +180,8 @@ class Tow(Phase):
         for phase in run.scene.phases:
             if phase.name == self.name or phase.main.model == self.model:
                 continue
-            found = build.target_surface(run.parameters.get(phase.name, {}), phase.main.terms)
+            values = {**run.parameters.get(phase.name, {}), **phase.main.made}
+            found = build.target_surface(values, phase.main.terms)
             if found is not None:
                 surface = (np.array(found[0], dtype=float), [list(face) for face in found[1]])
         since = self._since(run).partition(" ")[2]

@@ -29,12 +29,19 @@ def linked(sizing: Path | None, accuracy: Path | None, stability: Path | None) -
 
 
 def write_page(
-    run: Path, out: Path | None, progress: Progress, also: Sequence[Linked] = (), whole: bool = True, pdf: bool = False
+    run: Path,
+    out: Path | None,
+    progress: Progress,
+    also: Sequence[Linked] = (),
+    whole: bool = True,
+    pdf: bool = False,
+    live: bool = False,
 ) -> list[Path]:
     """Write the page of the run of a folder, and print it if asked; where both are.
 
     out      the file; in the folder of the run if not given, and then a file of that run
     whole    all of it, otherwise the replay alone
+    live     with the model in it, whose library is built if it is not in the cache
     """
     name = REPORT if whole else REPLAY
     path = run / name if out is None else out / name if out.is_dir() else out
@@ -43,7 +50,7 @@ def write_page(
     browser = _browser() if pdf else ""
     with progress.working("writing"):
         progress.say("reading the run")
-        text = of_folder(run, path, also, whole)
+        text = of_folder(run, path, also, whole, progress if live else None)
         check_folder(path.parent)
         path.parent.mkdir(parents=True, exist_ok=True)
         with Scratch(path.parent) as draft:

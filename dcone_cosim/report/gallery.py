@@ -17,7 +17,7 @@ from typing import Any
 from dcone_cosim import placed
 from dcone_cosim.commands import run_and_write
 from dcone_cosim.drafts import check_folder
-from dcone_cosim.errors import InputError
+from dcone_cosim.errors import DconeError
 from dcone_cosim.loading import load, named, shipped
 from dcone_cosim.progress import Progress
 from dcone_cosim.report import told
@@ -56,8 +56,8 @@ def make(scenes: Sequence[str], out: Path, progress: Progress, full: bool = Fals
             if not folder.is_dir():
                 run_and_write(scene, folder, progress, settings=[] if full else cuts(scene), replay=True)
             if not page.is_file():
-                write_page(folder, page, progress)
-        except InputError as error:
+                write_page(folder, page, progress, live=True)
+        except DconeError as error:
             failed[name] = str(error)
     return _index(out, [name for name in known if name not in failed]), failed
 

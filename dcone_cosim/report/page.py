@@ -10,23 +10,35 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim.phases import kind_of
-from dcone_cosim.report import links, packing, scripts, told
+from dcone_cosim.progress import Progress
+from dcone_cosim.report import links, live, packing, scripts, told
 from dcone_cosim.report.forces import PICTURE, ForceMap
 from dcone_cosim.report.links import Linked
+from dcone_cosim.report.live import Live
 from dcone_cosim.reports import pages
 from dcone_cosim.reports.warnings import warnings
 from dcone_cosim.run_reading import provenance_of, read_run
 
 PICTURES = {"capture": "capture_in_space.png", "removal": "tether_tension.png", "second_tow": "second_tow_tension.png"}
 """What is shown of a phase where a clip cannot be: in print, and without WebGL."""
+NOT_ASKED = "the models, since it was made with --no-live"
+NOTHING = "models, since no phase of this run is by one of ours"
+"""Why a page has none."""
 LEAST_TONE = 0.36
 """Where on its scale the colour map begins: darker than that is not seen on the dark ground of a clip."""
 
 
-def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: bool = True) -> str:
+def of_folder(
+    folder: Path,
+    place: Path,
+    linked: Sequence[Linked] = (),
+    whole: bool = True,
+    progress: Progress | None = None,
+) -> str:
     """The page of the run of a folder, to be put at `place`; `InputError` where it is no run.
 
     whole    all of it; otherwise the replay alone, with the tugs
+    progress    is told of what is built; with none the model is not put into the page
     """
     run, about = read_run(folder), provenance_of(folder)
     here = shlex.quote(f"./{folder.absolute().name}")  # a bare name may be that of a scene
@@ -45,6 +57,10 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
     for name, chart in charts:
         chart["key"] = f"{name}-{chart['key']}"
     data = {"clips": clips, "charts": [chart for _, chart in charts], "colours": colours()}
+    models: dict[str, Live | str] = {}
+    if whole and progress is not None:
+        models = {"live": live.of_tow(folder, run, progress), "shot": live.of_shot(folder, run, progress)}
+    data |= {name: {**model.told, "folder": here} for name, model in models.items() if isinstance(model, Live)}
     values: dict[str, Any] = {
         "title": run.scene.title,
         "status": run.status,
@@ -71,6 +87,8 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
             "trust": told.trust(run),
             "linked": [links.shown(kind, linked, place, run.scene.name) for kind in links.COMMANDS],
             "governs": links.governing(linked),
+            "live": _shown(models, [_head(clip) for clip in clips]),
+            "workers": [(one, live.worker(one)) for one in live.SCRIPTS],
             "scene": run.scene.text,
             "forces": None if forces is None else forces.hardest(),
             "force_picture": picture_of(folder / PICTURE),
@@ -80,11 +98,24 @@ def of_folder(folder: Path, place: Path, linked: Sequence[Linked] = (), whole: b
 
 def packed(data: Mapping[str, Any]) -> dict[str, str]:
     """What the template writes into script elements: the data, and the import map of what shows them."""
-    more = ("replay",) if data["clips"] else ()
+    more = ("replay", "shot") if data["clips"] else ()
     return {
         "data": json.dumps(data, separators=(",", ":")).replace("</", "<\\/"),
         "import_map": scripts.import_map("page", more),
     }
+
+
+def _shown(models: Mapping[str, Live | str], heads: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """What the template says of the models in the page, and of those that are not."""
+    tow, shot = (None if isinstance(one, str) else one for one in (models.get("live"), models.get("shot")))
+    without = [one for one in models.values() if one and isinstance(one, str)] if models else [NOT_ASKED]
+    if not (tow or shot or without):
+        without = [NOTHING]
+    clip = next((one for one in heads if shot is not None and one["key"] == shot.phase), None)
+    head = (
+        None if clip is None else {**clip, "key": "shot", "title": "Shot", "notes": (), "forces": False, "picture": ""}
+    )
+    return {"tow": tow, "shot": shot, "clip": head, "without": without}
 
 
 def _head(clip: Mapping[str, Any]) -> dict[str, Any]:

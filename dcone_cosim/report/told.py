@@ -46,6 +46,7 @@ def chief(run: RunResult) -> list[dict[str, str]]:
                 kind_of(row.phase).clock(run).partition(",")[0] if row.unit == "s" and row.phase in run.phases else ""
             )
             found.append({"label": label, "value": value, "unit": unit, "since": since})
+    found += [tile for load in loads.of_run(run) if (tile := _asked(run, load)) is not None]
     governing = weakest(run)
     if governing is not None:
         margin = digits(governing.margin or 0.0, governing.spread, 3)
@@ -53,6 +54,24 @@ def chief(run: RunResult) -> list[dict[str, str]]:
         text = f"{governing.phase}: {governing.line.label}"
         found.append({"label": "least margin of safety", "value": f"{mark}{margin}", "unit": "", "since": text})
     return found
+
+
+def _asked(run: RunResult, load: loads.Load) -> dict[str, str] | None:
+    """What a reader asks first of a line: did the net hold, what governs the line of the tow; None of the others."""
+    mark = SAMPLE if load.spread else ""
+    if load.line.name == "thread":
+        held = "not known" if load.margin is None else f"yes, margin {mark}{digits(load.margin, load.spread, 3)}"
+        if load.broke is not None:
+            held = f"no: {load.broken} of its threads broke"
+        elif load.overloaded:
+            held = "no: its threads bore more than they can"
+        since = "no strength is told of its threads" if load.margin is None else f"{load.phase}: {load.line.label}"
+        return {"label": "did the net hold", "value": held, "unit": "", "since": since}
+    if load.line.name == "line":
+        value, comma, when = _governing(run, load).partition(", ")
+        since = f"{load.phase}: {mark}{digits(load.tension, load.spread, 4)} N{comma}{when}"
+        return {"label": "what governs the line", "value": value, "unit": "", "since": since}
+    return None
 
 
 def weakest(run: RunResult) -> loads.Load | None:

@@ -43,13 +43,18 @@ from fmu_src.packaging import (
     tools,
 )
 from fmu_src.packaging.description import Experiment
-from fmu_src.packaging.platforms import PLATFORMS, WIN64, Platform, host
+from fmu_src.packaging.platforms import KNOWN, PAGE, WIN64, Platform, host
 
 PACKAGES = ("dcone-cosim", "numba", "llvmlite", "ziglang", "numpy", "fmpy", "pillow", "astropy", "markdown-it-py")
 """What settles by its version what comes out: the tools, and this package, whose version the description tells."""
 SOURCES = Path(__file__).parents[1]
 COMMON = "kernels"
 """The folder of a cache that has the kernels which choices of terms have in common."""
+FIRST = {
+    WIN64: "Windows on a machine takes minutes",
+    PAGE: "a page on a machine takes half a minute",
+}
+"""Links before which a C library is built."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 Announce = Callable[[str], None]
 Workplace = Callable[[Path], AbstractContextManager[Path]]
@@ -118,7 +123,7 @@ def build(
         header = folder / "model.h"
         header.write_text(c_header.header(interface, name, identity))
         library = folder / f"{name}{platform.suffix}"
-        first = "; the first link for Windows on a machine takes minutes" if platform is WIN64 else ""
+        first = f"; the first link for {FIRST[platform]}" if platform in FIRST else ""
         announce(f"linking {name} for {platform.name}{first}")
         libraries = {}
         for place in platform.places:
@@ -159,7 +164,7 @@ def described(interface: Interface, library: str, experiment: Experiment) -> dic
 
 def kernels(cache: Path, name: str, key: str) -> bytes | None:
     """IR from an FMU of the same origin for another platform, if there is one."""
-    for platform in PLATFORMS.values():
+    for platform in KNOWN.values():
         path = cache / kept.file_name(name, key, platform)
         if not kept.fault(path):
             with zipfile.ZipFile(path) as archive:

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from fmu_src.packaging import start_values
-from fmu_src.packaging.platforms import PLATFORMS, Platform
+from fmu_src.packaging.platforms import KNOWN, Platform
 
 KEY = 16
 """Digits of the key that stand in the file name."""
@@ -37,7 +37,7 @@ def fault(path: Path) -> str:
     Checked  tests/packaging/test_kept.py
     """
     named = NAME.fullmatch(path.name)
-    platform = PLATFORMS.get(named["platform"]) if named else None
+    platform = KNOWN.get(named["platform"]) if named else None
     if named is None or platform is None:
         return UNKNOWN
     if not path.is_file():

@@ -13,12 +13,29 @@ from fmu_src.packaging import tools, universal
 from fmu_src.packaging.compile import ENTRY
 from fmu_src.packaging.platforms import Target
 
-SHIM = tuple(Path(__file__).parent / name for name in ("fmi2.c", "resources.c"))
+HERE = Path(__file__).parent
+SHIM = (HERE / "fmi2.c", HERE / "resources.c")
+IN_A_PAGE = (HERE / "fmi2.c", HERE / "wasm" / "host.c")
+"""The same where no system is below: a page has the resources."""
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 """The FMI headers as fmpy ships them."""
 FLAGS = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-g0", "-Wno-override-module")
 """For kernels and shim. Products and sums are never fused, so that all processors give the same bits."""
-SHIM_FLAGS = ("-std=c99", "-fvisibility=hidden", "-Wall", "-Wextra", "-shared", "-s")
+SHIM_FLAGS = ("-std=c99", "-fvisibility=hidden", "-Wall", "-Wextra", "-s")
+CALLED = (
+    "Instantiate SetupExperiment EnterInitializationMode ExitInitializationMode Reset FreeInstance DoStep "
+    "GetReal GetInteger GetBoolean SetReal SetInteger SetBoolean GetFMUstate SetFMUstate"
+)
+"""Functions of FMI that a page calls: the linker leaves out what nothing reaches."""
+FIXED = "-fno-PIC"
+"""For WebAssembly, which is linked to its place."""
+MODULE = (
+    FIXED,
+    "-mexec-model=reactor",
+    *(f"-Wl,--export=fmi2{name}" for name in CALLED.split()),
+    *(f"-Wl,--export={name}" for name in ("malloc", "free", "dcone_callbacks")),
+)
+"""For a library of WebAssembly, in the place of -shared."""
 SECOND_PATH = {"x86_64_v3": "v3"}
 """What the entry of a second code path is called, for processor.h."""
 
@@ -27,6 +44,11 @@ def clang(arguments: Sequence[object]) -> None:
     """Run it; BuildError with its last words if it fails."""
     command = [sys.executable, "-m", "ziglang", "cc", *map(str, arguments)]
     tools.run("clang", command)
+
+
+def is_page(target: Target) -> bool:
+    """Whether it is WebAssembly."""
+    return target.triple.startswith("wasm32")
 
 
 def compile_kernels(ir: Path, target: Target, folder: Path) -> list[Path]:
@@ -38,7 +60,8 @@ def compile_kernels(ir: Path, target: Target, folder: Path) -> list[Path]:
         entry = ENTRY if plain else f"{ENTRY}_{SECOND_PATH[processor]}"
         source.write_text(ir.read_text().replace(f"@{ENTRY}", f"@{entry}"))
         machine_code = source.with_suffix(".o")
-        clang(["-target", target.triple, f"-mcpu={processor}", *FLAGS, "-c", source, "-o", machine_code])
+        flags = (*FLAGS, FIXED) if is_page(target) else FLAGS
+        clang(["-target", target.triple, f"-mcpu={processor}", *flags, "-c", source, "-o", machine_code])
         return machine_code
 
     with ThreadPoolExecutor() as pool:
@@ -62,11 +85,18 @@ def link(ir: Path, header: Path, library: Path, targets: Sequence[Target]) -> No
 def _link_one(ir: Path, header: Path, library: Path, target: Target) -> None:
     objects = compile_kernels(ir, target, library.parent)
     paths = [f"-DDCONE_{SECOND_PATH[p].upper()}" for p in target.processors[1:]]
+    search = ["-I", HEADERS, "-I", header.parent]
     system: list[str] = []
-    if "linux" in target.triple:
+    shim: Sequence[Path] = SHIM
+    kind: Sequence[str] = ("-shared",)
+    if is_page(target):
+        shim, kind = IN_A_PAGE, MODULE
+        search += ["-I", HERE]
+    elif "linux" in target.triple:
         system = ["-lm", "-ldl"]  # the others have their mathematics, and their loader, in the one C library
     elif "macos" in target.triple:
         # without these, the folder of this build, and the names of internal functions
         system = [f"-Wl,-install_name,@rpath/{library.name}", "-Wl,-x"]
-    search = ["-I", HEADERS, "-I", header.parent]
-    clang(["-target", target.triple, *FLAGS, *SHIM_FLAGS, *search, *paths, *SHIM, *objects, "-o", library, *system])
+    clang(
+        ["-target", target.triple, *FLAGS, *SHIM_FLAGS, *kind, *search, *paths, *shim, *objects, "-o", library, *system]
+    )

@@ -71,7 +71,13 @@ LINUX_AARCH64 = Platform(
 """FMI 2.0.4, section 2.3, names folders for processors other than x86 by the tuples of FMI 3.0. Older loaders look in
 `linux64` on every 64-bit Linux, fmpy's among them, and in `darwin64` on every Mac."""
 
+PAGE = Platform("wasm32", ".wasm", (Place("wasm32-wasi", (Target("wasm32-wasi", ("generic+simd128",)),)),))
+"""A browser: the library is WebAssembly with vectors of 128 bits, and has what `wasm/host.c` asks of a page."""
+
 PLATFORMS = {p.name: p for p in (LINUX64, WIN64, DARWIN64, LINUX_AARCH64)}
+"""Machines, by the names of the command line."""
+KNOWN = {**PLATFORMS, PAGE.name: PAGE}
+"""All that an FMU is built for here."""
 MACHINES = {
     ("linux", "x86_64"): LINUX64,
     ("linux", "aarch64"): LINUX_AARCH64,

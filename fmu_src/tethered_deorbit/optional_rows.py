@@ -305,7 +305,8 @@ _MAPPED = (
 
 POINTS_ONLY = ("event_map", "averaged")
 """Levels of two points: what else they cannot carry is refused."""
-NO_BREAK, NO_SWAY = ("break",), ("break", "burn", "plume", "oblateness", "air")
+NO_BREAK = ("break", "release", "power", "electrodynamic")
+NO_SWAY = (*NO_BREAK, "burn", "plume", "oblateness", "air", "third_bodies", "shadow", "sunlight")
 """Groups with which the one and the other do not go together."""
 
 

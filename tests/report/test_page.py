@@ -100,7 +100,10 @@ def test_it_asks_nobody_and_scripts_are_all_in_it(page: Page) -> None:
     imported = json.loads(page.scripts["importmap"])["imports"]
     assert set(imported) == {
         "three",
-        *(f"dcone/{name}" for name in ("bodies", "bytes", "camera", "chart", "lines", "page", "replay")),
+        *(
+            f"dcone/{name}"
+            for name in ("bodies", "bytes", "camera", "chart", "knob", "lines", "live", "page", "replay", "shot")
+        ),
     }
     assert all(value.startswith("data:text/javascript;base64,") for value in imported.values())
 

@@ -10,15 +10,18 @@ import pandas as pd
 import pytest
 
 from dcone_cosim import loads
+from dcone_cosim.commands import run_and_write
 from dcone_cosim.comparing.commands import compare, write
 from dcone_cosim.comparing.page import together
 from dcone_cosim.comparing.show import as_dict
+from dcone_cosim.errors import OVERLOADED
+from dcone_cosim.progress import Progress
 from dcone_cosim.report import told
 from dcone_cosim.run_reading import read_run
 from orbital.oscillators import damped_snap_peak
 from tests.report.conftest import Page
 from tests.report.test_packing import decoded
-from tests.runs import put
+from tests.runs import COARSE, put
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +51,23 @@ def test_the_line_with_the_least_margin_governs(bare: Path) -> None:
     assert weakest.line.name == min(margins, key=lambda name: margins[name])
     tile = told.chief(run)[-1]
     assert tile["since"] == f"{weakest.phase}: {weakest.line.label}"
+
+
+def test_what_a_reader_asks_first_stands_at_the_top(bare: Path, tmp_path: Path) -> None:
+    """What governs the line, from the table of its tugs; whether the net held, of threads strong and weak."""
+    tiles = {tile["label"]: tile for tile in told.chief(read_run(bare))}
+    tugs = pd.read_parquet(bare / "tugs.parquet")
+    hardest = tugs.loc[tugs["peak"].idxmax()]
+    tile = tiles["what governs the line"]
+    assert tile["value"] == f"tug {hardest['tug']:.0f} of {len(tugs)}"
+    assert tile["since"] == f"removal: ~{hardest['peak']:.4g} N, at {hardest['time']:.6g} s"
+    assert tiles["did the net hold"]["value"].startswith("yes, margin ~")
+    assert tiles["did the net hold"]["since"] == "capture: a thread of the net"
+    settings = (*COARSE, "capture.net.strength=1 MPa")
+    weak = run_and_write("mission", tmp_path / "weak", Progress(), with_figures=False, settings=settings)
+    assert weak.result.exit_code == OVERLOADED
+    (tile,) = [one for one in told.chief(read_run(weak.folder)) if one["label"] == "did the net hold"]
+    assert tile["value"] == "no: its threads bore more than they can"
 
 
 def test_histories_of_two_runs_stand_on_one_clock(bare: Path, thick: Path, tmp_path: Path) -> None:

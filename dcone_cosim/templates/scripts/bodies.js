@@ -34,9 +34,9 @@ export class Bodies {
     this.times = unpack(clip.times);
     this.chaser = new Places(clip.chaser);
     for (const name of ["target", "line", "bullets"]) this[name] = clip[name] ? new Places(clip[name]) : null;
-    this.attitude = clip.attitude ? unpack(clip.attitude) : null;
+    this.attitude = clip.attitude ? unpack(clip.attitude.values ?? clip.attitude) : null;
     this.tension = clip.tension ? new Tensions(clip.tension) : null;
-    this.box = this.bounds();
+    this.box = clip.box ?? this.bounds();
     const size = 0.012 * this.reach();
     this.ship = new THREE.Mesh(new THREE.BoxGeometry(1.4, 1.1, 1.1), new THREE.MeshLambertMaterial({ color: COLOURS.chaser }));
     scene.add(this.ship);

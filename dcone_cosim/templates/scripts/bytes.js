@@ -2,8 +2,9 @@
 
 const KINDS = { f4: Float32Array, f8: Float64Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
 
-/** The numbers of a packed array, flat; codes where it is one of codes. */
+/** The numbers of a packed array, flat; codes where it is one of codes. An array that is none is given back. */
 export function unpack(packed) {
+  if (ArrayBuffer.isView(packed)) return packed;
   const text = atob(packed.data);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
@@ -13,7 +14,7 @@ export function unpack(packed) {
 /** Positions: `at(frame)` fills a Float32Array with those of a frame, as (x, y, z) of the scene. */
 export class Places {
   constructor(packed) {
-    this.values = unpack(packed);
+    this.values = unpack(packed.values ?? packed);
     this.count = packed.shape.length === 3 ? packed.shape[1] : 1;
     this.low = packed.low || [0, 0, 0];
     this.step = packed.step || [1, 1, 1];
@@ -38,7 +39,7 @@ export class Places {
 /** Tensions as codes of a logarithmic scale: 0 is slack, 255 the largest. */
 export class Tensions {
   constructor(packed) {
-    this.codes = unpack(packed);
+    this.codes = unpack(packed.codes ?? packed);
     this.count = packed.shape.length === 2 ? packed.shape[1] : 1;
     this.most = packed.most;
     this.floor = packed.floor;

@@ -45,17 +45,31 @@ export class Chart {
     this.root = root;
     this.data = data;
     this.log = data.log;
-    this.series = data.series.map((row, i) => {
+    this.take(data.series);
+    this.furnish();
+    new ResizeObserver(() => this.draw()).observe(this.plot);
+    this.draw();
+  }
+
+  /** Have these series, and show all of them. */
+  take(series) {
+    this.series = series.map((row, i) => {
       const dash = row.hue === null ? DASHES[i % 6] : row.faint ? DASHES[1] : "";
       return { ...row, x: unpack(row.x), y: unpack(row.y), colour: `var(--s${((row.hue ?? i) % 6) + 1})`, dash };
     });
     const ends = this.series.flatMap((row) => (row.x.length ? [row.x[0], row.x[row.x.length - 1]] : []));
-    this.all = [Math.min(...ends), Math.max(...ends)];
+    this.all = ends.length ? [Math.min(...ends), Math.max(...ends)] : [0, 1];
+    if (this.data.range) this.all = [...this.data.range];
     if (this.all[0] === this.all[1]) this.all[1] = this.all[0] + 1;
     this.shown = [...this.all];
-    this.furnish();
-    new ResizeObserver(() => this.draw()).observe(this.plot);
-    this.draw();
+  }
+
+  /** Other series in their place; the stretch in sight stays. */
+  give(series) {
+    const [low, high] = this.shown, whole = low === this.all[0] && high === this.all[1];
+    this.take(series);
+    this.legend.replaceChildren(...this.entries());
+    if (whole) this.draw(); else this.show(low, high);
   }
 
   furnish() {
@@ -81,22 +95,15 @@ export class Chart {
     }
     this.readout = Object.assign(document.createElement("output"), { className: "readout" });
     bar.append(this.readout);
-    const legend = document.createElement("div");
-    legend.className = "legend";
-    for (const row of this.series) {
-      const item = document.createElement("span");
-      const swatch = node("svg", { width: 26, height: 10, "aria-hidden": "true" });
-      swatch.append(node("line", { x1: 0, x2: 26, y1: 5, y2: 5, style: `stroke:${row.colour}`, "stroke-width": 2, "stroke-dasharray": row.dash }));
-      if (row.kind === "stems") swatch.append(node("circle", { cx: 13, cy: 5, r: 3.5, style: `fill:${row.faint ? "var(--paper)" : row.colour};stroke:${row.colour}` }));
-      item.append(swatch, row.name);
-      legend.append(item);
-    }
+    this.legend = document.createElement("div");
+    this.legend.className = "legend";
+    this.legend.append(...this.entries());
     this.plot = document.createElement("div");
     this.plot.className = "plot";
     this.plot.tabIndex = 0;
     this.plot.setAttribute("role", "group");
     this.plot.setAttribute("aria-label", `${this.data.title} [${this.data.unit}] over ${this.data.clock}: arrows to move, plus and minus to zoom, Home for all`);
-    this.root.append(legend, this.plot, bar);
+    this.root.append(this.legend, this.plot, bar);
     this.plot.addEventListener("keydown", (event) => this.key(event));
     this.plot.addEventListener("pointerdown", (event) => this.grab(event));
     this.plot.addEventListener("pointermove", (event) => this.hover(event));
@@ -107,6 +114,18 @@ export class Chart {
       event.preventDefault();
       this.zoom(event.deltaY > 0 ? 1.25 : 0.8, this.timeAt(event));
     }, { passive: false });
+  }
+
+  /** What the legend says. */
+  entries() {
+    return this.series.map((row) => {
+      const item = document.createElement("span");
+      const swatch = node("svg", { width: 26, height: 10, "aria-hidden": "true" });
+      swatch.append(node("line", { x1: 0, x2: 26, y1: 5, y2: 5, style: `stroke:${row.colour}`, "stroke-width": 2, "stroke-dasharray": row.dash }));
+      if (row.kind === "stems") swatch.append(node("circle", { cx: 13, cy: 5, r: 3.5, style: `fill:${row.faint ? "var(--paper)" : row.colour};stroke:${row.colour}` }));
+      item.append(swatch, row.name);
+      return item;
+    });
   }
 
   key(event) {

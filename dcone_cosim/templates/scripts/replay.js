@@ -39,9 +39,18 @@ export class Replay {
     this.go(this.beginning());
   }
 
+  /** The last frame that there is; of a clip that is being made more come. */
+  get end() { return (this.held ?? this.times.length) - 1; }
+
+  /** So many frames are there, of those that the clip has room for; `growing`: more of them are to come. */
+  grow(held, growing) {
+    [this.held, this.growing] = [held, growing];
+    this.parts.slider.max = String(Math.max(this.end, 0));
+  }
+
   /** The frame that is shown first: where most is to be seen, before anything is asked. */
   beginning() {
-    const marks = this.clip.marks.filter((mark) => mark.time <= this.times[this.times.length - 1]);
+    const marks = this.clip.marks.filter((mark) => mark.time <= this.times[this.end]);
     const at = marks.find((mark) => /widest/.test(mark.what)) ?? { time: this.times[0] };
     return this.nearest(at.time);
   }
@@ -61,12 +70,12 @@ export class Replay {
     const find = (name) => this.root.querySelector(`[data-part="${name}"]`);
     this.parts = Object.fromEntries(["play", "slider", "time", "speed", "view", "told", "axes", "marks", "grid"].map((name) => [name, find(name)]));
     const { play, slider, speed, view, marks, grid } = this.parts;
-    slider.max = String(this.times.length - 1);
+    slider.max = String(this.end);
     slider.addEventListener("input", () => { this.stop(); this.go(Number(slider.value)); });
     play.addEventListener("click", () => this.toggle());
     find("first").addEventListener("click", () => { this.stop(); this.go(0); });
-    find("last").addEventListener("click", () => { this.stop(); this.go(this.times.length - 1); });
-    const span = this.times[this.times.length - 1] - this.times[0];
+    find("last").addEventListener("click", () => { this.stop(); this.go(this.end); });
+    const span = this.times[this.end] - this.times[0];
     const offered = SPEEDS.filter((one) => span / one >= 1 && span / one <= 600);
     const usual = span <= LONGEST_AS_IT_IS && span > 2 ? 1 : offered.find((one) => span / one <= LONGEST) ?? 1;
     speed.append(...(offered.length ? offered : [1]).map((one) => new Option(one === 1 ? "as fast as it is" : `${one.toLocaleString("en")} times as fast`, String(one), one === usual, one === usual)));
@@ -75,7 +84,7 @@ export class Replay {
     view.addEventListener("change", () => this.look(view.value));
     grid.textContent = `grid ${spoken(this.mesh)} m`;
     for (const mark of [...this.clip.marks].sort((a, b) => a.time - b.time)) {
-      if (mark.time < this.times[0] || mark.time > this.times[this.times.length - 1]) continue;
+      if (mark.time < this.times[0] || mark.time > this.times[this.end]) continue;
       const made = Object.assign(document.createElement("button"), { type: "button", textContent: `${mark.what} ${spoken(mark.time)} s` });
       made.addEventListener("click", () => { this.stop(); this.go(this.nearest(mark.time)); });
       marks.append(made);
@@ -89,7 +98,7 @@ export class Replay {
     const on = event.target === this.parts.slider;
     const step = event.shiftKey ? 10 : 1;
     const acts = {
-      " ": () => this.toggle(), Home: () => { this.stop(); this.go(0); }, End: () => { this.stop(); this.go(this.times.length - 1); },
+      " ": () => this.toggle(), Home: () => { this.stop(); this.go(0); }, End: () => { this.stop(); this.go(this.end); },
       ArrowLeft: () => { this.stop(); this.go(this.frame - step); }, ArrowRight: () => { this.stop(); this.go(this.frame + step); },
       ...(on ? {} : {
         ArrowUp: () => this.camera.turn(0, 0.08), ArrowDown: () => this.camera.turn(0, -0.08), a: () => this.camera.turn(-0.08, 0), d: () => this.camera.turn(0.08, 0),
@@ -117,7 +126,7 @@ export class Replay {
 
   toggle() {
     if (this.playing) { this.stop(); return; }
-    if (this.frame === this.times.length - 1) this.go(0);
+    if (this.frame === this.end && !this.growing) this.go(0);
     this.playing = true;
     this.parts.play.textContent = "❚❚ pause";
     const began = performance.now(), from = this.times[this.frame];
@@ -125,9 +134,9 @@ export class Replay {
       if (!this.playing) return;
       const time = from + ((now - began) / 1000) * Number(this.parts.speed.value);
       let next = this.frame;
-      while (next + 1 < this.times.length && this.times[next + 1] <= time) next++;
+      while (next < this.end && this.times[next + 1] <= time) next++;
       if (next !== this.frame) this.go(next);
-      if (next === this.times.length - 1) this.stop(); else requestAnimationFrame(step);
+      if (next === this.end && !this.growing) this.stop(); else requestAnimationFrame(step);
     };
     requestAnimationFrame(step);
   }
@@ -138,7 +147,7 @@ export class Replay {
   }
 
   go(frame) {
-    this.frame = Math.min(Math.max(frame, 0), this.times.length - 1);
+    this.frame = Math.min(Math.max(frame, 0), this.end);
     this.bodies.show(this.frame);
     const { slider, time, told } = this.parts;
     slider.value = String(this.frame);

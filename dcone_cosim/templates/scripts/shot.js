@@ -1,0 +1,138 @@
+// The shot simulated in the page: the net itself opens, meets the target and closes, with its values moved.
+
+import { spoken, unpack } from "dcone/bytes";
+import { Knob, workerOf } from "dcone/knob";
+import { Replay } from "dcone/replay";
+
+const LARGEST = 255;
+
+/** A figure in two columns. */
+const FIGURES = { "mouth.area": "mouth.area", "thread.tension_max": "thread.tension_max", t_capture: "t_capture" };
+
+export class ShotView {
+  /** `box` is what the run's own replay shows, `surface` its target. */
+  constructor(root, told, colours, box, surface) {
+    this.root = root;
+    this.told = told;
+    const part = (name) => root.querySelector(`[data-part="${name}"]`);
+    [this.status, this.command, this.note, this.button] = ["status", "command", "note", "shoot"].map(part);
+    this.knobs = told.knobs.map((one, i) => new Knob(root.querySelector(`[data-knob="${i}"]`), one, () => this.tell()));
+    part("reset").addEventListener("click", () => { for (const knob of this.knobs) knob.put(knob.told.value); this.tell(); });
+    this.button.addEventListener("click", () => this.shoot());
+    this.number = 0;
+    this.over = null;
+    [this.held, this.most, this.took, this.failed] = [0, 0, 0, ""];
+    this.replay = new Replay(root.querySelector(".replay"), this.clip(box, surface), colours);
+    this.replay.grow(1, false);
+    this.replay.go(0);
+    this.tell();
+    this.begin();
+  }
+
+  /** Room for every frame that the shot may have. */
+  clip(box, surface) {
+    const { plan, bodies, ends, rim, most, floor } = this.told;
+    const room = Math.ceil(plan.duration / plan.every) + 2;
+    const places = (count) => ({ values: new Float32Array(3 * count * room), shape: [room, count, 3] });
+    const found = { key: "shot", title: "Shot", clock: "since the shot", times: Float64Array.from({ length: room }, (_, n) => Math.min(n * plan.every, plan.duration)), marks: [], notes: [], box, surface };
+    for (const [name, count] of Object.entries(bodies)) found[name] = name === "attitude" ? { values: new Float32Array(4 * room) } : places(count / 3);
+    found.net = { nodes: places(plan.nodes.length / 3), threads: unpack(ends), rim };
+    if (plan.threads.length && most > 0) found.net.tensions = { codes: new Uint8Array(plan.threads.length * room), shape: [room, plan.threads.length], most, floor };
+    if (found.attitude) for (let n = 0; n < room; n++) found.attitude.values[4 * n] = 1;
+    return found;
+  }
+
+  begin() {
+    try {
+      this.worker = workerOf("shot", this.told, (told) => this.hear(told), (text) => this.fail(text));
+    } catch (error) {
+      this.fail(`this browser gives the page no worker: ${error.message}`);
+    }
+  }
+
+  fail(text) {
+    this.status.textContent = `Nothing can be simulated here: ${text}.`;
+    this.root.classList.add("off");
+    this.state = "broken";
+    this.button.disabled = true;
+  }
+
+  get moved() { return this.knobs.filter((knob) => knob.moved); }
+
+  shoot() {
+    if (this.state !== "ready") return;
+    this.number += 1;
+    this.over = null;
+    this.held = 0;
+    this.most = 0;
+    this.failed = "";
+    this.took = 0;
+    this.shot = this.moved.length;
+    this.replay.stop();
+    this.root.dataset.done = "";
+    this.worker.postMessage({ number: this.number, values: Object.assign({}, ...this.moved.map((knob) => knob.values)) });
+    this.tell();
+  }
+
+  hear(told) {
+    if (told.kind === "ready") { this.state = "ready"; this.button.disabled = false; this.tell(); return; }
+    if (told.kind === "broken") { this.fail(told.text); return; }
+    if (told.number !== this.number) return;
+    if (told.kind === "first") { this.held = 0; this.put(told.frame); this.held = 0; this.replay.go(0); return; }
+    if (told.kind === "frames") {
+      const first = this.held === 0;
+      for (const frame of told.frames) this.put(frame);
+      this.took = told.took;
+      this.replay.grow(this.held, true);
+      if (first && this.held) { this.replay.go(0); this.replay.toggle(); }
+    } else {
+      this.replay.grow(Math.max(this.held, 1), false);
+      if (told.kind === "over") { this.over = told; this.took = told.took; } else this.failed = told.text;
+      this.root.dataset.done = this.number;
+    }
+    this.tell();
+  }
+
+  /** One frame more of the clip. */
+  put(frame) {
+    const { bodies, net, times, clip } = { ...this.replay.bodies, times: this.replay.times, bodies: this.told.bodies, clip: this.replay.clip };
+    const n = this.held, at = { bodies: 0 };
+    times[n] = frame.time;
+    for (const [name, count] of Object.entries(bodies)) {
+      clip[name].values.set(frame.bodies.subarray(at.bodies, (at.bodies += count)), count * n);
+    }
+    clip.net.nodes.values.set(frame.nodes, frame.nodes.length * n);
+    const tensions = clip.net.tensions;
+    if (tensions) {
+      const floor = Math.log(tensions.floor), codes = tensions.codes.subarray(frame.tensions.length * n, frame.tensions.length * (n + 1));
+      frame.tensions.forEach((pull, i) => {
+        const share = pull > 0 ? Math.log(pull / tensions.most) / floor : 2;
+        codes[i] = share <= 1 ? Math.round(LARGEST - (LARGEST - 1) * Math.min(Math.max(share, 0), 1)) : 0;
+      });
+    }
+    const mouth = this.told.plan.figures.indexOf("mouth.area");
+    if (mouth >= 0) this.most = Math.max(this.most, frame.figures[mouth]);
+    this.held += 1;
+  }
+
+  tell() {
+    const { run } = this.told, over = this.over;
+    for (const name of Object.keys(FIGURES)) {
+      const row = this.root.querySelector(`[data-figure="${name}"]`);
+      if (!row) continue;
+      const found = over ? (name === "mouth.area" ? this.most : over.figures[name]) : NaN;
+      const shown = (value) => (Number.isFinite(value) && (name !== "t_capture" || value > 0) ? spoken(value, 3) : "–");
+      row.querySelector('[data-of="run"]').textContent = shown(run[name]);
+      row.querySelector('[data-of="moved"]').textContent = over ? shown(found) : this.held ? "…" : "";
+    }
+    const here = this.held ? this.replay.times[this.held - 1] : 0;
+    const same = over && !this.shot && this.told.plan.figures.filter((name) => name !== "mouth.area").every((name) => over.figures[name] === run[name]);
+    const speed = this.took > 0 ? ` in ${spoken(this.took, 2)} s of computing, ${spoken(here / this.took, 2)} times as fast as it is` : "";
+    this.status.textContent = this.failed ? `The model refuses that: ${this.failed}.`
+      : over ? `${spoken(over.time, 3)} s simulated${speed}; native code took ${spoken((this.told.native.wall * over.time) / this.told.native.duration, 2)} s for them. It came to: ${over.outcome || over.ended || "the end of its time"}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: something is rounded otherwise here, and a net is chaotic, so that these are two samples."}`
+        : this.held ? `${spoken(here, 3)} s simulated${speed} …`
+          : this.state === "ready" ? "Nothing is shot yet." : "…";
+    const settings = this.moved.flatMap((knob) => knob.settings);
+    this.command.textContent = ["dcone run", this.told.folder, ...settings, ...(settings.length ? ["-o moved"] : [])].join(" ");
+  }
+}
