@@ -9,6 +9,7 @@ from typing import Any
 
 from dcone_cosim import loads
 from dcone_cosim.cases.rows import CLOCK
+from dcone_cosim.contract import FAILED_OUTCOMES
 from dcone_cosim.findings import SAMPLE, Finding, digits
 from dcone_cosim.phases import kind_of
 from dcone_cosim.reports import summary
@@ -60,7 +61,9 @@ def _asked(run: RunResult, load: loads.Load) -> dict[str, str] | None:
     """What a reader asks first of a line: did the net hold, what governs the line of the tow; None of the others."""
     mark = SAMPLE if load.spread else ""
     if load.line.name == "thread":
-        held = "not known" if load.margin is None else f"yes, margin {mark}{digits(load.margin, load.spread, 3)}"
+        lost = run.phases[load.phase].outcome in FAILED_OUTCOMES
+        yes = "its threads did" if lost else "yes"
+        held = "not known" if load.margin is None else f"{yes}, margin {mark}{digits(load.margin, load.spread, 3)}"
         if load.broke is not None:
             held = f"no: {load.broken} of its threads broke"
         elif load.overloaded:

@@ -68,6 +68,10 @@ def test_what_a_reader_asks_first_stands_at_the_top(bare: Path, tmp_path: Path) 
     assert weak.result.exit_code == OVERLOADED
     (tile,) = [one for one in told.chief(read_run(weak.folder)) if one["label"] == "did the net hold"]
     assert tile["value"] == "no: its threads bore more than they can"
+    missed = read_run(bare)
+    missed.phases["capture"].outcome = "missed"
+    (tile,) = [one for one in told.chief(missed) if one["label"] == "did the net hold"]
+    assert tile["value"].startswith("its threads did, margin ~")
 
 
 def test_histories_of_two_runs_stand_on_one_clock(bare: Path, thick: Path, tmp_path: Path) -> None:
