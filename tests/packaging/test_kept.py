@@ -130,7 +130,7 @@ def test_a_binary_is_known_by_its_bytes(file: Path, tmp_path: Path) -> None:
 @pytest.fixture
 def build(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[], tuple[Path, list[str]]]:
     """Build reel control for this machine with a compiler and a linker that only pretend; returns what it said."""
-    monkeypatch.setattr(builds.compile, "emit", lambda model, terms, ir: ir.write_text("; no kernels"))
+    monkeypatch.setattr(builds.compile, "emit", lambda model, terms, ir, common: ir.write_text("; no kernels"))
     monkeypatch.setattr(builds.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
     monkeypatch.setattr(builds.picture, "png", lambda interface: b"picture")
 
