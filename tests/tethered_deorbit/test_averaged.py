@@ -99,6 +99,32 @@ def test_a_month_at_once_is_that_which_is_stepped() -> None:
     assert leaping["level.average_error"] < 1e-5
 
 
+def eccentricity(i: Instance) -> np.ndarray:
+    position, velocity = i.array("center_position"), i.array("center_velocity")
+    return np.cross(velocity, np.cross(position, velocity)) / EARTH_MU - position / np.linalg.norm(position)
+
+
+def test_eccentricity_of_a_spiral() -> None:
+    """Under a thrust along the track it grows as v^1.5 and stays where it points."""
+    ends, before = [], 0.0
+    for allowed in (1e-3, 0.0):
+        loose = {"solver.tolerance_orbit": 1e-3, "solver.tolerance_separation": 1e-6, "solver.tolerance_stretch": 1e-7}
+        values = (
+            TABLE_2 | loose | {"thrust.level": -0.03, "orbit.eccentricity": 5e-4, "level.average_tolerance": allowed}
+        )
+        i = Instance(MODEL, AVERAGED, values).initialise()
+        i.step(DAY)
+        before = float(np.linalg.norm(eccentricity(i)))
+        i.step(200.0 * DAY)
+        ends.append(eccentricity(i))
+        assert (i["level.revolutions"] > 1000.0) == (allowed > 0.0)
+        speed = math.sqrt(EARTH_MU / i["center.semi_major_axis"])
+    assert np.linalg.norm(ends[0] - ends[1]) < 1e-2 * np.linalg.norm(ends[1])
+    grown = (speed / math.sqrt(EARTH_MU / AXIS)) ** 1.5
+    assert grown > 1.03
+    assert np.linalg.norm(ends[1]) == pytest.approx(grown * before, rel=0.02)
+
+
 def test_it_comes_down_when_the_closed_form_says() -> None:
     """From 800 to 790 km: (v_1 - v_0) M/F, the run's end found within a leap."""
     i = tow(ends__altitude=790e3)

@@ -315,7 +315,8 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
                     break
             r.state_vibration[0] = stretch
             r.state_vibration[1] = speed
-            if neglects(record, mass) <= SURE and error * abs(longer) <= tolerance(record):
+            close = error <= r.level_peak_error and error * abs(longer) <= tolerance(record)
+            if close and neglects(record, mass) <= SURE:
                 r.state_moved_mass = mass
                 r.state_level_error = max(r.state_level_error, error)
                 return float(min(first, limit))
