@@ -152,14 +152,17 @@ def axis_drift() -> dict[str, float]:
             rows.append((i.time, i["center.semi_major_axis"]))
         times, axis = np.array(rows).T
         slope = np.polyfit(times, axis - axis[0], 1)[0]
-        found[level] = {"slope x year": float(slope * 365.0 * DAY), "last - first": float(axis[-8:].mean() - axis[:8].mean()),
-                        "tugs": float(i["tether.tug_count"])}  # fmt: skip
+        found[level] = {
+            "slope x year": float(slope * 365.0 * DAY),
+            "last - first": float(axis[-8:].mean() - axis[:8].mean()),
+            "tugs": float(i["tether.tug_count"]),
+        }
         print("axis", level, found[level], flush=True)
     return found
 
 
 def arrivals() -> dict[str, Any]:
-    """Table 2's spiral from 800 to 200 km, in macro steps of ten days: when it is there, mean tension, processor time."""
+    """Table 2's spiral from 800 to 200 km in macro steps of ten days: when it ends, mean tension, processor time."""
     main = load("spiral-to-200km").phases[0].main
     found: dict[str, Any] = {}
     for level in LEVELS[1:]:
