@@ -23,11 +23,11 @@ UNKNOWN_EXTENT = 1.0
 
 
 MODES = {
-    "free": "share of the time in free flight",
+    "free": "share in free flight",
     "followed": "share with every vibration followed",
-    "mapped": "share with the vibration in closed form",
+    "mapped": "share with vibration in closed form",
     "dumbbell": "share as a rigid dumbbell",
-    "averaged": "share over many revolutions at once",
+    "averaged": "share of many revolutions at once",
 }
 """Ways in which a tow is computed, by the output `level.*` with the time spent so."""
 
@@ -87,10 +87,10 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_environment(phase, result, last)
     yield from released.findings(run, phase, result)
     yield from _of_reel(run, phase, last)
-    if "level.settled" in last:
-        yield from _of_level(phase, result, last)
     if "level.now" in last:
         yield from _of_modes(phase, last)
+    elif "level.settled" in last:
+        yield from _of_level(phase, result, last)
 
 
 def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:
