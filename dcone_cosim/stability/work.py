@@ -131,14 +131,15 @@ def judge_cell(cell: Cell) -> tuple[Verdict, Cost | None, float]:
         return _without(here.row, cell), cost, 0.0
     spent = here.phase.cpu
     criteria = list(kind_of(_name(cell)).criteria(evidence_of(here.result, cell.scene.phases[0])))  # type: ignore[arg-type]
+    main = cell.scene.phases[0].main
+    wider = build.within(main.model, main.values, main.terms) if main.fmu is None else {}
+    instead = build.instead(main.model, main.terms)
     if here.phase.error is not None:
-        return _stopped(cell, here.phase, criteria), cost, spent
+        return _stopped(cell, here.phase, suited(criteria, instead, wider)), cost, spent
     for one, more in _compared(cell, here, criteria, spent):
         criteria.append(one)
         spent += more
-    main = cell.scene.phases[0].main
-    wider = build.within(main.model, main.values, main.terms) if main.fmu is None else {}
-    criteria = suited(criteria, build.instead(main.model, main.terms), wider)
+    criteria = suited(criteria, instead, wider)
     return verdict(criteria, cell.asked), cost, spent
 
 

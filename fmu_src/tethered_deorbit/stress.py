@@ -158,8 +158,8 @@ MSIS = (
             duration=HOUR),
 )  # fmt: skip
 THIRD_BODIES = (
-    Extreme("as high as the Moon", "it draws as hard as the Earth does, or harder", "longer",
-            {"orbit.altitude": 350e6, "orbit.inclination": math.radians(28.6)}, duration=5.0 * DAY, macro_step=600.0),
+    Extreme("a quarter of the way to the Moon", "it disturbs the orbit by a hundredth of the Earth's pull", "longer",
+            {"orbit.altitude": 95e6, "orbit.inclination": math.radians(28.6)}, duration=5.0 * DAY, macro_step=600.0),
 )  # fmt: skip
 SHADOW = (
     Extreme("a shadow that is grazed", "the Sun just touches the Earth's rim, orbit after orbit", "longer",

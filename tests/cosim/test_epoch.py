@@ -6,14 +6,18 @@ from datetime import UTC, datetime
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
 import pytest
 from astropy.time import Time
 
 from dcone_cosim.errors import InputError
-from dcone_cosim.loading import find
+from dcone_cosim.line import line_of
+from dcone_cosim.loading import find, load
 from dcone_cosim.phases.second_tow import TowHandover
 from dcone_cosim.scene.expected import Expected, Unexpected
 from dcone_cosim.scenes.reading import parse
+from dcone_cosim.transaction import HandoffRecord
+from tests.cosim.test_level import LENGTH, handed
 
 DATE = Expected("s", date=True, minimum=-1.6e9, maximum=1.6e9)
 TABLE_2 = find("table2-deorbit").read_text(encoding="utf-8")
@@ -79,3 +83,14 @@ def test_a_second_tow_begins_when_the_first_has_ended() -> None:
     for begun, expected in (({}, 5600.0), ({"orbit.epoch": 7000.0}, 7600.0)):
         record = TowHandover(600.0, 0.0, cast("Any", phase), left | begun, None)
         assert record.parameters(component)["orbit.epoch"] == expected
+
+
+def test_a_tow_begins_when_the_capture_has_ended() -> None:
+    scene = load("mission", ('removal.third_bodies.which="moon"', 'orbit.epoch="2026-03-20 14:46"'))
+    removal = scene.phases[1]
+    turning = np.array([0.0, 0.0, 1e-3])
+    found = handed(turning, np.array([0.0, -1.9, 0.0]), np.array([0.0, 11.0, 0.0]), np.array([0.0, 0.02, 0.0]))
+    record = HandoffRecord(12.5, 12.5, "told", removal, found, line_of(found, LENGTH))
+    component: Any = SimpleNamespace(variables={"orbit.epoch": None})
+    assert record.parameters(component)["orbit.epoch"] == DATE.read("2026-03-20 14:46") + 12.5
+    assert "orbit.epoch" not in record.parameters(cast("Any", SimpleNamespace(variables={})))

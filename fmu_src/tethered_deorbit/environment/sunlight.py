@@ -18,8 +18,9 @@ from orbital.kernel import kernel
 from orbital.shadow import LIT, PENUMBRA, cone_zone, cylinder_zone, lit_share
 from orbital.vectors import Array, dot, norm
 
-LOOK = 0.05
-"""Angle by which the pair may go on between two looks for the shadow [rad]; in low orbit that takes 50 s."""
+LOOK, FAR_LOOK = 0.05, 0.25
+"""Angle by which the pair may go on between two looks for the shadow, near its edges and far from them [rad]; in low
+orbit that takes 50 s and four minutes."""
 
 
 def make_shadow(shape: str, point_sky: Callable[..., Any]) -> tuple[Disturbing, Acting]:
@@ -95,12 +96,17 @@ def make_shadow(shape: str, point_sky: Callable[..., Any]) -> tuple[Disturbing, 
 
     @kernel
     def longest(record: Any, state: Array) -> float:
-        """Longest step [s].
+        """Longest step [s]: half the way to the edge of the shadow, as far as that is within the two bounds.
 
         Checked  tests/tethered_deorbit/test_sky.py
         """
+        r = record[0]
+        point_sky(record, r.state_begin, 0.0)
         radius = norm(state[0:3])
-        return float(LOOK * radius / norm(state[3:6]))
+        cosine = -dot(state[0:3], r.state_sun) / (radius * norm(r.state_sun))
+        from_axis = math.acos(max(-1.0, min(1.0, cosine)))
+        room = abs(from_axis - math.asin(min(1.0, EARTH_EQUATORIAL_RADIUS / radius)))
+        return float(min(FAR_LOOK, max(LOOK, 0.5 * room)) * radius / norm(state[3:6]))
 
     @kernel
     def holds(record: Any, state: Array, since: float) -> bool:
