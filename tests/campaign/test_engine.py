@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dcone_cosim.campaign.cluster import DEATHS, Cluster, Persistent, SchedulerGone
+from dcone_cosim.campaign.cluster import DEATHS, Cluster, GivenUp, Persistent, SchedulerGone, _Dask
 from dcone_cosim.campaign.engine import Engine
 from dcone_cosim.campaign.inputs import Group as InputGroup
 from dcone_cosim.campaign.inputs import Input, Inputs
@@ -164,3 +164,49 @@ def test_what_is_told_on_the_way() -> None:
     assert "40 completed; 0.9" in one.tally.told()
     one.tally.count(lost("k", "died"), False)
     assert "1 lost" in one.tally.told()
+
+
+class _Answer:
+    """A future of dask that has come to an end."""
+
+    def __init__(self, status: str, error: Exception | None) -> None:
+        self.status, self._error = status, error
+
+    def result(self) -> int:
+        if self._error is not None:
+            raise self._error
+        return 3
+
+    def add_done_callback(self, call: Callable[[Any], object]) -> None:
+        call(self)
+
+
+class _Client:
+    def __init__(self, status: str, answers: list[_Answer]) -> None:
+        self.status, self._answers = status, answers
+
+    def submit(self, *arguments: Any, **more: Any) -> _Answer:
+        return self._answers.pop(0)
+
+
+def test_what_dask_says() -> None:
+    """A result that goes with its worker is made again; what has killed many is given up; a scheduler may be gone."""
+    distributed = pytest.importorskip("distributed")
+    from concurrent.futures import CancelledError
+
+    lost_result = _Answer("lost", CancelledError())
+    killed = _Answer("error", distributed.scheduler.KilledWorker("case", None, 3))
+    good = _Answer("finished", None)
+
+    def asked(status: str, *answers: _Answer) -> Future[Any]:
+        return Persistent(_Dask(_Client(status, list(answers)))).submit(abs, 3)
+
+    assert asked("running", good).result() == 3
+    assert asked("running", lost_result, lost_result, good).result() == 3
+    for error, future in (
+        (WorkerDied, asked("running", *[lost_result] * DEATHS)),
+        (GivenUp, asked("running", killed, good)),
+        (SchedulerGone, asked("closed", lost_result, good)),
+        (ZeroDivisionError, asked("running", _Answer("error", ZeroDivisionError()), good)),
+    ):
+        assert type(future.exception()) is error
