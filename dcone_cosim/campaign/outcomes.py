@@ -16,6 +16,8 @@ CAPTURE_OUTCOME, LASTED = "capture.outcome", "capture.lasted"
 TOLD_BY = (CAPTURE_OUTCOME, LASTED)
 """Figures that say how a case came out; they are always kept."""
 BROKE, OUT_AGAIN, DONE, NOT_HANDED_OVER = "broke", "out again", "completed", "not handed over"
+FLYING, UNDECIDED = "flying", "undecided at the end"
+"""What the FMU says of a net that is neither caught nor lost by the end of the phase, and what that is called."""
 CAUGHT = ("captured", "settled", "tether taut")
 """Outcomes of a capture that has come to its hand-over."""
 
@@ -52,7 +54,7 @@ def outcome(row: Row) -> str:
     if not isinstance(told, str):
         return DONE
     if row.exit_code == CAPTURE_FAILED:
-        return told
+        return UNDECIDED if told == FLYING else told
     if str(row.figures.get(LASTED, "")).startswith(LOST_AGAIN):
         return OUT_AGAIN
     return "captured" if told in CAUGHT and row.figures.get(LASTED) else told

@@ -32,7 +32,7 @@ SEEN = "yes, for the 5 s to the end of the phase"
         ),
         (row(8, "overloaded", capture__outcome="captured", capture__lasted=SEEN), "broke", False),
         (row(3, "capture failed", capture__outcome="missed"), "missed", False),
-        (row(3, "capture failed", capture__outcome="flying"), "flying", False),
+        (row(3, "capture failed", capture__outcome="flying"), "undecided at the end", False),
         (row(4, "hand-off refused", capture__outcome="captured"), "not handed over", False),
         (row(), "completed", True),
         (row(5, "FMU failed"), "FMU failed", None),
