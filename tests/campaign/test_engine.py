@@ -19,7 +19,7 @@ from dcone_cosim.campaign.inputs import Input, Inputs
 from dcone_cosim.campaign.sampling import monte_carlo
 from dcone_cosim.campaign.shots import Ground, Shot
 from dcone_cosim.campaign.spec import Spec
-from dcone_cosim.cases.rows import LOST, Row, lost
+from dcone_cosim.cases.rows import LOST, Row, lost, refused
 from dcone_cosim.cases.runner import Memory
 from dcone_cosim.cases.workers import WorkerDied, Workers
 from dcone_cosim.progress import Progress
@@ -79,6 +79,14 @@ def test_it_ends_at_the_same_case_whoever_ran_it() -> None:
     ((count, values),) = ends
     assert 100 <= count <= 250
     assert values == tuple(float(monte_carlo(4, number, 1)[0]) for number in range(1, count + 1))
+
+
+def test_it_ends_where_no_case_answers() -> None:
+    with ThreadPoolExecutor(1) as pool:
+        made = engine(spec_of(LIMIT + JUST, UNTIL), pool, 3, work=lambda shot: refused(shot.key, "no")).run(
+            points(), None
+        )
+    assert len(made) == 100
 
 
 def test_what_is_there_is_not_run_again() -> None:
