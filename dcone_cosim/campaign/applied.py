@@ -68,7 +68,10 @@ def inputs_of(spec: Spec, base: Scene, isolate: bool | None = None) -> Inputs:
     wrong = Mistakes()
     taken: dict[str, Dispersion] = {}
     inputs: list[Input] = []
-    groups: list[Group] = []
+    groups: dict[
+        str, Group
+    ] = {}  # by key: elements of one vector are written at once, or the last would undo the others
+    elements: dict[str, dict[int, int]] = {}
     matrix: dict[tuple[int, int], float] = {}
     for one in spec.dispersions:
         other = next((key for key in taken if _overlap(key, one.key)), None)
@@ -77,22 +80,28 @@ def inputs_of(spec: Spec, base: Scene, isolate: bool | None = None) -> Inputs:
             continue
         taken[one.key] = one
         try:
-            made, write = Maker(spec, base, one).made()
+            maker = Maker(spec, base, one)
+            made, write = maker.made()
         except Wrong as error:
             wrong.extend(error.mistakes)
             continue
         places = tuple(range(len(inputs), len(inputs) + len(made)))
         inputs += made
-        groups.append(Group(places, write))
+        group = Group(places, write)
+        wrong.extend(_tried(spec, base, one, made, group))
+        if maker.element:
+            several = elements.setdefault(maker.key, {})
+            several[maker.element] = places[0]
+            group = Group(tuple(several.values()), maker.writer(list(several), made[0].unit))
+        groups[maker.key] = group
         if one.together:
             if not -1.0 < one.together < 1.0 or len(made) < 2:
                 text = "expected a number between -1 and 1, of a vector's elements"
                 wrong.append(Mistake((*one.path, "together"), one.together, text))
             matrix |= {(i, j): one.together for i in places for j in places if i != j}
-        wrong.extend(_tried(spec, base, one, made, groups[-1]))
     if spec.jitter:
         inputs.append(Input(JITTER, lambda u: float(min(int(u * SEEDS), SEEDS - 1)), points=()))
-        groups.append(Group((len(inputs) - 1,), lambda values: ensemble.jitter(base, int(values[0]))))
+        groups[JITTER] = Group((len(inputs) - 1,), lambda values: ensemble.jitter(base, int(values[0])))
         try:
             ensemble.jitter(base, 0)
         except InputError as error:
@@ -117,7 +126,28 @@ def inputs_of(spec: Spec, base: Scene, isolate: bool | None = None) -> Inputs:
         wrong.append(Mistake(("correlation",), None, "these coefficients contradict one another: no values have them"))
     if wrong:
         raise _wrong(spec, wrong)
-    return Inputs(tuple(inputs), tuple(groups), factor)
+    found = Inputs(tuple(inputs), tuple(groups.values()), factor)
+    wrong.extend(_all_count(base, found))
+    if wrong:
+        raise _wrong(spec, wrong)
+    return found
+
+
+def _all_count(base: Scene, found: Inputs) -> Iterator[Mistake]:
+    """Whether each number still changes what reaches an FMU where all others are set too: none may undo another."""
+    middle = [one.value(0.5) for one in found.inputs]
+    for place, one in enumerate(found.inputs):
+        reached = set()
+        values = [0.0, 1.0] if one.texts else [one.value(u) for u in _PROBES]
+        for value in values:
+            whole = [*middle[:place], value, *middle[place + 1 :]]
+            try:
+                scene = parse(base.text, base.name, base.source, Path(base.source).parent, found.settings(whole))
+            except InputError:
+                return  # values that do not go together are rows of their own
+            reached.add(digest(reach(scene)))
+        if len(reached) < len(values):
+            yield Mistake(("dispersion",), one.name, "has no effect beside the others: another key undoes it")
 
 
 def _overlap(one: str, other: str) -> bool:

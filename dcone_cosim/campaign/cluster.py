@@ -26,6 +26,8 @@ DEATHS = 3
 """Workers that may die on a case."""
 AHEAD = 3
 """Cases that are handed out for each worker."""
+RUNNING = ("running", "newly-created")
+"""What a client of dask says of itself while its scheduler is there."""
 PATIENCE = "20 s"
 """How long to wait for a scheduler."""
 
@@ -34,6 +36,10 @@ class SchedulerGone(DconeError):
     """The scheduler of the cluster has ended or cannot be reached."""
 
     exit_code = 6
+
+
+class GivenUp(WorkerDied):
+    """So many workers have died on this that no other is tried."""
 
 
 class Cluster:
@@ -62,6 +68,8 @@ class Persistent(Executor):
         def done(inner: Future[T]) -> None:
             try:
                 result = inner.result()
+            except GivenUp as error:
+                outer.set_exception(error)
             except WorkerDied as error:
                 if attempt < self._deaths:
                     with suppress(RuntimeError):  # all are being sent home
@@ -83,27 +91,32 @@ class _Dask(Executor):
         self._client, self._number = client, 0
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
-        from distributed.scheduler import KilledWorker
-
         outer: Future[T] = Future()
         outer.set_running_or_notify_cancel()
         self._number += 1
         inner = self._client.submit(fn, *args, key=f"case-{id(self)}-{self._number}", pure=False, **kwargs)
 
         def done(finished: Any) -> None:
-            if finished.status == "finished":
-                outer.set_result(finished.result())
-                return
-            error = finished.exception() if finished.status == "error" else None
-            if error is None:
-                outer.set_exception(SchedulerGone("the scheduler is gone"))
-            elif isinstance(error, KilledWorker):
-                outer.set_exception(WorkerDied("died on it, and so did those that it was given to after it"))
+            """Whatever happens, `outer` comes to an end: a result may be lost with its worker after it was there."""
+            try:
+                result = finished.result()
+            except Exception as error:
+                outer.set_exception(self._said(finished, error))
             else:
-                outer.set_exception(error)
+                outer.set_result(result)
 
         inner.add_done_callback(done)
         return outer
+
+    def _said(self, finished: Any, error: Exception) -> Exception:
+        """What went wrong, in our terms."""
+        from distributed.scheduler import KilledWorker
+
+        if isinstance(error, KilledWorker):
+            return GivenUp("died on it, and so did those that it was given to after it")
+        if self._client.status not in RUNNING:
+            return SchedulerGone("the scheduler is gone")
+        return error if finished.status == "error" else WorkerDied("died with its result")
 
 
 def has_dask() -> bool:
@@ -149,12 +162,14 @@ def _here(count: int) -> Iterator[Cluster]:
     with (
         dask.config.set(options),
         distributed.LocalCluster(
-            n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
+            n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0", memory_limit=0,
             host="127.0.0.1", silence_logs=logging.CRITICAL,
         ) as local,
         distributed.Client(local, set_as_default=False) as client,
     ):  # fmt: skip
-        yield Cluster(_Dask(client), count, f"a local cluster of {count} processes", lambda: _need(client, "local"))
+        yield Cluster(
+            Persistent(_Dask(client)), count, f"a local cluster of {count} processes", lambda: _need(client, "local")
+        )
 
 
 @contextmanager
@@ -171,9 +186,9 @@ def _elsewhere(address: str) -> Iterator[Cluster]:
         count = sum(client.nthreads().values())
         if not count:
             raise InputError(f"--scheduler {address}: it has no workers yet; start some, and give the command again")
-        yield Cluster(_Dask(client), count, f"{count} workers of {address}", lambda: _need(client, address))
+        yield Cluster(Persistent(_Dask(client)), count, f"{count} workers of {address}", lambda: _need(client, address))
 
 
 def _need(client: Any, address: str) -> None:
-    if client.status not in ("running", "newly-created"):
+    if client.status not in RUNNING:
         raise SchedulerGone(f"the scheduler {address} is gone")

@@ -195,5 +195,5 @@ class _Stop:
             self.answered += good is not None
             if self._upto == self._next:
                 self._next = next(self._looks)
-                if enough(self.good, self.answered, until):
+                if not self.answered or enough(self.good, self.answered, until):  # none answers: more will not either
                     self.at = self._upto

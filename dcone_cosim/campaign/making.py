@@ -60,7 +60,7 @@ class Maker:
             quantile, unit = self._quantile(element)
             name = f"{self.key}[{element}]" if element else self.key
             found.append(Input(name, quantile, unit, (), _grid(one), one.distribution in NORMAL))
-        return found, self._writer(elements, unit)
+        return found, self.writer(elements, unit)
 
     def _discrete(self) -> tuple[list[Input], Callable[[Sequence[float]], tuple[str, ...]]]:
         one = self.one
@@ -73,7 +73,8 @@ class Maker:
         found = Input(one.key, lambda u: float(choose(u)), "1", tuple(one.values), points)
         return [found], lambda values: (f"{one.key}={one.values[int(values[0])]}",)
 
-    def _writer(self, elements: Sequence[int], unit: str) -> Callable[[Sequence[float]], tuple[str, ...]]:
+    def writer(self, elements: Sequence[int], unit: str) -> Callable[[Sequence[float]], tuple[str, ...]]:
+        """Settings from values, SI; `elements` of a vector, counted from 1, the others as the scene has them."""
         key, present = self.key, self.present
 
         def text(value: float) -> str:

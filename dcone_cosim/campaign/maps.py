@@ -69,6 +69,7 @@ def run_map(engine: Engine) -> Mapping[str, Any]:
     """Cases where the outcome changes; what was found, for the summary."""
     spec = engine.spec
     assert spec.n is not None
+    engine.tally.pace.total = spec.n
 
     def judge(points: Sequence[Any]) -> list[float]:
         return [float(succeeded(one.row, spec.success) is True) for one in engine.batch(points)]

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from dcone_cosim.campaign.spec import Spec, Success
 from dcone_cosim.cases.rows import Row
+from dcone_cosim.contract import FLOWN, NEVER
 from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS
 from dcone_cosim.scene.data import Scene
 
@@ -16,16 +17,25 @@ CAPTURE_OUTCOME, LASTED = "capture.outcome", "capture.lasted"
 TOLD_BY = (CAPTURE_OUTCOME, LASTED)
 """Figures that say how a case came out; they are always kept."""
 BROKE, OUT_AGAIN, DONE, NOT_HANDED_OVER = "broke", "out again", "completed", "not handed over"
-CAUGHT = ("captured", "settled", "tether taut")
+FLYING, UNDECIDED = "flying", "undecided at the end"
+"""What the FMU says of a net that is neither caught nor lost by the end of the phase, and what that is called."""
+CAUGHT = ("captured", "settled")
 """Outcomes of a capture that has come to its hand-over."""
+FAILED = ("missed", "slipped off", "not closed", "tether taut")
+"""Outcomes of a capture that failed, as the FMU says; `tether taut`: the line stopped the net on its way."""
+WORDS = (CAUGHT[0], *FAILED, UNDECIDED, OUT_AGAIN, BROKE, NOT_HANDED_OVER, FLOWN, DONE)
+"""Every outcome of a case that gives an answer."""
 
 
 def settled(spec: Spec, base: Scene) -> Spec:
-    """The same with what counts as success, where it does not say that: a capture, or in a scene without one that it
-    comes to its end."""
-    if spec.success != Success() or any(phase.name == "capture" for phase in base.phases):
+    """The same with what counts as success, where it does not say that: a capture; where nothing can be caught, a net
+    that is flown to its end; in a scene without a capture, that it comes to its end."""
+    capture = next((phase for phase in base.phases if phase.name == "capture"), None)
+    if spec.success != Success() or (capture is not None and capture.options.hand_over != NEVER):
         return spec
-    return replace(spec, success=Success(DONE, text=DONE))
+    if capture is None:
+        return replace(spec, success=Success(DONE, text=DONE))
+    return spec if "closing" in capture.main.terms else replace(spec, success=Success(FLOWN, text=FLOWN))
 
 
 def answered(row: Row) -> bool:
@@ -52,10 +62,10 @@ def outcome(row: Row) -> str:
     if not isinstance(told, str):
         return DONE
     if row.exit_code == CAPTURE_FAILED:
-        return told
+        return UNDECIDED if told == FLYING else told
     if str(row.figures.get(LASTED, "")).startswith(LOST_AGAIN):
         return OUT_AGAIN
-    return "captured" if told in CAUGHT and row.figures.get(LASTED) else told
+    return CAUGHT[0] if told in CAUGHT else told
 
 
 def succeeded(row: Row, success: Success) -> bool | None:

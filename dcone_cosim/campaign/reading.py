@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from dcone_cosim.campaign import distributions
+from dcone_cosim.campaign.outcomes import WORDS
 from dcone_cosim.campaign.spec import (
     ADAPTIVE,
     GRID,
@@ -132,6 +133,8 @@ class Reader:
         if given is None:
             return Success()
         if isinstance(given, str):
+            if given not in WORDS:
+                self._unknown(("success",), given, "expected an outcome", WORDS)
             return Success(outcome=given, text=given)
         if not isinstance(given, Mapping):
             self._say(("success",), given, 'expected an outcome such as "captured", or a table with figure and bound')

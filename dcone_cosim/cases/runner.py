@@ -6,7 +6,7 @@ row to decide on the next case, as in finding a root, asks for it alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from typing import Any, Protocol
 
@@ -31,7 +31,7 @@ class Rows(Protocol):
     """Where rows are kept, by the hash of their case: a `Store`, or `Memory`."""
 
     def get(self, key: str) -> Row | None: ...
-    def put(self, row: Row) -> None: ...
+    def put_all(self, rows: Sequence[Row]) -> None: ...
 
 
 class Memory:
@@ -43,8 +43,8 @@ class Memory:
     def get(self, key: str) -> Row | None:
         return self._rows.get(key)
 
-    def put(self, row: Row) -> None:
-        self._rows[row.key] = row
+    def put_all(self, rows: Sequence[Row]) -> None:
+        self._rows |= {row.key: row for row in rows}
 
 
 class Runner:
@@ -96,10 +96,9 @@ class Runner:
         """Keep what is done by now, after a short wait at most."""
         self._heed()
         done, _ = wait(going, LOOK, FIRST_COMPLETED)
-        for future in done:
-            row = _row_of(future, going.pop(future))
-            self._store.put(row)
-            yield row, False
+        rows = [_row_of(future, going.pop(future)) for future in done]
+        self._store.put_all(rows)
+        yield from ((row, False) for row in rows)
         self._idle()
 
     @staticmethod

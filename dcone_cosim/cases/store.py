@@ -16,7 +16,8 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -34,6 +35,8 @@ GATHERED = 1000
 """Rows of a segment."""
 AT_HAND = 8
 """Segments in memory: rows are asked for about in the order in which they came."""
+AT_ONCE = 8
+"""Rows that are forced to disk side by side: the system waits for the disk once for all of them."""
 _ROW = re.compile(r"([0-9a-f]{64})\.json")
 _SEGMENT = re.compile(r"many-[0-9a-f]{64}\.parquet")
 TOLD = 5
@@ -143,9 +146,26 @@ class Store:
 
     def put(self, row: Row) -> None:
         """Keep a row. It is on the disk when this returns."""
-        draft, path = self._scratch.path / f"{row.key}.json", self._rows / f"{row.key}.json"
+        self.put_all([row])
+
+    def put_all(self, rows: Sequence[Row]) -> None:
+        """Keep several. They are on the disk when this returns, which takes hardly longer than for one."""
+        if len(rows) > 1:
+            with ThreadPoolExecutor(min(len(rows), AT_ONCE)) as pool:
+                drafts = list(pool.map(self._draft, rows))
+        else:
+            drafts = [self._draft(row) for row in rows]
+        for row, draft in zip(rows, drafts, strict=True):
+            self._place(row, draft)
+
+    def _draft(self, row: Row) -> Path:
+        draft = self._scratch.path / f"{row.key}.json"
         draft.write_text(row.as_text() + "\n", encoding="utf-8")
         to_disk(draft)
+        return draft
+
+    def _place(self, row: Row, draft: Path) -> None:
+        path = self._rows / f"{row.key}.json"
         if row.lasting or (path.exists() and self._loose_row(row.key) is None):
             draft.replace(path)
         else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import time
 from concurrent.futures import Executor, Future
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +33,14 @@ class _Here(Executor):
         return future
 
 
-def engine_of(name: str, store: Any, work: Any) -> Engine:
-    spec = read(shipped()[name])
+def engine_of(name: str, store: Any, work: Any, workers: int = 1) -> Engine:
+    spec = replace(read(shipped()[name]), until=None)
     base = base_of(spec)
     inputs = inputs_of(spec, base)
     record = tuple(figure.removesuffix("?") for figure in spec.record)
-    return Engine(spec, inputs, ground_of(base, None, record), name, store, Cluster(_Here(), 1, ""), Progress(), work)
+    return Engine(
+        spec, inputs, ground_of(base, None, record), name, store, Cluster(_Here(), workers, ""), Progress(), work
+    )
 
 
 @pytest.mark.bench
@@ -66,14 +69,16 @@ def test_share_of_stepping(name: str, monkeypatch: pytest.MonkeyPatch, capfd: py
 
 
 @pytest.mark.bench
-def test_handing_out(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    """What a case costs the client: its point, its settings, its hash, its row on the disk."""
+@pytest.mark.parametrize("workers", [1, 1000])
+def test_handing_out(tmp_path: Path, workers: int, capfd: pytest.CaptureFixture[str]) -> None:
+    """What a case costs the client: its point, its settings, its hash, its row on the disk. With many workers, many
+    rows come at a time."""
     study = {"kind": "a campaign", "scene": "", "varied": [], "content": "", "fmus": {}, "code": {}}
     with Store(tmp_path / "out", study) as store:
-        one, count = engine_of("table1-launch-errors", store, fakes.row_of), 1000
+        one, count = engine_of("table1-launch-errors", store, fakes.row_of, workers), 6000
         size = len(one.inputs.inputs)
         cpu, wall = time.process_time(), time.perf_counter()
         one.run((monte_carlo(1, number, size) for number in itertools.count(1)), count)
         cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
     with capfd.disabled():
-        print(f"\nper case {1e3 * cpu / len(one.made):.2f} ms of CPU, {1e3 * wall / len(one.made):.2f} ms in all")
+        print(f"\n{workers} workers: {1e3 * cpu / count:.2f} ms of CPU a case, {1e3 * wall / count:.2f} ms in all")

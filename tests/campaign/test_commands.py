@@ -71,6 +71,20 @@ def test_dispersions_are_applied(once: Path) -> None:
     assert told["probability"]["interval"][0] < float(ndtr(1.2815515)) < told["probability"]["interval"][1]
 
 
+def test_every_dispersion_is_applied(drift: Path, tmp_path: Path) -> None:
+    """Three numbers, two of them elements of one vector: the distance by hand from all of them."""
+    text = DRIFT.replace("n = 60", "n = 8")
+    for key, least, most in (("velocity[1]", "0 mm/s", "9 mm/s"), ("position[2]", "9 m", "11 m")):
+        text += f'[[dispersion]]\nkey = "removal.start.relative_{key}"\ndistribution = "uniform"\n'
+        text += f'least = "{least}"\nmost = "{most}"\n'
+    commands.campaign(put_campaign(drift.parent, text), tmp_path / "out", Progress(), "processes", jobs=1)
+    table = pd.read_parquet(tmp_path / "out" / "table.parquet")
+    across, along = 100.0 * table["removal.start.relative_velocity[1]"], 100.0 * table[VELOCITY]
+    expected = np.hypot(across, table["removal.start.relative_position[2]"] + along)
+    np.testing.assert_allclose(table["removal.separation"], expected, rtol=1e-12)
+    assert across.min() < 0.3 < 0.6 < across.max()
+
+
 def test_it_goes_on_with_more(once: Path, tmp_path: Path) -> None:
     """The same folder with more cases runs those that are missing; a worker more or less changes no bit."""
     folder = shutil.copytree(once, tmp_path / "out")

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dcone_cosim.campaign.cluster import DEATHS, Cluster, Persistent, SchedulerGone
+from dcone_cosim.campaign.cluster import DEATHS, Cluster, GivenUp, Persistent, SchedulerGone, _Dask
 from dcone_cosim.campaign.engine import Engine
 from dcone_cosim.campaign.inputs import Group as InputGroup
 from dcone_cosim.campaign.inputs import Input, Inputs
 from dcone_cosim.campaign.sampling import monte_carlo
 from dcone_cosim.campaign.shots import Ground, Shot
 from dcone_cosim.campaign.spec import Spec
-from dcone_cosim.cases.rows import LOST, Row, lost
+from dcone_cosim.cases.rows import LOST, Row, lost, refused
 from dcone_cosim.cases.runner import Memory
 from dcone_cosim.cases.workers import WorkerDied, Workers
 from dcone_cosim.progress import Progress
@@ -79,6 +79,14 @@ def test_it_ends_at_the_same_case_whoever_ran_it() -> None:
     ((count, values),) = ends
     assert 100 <= count <= 250
     assert values == tuple(float(monte_carlo(4, number, 1)[0]) for number in range(1, count + 1))
+
+
+def test_it_ends_where_no_case_answers() -> None:
+    with ThreadPoolExecutor(1) as pool:
+        made = engine(spec_of(LIMIT + JUST, UNTIL), pool, 3, work=lambda shot: refused(shot.key, "no")).run(
+            points(), None
+        )
+    assert len(made) == 100
 
 
 def test_what_is_there_is_not_run_again() -> None:
@@ -164,3 +172,49 @@ def test_what_is_told_on_the_way() -> None:
     assert "40 completed; 0.9" in one.tally.told()
     one.tally.count(lost("k", "died"), False)
     assert "1 lost" in one.tally.told()
+
+
+class _Answer:
+    """A future of dask that has come to an end."""
+
+    def __init__(self, status: str, error: Exception | None) -> None:
+        self.status, self._error = status, error
+
+    def result(self) -> int:
+        if self._error is not None:
+            raise self._error
+        return 3
+
+    def add_done_callback(self, call: Callable[[Any], object]) -> None:
+        call(self)
+
+
+class _Client:
+    def __init__(self, status: str, answers: list[_Answer]) -> None:
+        self.status, self._answers = status, answers
+
+    def submit(self, *arguments: Any, **more: Any) -> _Answer:
+        return self._answers.pop(0)
+
+
+def test_what_dask_says() -> None:
+    """A result that goes with its worker is made again; what has killed many is given up; a scheduler may be gone."""
+    distributed = pytest.importorskip("distributed")
+    from concurrent.futures import CancelledError
+
+    lost_result = _Answer("lost", CancelledError())
+    killed = _Answer("error", distributed.scheduler.KilledWorker("case", None, 3))
+    good = _Answer("finished", None)
+
+    def asked(status: str, *answers: _Answer) -> Future[Any]:
+        return Persistent(_Dask(_Client(status, list(answers)))).submit(abs, 3)
+
+    assert asked("running", good).result() == 3
+    assert asked("running", lost_result, lost_result, good).result() == 3
+    for error, future in (
+        (WorkerDied, asked("running", *[lost_result] * DEATHS)),
+        (GivenUp, asked("running", killed, good)),
+        (SchedulerGone, asked("closed", lost_result, good)),
+        (ZeroDivisionError, asked("running", _Answer("error", ZeroDivisionError()), good)),
+    ):
+        assert type(future.exception()) is error

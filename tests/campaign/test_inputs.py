@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import kendalltau
 
 from dcone_cosim.campaign.applied import base_of, inputs_of
+from dcone_cosim.campaign.inputs import Group as InputGroup
 from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.sampling import monte_carlo
 from dcone_cosim.loading import load
@@ -168,3 +169,27 @@ def test_within() -> None:
     assert [inputs.inputs[0].value(u) for u in (0.0, 0.5, 1.0)] == pytest.approx([0.04, 0.05, 0.06], rel=1e-12)
     inputs = made(dispersion("removal.start.separation", 'distribution = "uniform"\nwithin = "50 cm"'))
     assert [inputs.inputs[0].value(u) for u in (0.0, 1.0)] == pytest.approx([9.5, 10.5], rel=1e-12)
+
+
+def test_elements_of_one_vector_by_dispersions_of_their_own() -> None:
+    """Each is written with the others: a setting for each would have left the last alone."""
+    rest = 'distribution = "uniform"\nleast = -0.4\nmost = 0.4'
+    text = "[set.capture.shot]\naxis = [0.0, 1.0, 0.0]\n"
+    text += dispersion("capture.shot.axis[1]", rest) + dispersion("capture.shot.axis[3]", rest)
+    inputs = made(text, NET)
+    assert inputs.settings([0.1, -0.2]) == ("capture.shot.axis=[0.1, 1.0, -0.2]",)
+    assert inputs.values(np.array([0.25, 0.75])) == pytest.approx([-0.2, 0.2])
+
+
+def test_an_input_that_another_undoes() -> None:
+    """Tried by itself each has an effect; tried with the others, the first has none."""
+    from dcone_cosim.campaign import applied
+
+    rest = 'distribution = "uniform"\nleast = -0.4\nmost = 0.4'
+    text = "[set.capture.shot]\naxis = [0.0, 1.0, 0.0]\n"
+    inputs = made(text + dispersion("capture.shot.axis[1]", rest) + dispersion("capture.shot.axis[3]", rest), NET)
+    alone = [made(text + dispersion(f"capture.shot.axis[{i}]", rest), NET).groups[0].write for i in (1, 3)]
+    apart = Inputs(inputs.inputs, tuple(InputGroup((i,), write) for i, write in enumerate(alone)))
+    base = base_of(spec_of(text + dispersion("capture.shot.axis[1]", rest), NET))
+    assert [one.given for one in applied._all_count(base, apart)] == ["capture.shot.axis[1]"]
+    assert list(applied._all_count(base, inputs)) == []

@@ -7,9 +7,11 @@ from typing import Any
 
 import pytest
 
-from dcone_cosim.campaign.outcomes import margin, outcome, succeeded
+from dcone_cosim.campaign.outcomes import margin, outcome, settled, succeeded
 from dcone_cosim.campaign.spec import Success
 from dcone_cosim.cases.rows import Row, lost, refused
+from dcone_cosim.loading import load
+from tests.campaign.conftest import spec_of
 
 
 def row(exit_code: int = 0, status: str = "completed", **figures: Any) -> Row:
@@ -32,7 +34,9 @@ SEEN = "yes, for the 5 s to the end of the phase"
         ),
         (row(8, "overloaded", capture__outcome="captured", capture__lasted=SEEN), "broke", False),
         (row(3, "capture failed", capture__outcome="missed"), "missed", False),
-        (row(3, "capture failed", capture__outcome="flying"), "flying", False),
+        (row(3, "capture failed", capture__outcome="tether taut"), "tether taut", False),
+        (row(capture__outcome="flown"), "flown", False),
+        (row(3, "capture failed", capture__outcome="flying"), "undecided at the end", False),
         (row(4, "hand-off refused", capture__outcome="captured"), "not handed over", False),
         (row(), "completed", True),
         (row(5, "FMU failed"), "FMU failed", None),
@@ -55,3 +59,12 @@ def test_a_bound() -> None:
 def test_another_outcome() -> None:
     assert succeeded(row(3, "capture failed", capture__outcome="missed"), Success("missed")) is True
     assert succeeded(row(capture__outcome="captured", capture__lasted=SEEN), Success("missed")) is False
+
+
+@pytest.mark.parametrize(
+    ("scene", "word"), [("table1-capture", "captured"), ("deployment", "flown"), ("table2-deorbit", "completed")]
+)
+def test_what_counts_where_a_campaign_does_not_say(scene: str, word: str) -> None:
+    assert settled(spec_of("jitter = true\n"), load(scene)).success.outcome == word
+    told = spec_of('jitter = true\nsuccess = "missed"\n')
+    assert settled(told, load(scene)).success.outcome == "missed"

@@ -49,6 +49,7 @@ def test_what_it_says() -> None:
         ('until = "95 % within 1 %"', 'sampler = "latin"\nn = 3', 4, "did you mean 'latin-hypercube'?"),
         ('until = "95 % within 1 %"', 'until = "95 % within 1 %"\nn = 3', 5, "expected one of n and until"),
         ("jitter = false", 'sampler = "sobol"', 4, "only independent cases may be stopped"),
+        ('success = { figure = "removal.largest_tug_peak", below = "50 N" }', 'success = "capturd"', 6, "'captured'?"),
         ("jitter = false", "seed = -1", 5, "expected a whole number"),
         ("below", "beneath", 6, "known: above, below, figure"),
         ('distribution = "normal"', 'distribution = "gaussian"', 14, "expected a distribution"),
