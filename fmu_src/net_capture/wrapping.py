@@ -70,9 +70,11 @@ SHARE = 0.5
 """Of what these speeds make in a substep, by which it may differ beside that."""
 FREE, BENT, PASSED = range(3)
 """States of a thread: clear of the target; round an edge; through it."""
-KEPT = 5
+STATE, WAY, CLEAR, EDGES, CHAIN, KEPT = 0, 1, 2, 3, 4, 7
 """Whole numbers kept of each thread, one plane of them after another: its state, the length of its way a substep on,
-and its side."""
+the substep up to which it is clear of the target, over how many edges it bends, and the faces between them, `PACKED` to
+a number."""
+PACKED, FACE_BITS = 6, 9
 FINE = 1e-12
 """Metres: lengths are kept in picometres."""
 
@@ -167,8 +169,9 @@ def make(composition: Any) -> Wrap:
             fastest = max(fastest, speed)
         reach = p.envelope_radius + AHEAD
         fastest = math.sqrt(fastest) + math.sqrt(dot(p.target_omega, p.target_omega)) * reach
-        steps = min(0.5 * AHEAD / (p.solver_substep * max(fastest, 1e-9)), 1.0 * LONGEST_LOOK)
-        p.wrap_next = p.grid + max(int(steps), 1)
+        p.wrap_haste = 2.0 * p.solver_substep * max(fastest, 1e-9)
+        p.wrap_substep = p.solver_substep
+        p.wrap_next = p.grid + max(int(min(AHEAD / p.wrap_haste, 1.0 * LONGEST_LOOK)), 1)
         p.wrap_listed = 0
         middle, arm = p.wrap_a, p.wrap_b
         for strip in range(p.strips):
@@ -187,6 +190,7 @@ def make(composition: Any) -> Wrap:
                 if away < (p.envelope_radius + half) * (p.envelope_radius + half):
                     rotate_inverse(middle, p.target_pose, arm)
                     if distance_to(p, p.wrap_line, middle) < half:
+                        words[at + (1 + CLEAR) * p.thread_numbers + table[s + FIRST] + lane] = 0
                         words[at + p.wrap_listed] = 64 * strip + lane
                         p.wrap_listed += 1
                         continue
@@ -194,25 +198,41 @@ def make(composition: Any) -> Wrap:
 
     @kernel
     def recall(p, words, at):
-        """Whether a thread's side is known; then it is put into `wrap_side` [m].
+        """Over how many edges a thread bends, 0: none; the faces between them go into `wrap_chain`.
 
         at        where its state stands
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        for axis in range(3):
-            p.wrap_side[axis] = FINE * words[at + (2 + axis) * p.thread_numbers]
-        return words[at] != FREE
+        if words[at] == FREE:
+            return 0
+        edges = words[at + EDGES * p.thread_numbers]
+        for j in range(edges + 1):
+            word = words[at + (CHAIN + j // PACKED) * p.thread_numbers]
+            p.wrap_chain[j] = (word >> (FACE_BITS * (j % PACKED))) & ((1 << FACE_BITS) - 1)
+        return edges
 
     @kernel
-    def look(p, work, code, place, rate, known):
+    def keep(p, words, at, edges):
+        """Keep over which faces a thread lies.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        words[at + EDGES * p.thread_numbers] = edges
+        for n in range(CHAIN, KEPT):
+            words[at + n * p.thread_numbers] = 0
+        for j in range(edges + 1):
+            words[at + (CHAIN + j // PACKED) * p.thread_numbers] |= p.wrap_chain[j] << (FACE_BITS * (j % PACKED))
+
+    @kernel
+    def look(p, work, code, place, rate, edges):
         """How many edges a thread bends over, with nodes at the places and rates in these planes; length and rate of
         its way and of the straight one [m], [m/s].
 
         Then directions from the first and last bend to its ends are in `wrap_first` and `wrap_last`, and from end to
         end in `wrap_line`, frame axes.
 
-        known     whether its side is in `wrap_side`
+        edges     how many it bent over before, between the faces in `wrap_chain`
 
         Checked  tests/net_capture/test_wrapping.py
         """
@@ -227,7 +247,7 @@ def make(composition: Any) -> Wrap:
             last[axis] = x[b] - p.target_place[axis]
         rotate_inverse(p.wrap_a, p.target_pose, first)
         rotate_inverse(p.wrap_b, p.target_pose, last)
-        edges = find(p, known)
+        edges = find(p, edges)
         if edges == 0:
             return 0, 0.0, 0.0, 0.0, 0.0
         way = 0.0
@@ -271,8 +291,9 @@ def make(composition: Any) -> Wrap:
         before = words[at]
         if edges == 0:
             words[at] = FREE
+            words[at + CLEAR * p.thread_numbers] = p.grid + 1 + int(p.wrap_clear / p.wrap_haste)
             return
-        expected = FINE * words[at + p.thread_numbers] if before != FREE else straight
+        expected = FINE * words[at + WAY * p.thread_numbers] if before != FREE else straight
         within = JUMP + SHARE * p.solver_substep * abs(going)
         if before == FREE:
             within += 2.0 * p.solver_substep * abs(going)
@@ -280,32 +301,13 @@ def make(composition: Any) -> Wrap:
         if before != PASSED:
             if way > length and way > expected + within:
                 words[at] = PASSED
-                if p.wrap_passed < 60:
-                    d = p.wrap_debug[p.wrap_passed]
-                    for i in range(3):
-                        d[i] = p.wrap_a[i]
-                        d[3 + i] = p.wrap_b[i]
-                        d[6 + i] = p.wrap_side[i]
-                    d[9] = way
-                    d[10] = expected
-                    d[11] = straight
-                    d[12] = going * p.solver_substep
-                    d[13] = length
-                    d[14] = before
-                    d[15] = edges
-                    d[16] = p.grid * p.solver_substep
-                    d[17] = at
-                    d[18] = p.wrap_inset
-                    for i in range(3):
-                        d[19 + i] = FINE * words[at + (2 + i) * p.thread_numbers]
                 p.wrap_passed += 1
             elif expected > length and way < expected - within:
                 p.wrap_slipped += 1
                 kept = max(0.0, way - length)
                 p.wrap_slip_loss += 0.5 * stiffness * ((expected - length) * (expected - length) - kept * kept)
-        words[at + p.thread_numbers] = np.int64((way + p.solver_substep * going) / FINE)
-        for axis in range(3):
-            words[at + (2 + axis) * p.thread_numbers] = np.int64(p.wrap_side[axis] / FINE)
+        words[at + WAY * p.thread_numbers] = np.int64((way + p.solver_substep * going) / FINE)
+        keep(p, words, at, edges)
 
     @kernel
     def press(p, edges, tension):
@@ -327,7 +329,7 @@ def make(composition: Any) -> Wrap:
         Checked  tests/net_capture/test_wrapping.py
         """
         begin_step(p, rate_of(p))
-        if p.grid >= p.wrap_next:
+        if p.grid >= p.wrap_next or p.solver_substep != p.wrap_substep:
             list_near(p, work)
         words, table, numbers = own(p, work), strips(p, work), properties(p, work)
         at = list_at(p, words)
@@ -335,14 +337,16 @@ def make(composition: Any) -> Wrap:
         for n in range(p.wrap_listed):
             code = words[at + n]
             strip = code // 64
+            number = table[STRIP_WORDS * strip + FIRST] + code % 64
+            kept = at + p.thread_numbers + number
+            if words[kept + CLEAR * p.thread_numbers] > p.grid:
+                continue
             a = table[STRIP_WORDS * strip + A] + code % 64
             b = table[STRIP_WORDS * strip + B] + code % 64
             bring(p, reals_of(work), words, a // p.row_pitch)
             bring(p, reals_of(work), words, b // p.row_pitch)
             q = STRIP_NUMBERS * strip
             length, stiffness, damping = numbers[q + LENGTH], numbers[q + STIFFNESS], numbers[q + DAMPING]
-            number = table[STRIP_WORDS * strip + FIRST] + code % 64
-            kept = at + p.thread_numbers + number
             edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
             follow(p, words, kept, edges, way, going, straight, length, stiffness)
             if words[kept] != BENT or way <= length:
@@ -443,10 +447,12 @@ PART = Term(
         output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
         count("wrap_listed", "threads near the target", "state"),
         count("wrap_next", "substep at which they are looked up again", "state"),
-        state("wrap_debug[#][#]","1","x",shape=(60,22)),
         count("wrap_faces", "faces of the target", "state"),
         count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
         count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
+        state("wrap_clear", "m", "how far a thread is from the target, at least"),
+        state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),
+        state("wrap_substep", "s", "the substep then"),
         state("wrap_inset", "m", "how far below the surface ways lie"),
         *(
             state(f"wrap_{name}[#][#]", "1", text, shape=(rows, columns))
@@ -466,7 +472,6 @@ PART = Term(
             for name, unit, text in (
                 ("a", "m", "one end of a thread, body axes"),
                 ("b", "m", "the other end, body axes"),
-                ("side", "m", "point of the way that says on which side it lies, body axes"),
                 ("turned", "m", "a bend from the target's centre of mass, frame axes"),
                 ("moving", "m/s", "velocity of the surface there, less that of the centre of mass; a lever"),
                 ("first", "1", "direction from the first bend to one end"),

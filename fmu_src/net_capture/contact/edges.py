@@ -1,14 +1,17 @@
 """The shortest way of a thread between two nodes where the straight one cuts the target.
 
-The body is a convex polyhedron, round ones of many faces (`shapes.Shape.faces`). In the plane of the straight way and
-of where the thread lay before, the way goes over some edges (`section.py`); over these it is made the shortest
-(`shortest.py`). Where it has come to a corner, an end of an edge, and would go on, it slides over it: on the other side
-of a corner the way is over the other edges that meet there. Each such step makes it shorter, as a cord would slide, and
-none brings it to the other side of the body. From each end the way is straight to the last face that the end can see.
+The body is a convex polyhedron, round ones of many faces (`shapes.Shape.faces`). A way goes from face to face over the
+edges between them. Which these are is found in the plane of the straight way when that first cuts the body
+(`section.py`), and is remembered from then on; over these edges it is made the shortest (`shortest.py`). From each end
+it is straight to the last of its faces that the end can see; an end that no longer sees the first of them has come
+round an edge to another, which is put before.
 
-Of several shortest ways, one on each side of a corner, it is so the one on the side where the thread lay.
+Where the way has come to a corner, an end of an edge, and would go on, it slides over it: on the other side of a corner
+it is over the other edges that meet there. Each such step makes it shorter, as a cord would slide, and none brings it
+to the other side of the body. So of several shortest ways, one on each side of a corner, it is the one on the side
+where the thread lay.
 
-Valid    convex bodies, at each of whose corners three faces meet
+Valid    convex bodies, at each of whose corners three faces meet; up to half way round them
 Checked  tests/net_capture/test_wrapping.py
 """
 
@@ -18,7 +21,7 @@ import math
 from typing import Any
 
 from fmu_src.net_capture.contact.section import MOST, make_section
-from fmu_src.net_capture.contact.shortest import HIGH, LOW, SLOPE, TAU, make_shortest
+from fmu_src.net_capture.contact.shortest import HIGH, LOW, SLOPE, TAU, along, make_shortest
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
@@ -26,7 +29,11 @@ ROUNDS = 24
 """Edges that a way may leave or come to in one search."""
 PUSH = 1e-9
 """Slope with which a way pushes past the end of an edge."""
-TOGETHER = 1e-7
+PARALLEL = 1e-9
+"""Sine of the angle of an edge to a face that never meets it."""
+ALIKE = 1e-8
+"""Square of the sine of the angle between faces that have no edge."""
+TOGETHER = 1e-6
 """Metres between two bends that are at one corner."""
 ABOVE = 1e-9
 """Metres above a face from where it is seen."""
@@ -35,8 +42,8 @@ BEYOND = 1e-4
 
 
 def make_way() -> Any:
-    """Kernel `find(p, known) -> edges` of the way from `wrap_a` to `wrap_b` in body axes, by the side on which the
-    thread lay, the point `wrap_side`, where that is known.
+    """Kernel `find(p, edges) -> edges` of the way from `wrap_a` to `wrap_b` in body axes, by the faces `wrap_chain`
+    over which it went before, one more than edges; 0: none are known.
 
     Checked  tests/net_capture/test_wrapping.py
     """
@@ -45,39 +52,48 @@ def make_way() -> Any:
 
     @kernel
     def lay(p, j, one, other):
-        """Number j of the way's edges, between two faces and through the point in `wrap_feet`: its direction, its ends,
-        and the faces there.
+        """Number j of the way's edges, between two faces: its direction, its ends, the faces there, and where the way
+        begins to cross it. Whether these faces share an edge.
+
+            foot = (h_1 - c h_2) n_1 / s2 + (h_2 - c h_1) n_2 / s2,   c = n_1 . n_2,   s2 = 1 - c2
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        planes, edge, foot = p.wrap_planes, p.wrap_edges[j], p.wrap_feet[j]
+        planes, edge, foot, pair = p.wrap_planes, p.wrap_edges[j], p.wrap_feet[j], p.wrap_pairs[j]
         squared = 0.0
         for i in range(3):
             k, m = (i + 1) % 3, (i + 2) % 3
             edge[i] = planes[one, k] * planes[other, m] - planes[one, m] * planes[other, k]
             squared += edge[i] * edge[i]
+        if squared < ALIKE:
+            return False
+        alike = dot(planes[one, 0:3], planes[other, 0:3])
+        height, height_other = planes[one, 3] - p.wrap_inset, planes[other, 3] - p.wrap_inset
+        middle = 0.0
         for i in range(3):
-            edge[i] /= math.sqrt(squared) if squared > 0.0 else 1.0
+            edge[i] /= math.sqrt(squared)
+            foot[i] = (height - alike * height_other) * planes[one, i] / squared
+            foot[i] += (height_other - alike * height) * planes[other, i] / squared
+        for i in range(3):
+            middle += edge[i] * (0.5 * (p.wrap_a[i] + p.wrap_b[i]) - foot[i])
         low = -math.inf
         high = math.inf
-        pair = p.wrap_pairs[j]
         pair[0] = one
         pair[1] = other
-        pair[2] = -1
-        pair[3] = -1
         for k in range(p.wrap_faces):
             if k != one and k != other:
                 rises = dot(planes[k, 0:3], edge)
                 below = planes[k, 3] - p.wrap_inset - dot(planes[k, 0:3], foot)
-                if rises > 0.0 and below < high * rises:
+                if rises > PARALLEL and below < high * rises:
                     high = below / rises
                     pair[3] = k
-                elif rises < 0.0 and below < low * rises:
+                elif rises < -PARALLEL and below < low * rises:
                     low = below / rises
                     pair[2] = k
-        p.wrap_spans[j, TAU] = 0.0
-        p.wrap_spans[j, LOW] = min(low, 0.0)
-        p.wrap_spans[j, HIGH] = max(high, 0.0)
+        p.wrap_spans[j, TAU] = min(max(middle, low), high)
+        p.wrap_spans[j, LOW] = low
+        p.wrap_spans[j, HIGH] = high
+        return low <= high + TOGETHER
 
     @kernel
     def shift(p, edges, j, by):
@@ -101,8 +117,10 @@ def make_way() -> Any:
         Checked  tests/net_capture/test_wrapping.py
         """
         span, pair = p.wrap_spans[j], p.wrap_pairs[j]
-        upward = pair[2] == corner
-        span[TAU] = min(BEYOND, span[HIGH]) if upward else max(-BEYOND, span[LOW])
+        if pair[2] == corner:
+            span[TAU] = min(span[LOW] + BEYOND, span[HIGH])
+        else:
+            span[TAU] = max(span[HIGH] - BEYOND, span[LOW])
 
     @kernel
     def join(p, edges, j):
@@ -113,8 +131,6 @@ def make_way() -> Any:
         """
         one, middle, other = p.wrap_pairs[j, 0], p.wrap_pairs[j, 1], p.wrap_pairs[j + 1, 1]
         shift(p, edges, j + 2, -1)
-        for i in range(3):
-            p.wrap_feet[j, i] = p.wrap_bends[j + 1, i]
         lay(p, j, one, other)
         begin(p, j, middle)
 
@@ -127,13 +143,40 @@ def make_way() -> Any:
         """
         one, other = p.wrap_pairs[j, 0], p.wrap_pairs[j, 1]
         shift(p, edges, j + 1, 1)
-        for i in range(3):
-            p.wrap_feet[j, i] = p.wrap_bends[j + 1, i]
-            p.wrap_feet[j + 1, i] = p.wrap_bends[j + 1, i]
         lay(p, j, one, face)
         lay(p, j + 1, face, other)
         begin(p, j, other)
         begin(p, j + 1, one)
+
+    @kernel
+    def draws_in(p, j):
+        """Whether the way, which is at the corner where edge number j and the next meet, is shorter over both of them:
+        where the angles of the faces that it goes over there are less than half a turn. Then it is put there.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        inward = p.wrap_spans[j, TAU] - p.wrap_spans[j, LOW]
+        inward = 1.0 if inward < p.wrap_spans[j, HIGH] - p.wrap_spans[j, TAU] else -1.0
+        onward = p.wrap_spans[j + 1, TAU] - p.wrap_spans[j + 1, LOW]
+        onward = 1.0 if onward < p.wrap_spans[j + 1, HIGH] - p.wrap_spans[j + 1, TAU] else -1.0
+        turn = 1.0
+        across = 0.0
+        for n in range(3):
+            if n == 0:
+                cosine = -inward * along(p, j, j)
+            elif n == 1:
+                cosine = inward * onward * dot(p.wrap_edges[j], p.wrap_edges[j + 1])
+            else:
+                cosine = onward * along(p, j + 2, j + 1)
+            sine = math.sqrt(max(1.0 - cosine * cosine, 0.0))
+            turn, across = turn * cosine - across * sine, turn * sine + across * cosine
+        if across <= 0.0:
+            return False
+        for k in range(2):
+            span = p.wrap_spans[j + k]
+            far = 0.25 * min(span[HIGH] - span[LOW], min(p.wrap_pieces[j, 3], p.wrap_pieces[j + 2, 3]))
+            span[TAU] += (inward if k == 0 else onward) * far
+        return True
 
     @kernel
     def slide(p, edges):
@@ -142,9 +185,9 @@ def make_way() -> Any:
         Checked  tests/net_capture/test_wrapping.py
         """
         for j in range(edges - 1):
-            if p.wrap_pieces[j + 1, 3] < TOGETHER and p.wrap_pairs[j, 1] == p.wrap_pairs[j + 1, 0]:
-                for i in range(3):
-                    p.wrap_bends[j + 1, i] = 0.5 * (p.wrap_bends[j + 1, i] + p.wrap_bends[j + 2, i])
+            if p.wrap_pieces[j + 1, 3] < TOGETHER:
+                if draws_in(p, j):
+                    return edges
                 join(p, edges, j)
                 return edges - 1
         for j in range(edges):
@@ -160,8 +203,6 @@ def make_way() -> Any:
                 join(p, edges, j)
                 return edges - 1
             if j > 0 and p.wrap_pairs[j - 1, 1] == pair[0] and p.wrap_pairs[j - 1, 0] == face:
-                for i in range(3):
-                    p.wrap_bends[j, i] = p.wrap_bends[j + 1, i]
                 join(p, edges, j - 1)
                 return edges - 1
             if edges < MOST:
@@ -180,69 +221,127 @@ def make_way() -> Any:
 
     @kernel
     def trim(p, edges):
-        """Leave out edges before the first face and after the last that an end can see: from there the way is straight.
+        """Leave out faces before the last one that one end sees, and after the first that the other sees: up to there
+        the way is straight. Works on `wrap_chain`; how many edges are left, 0: one face alone.
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        while edges > 1 and sees(p, p.wrap_pairs[edges - 1, 0], p.wrap_b):
-            edges -= 1
-        while edges > 1 and sees(p, p.wrap_pairs[0, 1], p.wrap_a):
-            shift(p, edges, 1, -1)
-            edges -= 1
+        first = 0
+        for j in range(edges, 0, -1):
+            if sees(p, p.wrap_chain[j], p.wrap_a):
+                first = j
+                break
+        last = edges
+        for j in range(first, edges):
+            if sees(p, p.wrap_chain[j], p.wrap_b):
+                last = j
+                break
+        for j in range(first, last + 1):
+            p.wrap_chain[j - first] = p.wrap_chain[j]
+        return last - first
+
+    @kernel
+    def come_in(p, end, point):
+        """Face through which the straight line from an end of the thread to a point comes in, -1: none.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        found = -1
+        latest = -1.0
+        for k in range(p.wrap_faces):
+            plane = p.wrap_planes[k]
+            above = dot(plane[0:3], end) - plane[3] + p.wrap_inset
+            there = dot(plane[0:3], point) - plane[3] + p.wrap_inset
+            if above > ABOVE and there < above and above / (above - there) > latest:
+                latest = above / (above - there)
+                found = k
+        return found
+
+    @kernel
+    def lengthen(p, edges):
+        """Put faces before the first that one end does not see, and after the last that the other does not. Works on
+        `wrap_chain`; how many edges there are then, 0 where no such face joins.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        chain, point = p.wrap_chain, p.wrap_up
+        for way in range(2):
+            end, other = (p.wrap_a, p.wrap_b) if way == 0 else (p.wrap_b, p.wrap_a)
+            while not sees(p, chain[0 if way == 0 else edges], end):
+                if edges == MOST:
+                    return 0
+                for i in range(3):
+                    point[i] = other[i]
+                if edges > 0:
+                    near = 0 if way == 0 else edges - 1
+                    if not lay(p, 0, chain[near], chain[near + 1]):
+                        return 0
+                    for i in range(3):
+                        point[i] = p.wrap_feet[0, i] + p.wrap_spans[0, TAU] * p.wrap_edges[0, i]
+                face = come_in(p, end, point)
+                if face < 0:
+                    return 0
+                edges += 1
+                if way == 0:
+                    for j in range(edges, 0, -1):
+                        chain[j] = chain[j - 1]
+                    chain[0] = face
+                else:
+                    chain[edges] = face
         return edges
 
     @kernel
-    def highest(p, edges):
-        """Put the bend that is farthest from the straight way into `wrap_side`.
+    def lay_all(p, edges):
+        """Lay the edges between the faces of `wrap_chain`; whether there are all.
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        most = -1.0
-        for j in range(1, edges + 1):
-            along = 0.0
-            away = 0.0
-            for i in range(3):
-                from_a = p.wrap_bends[j, i] - p.wrap_a[i]
-                along += from_a * p.wrap_line[i]
-                away += from_a * from_a
-            if away - along * along > most:
-                most = away - along * along
-                for i in range(3):
-                    p.wrap_side[i] = p.wrap_bends[j, i]
+        whole = edges > 0
+        for j in range(edges):
+            whole = lay(p, j, p.wrap_chain[j], p.wrap_chain[j + 1]) and whole
+        return whole
 
     @kernel
-    def end(p, edges):
-        """The way ends at the thread's other node.
+    def note(p, edges):
+        """Put the faces between the way's edges into `wrap_chain`.
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        for i in range(3):
-            p.wrap_bends[edges + 1, i] = p.wrap_b[i]
+        p.wrap_chain[0] = p.wrap_pairs[0, 0]
+        for j in range(edges):
+            p.wrap_chain[j + 1] = p.wrap_pairs[j, 1]
 
     @kernel
-    def find(p, known):
+    def find(p, edges):
         """How many edges the way bends over, 0: it is straight. Its points are `wrap_bends[0 : edges + 2]`, both ends
-        included, its pieces `wrap_pieces[0 : edges + 1]`, direction and length [m]; its side is in `wrap_side`.
+        included, its pieces `wrap_pieces[0 : edges + 1]`, direction and length [m]; its faces are in `wrap_chain`.
 
         Checked  tests/net_capture/test_wrapping.py
         """
         first, last, middle = cut(p)
-        if first < 0 or not upright(p, first, last, known):
+        if first < 0:
             return 0
-        edges = over(p, first, last, middle)
-        for j in range(edges):
-            lay(p, j, p.wrap_chain[j], p.wrap_chain[j + 1])
+        if edges > 0:
+            edges = lengthen(p, trim(p, edges))
+        if edges == 0 or not lay_all(p, edges):
+            if not upright(p, first, last):
+                return 0
+            edges = trim(p, over(p, first, last, middle))
+            lay_all(p, edges)
         for i in range(3):
             p.wrap_bends[0, i] = p.wrap_a[i]
-        for _ in range(ROUNDS):
-            edges = trim(p, edges)
-            end(p, edges)
+        for n in range(ROUNDS):
+            for i in range(3):
+                p.wrap_bends[edges + 1, i] = p.wrap_b[i]
             settle(p, edges)
-            slid = slide(p, edges)
+            slid = slide(p, edges) if n + 1 < ROUNDS else 0
             if slid == 0:
                 break
-            edges = slid
-        highest(p, edges)
+            note(p, slid)
+            edges = trim(p, slid)
+            if edges < slid:
+                lay_all(p, edges)
+        note(p, edges)
         return edges
 
     return find

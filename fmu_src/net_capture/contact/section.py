@@ -1,7 +1,7 @@
 """Where the straight way between two points cuts a convex polyhedron, and over which of its faces a way round it goes.
 
-All is asked in one plane, which holds the straight way and the side that the thread lies on: s along the straight way,
-t towards that side. Each face is a line of that plane, and the body lies under all of them,
+All is asked in one plane, which holds the straight way and the side on which the thread comes to lie: s along the
+straight way, t towards that side. Each face is a line of that plane, and the body lies under all of them,
 
     alpha s + beta t <= gamma
 
@@ -39,10 +39,9 @@ class Section(NamedTuple):
     """Kernels for a body whose faces are in `wrap_planes`, and a straight way from `wrap_a` to `wrap_b`.
 
     cut(p) -> (first, last, middle)   faces where the way comes in and goes out, -1: nowhere; its middle inside [m]
-    upright(p, first, last, known)    direction `wrap_up` from the way to the point `wrap_side`, where one is known, or
-                                      to where those faces look
-    over(p, first, last, middle)      how many edges the way goes over: the faces before and after each in `wrap_chain`,
-                                      its points in this plane in `wrap_feet`
+    upright(p, first, last)           direction `wrap_up` across the way to where those faces look; whether there is one
+    over(p, first, last, middle)      how many edges the way goes over on that side: the faces before, between and after
+                                      them in `wrap_chain`
     """
 
     cut: Any
@@ -68,7 +67,8 @@ def make_section() -> Section:
     @kernel
     def cut(p):
         """Faces through which the straight way comes in and goes out, and where its middle inside is along it [m]; -1
-        where it passes by. Leaves alpha and gamma of all faces in `wrap_flat`, its direction in `wrap_line`.
+        where it passes by, and then how far it is from cutting the body, at least, in `wrap_clear` [m]. Leaves alpha
+        and gamma of all faces in `wrap_flat`, its direction in `wrap_line`.
 
         An end that lies deeper than the inset is on the surface: the body is smaller for its way.
 
@@ -80,6 +80,7 @@ def make_section() -> Section:
             line[i] = b[i] - a[i]
             squared += line[i] * line[i]
         length = math.sqrt(squared)
+        p.wrap_clear = 0.0
         if length == 0.0:
             return -1, -1, 0.0
         p.wrap_inset = 0.0
@@ -98,6 +99,7 @@ def make_section() -> Section:
             begins = gamma <= 0.0
             ends = alpha * length >= gamma
             if begins and ends:
+                p.wrap_clear = min(-gamma, alpha * length - gamma)
                 return -1, -1, 0.0
             if begins and gamma < enters * alpha:
                 enters = gamma / alpha
@@ -110,21 +112,16 @@ def make_section() -> Section:
         return first, last, 0.5 * (enters + leaves)
 
     @kernel
-    def upright(p, first, last, known):
+    def upright(p, first, last):
         """Direction across the straight way on which the thread lies; whether there is one.
 
         Checked  tests/net_capture/test_wrapping.py
         """
         line, up, planes = p.wrap_line, p.wrap_up, p.wrap_planes
         wall = nearest_wall(p)
-        for attempt in range(0 if known else 1, 3):
+        for attempt in range(2):
             for i in range(3):
-                if attempt == 0:
-                    up[i] = p.wrap_side[i] - p.wrap_a[i]
-                elif attempt == 1:
-                    up[i] = planes[first, i] + planes[last, i]
-                else:
-                    up[i] = planes[wall, i]
+                up[i] = planes[first, i] + planes[last, i] if attempt == 0 else planes[wall, i]
             along = dot(up, line)
             for i in range(3):
                 up[i] -= along * line[i]
@@ -158,8 +155,13 @@ def make_section() -> Section:
         """
         f, g = p.wrap_flat[one], p.wrap_flat[other]
         size = f[0] * g[1] - g[0] * f[1]
-        if size > -PARALLEL:
-            return middle, FAR * p.envelope_radius
+        if size > -PARALLEL:  # along neither normal, over the body
+            first = math.sqrt(f[0] * f[0] + f[1] * f[1])
+            last = math.sqrt(g[0] * g[0] + g[1] * g[1])
+            s = f[1] / first - g[1] / last
+            t = g[0] / last - f[0] / first
+            far = FAR * p.envelope_radius / math.sqrt(s * s + t * t)
+            return middle + far * s, far * t
         return (f[2] * g[1] - g[2] * f[1]) / size, (f[0] * g[2] - g[0] * f[2]) / size
 
     @kernel
@@ -184,11 +186,11 @@ def make_section() -> Section:
 
     @kernel
     def over(p, first, last, middle):
-        """Edges over which the way goes, and where it meets them in this plane.
+        """Edges over which the way goes in this plane.
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        line, up, chain, planes, flat = p.wrap_line, p.wrap_up, p.wrap_chain, p.wrap_planes, p.wrap_flat
+        up, chain, planes, flat = p.wrap_up, p.wrap_chain, p.wrap_planes, p.wrap_flat
         for i in range(p.wrap_faces):
             flat[i, 1] = dot(planes[i, 0:3], up)
         chain[0] = first
@@ -205,8 +207,6 @@ def make_section() -> Section:
                 chain[at + 1] = third
                 edges += 1
                 continue
-            for i in range(3):
-                p.wrap_feet[at, i] = p.wrap_a[i] + s * line[i] + t * up[i]
             at += 1
         return edges
 

@@ -25,6 +25,16 @@ TAU, LOW, HIGH, SLOPE = range(4)
 """Columns of `wrap_spans`: where the way crosses an edge, both its ends [m], and dl/dtau."""
 
 
+@kernel
+def along(p, piece, edge):
+    """Cosine of the angle between a piece of the way and an edge.
+
+    Checked  tests/net_capture/test_wrapping.py
+    """
+    u, e = p.wrap_pieces[piece], p.wrap_edges[edge]
+    return u[0] * e[0] + u[1] * e[1] + u[2] * e[2]
+
+
 def make_shortest() -> Any:
     """Kernel `settle(p, edges)` of a way over so many edges, from `wrap_bends[0]` to `wrap_bends[edges + 1]`.
 
@@ -52,15 +62,6 @@ def make_shortest() -> Any:
             for i in range(3):
                 piece[i] /= max(piece[3], 1e-300)
         return total
-
-    @kernel
-    def along(p, piece, edge):
-        """Cosine of the angle between a piece of the way and an edge.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        u, e = p.wrap_pieces[piece], p.wrap_edges[edge]
-        return u[0] * e[0] + u[1] * e[1] + u[2] * e[2]
 
     @kernel
     def step(p, edges):
