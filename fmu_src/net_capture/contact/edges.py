@@ -151,7 +151,12 @@ def make_way() -> Any:
     @kernel
     def draws_in(p, j):
         """Whether the way, which is at the corner where edge number j and the next meet, is shorter over both of them:
-        where the angles of the faces that it goes over there are less than half a turn. Then it is put there.
+        where the angles of the faces that it goes over there, from its piece before to the edge, between the edges, and
+        from there to the piece after, are less than half a turn. Then it is put where these faces laid flat have it,
+
+            r = a b sin(A) / (a sin(x) + b sin(A - x))
+
+        from the corner along an edge at an angle x from the piece before, A all three angles, a and b those pieces.
 
         Checked  tests/net_capture/test_wrapping.py
         """
@@ -159,23 +164,27 @@ def make_way() -> Any:
         inward = 1.0 if inward < p.wrap_spans[j, HIGH] - p.wrap_spans[j, TAU] else -1.0
         onward = p.wrap_spans[j + 1, TAU] - p.wrap_spans[j + 1, LOW]
         onward = 1.0 if onward < p.wrap_spans[j + 1, HIGH] - p.wrap_spans[j + 1, TAU] else -1.0
-        turn = 1.0
-        across = 0.0
-        for n in range(3):
-            if n == 0:
-                cosine = -inward * along(p, j, j)
-            elif n == 1:
-                cosine = inward * onward * dot(p.wrap_edges[j], p.wrap_edges[j + 1])
-            else:
-                cosine = onward * along(p, j + 2, j + 1)
-            sine = math.sqrt(max(1.0 - cosine * cosine, 0.0))
-            turn, across = turn * cosine - across * sine, turn * sine + across * cosine
-        if across <= 0.0:
+        turns = p.wrap_up
+        turns[0] = -inward * along(p, j, j)
+        turns[1] = inward * onward * dot(p.wrap_edges[j], p.wrap_edges[j + 1])
+        turns[2] = onward * along(p, j + 2, j + 1)
+        c, d, e = turns[0], turns[1], turns[2]
+        s = math.sqrt(max(1.0 - c * c, 0.0))
+        t = math.sqrt(max(1.0 - d * d, 0.0))
+        u = math.sqrt(max(1.0 - e * e, 0.0))
+        to_second = s * d + c * t
+        from_first = t * e + d * u
+        whole = to_second * e + (c * d - s * t) * u
+        if whole <= 0.0:
             return False
+        before, after = p.wrap_pieces[j, 3], p.wrap_pieces[j + 2, 3]
+        far = before * after * whole / (before * s + after * from_first)
+        p.wrap_spans[j, TAU] = p.wrap_spans[j, LOW] + far if inward > 0.0 else p.wrap_spans[j, HIGH] - far
+        far = before * after * whole / (before * to_second + after * u)
+        p.wrap_spans[j + 1, TAU] = p.wrap_spans[j + 1, LOW] + far if onward > 0.0 else p.wrap_spans[j + 1, HIGH] - far
         for k in range(2):
             span = p.wrap_spans[j + k]
-            far = 0.25 * min(span[HIGH] - span[LOW], min(p.wrap_pieces[j, 3], p.wrap_pieces[j + 2, 3]))
-            span[TAU] += (inward if k == 0 else onward) * far
+            span[TAU] = min(max(span[TAU], span[LOW]), span[HIGH])
         return True
 
     @kernel
