@@ -249,7 +249,10 @@ def make(composition: Any) -> Wrap:
         rotate_inverse(p.wrap_b, p.target_pose, last)
         edges = find(p, edges)
         if edges == 0:
-            return 0, 0.0, 0.0, 0.0, 0.0
+            squared = 0.0
+            for axis in range(3):
+                squared += (p.wrap_b[axis] - p.wrap_a[axis]) * (p.wrap_b[axis] - p.wrap_a[axis])
+            return 0, math.sqrt(squared), 0.0, 0.0, 0.0
         way = 0.0
         for j in range(edges + 1):
             way += p.wrap_pieces[j, 3]
@@ -280,6 +283,16 @@ def make(composition: Any) -> Wrap:
         return edges, way, going, straight, closing
 
     @kernel
+    def slip(p, before, way, length, stiffness):
+        """Book what a taut thread loses as its way gets shorter at once [J].
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        kept = max(0.0, way - length)
+        p.wrap_slipped += 1
+        p.wrap_slip_loss += 0.5 * stiffness * ((before - length) * (before - length) - kept * kept)
+
+    @kernel
     def follow(p, words, at, edges, way, going, straight, length, stiffness):
         """State of a thread in this substep, by how many edges it bends over, and what is kept for the next one; a way
         that is shorter at once has slid over a corner.
@@ -290,6 +303,8 @@ def make(composition: Any) -> Wrap:
         """
         before = words[at]
         if edges == 0:
+            if before == BENT and FINE * words[at + WAY * p.thread_numbers] > max(length, way + JUMP):
+                slip(p, FINE * words[at + WAY * p.thread_numbers], way, length, stiffness)
             words[at] = FREE
             words[at + CLEAR * p.thread_numbers] = p.grid + 1 + int(p.wrap_clear / p.wrap_haste)
             return
@@ -303,9 +318,7 @@ def make(composition: Any) -> Wrap:
                 words[at] = PASSED
                 p.wrap_passed += 1
             elif expected > length and way < expected - within:
-                p.wrap_slipped += 1
-                kept = max(0.0, way - length)
-                p.wrap_slip_loss += 0.5 * stiffness * ((expected - length) * (expected - length) - kept * kept)
+                slip(p, expected, way, length, stiffness)
         words[at + WAY * p.thread_numbers] = np.int64((way + p.solver_substep * going) / FINE)
         keep(p, words, at, edges)
 

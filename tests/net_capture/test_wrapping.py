@@ -162,7 +162,7 @@ def test_a_way_never_grows_at_once_and_never_goes_through(kernels, find, part):
                 assert ways.deepest(points) < INSET + 0.013 * 0.6
             before = ends, points
     assert longest < 1e-9
-    assert bent > 1000
+    assert bent > 300
     assert most >= 3 or part is box
     assert slid > 0 or part is not box
 
@@ -206,7 +206,7 @@ def test_a_light_target_takes_the_opposite_of_all(kernels):
 
 def test_the_pull_along_the_way_takes_the_place_of_the_straight_one(kernels):
     """Both are taut: each node is pulled towards the edge alone, by k (l - L)."""
-    edge, places = np.array([2.0, 0.0, 2.0]), np.array([(1.5, 0.0, 2.02), (2.02, 0.0, 1.995)])
+    edge, places = np.array([HALF[0], 0.0, HALF[2]]), np.array([(1.5, 0.0, 2.02), (2.02, 0.0, 1.995)])
     scene = kernels.place(**SIDES).put([NODE] * 2, places, np.zeros((2, 3))).join(2, 0.5, 13368.0, 0.0)
     scene.go(1e-6, 1)
     far = np.linalg.norm(places - edge, axis=1)
@@ -228,6 +228,31 @@ def test_a_taut_thread_that_is_through_already_stays_straight(kernels):
     scene.join(2, 1.21, 13368.0, 0.0).go(2e-5, 1000)
     assert scene.p["wrap_passed"] == 0
     assert scene.p["wrap_impulse"] > 0.2 * NODE
+
+
+def test_a_thread_that_slides_off_the_end_of_an_edge_loses_what_it_held(kernels):
+    """Its nodes draw it taut, and along the edge past the corner: what they have lost is told to be lost."""
+    places = np.array([(1.6, 3.9, 2.05), (2.05, 3.9, 1.6)])
+    length, heavy = 2.0 * math.hypot(2.0 - INSET - 1.6, 0.05 + INSET) + 0.005, 50.0
+    drawn = np.array([(-0.25, 1.0, 0.0), (0.0, 1.0, -0.25)])
+    scene = kernels.place(**SIDES).put([heavy] * 2, places, drawn).join(2, length, 1000.0, 0.0)
+    scene.go(1e-4, 1500)
+    lost = 0.5 * heavy * ((drawn**2).sum() - (scene.planes[U : U + 3, :2] ** 2).sum())
+    assert (scene.p["wrap_slipped"], scene.p["wrap_passed"]) == (1, 0)
+    assert scene.p["wrap_slip_loss"] == pytest.approx(lost, rel=2e-3)
+    assert lost > 0.3
+
+
+def test_nodes_swing_round_two_edges_of_a_panel(kernels):
+    """Thinner than the thread is long: over its rim the way bends twice, and it holds both nodes."""
+    scene = kernels.place(target_size=(4.0, 8.0, 0.2), target_mass=1e9)
+    places = [(1.6, 0.0, 0.15), (1.6, 0.0, -0.15)]
+    scene.put([NODE] * 2, places, [(-1.0, 0.0, 0.0)] * 2).join(2, 1.05, STIFFNESS, 0.0)
+    scene.go(1e-5, 20000)
+    assert scene.p["wrap_impulse"] > NODE
+    assert scene.p["wrap_passed"] == 0
+    assert 0.5 * (scene.planes[U : U + 3, :2] ** 2).sum() == pytest.approx(1.0, abs=4e-4)
+    assert (scene.planes[U, :2] > 0.5).all()
 
 
 def test_what_no_thread_bends_with_is_refused():
