@@ -59,7 +59,7 @@ def make(composition: Any) -> Contact:
 
         ended     gap and normal are those of where the node is to end the substep, and it does not bounce half way
 
-        Checked  tests/net_capture/test_contact.py, tests/net_capture/test_pieces.py
+        Checked  tests/net_capture/test_contact.py, tests/net_capture/test_hollows.py
         """
         inverse = np.float64(node_plane(p, work, INVERSE_MASS)[node])
         if inverse == 0.0:
@@ -153,7 +153,7 @@ def make(composition: Any) -> Contact:
         """Impulse between one node and the target; where that has hollows, also of the walls that the node comes to
         within the substep, one after another; 1 if there is any.
 
-        Checked  tests/net_capture/test_pieces.py
+        Checked  tests/net_capture/test_hollows.py
         """
         touched = meet(p, work, node, h, False)
         if has_hollows:
