@@ -1,18 +1,20 @@
 """Threads between nodes that bend round the target.
 
 Nodes alone touch the target, and a thread between two of them that an edge lies across would cut it. A thread has no
-mass of its own here, half of it goes to each of its nodes; so it lies round the edge in equilibrium, without friction,
-and pulls both nodes along the shortest way (`contact/edges.py`):
+mass of its own here, half of it goes to each of its nodes; so it lies round the body in equilibrium, without friction,
+and pulls both nodes along the shortest way (`contact/edges.py`), over as many edges as lie across it:
 
     T = max(0, k (l - L) + d dl/dt)   if l > L,   l the length of that way
 
-The target gets what is left of both pulls, at the bend. That is a potential, so nothing is lost: two nodes that fall
-with a thread across an edge swing round it. A contact point in the middle of a thread that stays straight would take
-all they have.
+The target gets what is left of both pulls, at the first and the last bend. That is a potential, so nothing is lost: two
+nodes that fall with a thread across an edge swing round it. A contact point in the middle of a thread that stays
+straight would take all they have.
 
-A taut thread comes to lie across an edge little by little, and goes on so. One whose way would jump, over a corner of
-the body or because it is found on the far side of an edge already, has gone through: it stays straight until it is
-clear of the target, and is counted in `wrap.passed`.
+There may be a shortest way on either side of a corner. A thread keeps to the side on which it came to lie, and slides
+over the corner where there is none left on its side: its way is shorter at once, and what it held beyond that is lost
+(`wrap.slip_loss`), as a real thread would lose it in its own vibration. No way ever grows at once. One that would, of a
+taut thread that is found inside the body, has gone through: it stays straight until it is clear of the target, and is
+counted in `wrap.passed`.
 
 Which threads are near is looked up now and then, ahead of how fast anything moves. In what is shown the pull round an
 edge counts up to the middle of the last substep, as that of contact by penalty does.
@@ -29,7 +31,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmu_src.interface import Term
-from fmu_src.net_capture.contact.edges import make_bend
+from fmu_src.net_capture.contact.edges import make_way
+from fmu_src.net_capture.contact.section import FACES, MOST
 from fmu_src.net_capture.planes import (
     DAMPING,
     FIRST,
@@ -61,13 +64,19 @@ LONGEST_LOOK = 200
 """Substeps after which they are in any case."""
 
 
-FRESH = 1e-3
-"""Metres that a thread may lie round an edge beyond the straight way when it first does."""
 JUMP = 2e-4
-"""Metres that its way may change in a substep beyond twice what the ends' speeds make: 0.3 mJ of Table 1's net."""
+"""Metres by which a way may differ from what the ends' speeds made of it a substep ago: 0.3 mJ of Table 1's net."""
+SHARE = 0.5
+"""Of what these speeds make in a substep, by which it may differ beside that."""
 FREE, BENT, PASSED = range(3)
 """States of a thread: clear of the target; round an edge; through it."""
-NANOMETRE = 1e-9
+STATE, WAY, CLEAR, EDGES, CHAIN, KEPT = 0, 1, 2, 3, 4, 7
+"""Whole numbers kept of each thread, one plane of them after another: its state, the length of its way a substep on,
+the substep up to which it is clear of the target, over how many edges it bends, and the faces between them, `PACKED` to
+a number."""
+PACKED, FACE_BITS = 6, 9
+FINE = 1e-12
+"""Metres: lengths are kept in picometres."""
 
 
 class Wrap(NamedTuple):
@@ -97,7 +106,10 @@ def make(composition: Any) -> Wrap:
     memory = composition.memory
     node_plane, strips, properties, own = memory.node_plane, memory.strips, memory.properties, memory.own
     reals_of, bring, rouse = memory.reals, make_asleep(composition).bring, composition.rouse
-    masks, bend, distance_to = composition.traits.masks, make_bend(composition), composition.target.shape.distance
+    masks, find, shape = composition.traits.masks, make_way(), composition.target.shape
+    distance_to, faces = shape.distance, shape.faces
+    if faces is None:
+        raise ValueError(f"threads bend round no {composition.terms['target']}: it may have hollows")
     begin_step, rate_of = composition.contact.begin_step, composition.gravity.rate
     peaks, now = composition.peaks, composition.clock.now
     so_far, note = peaks.so_far, peaks.note
@@ -106,11 +118,11 @@ def make(composition: Any) -> Wrap:
 
     @kernel
     def words(p):
-        """For each thread a place in the list of those near, its state, and the length of its way [nm].
+        """For each thread a place in the list of those near, and what is kept of it, see `KEPT`.
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        return 3 * p.thread_numbers
+        return (1 + KEPT) * p.thread_numbers
 
     @kernel
     def list_at(p, words):
@@ -118,7 +130,7 @@ def make(composition: Any) -> Wrap:
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        return words.size - masks * p.strips - 3 * p.thread_numbers
+        return words.size - masks * p.strips - (1 + KEPT) * p.thread_numbers
 
     @kernel
     def start(p):
@@ -132,6 +144,9 @@ def make(composition: Any) -> Wrap:
         p.wrap_passed = 0
         p.wrap_impulse = 0.0
         p.wrap_stored = 0.0
+        p.wrap_slipped = 0
+        p.wrap_slip_loss = 0.0
+        p.wrap_faces = faces(p, p.wrap_planes)
 
     @kernel
     def list_near(p, work):
@@ -154,8 +169,9 @@ def make(composition: Any) -> Wrap:
             fastest = max(fastest, speed)
         reach = p.envelope_radius + AHEAD
         fastest = math.sqrt(fastest) + math.sqrt(dot(p.target_omega, p.target_omega)) * reach
-        steps = min(0.5 * AHEAD / (p.solver_substep * max(fastest, 1e-9)), 1.0 * LONGEST_LOOK)
-        p.wrap_next = p.grid + max(int(steps), 1)
+        p.wrap_haste = 2.0 * p.solver_substep * max(fastest, 1e-9)
+        p.wrap_substep = p.solver_substep
+        p.wrap_next = p.grid + max(int(min(AHEAD / p.wrap_haste, 1.0 * LONGEST_LOOK)), 1)
         p.wrap_listed = 0
         middle, arm = p.wrap_a, p.wrap_b
         for strip in range(p.strips):
@@ -174,18 +190,49 @@ def make(composition: Any) -> Wrap:
                 if away < (p.envelope_radius + half) * (p.envelope_radius + half):
                     rotate_inverse(middle, p.target_pose, arm)
                     if distance_to(p, p.wrap_line, middle) < half:
+                        words[at + (1 + CLEAR) * p.thread_numbers + table[s + FIRST] + lane] = 0
                         words[at + p.wrap_listed] = 64 * strip + lane
                         p.wrap_listed += 1
                         continue
                 words[at + p.thread_numbers + table[s + FIRST] + lane] = FREE
 
     @kernel
-    def look(p, work, code, place, rate):
-        """Whether a thread bends, with nodes at the places and rates in these planes; length and rate of its way and of
-        the straight one [m], [m/s].
+    def recall(p, words, at):
+        """Over how many edges a thread bends, 0: none; the faces between them go into `wrap_chain`.
 
-        Then directions from the bend to its ends are in `wrap_first` and `wrap_last`, and from end to end in
-        `wrap_line`, frame axes.
+        at        where its state stands
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        if words[at] == FREE:
+            return 0
+        edges = words[at + EDGES * p.thread_numbers]
+        for j in range(edges + 1):
+            word = words[at + (CHAIN + j // PACKED) * p.thread_numbers]
+            p.wrap_chain[j] = (word >> (FACE_BITS * (j % PACKED))) & ((1 << FACE_BITS) - 1)
+        return edges
+
+    @kernel
+    def keep(p, words, at, edges):
+        """Keep over which faces a thread lies.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        words[at + EDGES * p.thread_numbers] = edges
+        for n in range(CHAIN, KEPT):
+            words[at + n * p.thread_numbers] = 0
+        for j in range(edges + 1):
+            words[at + (CHAIN + j // PACKED) * p.thread_numbers] |= p.wrap_chain[j] << (FACE_BITS * (j % PACKED))
+
+    @kernel
+    def look(p, work, code, place, rate, edges):
+        """How many edges a thread bends over, with nodes at the places and rates in these planes; length and rate of
+        its way and of the straight one [m], [m/s].
+
+        Then directions from the first and last bend to its ends are in `wrap_first` and `wrap_last`, and from end to
+        end in `wrap_line`, frame axes.
+
+        edges     how many it bent over before, between the faces in `wrap_chain`
 
         Checked  tests/net_capture/test_wrapping.py
         """
@@ -193,57 +240,100 @@ def make(composition: Any) -> Wrap:
         table = strips(p, work)
         a = table[s + A] + code % 64
         b = table[s + B] + code % 64
-        first, last, line, point = p.wrap_first, p.wrap_last, p.wrap_line, p.wrap_point
+        first, last, line, turned = p.wrap_first, p.wrap_last, p.wrap_line, p.wrap_turned
         for axis in range(3):
             x = node_plane(p, work, place + axis)
             first[axis] = x[a] - p.target_place[axis]
             last[axis] = x[b] - p.target_place[axis]
         rotate_inverse(p.wrap_a, p.target_pose, first)
         rotate_inverse(p.wrap_b, p.target_pose, last)
-        if not bend(p):
-            return False, 0.0, 0.0, 0.0, 0.0
-        rotate(point, p.target_pose, p.wrap_bend)
-        cross(p.wrap_moving, p.target_omega, point)
+        edges = find(p, edges)
+        if edges == 0:
+            squared = 0.0
+            for axis in range(3):
+                squared += (p.wrap_b[axis] - p.wrap_a[axis]) * (p.wrap_b[axis] - p.wrap_a[axis])
+            return 0, math.sqrt(squared), 0.0, 0.0, 0.0
+        way = 0.0
+        for j in range(edges + 1):
+            way += p.wrap_pieces[j, 3]
+        going = 0.0
+        for end in range(2):
+            bend, out, node = (1, first, a) if end == 0 else (edges, last, b)
+            rotate(turned, p.target_pose, p.wrap_bends[bend])
+            cross(p.wrap_moving, p.target_omega, turned)
+            squared = 0.0
+            for axis in range(3):
+                out[axis] -= turned[axis]
+                squared += out[axis] * out[axis]
+            for axis in range(3):
+                out[axis] /= math.sqrt(squared)
+                v = node_plane(p, work, rate + axis)
+                going += out[axis] * (v[node] - p.target_drift[axis] - p.wrap_moving[axis])
+        squared = 0.0
         for axis in range(3):
             x = node_plane(p, work, place + axis)
-            first[axis] = x[a] - p.target_place[axis] - point[axis]
-            last[axis] = x[b] - p.target_place[axis] - point[axis]
             line[axis] = x[b] - x[a]
-        from_first = math.sqrt(dot(first, first))
-        from_last = math.sqrt(dot(last, last))
-        straight = math.sqrt(dot(line, line))
-        going = 0.0
+            squared += line[axis] * line[axis]
+        straight = math.sqrt(squared)
         closing = 0.0
         for axis in range(3):
-            first[axis] /= from_first
-            last[axis] /= from_last
             line[axis] /= straight
             v = node_plane(p, work, rate + axis)
-            surface = p.target_drift[axis] + p.wrap_moving[axis]
-            going += first[axis] * (v[a] - surface) + last[axis] * (v[b] - surface)
             closing += line[axis] * (v[b] - v[a])
-        return True, from_first + from_last, going, straight, closing
+        return edges, way, going, straight, closing
 
     @kernel
-    def follow(p, words, at, cuts, way, going, straight, length):
-        """State of a thread in this substep, by whether it cuts an edge, and the length of its way [nm].
+    def slip(p, before, way, length, stiffness):
+        """Book what a taut thread loses as its way gets shorter at once [J].
 
-        at        where its state stands, `thread_numbers` before the length of its way
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        kept = max(0.0, way - length)
+        p.wrap_slipped += 1
+        p.wrap_slip_loss += 0.5 * stiffness * ((before - length) * (before - length) - kept * kept)
+
+    @kernel
+    def follow(p, words, at, edges, way, going, straight, length, stiffness):
+        """State of a thread in this substep, by how many edges it bends over, and what is kept for the next one; a way
+        that is shorter at once has slid over a corner.
+
+        at        where its state stands
 
         Checked  tests/net_capture/test_wrapping.py
         """
         before = words[at]
-        if not cuts:
+        if edges == 0:
+            if before == BENT and FINE * words[at + WAY * p.thread_numbers] > max(length, way + JUMP):
+                slip(p, FINE * words[at + WAY * p.thread_numbers], way, length, stiffness)
             words[at] = FREE
-        elif before == FREE:
-            words[at] = BENT if way - straight < FRESH or way <= length else PASSED
-        elif before == BENT:
-            jump = abs(way - NANOMETRE * words[at + p.thread_numbers])
-            if way > length and jump > JUMP + 2.0 * p.solver_substep * abs(going):
+            words[at + CLEAR * p.thread_numbers] = p.grid + 1 + int(p.wrap_clear / p.wrap_haste)
+            return
+        expected = FINE * words[at + WAY * p.thread_numbers] if before != FREE else straight
+        within = JUMP + SHARE * p.solver_substep * abs(going)
+        if before == FREE:
+            within += 2.0 * p.solver_substep * abs(going)
+            words[at] = BENT
+        if before != PASSED:
+            if way > length and way > expected + within:
                 words[at] = PASSED
-        if before != PASSED and words[at] == PASSED:
-            p.wrap_passed += 1
-        words[at + p.thread_numbers] = np.int64(way / NANOMETRE)
+                p.wrap_passed += 1
+            elif expected > length and way < expected - within:
+                slip(p, expected, way, length, stiffness)
+        words[at + WAY * p.thread_numbers] = np.int64((way + p.solver_substep * going) / FINE)
+        keep(p, words, at, edges)
+
+    @kernel
+    def press(p, edges, tension):
+        """Enter what a tension of a substep [N] gives the target at every bend into the map of forces.
+
+        Checked  tests/net_capture/test_force_map.py
+        """
+        for j in range(edges):
+            squared = 0.0
+            for axis in range(3):
+                change = p.wrap_pieces[j + 1, axis] - p.wrap_pieces[j, axis]
+                squared += change * change
+            add_to_map(p, p.wrap_bends[j + 1], p.solver_substep * tension * math.sqrt(squared))
 
     @kernel
     def pull(p, work):
@@ -252,7 +342,7 @@ def make(composition: Any) -> Wrap:
         Checked  tests/net_capture/test_wrapping.py
         """
         begin_step(p, rate_of(p))
-        if p.grid >= p.wrap_next:
+        if p.grid >= p.wrap_next or p.solver_substep != p.wrap_substep:
             list_near(p, work)
         words, table, numbers = own(p, work), strips(p, work), properties(p, work)
         at = list_at(p, words)
@@ -260,20 +350,22 @@ def make(composition: Any) -> Wrap:
         for n in range(p.wrap_listed):
             code = words[at + n]
             strip = code // 64
+            number = table[STRIP_WORDS * strip + FIRST] + code % 64
+            kept = at + p.thread_numbers + number
+            if words[kept + CLEAR * p.thread_numbers] > p.grid:
+                continue
             a = table[STRIP_WORDS * strip + A] + code % 64
             b = table[STRIP_WORDS * strip + B] + code % 64
             bring(p, reals_of(work), words, a // p.row_pitch)
             bring(p, reals_of(work), words, b // p.row_pitch)
-            cuts, way, going, straight, closing = look(p, work, code, X, P)
             q = STRIP_NUMBERS * strip
-            length = numbers[q + LENGTH]
-            number = table[STRIP_WORDS * strip + FIRST] + code % 64
-            follow(p, words, at + p.thread_numbers + number, cuts, way, going, straight, length)
-            if words[at + p.thread_numbers + number] != BENT or way <= length:
+            length, stiffness, damping = numbers[q + LENGTH], numbers[q + STIFFNESS], numbers[q + DAMPING]
+            edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
+            follow(p, words, kept, edges, way, going, straight, length, stiffness)
+            if words[kept] != BENT or way <= length:
                 continue
             rouse(p, work, a)
             rouse(p, work, b)
-            stiffness, damping = numbers[q + STIFFNESS], numbers[q + DAMPING]
             elastic = stiffness * (way - length)
             tension = max(0.0, elastic + damping * going)
             p.thread_loss += h * (tension - elastic) * going
@@ -282,21 +374,23 @@ def make(composition: Any) -> Wrap:
                 elastic = stiffness * (straight - length)
                 chord = max(0.0, elastic + damping * closing)
                 p.thread_loss -= h * (chord - elastic) * closing
-            squared = 0.0
             for axis in range(3):
                 along = chord * p.wrap_line[axis]
                 node_plane(p, work, FX + axis)[a] -= tension * p.wrap_first[axis] + along
                 node_plane(p, work, FX + axis)[b] -= tension * p.wrap_last[axis] - along
+            squared = 0.0
+            for axis in range(3):
                 push = h * tension * (p.wrap_first[axis] + p.wrap_last[axis])
-                p.wrap_moving[axis] = push
                 p.target_drift[axis] += push / p.target_mass
                 squared += push * push
-            cross(p.wrap_a, p.wrap_point, p.wrap_moving)
-            for axis in range(3):
-                p.target_spin[axis] += p.wrap_a[axis]
+            for end in range(2):
+                rotate(p.wrap_turned, p.target_pose, p.wrap_bends[1 if end == 0 else edges])
+                cross(p.wrap_moving, p.wrap_turned, p.wrap_first if end == 0 else p.wrap_last)
+                for axis in range(3):
+                    p.target_spin[axis] += h * tension * p.wrap_moving[axis]
             p.wrap_impulse += math.sqrt(squared)
             if has_map:
-                add_to_map(p, p.wrap_bend, math.sqrt(squared))
+                press(p, edges, tension)
             if tension > so_far(p, number + 1):
                 note(p, number + 1, tension)
             p.contact_force = max(p.contact_force, 2.0 * tension)
@@ -317,12 +411,13 @@ def make(composition: Any) -> Wrap:
         for n in range(p.wrap_listed):
             code = words[at + n]
             strip = code // 64
-            if words[at + p.thread_numbers + table[STRIP_WORDS * strip + FIRST] + code % 64] != BENT:
+            kept = at + p.thread_numbers + table[STRIP_WORDS * strip + FIRST] + code % 64
+            if words[kept] != BENT:
                 continue
-            cuts, way, going, straight, closing = look(p, work, code, SHOWN, SHOWN_RATE)
+            edges, way, going, straight, closing = look(p, work, code, SHOWN, SHOWN_RATE, recall(p, words, kept))
             q = STRIP_NUMBERS * strip
             length = numbers[q + LENGTH]
-            if not cuts or way <= length:
+            if edges == 0 or way <= length:
                 continue
             p.wrap_threads += 1
             stretch = max(0.0, way - 0.5 * p.solver_substep * going - length)
@@ -358,22 +453,44 @@ PART = Term(
     "threads between nodes bend round the edges of the target",
     (
         count("wrap.threads", "taut threads that bend round an edge now"),
-        count("wrap.passed", "how often a thread has gone through an edge"),
+        count("wrap.passed", "how often a taut thread has gone through the target"),
+        count("wrap.slipped", "how often a taut thread has slid over a corner"),
+        peak("wrap.slip_loss", "J", "lost by threads that slid over a corner"),
         peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
         output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
         count("wrap_listed", "threads near the target", "state"),
         count("wrap_next", "substep at which they are looked up again", "state"),
+        count("wrap_faces", "faces of the target", "state"),
+        count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
+        count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
+        state("wrap_clear", "m", "how far a thread is from the target, at least"),
+        state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),
+        state("wrap_substep", "s", "the substep then"),
+        state("wrap_inset", "m", "how far below the surface ways lie"),
+        *(
+            state(f"wrap_{name}[#][#]", "1", text, shape=(rows, columns))
+            for name, rows, columns, text in (
+                ("planes", FACES, 4, "faces of the target, body axes: way out, and distance along it [m]"),
+                ("flat", FACES, 3, "lines of the faces in the plane of a way, the last column in metres"),
+                ("bends", MOST + 2, 3, "points of a way, body axes [m]"),
+                ("pieces", MOST + 1, 4, "directions between them, body axes, and lengths [m]"),
+                ("edges", MOST, 3, "directions of the edges, body axes"),
+                ("feet", MOST, 3, "points on them, body axes [m]"),
+                ("spans", MOST, 4, "where the way crosses them and both ends [m], and slope there"),
+                ("steps", MOST, 4, "Newton's equations of a way"),
+            )
+        ),
         *(
             state(f"wrap_{name}[#]", unit, text, shape=(3,))
             for name, unit, text in (
                 ("a", "m", "one end of a thread, body axes"),
                 ("b", "m", "the other end, body axes"),
-                ("bend", "m", "where it bends, body axes"),
-                ("point", "m", "the same from the target's centre of mass, frame axes"),
-                ("moving", "m/s", "velocity of the surface there, less that of the centre of mass; an impulse"),
-                ("first", "1", "direction from the bend to one end, or a normal"),
-                ("last", "1", "direction from the bend to the other end, or a normal"),
-                ("line", "1", "direction of the straight thread, or of the edge"),
+                ("turned", "m", "a bend from the target's centre of mass, frame axes"),
+                ("moving", "m/s", "velocity of the surface there, less that of the centre of mass; a lever"),
+                ("first", "1", "direction from the first bend to one end"),
+                ("last", "1", "direction from the last bend to the other end"),
+                ("line", "1", "direction of the straight thread"),
+                ("up", "1", "direction across it, body axes"),
             )
         ),
     ),

@@ -36,7 +36,8 @@ class Kernels:
         self.terms = terms = parts.terms
         node_plane, properties, own = parts.memory.node_plane, parts.memory.properties, parts.memory.own
         contact, target, pull_threads = parts.contact, parts.target, make_threads(parts, P, U).pull_now
-        bends, pull_bent = parts.wrap is not None, parts.wrap.pull if parts.wrap is not None else None
+        bends = parts.wrap is not None
+        pull_bent, start = (parts.wrap.pull, parts.wrap.start) if bends else (None, None)
         begin, touch, put, drift = contact.begin_step, contact.touch_row, target.place, target.drift
 
         @kernel
@@ -44,6 +45,8 @@ class Kernels:
             p = record[0]
             put(p)
             complete_strips(p, properties(p, work))
+            if bends:
+                start(p)
 
         @kernel
         def advance(record, work, pulls, steps, ways, speeds):

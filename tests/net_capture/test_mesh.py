@@ -12,7 +12,7 @@ from fmu_src.implied import formula
 from fmu_src.interface import Undesigned
 from fmu_src.net_capture.shapes import mesh, solids, triangles
 from fmu_src.net_capture.shapes.box import box_distance
-from tests.net_capture.evidence import mesh_box
+from tests.net_capture.evidence import mesh_box, mesh_first
 
 SIZE = np.array([2.0, 3.0, 1.5])
 
@@ -150,3 +150,24 @@ def test_the_stored_ensembles_agree():
     assert abs(impulse["difference_over_error"]) < mesh_box.IMPULSE_WITHIN
     assert told["summary"]["shots"] >= 32
     assert all(row[kind]["captured"] > 0.0 and row[kind]["momentum"] < 1e-11 for row in told["rows"] for kind in row)
+
+
+def test_the_first_second_of_contact_has_the_same_impulse():
+    """Start by start within 2 %, as long as the folds are those of one flight; their mean within 0.5 %."""
+    told = json.loads(mesh_first.RESULT.read_text())
+    assert (told["command"], len(told["rows"])) == (mesh_first.COMMAND, mesh_first.SHOTS)
+    assert all(row["mesh"]["touch"] == row["box"]["touch"] for row in told["rows"])
+    impulses = {kind: np.array([row[kind]["impulse"] for row in told["rows"]]) for kind in ("box", "mesh")}
+    ratio = impulses["mesh"] / impulses["box"]
+    assert np.abs(ratio - 1.0).max() < 0.02
+    np.testing.assert_allclose(ratio.mean(axis=0), 1.0, atol=0.005)
+    assert np.abs(np.roll(impulses["mesh"], 1, axis=0) / impulses["box"] - 1.0).max() > 0.02, "the twin: other starts"
+    speeds = {kind: np.array([row[kind]["speed"] for row in told["rows"]]) for kind in ("box", "mesh")}
+    np.testing.assert_allclose(speeds["mesh"], speeds["box"], rtol=0.02)
+
+
+@pytest.mark.evidence
+def test_a_start_touches_as_it_is_stored():
+    stored = json.loads(mesh_first.RESULT.read_text())["rows"][0]
+    tables = mesh_box.laid()
+    assert {kind: mesh_first.first(kind, 0, tables) for kind in ("box", "mesh")} == stored

@@ -108,3 +108,15 @@ def test_rows_are_looked_at_again_when_the_winches_or_the_tether_begin_to_pull()
     p.closing_t_start = 0.5
     assert hurries(p)
     assert not hurries(p)
+
+
+def test_rows_are_looked_at_again_when_a_tether_that_drags_begins_to_pull():
+    bench = Bench(TERMS | {"tether": "dragging"})
+    p, hurries = bench.p, make_search(bench.parts, LONGEST).hurries
+    p.contact_haste = p.contact_force = p.contact_reckoned = p.tether_vertex_tension = p.tether_drag = 0.0
+    p.contact_besides = 0
+    p.target_drift[:] = 0.0
+    assert not hurries(p)
+    p.tether_drag = 0.5
+    assert hurries(p)
+    assert not hurries(p)

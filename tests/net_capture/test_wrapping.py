@@ -1,21 +1,28 @@
-"""Threads that bend round the target: the way over an edge, two nodes that swing round one, momenta."""
+"""Threads that bend round the target: the way over its edges, nodes that swing round them, corners, momenta."""
 
 import math
+from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
+from scipy.optimize import minimize
 
-from fmu_src.net_capture.contact.edges import make_bend
+from fmu_src.implied import formula
+from fmu_src.net_capture.contact.edges import make_way
+from fmu_src.net_capture.contact.section import INSET
 from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.planes import U, X
 from fmu_src.net_capture.refusal import Scene
+from fmu_src.net_capture.shapes import box, cylinder, frustum, sphere
 from orbital.kernel import kernel
 from tests.net_capture.on_target import Kernels
 
 BOX = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic", "wrap": "plain"}
 SIDES = {"target_size": (4.0, 8.0, 4.0), "target_mass": 1e9}
+HALF = np.array([2.0, 4.0, 2.0]) - INSET
 NODE, LENGTH = 5e-4, 1.0
+STIFFNESS = 13368.0
 
 
 @pytest.fixture(scope="module")
@@ -24,49 +31,140 @@ def kernels():
 
 
 @pytest.fixture(scope="module")
-def bend(kernels):
-    find = make_bend(kernels.parts)
+def find(kernels):
+    search = make_way()
 
     @kernel
-    def found(record):
-        return find(record[0])
+    def found(record, edges):
+        return search(record[0], edges)
 
-    def over(a, b, **values):
-        scene = kernels.place(**SIDES | values)
-        scene.p["wrap_a"], scene.p["wrap_b"] = a, b
-        return scene.p["wrap_bend"].copy() if found(scene.record) else None
+    return found
 
-    return over
+
+class Ways:
+    """Ways round a body from end to end; each goes on from the side of the one before, unless it begins anew.
+
+    part, sizes    kernels of a shape, and what they read of the record
+    """
+
+    def __init__(self, kernels, find, part, **sizes):
+        self.scene, self.find, self.edges = kernels.place(**SIDES), find, 0
+        self.p = self.scene.p
+        body = SimpleNamespace(**sizes, half_size=np.zeros(3), shape_half=np.zeros(3))
+        formula(part.measure)(body)
+        self.p["wrap_faces"] = formula(part.faces)(body, self.p["wrap_planes"])
+        self.p["envelope_radius"] = body.envelope_radius
+        self.away = lambda point: float(formula(part.distance)(body, np.zeros(3), point))
+
+    def __call__(self, a, b, anew=True):
+        """Points of the way; None where it is straight."""
+        self.p["wrap_a"], self.p["wrap_b"] = a, b
+        self.edges = int(self.find(self.scene.record, 0 if anew else self.edges))
+        return self.p["wrap_bends"][: self.edges + 2].copy() if self.edges else None
+
+    def outside(self, direction, share):
+        """Where a ray from the centre leaves the body, and a share farther [m]."""
+        reach, step = 0.0, 2.0
+        for _ in range(40):
+            step *= 0.5
+            reach += step if self.away((reach + step) * direction) < 0.0 else 0.0
+        return (1.0 + share) * (reach + 1e-9) * direction
+
+    def deepest(self, points):
+        """How deep below the surface the pieces of a way come [m]."""
+        shares = np.linspace(0.0, 1.0, 23)[:, None]
+        pieces = [p + shares * (q - p) for p, q in pairwise(points)]
+        return -min(self.away(point) for piece in pieces for point in piece)
+
+
+@pytest.fixture(scope="module")
+def ways(kernels, find):
+    return Ways(kernels, find, box, target_size=(4.0, 8.0, 4.0))
+
+
+def length_of(points):
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_a_way_over_an_edge_is_the_shortest(bend, seed):
+def test_a_way_over_an_edge_is_the_shortest(ways, seed):
     """Of all points of that edge, by minimising."""
     draw = np.random.default_rng(seed)
     a = np.array([draw.uniform(1.4, 1.95), draw.uniform(-1.0, 1.0), 2.0 + draw.uniform(0.0, 0.3)])
     b = np.array([2.0 + draw.uniform(0.0, 0.3), draw.uniform(-1.0, 1.0), draw.uniform(1.2, 1.7)])
-    if np.linalg.norm(np.cross(b - a, (2.0 - a[0], 0.0, 2.0 - a[2]))) == 0.0:
-        pytest.skip("it grazes the edge")
-    way = lambda t: np.linalg.norm(a - (2.0, t, 2.0)) + np.linalg.norm(b - (2.0, t, 2.0))  # noqa: E731
-    shortest = minimize_scalar(way, bounds=(-2.0, 2.0), method="bounded", options={"xatol": 1e-10})
-    middle = 0.5 * (a + b)
-    cuts = (a[2] - 2.0) * (2.0 - b[2]) < (2.0 - a[0]) * (b[0] - 2.0) or max(middle[0], middle[2]) < 2.0
-    found = bend(a, b)
+    over = lambda t: np.array([a, (HALF[0], t[0], HALF[2]), b])  # noqa: E731
+    shortest = minimize(lambda t: length_of(over(t)), [0.0], tol=1e-14)
+    found = ways(a, b)
     if found is None:
-        inside = [np.all(np.abs(a + s * (b - a)) < (2.0, 4.0, 2.0)) for s in np.linspace(0.0, 1.0, 2001)]
-        assert not any(inside), "it cuts the box"
+        assert not any(np.all(np.abs(a + s * (b - a)) < HALF) for s in np.linspace(0.0, 1.0, 2001)), "it cuts the box"
     else:
-        assert cuts
-        assert found[[0, 2]] == pytest.approx((2.0, 2.0), abs=1e-12)
-        assert found[1] == pytest.approx(shortest.x, abs=1e-5)
+        np.testing.assert_allclose(found, over(shortest.x), atol=1e-6)
+        assert length_of(found) <= shortest.fun + 1e-12
 
 
-def test_what_does_not_cut_an_edge_stays_straight(bend):
-    assert bend((0.0, 0.0, 2.0), (1.0, 0.0, 2.0)) is None, "both on one face"
-    assert bend((0.0, 0.0, 2.5), (1.0, 0.0, 2.1)) is None, "above it"
-    assert bend((2.5, 0.0, 2.5), (3.5, 0.0, 1.0)) is None, "beside it"
-    assert bend((1.9, 0.0, 2.0), (2.0, 0.0, 1.9)) is not None, "round a corner from face to face"
-    assert bend((0.0, 0.0, 2.1), (0.0, 0.0, -2.1)) is None, "round two edges, which it does not know of"
+def test_over_two_edges_it_is_straight_on_the_faces_laid_flat(ways):
+    """From above to below, over a side of 4 m; and over a corner, on the side where the thread lay."""
+    found = ways((1.0, -0.3, 2.0), (1.0, 0.9, -2.0))
+    ends = math.hypot(HALF[0] - 1.0, INSET)
+    assert len(found) == 4
+    assert length_of(found) == pytest.approx(math.hypot(2.0 * (ends + HALF[2]), 1.2), abs=1e-12)
+    a, b = np.array([1.0, 3.8, 2.0]), np.array([2.0, 3.5, 1.0])
+    one = ways(a, b)
+    ways((1.0, 4.0, 1.9), b)
+    two = ways(a, b, anew=False)
+    assert (len(one), len(two)) == (3, 4)
+    assert length_of(one) == pytest.approx(math.hypot(2.0 * math.hypot(HALF[0] - 1.0, INSET), 0.3), abs=1e-12)
+    over = lambda t: np.array([a, (t[0], HALF[1], HALF[2]), (HALF[0], HALF[1], t[1]), b])  # noqa: E731
+    shortest = minimize(lambda t: length_of(over(t)), [1.3, 1.3], tol=1e-14)
+    np.testing.assert_allclose(two, over(shortest.x), atol=1e-6)
+
+
+def test_what_does_not_cut_an_edge_stays_straight(ways):
+    assert ways((0.0, 0.0, 2.0), (1.0, 0.0, 2.0)) is None, "both on one face"
+    assert ways((0.0, 0.0, 2.5), (1.0, 0.0, 2.1)) is None, "above it"
+    assert ways((2.5, 0.0, 2.5), (3.5, 0.0, 1.0)) is None, "beside it"
+    assert ways((1.9, 0.0, 2.0), (2.0, 0.0, 1.9)) is not None, "round a corner from face to face"
+    assert len(ways((0.0, 3.9, 2.1), (0.0, 3.9, -2.1))) == 4, "round two edges, over the nearest side"
+
+
+BODIES = {
+    box: {"target_size": (1.0, 1.6, 0.3)},
+    cylinder: {"target_radius": 0.6, "target_length": 0.9},
+    frustum: {"target_radius_bottom": 0.7, "target_radius_top": 0.2, "target_length": 0.8},
+    sphere: {"target_radius": 0.6},
+}
+
+
+@pytest.mark.parametrize("part", BODIES, ids=lambda part: part.__name__.rpartition(".")[2])
+def test_a_way_never_grows_at_once_and_never_goes_through(kernels, find, part):
+    """Both ends wander over the body, so that the thread slides over corners, off and on again."""
+    ways = Ways(kernels, find, part, **BODIES[part])
+    draw = np.random.default_rng(7)
+    longest, slid, bent, most = 0.0, 0, 0, 0
+    for _ in range(4):
+        waves, phases = draw.uniform(0.3, 1.5, (2, 4)), draw.uniform(0.0, 2.0 * math.pi, (2, 4))
+        before = None
+        for step in range(600):
+            swings = np.sin(0.02 * step * waves + phases)
+            swings[1, :3] = swings[0, :3] + 0.8 * swings[1, :3]
+            ends = [ways.outside(s[:3] / np.linalg.norm(s[:3]), max(0.3 * s[3], 0.0)) for s in swings]
+            points = ways(*ends, anew=before is None)
+            if points is None:
+                before = None
+                continue
+            bent, most = bent + 1, max(most, len(points) - 2)
+            if before is not None:
+                moved = sum(np.linalg.norm(end - old) for end, old in zip(ends, before[0], strict=True))
+                grown = length_of(points) - length_of(before[1])
+                slid += grown < -moved - 1e-3
+                longest = max(longest, grown - moved)
+            if step % 5 == 0:
+                assert ways.deepest(points) < INSET + 0.013 * 0.6
+            before = ends, points
+    assert longest < 1e-9
+    assert bent > 1000
+    assert most >= 3 or part is box
+    assert slid > 0 or part is not box
 
 
 def swung(kernels, **values):
@@ -76,8 +174,7 @@ def swung(kernels, **values):
     edge = np.array([2.0, 0.0, 2.0])
     across, down = np.array([-1.0, 0.0, 1.0]) / math.sqrt(2.0), np.array([-1.0, 0.0, -1.0]) / math.sqrt(2.0)
     places = [edge + 0.5 * LENGTH * side * across - 0.01 * down for side in (1.0, -1.0)]
-    stiffness = 13368.0
-    scene.put([NODE] * 2, places, [down] * 2).join(2, LENGTH, stiffness, 0.0)
+    scene.put([NODE] * 2, places, [down] * 2).join(2, LENGTH, STIFFNESS, 0.0)
     before = momenta(scene)
     scene.go(2e-5, 15000)
     speeds = scene.planes[U : U + 3, :2].T
@@ -109,7 +206,7 @@ def test_a_light_target_takes_the_opposite_of_all(kernels):
 
 def test_the_pull_along_the_way_takes_the_place_of_the_straight_one(kernels):
     """Both are taut: each node is pulled towards the edge alone, by k (l - L)."""
-    edge, places = np.array([2.0, 0.0, 2.0]), np.array([(1.5, 0.0, 2.02), (2.02, 0.0, 1.995)])
+    edge, places = np.array([HALF[0], 0.0, HALF[2]]), np.array([(1.5, 0.0, 2.02), (2.02, 0.0, 1.995)])
     scene = kernels.place(**SIDES).put([NODE] * 2, places, np.zeros((2, 3))).join(2, 0.5, 13368.0, 0.0)
     scene.go(1e-6, 1)
     far = np.linalg.norm(places - edge, axis=1)
@@ -131,6 +228,31 @@ def test_a_taut_thread_that_is_through_already_stays_straight(kernels):
     scene.join(2, 1.21, 13368.0, 0.0).go(2e-5, 1000)
     assert scene.p["wrap_passed"] == 0
     assert scene.p["wrap_impulse"] > 0.2 * NODE
+
+
+def test_a_thread_that_slides_off_the_end_of_an_edge_loses_what_it_held(kernels):
+    """Its nodes draw it taut, and along the edge past the corner: what they have lost is told to be lost."""
+    places = np.array([(1.6, 3.9, 2.05), (2.05, 3.9, 1.6)])
+    length, heavy = 2.0 * math.hypot(2.0 - INSET - 1.6, 0.05 + INSET) + 0.005, 50.0
+    drawn = np.array([(-0.25, 1.0, 0.0), (0.0, 1.0, -0.25)])
+    scene = kernels.place(**SIDES).put([heavy] * 2, places, drawn).join(2, length, 1000.0, 0.0)
+    scene.go(1e-4, 1500)
+    lost = 0.5 * heavy * ((drawn**2).sum() - (scene.planes[U : U + 3, :2] ** 2).sum())
+    assert (scene.p["wrap_slipped"], scene.p["wrap_passed"]) == (1, 0)
+    assert scene.p["wrap_slip_loss"] == pytest.approx(lost, rel=2e-3)
+    assert lost > 0.3
+
+
+def test_nodes_swing_round_two_edges_of_a_panel(kernels):
+    """Thinner than the thread is long: over its rim the way bends twice, and it holds both nodes."""
+    scene = kernels.place(target_size=(4.0, 8.0, 0.2), target_mass=1e9)
+    places = [(1.6, 0.0, 0.15), (1.6, 0.0, -0.15)]
+    scene.put([NODE] * 2, places, [(-1.0, 0.0, 0.0)] * 2).join(2, 1.05, STIFFNESS, 0.0)
+    scene.go(1e-5, 20000)
+    assert scene.p["wrap_impulse"] > NODE
+    assert scene.p["wrap_passed"] == 0
+    assert 0.5 * (scene.planes[U : U + 3, :2] ** 2).sum() == pytest.approx(1.0, abs=4e-4)
+    assert (scene.planes[U, :2] > 0.5).all()
 
 
 def test_what_no_thread_bends_with_is_refused():

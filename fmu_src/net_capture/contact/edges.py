@@ -1,15 +1,17 @@
-"""The shortest way of a thread between two nodes where the straight one cuts an edge of the target.
+"""The shortest way of a thread between two nodes where the straight one cuts the target.
 
-The straight way comes in at one point of the surface and goes out at another. The planes that touch the body there meet
-in a line, of a polyhedron the edge itself, and the shortest way over it is straight once both planes are laid into one:
+The body is a convex polyhedron, round ones of many faces (`shapes.Shape.faces`). A way goes from face to face over the
+edges between them. Which these are is found in the plane of the straight way when that first cuts the body
+(`section.py`), and is remembered from then on; over these edges it is made the shortest (`shortest.py`). From each end
+it is straight to the last of its faces that the end can see; an end that no longer sees the first of them has come
+round an edge to another, which is put before.
 
-    t = (t_a d_b + t_b d_a) / (d_a + d_b),   l^2 = (t_b - t_a)^2 + (d_a + d_b)^2
+Where the way has come to a corner, an end of an edge, and would go on, it slides over it: on the other side of a corner
+it is over the other edges that meet there. Each such step makes it shorter, as a cord would slide, and none brings it
+to the other side of the body. So of several shortest ways, one on each side of a corner, it is the one on the side
+where the thread lay.
 
-with d the distances of the ends from that line and t along it. On a body without an edge there the line lies outside,
-and the way goes over the point of the surface nearest to it: that falls short of the true way round, by a quarter of
-what the straight one does.
-
-Valid    convex bodies; over one edge: a body so thin that a thread lies round two of them it still cuts
+Valid    convex bodies, at each of whose corners three faces meet; up to half way round them
 Checked  tests/net_capture/test_wrapping.py
 """
 
@@ -18,97 +20,337 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.net_capture.contact.section import MOST, make_section
+from fmu_src.net_capture.contact.shortest import HIGH, LOW, SLOPE, TAU, along, make_shortest
 from orbital.kernel import kernel
-from orbital.vectors import cross, dot
+from orbital.vectors import dot
 
-SEARCHES = 12
-"""Newton steps to the surface: along a line the distance from a convex body is convex, so they come from outside and
-never go too far, and to a plane in one."""
-AT_SURFACE = 1e-9
-"""Metres."""
-ALIKE = 1e-3
-"""Sine of the angle of two planes that are one."""
-OPPOSITE = -0.9
-"""Cosine of the angle of two planes between which there lie two edges."""
-NEAREST = 1e-4
-"""Of the straight way, how near to one of its ends a bend may be: nearer, the end itself lies on the edge."""
+ROUNDS = 24
+"""Edges that a way may leave or come to in one search."""
+PUSH = 1e-9
+"""Slope with which a way pushes past the end of an edge."""
+PARALLEL = 1e-9
+"""Sine of the angle of an edge to a face that never meets it."""
+ALIKE = 1e-8
+"""Square of the sine of the angle between faces that have no edge."""
+TOGETHER = 1e-6
+"""Metres between two bends that are at one corner."""
+ABOVE = 1e-9
+"""Metres above a face from where it is seen."""
+BEYOND = 1e-4
+"""Metres from a corner over which it has slid, where a way begins."""
 
 
-def make_bend(composition: Any) -> Any:
-    """Kernel `bend(p) -> found` for the composition's target: of the way from `wrap_a` to `wrap_b` in body axes, the
-    point `wrap_bend` over which it goes [m].
+def make_way() -> Any:
+    """Kernel `find(p, edges) -> edges` of the way from `wrap_a` to `wrap_b` in body axes, by the faces `wrap_chain`
+    over which it went before, one more than edges; 0: none are known.
 
     Checked  tests/net_capture/test_wrapping.py
     """
-    distance_to = composition.target.shape.distance
+    section, settle = make_section(), make_shortest()
+    cut, upright, over = section.cut, section.upright, section.over
 
     @kernel
-    def reach(p, out, normal, start, end, length):
-        """out = where a straight way comes to the surface, with the normal there; whether it does, and goes in.
+    def lay(p, j, one, other):
+        """Number j of the way's edges, between two faces: its direction, its ends, the faces there, and where the way
+        begins to cross it. Whether these faces share an edge.
+
+            foot = (h_1 - c h_2) n_1 / s2 + (h_2 - c h_1) n_2 / s2,   c = n_1 . n_2,   s2 = 1 - c2
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        share = 0.0
-        for _ in range(SEARCHES):
-            for i in range(3):
-                out[i] = start[i] + share * (end[i] - start[i])
-            gap = distance_to(p, normal, out)
-            inward = (dot(normal, start) - dot(normal, end)) / length
-            if inward <= 0.0:
-                return False
-            if gap <= AT_SURFACE:
-                return True
-            share += gap / (inward * length)
-            if share >= 1.0:
-                return False
-        return True
-
-    @kernel
-    def bend(p):
-        """Whether the way bends; then the point over which it goes is in `wrap_bend`, body axes [m].
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        a, b, out, line = p.wrap_a, p.wrap_b, p.wrap_bend, p.wrap_line
-        first, last = p.wrap_first, p.wrap_last
+        planes, edge, foot, pair = p.wrap_planes, p.wrap_edges[j], p.wrap_feet[j], p.wrap_pairs[j]
         squared = 0.0
         for i in range(3):
-            squared += (b[i] - a[i]) * (b[i] - a[i])
-        length = math.sqrt(squared)
-        if length == 0.0 or not reach(p, out, first, a, b, length):
+            k, m = (i + 1) % 3, (i + 2) % 3
+            edge[i] = planes[one, k] * planes[other, m] - planes[one, m] * planes[other, k]
+            squared += edge[i] * edge[i]
+        if squared < ALIKE:
             return False
-        height = dot(first, out)
-        if not reach(p, out, last, b, a, length):
-            return False
-        height_last = dot(last, out)
-        alike = dot(first, last)
-        cross(line, first, last)
-        size = math.sqrt(dot(line, line))
-        if size < ALIKE or alike < OPPOSITE:
-            return False
-        along_a = dot(line, a) / size
-        along_b = dot(line, b) / size
-        from_first = (height - alike * height_last) / (size * size)
-        from_last = (height_last - alike * height) / (size * size)
-        off_a = 0.0
-        off_b = 0.0
+        alike = dot(planes[one, 0:3], planes[other, 0:3])
+        height, height_other = planes[one, 3] - p.wrap_inset, planes[other, 3] - p.wrap_inset
+        middle = 0.0
         for i in range(3):
-            out[i] = from_first * first[i] + from_last * last[i]
-            line[i] /= size
-            to_a = a[i] - out[i] - along_a * line[i]
-            to_b = b[i] - out[i] - along_b * line[i]
-            off_a += to_a * to_a
-            off_b += to_b * to_b
-        off_a = math.sqrt(off_a)
-        off_b = math.sqrt(off_b)
-        if min(off_a, off_b) < NEAREST * length:
+            edge[i] /= math.sqrt(squared)
+            foot[i] = (height - alike * height_other) * planes[one, i] / squared
+            foot[i] += (height_other - alike * height) * planes[other, i] / squared
+        for i in range(3):
+            middle += edge[i] * (0.5 * (p.wrap_a[i] + p.wrap_b[i]) - foot[i])
+        low = -math.inf
+        high = math.inf
+        pair[0] = one
+        pair[1] = other
+        for k in range(p.wrap_faces):
+            if k != one and k != other:
+                rises = dot(planes[k, 0:3], edge)
+                below = planes[k, 3] - p.wrap_inset - dot(planes[k, 0:3], foot)
+                if rises > PARALLEL and below < high * rises:
+                    high = below / rises
+                    pair[3] = k
+                elif rises < -PARALLEL and below < low * rises:
+                    low = below / rises
+                    pair[2] = k
+        p.wrap_spans[j, TAU] = min(max(middle, low), high)
+        p.wrap_spans[j, LOW] = low
+        p.wrap_spans[j, HIGH] = high
+        return low <= high + TOGETHER
+
+    @kernel
+    def shift(p, edges, j, by):
+        """Move the way's edges from number j on by one place, to make room (1) or to leave out that before j (-1).
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        for n in range(edges - j):
+            k = edges - 1 - n if by > 0 else j + n
+            for i in range(4):
+                p.wrap_pairs[k + by, i] = p.wrap_pairs[k, i]
+                p.wrap_spans[k + by, i] = p.wrap_spans[k, i]
+                if i < 3:
+                    p.wrap_feet[k + by, i] = p.wrap_feet[k, i]
+                    p.wrap_edges[k + by, i] = p.wrap_edges[k, i]
+
+    @kernel
+    def begin(p, j, corner):
+        """The way crosses edge number j a little way from the corner at one of its ends.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        span, pair = p.wrap_spans[j], p.wrap_pairs[j]
+        if pair[2] == corner:
+            span[TAU] = min(span[LOW] + BEYOND, span[HIGH])
+        else:
+            span[TAU] = max(span[HIGH] - BEYOND, span[LOW])
+
+    @kernel
+    def join(p, edges, j):
+        """Two edges, number j and the next, meet at a corner over which the way has slid: the edge between the faces
+        before and after takes their place.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        one, middle, other = p.wrap_pairs[j, 0], p.wrap_pairs[j, 1], p.wrap_pairs[j + 1, 1]
+        shift(p, edges, j + 2, -1)
+        lay(p, j, one, other)
+        begin(p, j, middle)
+
+    @kernel
+    def part(p, edges, j, face):
+        """The way has slid over the end of edge number j onto a face there: its two edges with those of before take
+        that one's place.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        one, other = p.wrap_pairs[j, 0], p.wrap_pairs[j, 1]
+        shift(p, edges, j + 1, 1)
+        lay(p, j, one, face)
+        lay(p, j + 1, face, other)
+        begin(p, j, other)
+        begin(p, j + 1, one)
+
+    @kernel
+    def draws_in(p, j):
+        """Whether the way, which is at the corner where edge number j and the next meet, is shorter over both of them:
+        where the angles of the faces that it goes over there, from its piece before to the edge, between the edges, and
+        from there to the piece after, are less than half a turn. Then it is put where these faces laid flat have it,
+
+            r = a b sin(A) / (a sin(x) + b sin(A - x))
+
+        from the corner along an edge at an angle x from the piece before, A all three angles, a and b those pieces.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        inward = p.wrap_spans[j, TAU] - p.wrap_spans[j, LOW]
+        inward = 1.0 if inward < p.wrap_spans[j, HIGH] - p.wrap_spans[j, TAU] else -1.0
+        onward = p.wrap_spans[j + 1, TAU] - p.wrap_spans[j + 1, LOW]
+        onward = 1.0 if onward < p.wrap_spans[j + 1, HIGH] - p.wrap_spans[j + 1, TAU] else -1.0
+        turns = p.wrap_up
+        turns[0] = -inward * along(p, j, j)
+        turns[1] = inward * onward * dot(p.wrap_edges[j], p.wrap_edges[j + 1])
+        turns[2] = onward * along(p, j + 2, j + 1)
+        c, d, e = turns[0], turns[1], turns[2]
+        s = math.sqrt(max(1.0 - c * c, 0.0))
+        t = math.sqrt(max(1.0 - d * d, 0.0))
+        u = math.sqrt(max(1.0 - e * e, 0.0))
+        to_second = s * d + c * t
+        from_first = t * e + d * u
+        whole = to_second * e + (c * d - s * t) * u
+        if whole <= 0.0:
             return False
-        at = (along_a * off_b + along_b * off_a) / (off_a + off_b)
-        for i in range(3):
-            out[i] += at * line[i]
-        gap = distance_to(p, first, out)
-        for i in range(3):
-            out[i] -= gap * first[i]
+        before, after = p.wrap_pieces[j, 3], p.wrap_pieces[j + 2, 3]
+        far = before * after * whole / (before * s + after * from_first)
+        p.wrap_spans[j, TAU] = p.wrap_spans[j, LOW] + far if inward > 0.0 else p.wrap_spans[j, HIGH] - far
+        far = before * after * whole / (before * to_second + after * u)
+        p.wrap_spans[j + 1, TAU] = p.wrap_spans[j + 1, LOW] + far if onward > 0.0 else p.wrap_spans[j + 1, HIGH] - far
+        for k in range(2):
+            span = p.wrap_spans[j + k]
+            span[TAU] = min(max(span[TAU], span[LOW]), span[HIGH])
         return True
 
-    return bend
+    @kernel
+    def slide(p, edges):
+        """Slide over a corner if the way has come to one; how many edges it goes over then, or 0 where it has not.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        for j in range(edges - 1):
+            if p.wrap_pieces[j + 1, 3] < TOGETHER:
+                if draws_in(p, j):
+                    return edges
+                join(p, edges, j)
+                return edges - 1
+        for j in range(edges):
+            span, pair = p.wrap_spans[j], p.wrap_pairs[j]
+            face = -1
+            if span[TAU] <= span[LOW] and span[SLOPE] > PUSH:
+                face = pair[2]
+            elif span[TAU] >= span[HIGH] and span[SLOPE] < -PUSH:
+                face = pair[3]
+            if face < 0:
+                continue
+            if j + 1 < edges and p.wrap_pairs[j + 1, 0] == pair[1] and p.wrap_pairs[j + 1, 1] == face:
+                join(p, edges, j)
+                return edges - 1
+            if j > 0 and p.wrap_pairs[j - 1, 1] == pair[0] and p.wrap_pairs[j - 1, 0] == face:
+                join(p, edges, j - 1)
+                return edges - 1
+            if edges < MOST:
+                part(p, edges, j, face)
+                return edges + 1
+        return 0
+
+    @kernel
+    def sees(p, face, end):
+        """Whether an end of the thread is above a face.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        plane = p.wrap_planes[face]
+        return dot(plane[0:3], end) - plane[3] + p.wrap_inset > ABOVE
+
+    @kernel
+    def trim(p, edges):
+        """Leave out faces before the last one that one end sees, and after the first that the other sees: up to there
+        the way is straight. Works on `wrap_chain`; how many edges are left, 0: one face alone.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        first = 0
+        for j in range(edges, 0, -1):
+            if sees(p, p.wrap_chain[j], p.wrap_a):
+                first = j
+                break
+        last = edges
+        for j in range(first, edges):
+            if sees(p, p.wrap_chain[j], p.wrap_b):
+                last = j
+                break
+        for j in range(first, last + 1):
+            p.wrap_chain[j - first] = p.wrap_chain[j]
+        return last - first
+
+    @kernel
+    def come_in(p, end, point):
+        """Face through which the straight line from an end of the thread to a point comes in, -1: none.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        found = -1
+        latest = -1.0
+        for k in range(p.wrap_faces):
+            plane = p.wrap_planes[k]
+            above = dot(plane[0:3], end) - plane[3] + p.wrap_inset
+            there = dot(plane[0:3], point) - plane[3] + p.wrap_inset
+            if above > ABOVE and there < above and above / (above - there) > latest:
+                latest = above / (above - there)
+                found = k
+        return found
+
+    @kernel
+    def lengthen(p, edges):
+        """Put faces before the first that one end does not see, and after the last that the other does not. Works on
+        `wrap_chain`; how many edges there are then, 0 where no such face joins.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        chain, point = p.wrap_chain, p.wrap_up
+        for way in range(2):
+            end, other = (p.wrap_a, p.wrap_b) if way == 0 else (p.wrap_b, p.wrap_a)
+            while not sees(p, chain[0 if way == 0 else edges], end):
+                if edges == MOST:
+                    return 0
+                for i in range(3):
+                    point[i] = other[i]
+                if edges > 0:
+                    near = 0 if way == 0 else edges - 1
+                    if not lay(p, 0, chain[near], chain[near + 1]):
+                        return 0
+                    for i in range(3):
+                        point[i] = p.wrap_feet[0, i] + p.wrap_spans[0, TAU] * p.wrap_edges[0, i]
+                face = come_in(p, end, point)
+                if face < 0:
+                    return 0
+                edges += 1
+                if way == 0:
+                    for j in range(edges, 0, -1):
+                        chain[j] = chain[j - 1]
+                    chain[0] = face
+                else:
+                    chain[edges] = face
+        return edges
+
+    @kernel
+    def lay_all(p, edges):
+        """Lay the edges between the faces of `wrap_chain`; whether there are all.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        whole = edges > 0
+        for j in range(edges):
+            whole = lay(p, j, p.wrap_chain[j], p.wrap_chain[j + 1]) and whole
+        return whole
+
+    @kernel
+    def note(p, edges):
+        """Put the faces between the way's edges into `wrap_chain`.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        p.wrap_chain[0] = p.wrap_pairs[0, 0]
+        for j in range(edges):
+            p.wrap_chain[j + 1] = p.wrap_pairs[j, 1]
+
+    @kernel
+    def find(p, edges):
+        """How many edges the way bends over, 0: it is straight. Its points are `wrap_bends[0 : edges + 2]`, both ends
+        included, its pieces `wrap_pieces[0 : edges + 1]`, direction and length [m]; its faces are in `wrap_chain`.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        first, last, middle = cut(p)
+        if first < 0:
+            return 0
+        if edges > 0:
+            edges = lengthen(p, trim(p, edges))
+        if edges == 0 or not lay_all(p, edges):
+            if not upright(p, first, last):
+                return 0
+            edges = trim(p, over(p, first, last, middle))
+            lay_all(p, edges)
+        for i in range(3):
+            p.wrap_bends[0, i] = p.wrap_a[i]
+        for n in range(ROUNDS):
+            for i in range(3):
+                p.wrap_bends[edges + 1, i] = p.wrap_b[i]
+            settle(p, edges)
+            slid = slide(p, edges) if n + 1 < ROUNDS else 0
+            if slid == 0:
+                break
+            note(p, slid)
+            edges = trim(p, slid)
+            if edges < slid:
+                lay_all(p, edges)
+        note(p, edges)
+        return edges
+
+    return find

@@ -51,7 +51,7 @@ def make_search(composition: Any, longest: int) -> Search:
     )
     stray = gravity.stray
     has_closing, has_tether = "closing" in composition.terms, "tether" in composition.terms
-    has_load = "pull_off" in composition.terms
+    has_load, drags = "pull_off" in composition.terms, composition.terms.get("tether") == "dragging"
 
     @kernel
     def within_axis(turn, axis, half, sx, sy, sz, dx, dy, dz):
@@ -209,6 +209,8 @@ def make_search(composition: Any, longest: int) -> Search:
             pulled = p.closing_t_start >= 0.0
         if has_tether:
             pulled = pulled or p.tether_vertex_tension != 0.0
+        if drags:
+            pulled = pulled or p.tether_drag != 0.0
         if has_load:
             pulled = pulled or p.pull_off_t_start >= 0.0
         return pulled

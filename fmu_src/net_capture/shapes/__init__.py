@@ -23,6 +23,9 @@ class Shape(NamedTuple):
     sample(p, out, number, depth)   out = a sample point so far below the surface [m]
     axes(p, out)                    quaternion from the body axes, which are principal, to those in which its attitude
                                     and rate are given at the start; None: the same
+    faces(p, out)                   the faces of a convex polyhedron that is the shape or lies close within it: way out
+                                    and distance along it into the rows of `out` (n, 4) [1], [m]; how many. None: it
+                                    has hollows
     """
 
     samples: int
@@ -31,6 +34,7 @@ class Shape(NamedTuple):
     distance: Any
     sample: Any
     axes: Any = None
+    faces: Any = None
 
 
 class Checks(NamedTuple):

@@ -122,6 +122,21 @@ def sample(p, out, number, depth):
     box_sample(out, half, number)
 
 
+@kernel
+def faces(p, out):
+    """The six faces into the rows of `out`, see `Shape.faces`.
+
+    Checked  tests/net_capture/test_wrapping.py
+    """
+    for face in range(6):
+        for i in range(3):
+            out[face, i] = 0.0
+        axis = face // 2
+        out[face, axis] = 1.0 if face % 2 == 0 else -1.0
+        out[face, 3] = p.half_size[axis]
+    return 6
+
+
 def _size(values: Values) -> list[float]:
     return [values[f"target.size[{i}]"] for i in (1, 2, 3)]
 
@@ -156,7 +171,7 @@ PART = Term(
             open_minimum=True,
         ),
     ),
-    make=lambda composition: Shape(BOX_SAMPLES, measure, inertia, distance, sample),
+    make=lambda composition: Shape(BOX_SAMPLES, measure, inertia, distance, sample, faces=faces),
     checks=Checks(
         _half,
         lambda values: math.hypot(*_half(values)),

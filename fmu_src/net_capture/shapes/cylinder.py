@@ -13,6 +13,8 @@ SAMPLES = 27
 """Sample points: at either end and half way, one on the axis and eight around it."""
 AROUND = 8
 DRAWN_AROUND = 24
+FACES_AROUND = 48
+"""Faces of a round side where a thread lies on it: within 0.22 % of the radius, and a way round them within 0.08 %."""
 
 
 @kernel
@@ -63,6 +65,36 @@ def cylinder_distance(normal, point, radius, half_length):
     x = point[0] / across if across > 0.0 else 1.0
     y = point[1] / across if across > 0.0 else 0.0
     return of_prism(normal, across - radius, x, y, point[2], half_length)
+
+
+@kernel
+def faces_around(out, bottom, top, low, high):
+    """Faces of a prism or pyramid within a cylinder or frustum, edge to edge on its surface, into the rows of `out`,
+    see `Shape.faces`; how many.
+
+    bottom, top  radii at its ends, of which one may be 0        [m]
+    low, high    the ends on the third axis                      [m]
+
+    Checked  tests/net_capture/test_wrapping.py
+    """
+    shrunk = math.cos(math.pi / FACES_AROUND)
+    slope = (bottom - top) * shrunk / (high - low)
+    size = math.sqrt(1.0 + slope * slope)
+    for face in range(FACES_AROUND):
+        angle = 2.0 * math.pi * face / FACES_AROUND
+        out[face, 0] = math.cos(angle) / size
+        out[face, 1] = math.sin(angle) / size
+        out[face, 2] = slope / size
+        out[face, 3] = (bottom * shrunk + slope * low) / size
+    count = FACES_AROUND
+    for end in range(2):
+        if (bottom if end == 0 else top) > 0.0:
+            out[count, 0] = 0.0
+            out[count, 1] = 0.0
+            out[count, 2] = -1.0 if end == 0 else 1.0
+            out[count, 3] = -low if end == 0 else high
+            count += 1
+    return count
 
 
 @kernel
@@ -131,6 +163,15 @@ def sample(p, out, number, depth):
     cylinder_sample(out, number, max(p.target_radius - depth, 0.0), max(0.5 * p.target_length - depth, 0.0))
 
 
+@kernel
+def faces(p, out):
+    """The faces of a prism within it, see `faces_around`.
+
+    Checked  tests/net_capture/test_wrapping.py
+    """
+    return faces_around(out, p.target_radius, p.target_radius, -p.half_size[2], p.half_size[2])
+
+
 def _half(values: Values) -> list[float]:
     return [values["target.radius"], values["target.radius"], 0.5 * values["target.length"]]
 
@@ -160,7 +201,7 @@ PART = Term(
         positive("target.radius", "m", "of the cylinder about the third body axis", 2.0),
         positive("target.length", "m", "of the cylinder along the third body axis", 8.0),
     ),
-    make=lambda composition: Shape(SAMPLES, measure, inertia, distance, sample),
+    make=lambda composition: Shape(SAMPLES, measure, inertia, distance, sample, faces=faces),
     checks=Checks(
         _half,
         lambda values: math.hypot(values["target.radius"], 0.5 * values["target.length"]),

@@ -15,6 +15,7 @@ from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.shapes import Checks, Point, Shape, Values
+from fmu_src.net_capture.shapes.cylinder import faces_around
 from fmu_src.rows import at_least_zero, positive, state
 from orbital.kernel import kernel
 
@@ -228,6 +229,16 @@ def sample(p, out, number, depth):
     out[2] -= p.shape_center
 
 
+@kernel
+def faces(p, out):
+    """The faces of a pyramid within it, see `cylinder.faces_around`.
+
+    Checked  tests/net_capture/test_wrapping.py
+    """
+    low = -0.5 * p.target_length - p.shape_center
+    return faces_around(out, p.target_radius_bottom, p.target_radius_top, low, low + p.target_length)
+
+
 def _sizes(values: Values) -> tuple[float, float, float]:
     return values["target.radius_bottom"], values["target.radius_top"], values["target.length"]
 
@@ -270,7 +281,7 @@ PART = Term(
         positive("target.length", "m", "of the frustum along the third body axis", 4.0),
         state("shape_center", "m", "of the centre of mass on the axis, from its middle"),
     ),
-    make=lambda composition: Shape(SAMPLES, measure, inertia, distance, sample),
+    make=lambda composition: Shape(SAMPLES, measure, inertia, distance, sample, faces=faces),
     refuses=refuses,
     checks=Checks(
         lambda values: _measured(values).half,
