@@ -406,7 +406,9 @@ def test_macro_steps_change_nothing() -> None:
     assert ends[0] == pytest.approx(ends[1], rel=1e-12)
 
 
-@pytest.mark.parametrize("terms", [ON_ORBIT, ON_ORBIT | {"chaser": "rigid"}, BOTH])
+@pytest.mark.parametrize(
+    "terms", [ON_ORBIT, pytest.param(ON_ORBIT | {"chaser": "rigid"}, marks=pytest.mark.evidence), BOTH]
+)
 def test_rates_of_outputs(terms: dict[str, str]) -> None:
     """Against differences of fourth order, slack and taut."""
     for apart in (9.0, 15.0):
