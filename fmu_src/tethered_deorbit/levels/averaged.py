@@ -10,8 +10,8 @@ lambda the mean longitude, u the true one, e the vector of the eccentricity; and
 action stays while its angle goes on by 2 pi dt/P. Rate, period and mean tension are summed over the leap by Simpson's
 rule, the leap being short enough that n changes by `CHANGE` at most.
 
-What is given up, and told as `level.average_error`: what the eccentricity does to the swing, which is forced by e and
-half of it once a revolution; what swings across the plane, by the square of its angle. Where that exceeds
+What is given up, and told as `level.average_error`: what the eccentricity does to the swing, which it forces once a
+revolution to 2 e/((2 pi/(P n))^2 - 1); what swings across the plane, by the square of its angle. Where that exceeds
 `level.average_tolerance`, where the tension comes near zero within a swing, where an end is within the leap, or a tank
 runs dry in it, there is no leap.
 
@@ -43,6 +43,7 @@ from fmu_src.tethered_deorbit.levels.libration import (
     potential,
     swing,
 )
+from fmu_src.tethered_deorbit.outputs import note_pull
 from orbital.constants import EARTH_MU, STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.vectors import Array, cross, dot, norm
@@ -157,7 +158,8 @@ def make_leap(derivative: Callable[..., Any], engine: bool, layout: StateLayout)
             sense = -1.0
         faster = dot(ahead, normal) / (x * x + y * y) - turning
         across = (z * z + dot(moving, normal) * dot(moving, normal) / (n * n)) / (apart * apart)
-        error = math.sqrt(cx * cx + cy * cy) + across
+        eccentric = math.sqrt(cx * cx + cy * cy)
+        error = eccentric + across
         if error > r.level_average_tolerance:
             return now
         table, out, waves = r.state_leap, r.state_swing, r.state_waves
@@ -187,6 +189,13 @@ def make_leap(derivative: Callable[..., Any], engine: bool, layout: StateLayout)
             return now
         least, largest = min(least, table[2, 6] * out[LEAST]), max(largest, table[2, 6] * out[LARGEST])
         period2, mean2, reduced = out[PERIOD], table[2, 6] * out[MEAN], table[2, 6]
+        # the eccentricity forces the swing once a revolution, the more the nearer that is to a swing's own time
+        for place in range(3):
+            period = period0 if place == 0 else period1 if place == 1 else period2
+            ratio = 2.0 * math.pi / (period * table[place, 1])
+            error = max(error, 2.0 * eccentric / max(abs(ratio * ratio - 1.0), 1e-9) + across)
+        if error > r.level_average_tolerance:
+            return now
         swung = span / 6.0 * (1.0 / period0 + 4.0 / period1 + 1.0 / period2)
         turned = begun / period0 + swung
         last = place_of(waves, (turned - math.floor(turned)) * period2, period2)
@@ -245,6 +254,9 @@ def leapt(record: Any, now: float, later: float) -> None:
     span = later - now
     r.state_leapt_to = later
     r.state_level_times[AVERAGED] += span
+    note_pull(record, r.state_leap_range[1])
+    if not r.state_tug_begun:
+        r.state_tug_peak = r.tug_peak[0]
     r.state_peak = max(r.state_peak, r.state_leap_range[1])
     r.state_least = min(r.state_least, r.state_leap_range[0])
     r.state_average_error = max(r.state_average_error, r.state_leap_range[2])
