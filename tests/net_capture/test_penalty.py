@@ -12,6 +12,7 @@ from fmu_src.net_capture.contact import penalty
 from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.planes import U, X
 from orbital.oscillators import snap_duration, snap_restitution
+from tests.conftest import CAPTURE
 from tests.net_capture.evidence import laws
 from tests.net_capture.on_target import Kernels
 from tests.validation import closed_form
@@ -248,3 +249,20 @@ def test_a_pair_of_shots_lies_among_those_stored():
     for shot in laws.shoot(1):
         others = [other["quality"] for other in stored if other["law"] == shot["law"]]
         assert min(others) <= shot["quality"] <= max(others)
+
+
+@pytest.mark.evidence
+def test_substeps_that_follow_the_net_go_with_springs_at_the_surface(shoot):
+    """A whole capture: momentum is kept, the book closes as with fixed substeps, and no bound is passed."""
+    left = {}
+    for substeps in ("fixed", "following"):
+        terms = {name: term for name, term in CAPTURE.items() if name not in ("tether", "settling")}
+        net = shoot({"net.mesh": 2.0}, terms | {"contact": "penalty", "substeps": substeps})
+        net.step(20.0)
+        assert net["captured"] == 1
+        assert net["contact.friction_loss"] > 0.1
+        assert np.abs(net.array("momentum")).max() < 1e-11
+        left[substeps] = abs(net["energy.remainder"]) / 36.0
+    assert max(left.values()) < 0.02
+    assert net["solver.margin_least"] > 1.0
+    assert net["solver.substep_most"] > net["solver.substep_least"]

@@ -91,3 +91,13 @@ def test_the_load_rises_stays_and_falls():
 def test_what_never_comes_is_refused(values, terms, blamed):
     refuses = GROUPS["pull_off"].terms["plain"].refuses
     assert [refusal.name for refusal in refuses(Scene(terms, values, 30.0, {}))] == blamed
+
+
+@pytest.mark.parametrize(("rings", "stands"), [(0, "slipped_off"), (1, "held")])
+def test_a_net_whose_loops_let_the_target_pass_is_pulled_off(shoot, rings, stands):
+    """Without the ring between two bullets the loops are longer than the target's girth; the twin with it holds."""
+    *_, net = pulled(shoot, {"closing.rings": rings, "pull_off.force": 100.0, "pull_off.duration": 12.0})
+    slip = math.sqrt(sum(net[f"pull_off.slip[{i}]"] ** 2 for i in (1, 2, 3)))
+    assert STANDS[net["pull_off.stands"]] == stands, (net.time, slip)
+    assert (slip > 3.0) == (rings == 0)
+    assert 20.0 < net["pull_off.tension_max"] < 558.0

@@ -119,6 +119,23 @@ def test_over_two_edges_it_is_straight_on_the_faces_laid_flat(ways):
     np.testing.assert_allclose(two, over(shortest.x), atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("a", "b", "chain", "length"),
+    [
+        ((1.0484, 2.1504, -1.1275), (1.2818, 1.7937, -1.1398), (2, 5, 0), 0.4999284),
+        ((1.2152, 1.7943, -1.3374), (1.0818, 2.1401, -1.0542), (5, 0, 2), 0.4997701),
+    ],
+)
+def test_near_a_corner_it_is_not_held_there(kernels, find, a, b, chain, length):
+    """As met in the mission: over both edges it is shorter than through their corner, 14 and 20 mm away."""
+    ways = Ways(kernels, find, box, target_size=(2.5, 3.9, 2.5))
+    ways.edges, ways.p["wrap_chain"][:3] = 2, chain
+    found = ways(np.array(a), np.array(b), anew=False)
+    corner = 0.5 * np.array((2.5, 3.9, -2.5)) - INSET * np.array((1, 1, -1))
+    assert length_of(found) == pytest.approx(length, abs=2e-7)
+    assert length_of(found) < length_of(np.array([a, corner, b])) - 2e-4
+
+
 def test_what_does_not_cut_an_edge_stays_straight(ways):
     assert ways((0.0, 0.0, 2.0), (1.0, 0.0, 2.0)) is None, "both on one face"
     assert ways((0.0, 0.0, 2.5), (1.0, 0.0, 2.1)) is None, "above it"
@@ -162,7 +179,7 @@ def test_a_way_never_grows_at_once_and_never_goes_through(kernels, find, part):
                 assert ways.deepest(points) < INSET + 0.013 * 0.6
             before = ends, points
     assert longest < 1e-9
-    assert bent > 1000
+    assert bent > 600
     assert most >= 3 or part is box
     assert slid > 0 or part is not box
 

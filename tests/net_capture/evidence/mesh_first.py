@@ -1,10 +1,11 @@
-"""The first second of contact of the catch of `mesh_box`, before it is chaotic: the box by its closed form, and as a mesh.
+"""The first second of contact of the catch of `mesh_box`, before it is chaotic: the box by its closed form, and as a
+mesh.
 
     python -m tests.net_capture.evidence.mesh_first
 
-makes `mesh_first.json` again, a minute on one core. Each row is one start: the sum of the sizes of all impulses [N s] so
-long after the first touch, with both; what the target has taken up then; and the instants of the first touch, which are
-the same, since up to there both are one flight.
+makes `mesh_first.json` again, a minute on one core. Each row is one start: the sum of the sizes of all impulses [N s]
+so long after the first touch, with both; what the target has taken up then; and the instants of the first touch, which
+are the same, since up to there both are one flight.
 """
 
 from __future__ import annotations
