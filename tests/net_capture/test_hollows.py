@@ -23,7 +23,7 @@ def corner_distance(p, normal, point):
 
 @pytest.fixture(scope="module", params=[True, False], ids=["hollow", "convex"])
 def touched(request):
-    """Place, velocity and momentum of the target after a substep that a node would end at a place, and the loss."""
+    """Place and velocity after a substep, momentum and angular momentum of the target, and the loss."""
     bench, patch = Bench(TERMS), pytest.MonkeyPatch()
     parts, p = bench.parts, bench.p
     shape = parts.target.shape._replace(distance=corner_distance, faces=None if request.param else True)
@@ -42,7 +42,13 @@ def touched(request):
             p[f"target_{name}"][:] = 0.0
         p.contact_loss, p.contact_restitution, p.solver_substep = 0.0, 0.0, STEP
         touch(p, bench.work, 0, STEP)
-        return planes[X : X + 3, 0].copy(), planes[U : U + 3, 0].copy(), p.target_drift.copy(), p.contact_loss
+        return (
+            planes[X : X + 3, 0].copy(),
+            planes[U : U + 3, 0].copy(),
+            p.target_drift.copy(),
+            p.target_spin.copy(),
+            p.contact_loss,
+        )
 
     return found, request.param
 
@@ -50,7 +56,7 @@ def touched(request):
 def test_it_ends_on_both_walls(touched):
     """At 100 m/s towards the one, 3 cm before it, and sinking on the other: each takes what is towards it."""
     found, hollow = touched
-    place, velocity, _, loss = found((0.03, 0.0, 0.001), (-100.0, 3.0, -5.0))
+    place, velocity, _, _, loss = found((0.03, 0.0, 0.001), (-100.0, 3.0, -5.0))
     assert place[2] == pytest.approx(0.001, abs=1e-9)
     if not hollow:
         assert place[0] == pytest.approx(-0.07), "the twin: the other wall is not looked at"
@@ -63,13 +69,15 @@ def test_it_ends_on_both_walls(touched):
 def test_the_target_takes_the_opposite_of_all(touched):
     found, _ = touched
     begin, velocity = np.array((0.03, 0.2, 0.001)), np.array((-100.0, 3.0, -5.0))
-    place, after, drift, _ = found(begin, velocity, target=4.0)
+    place, after, drift, spin, _ = found(begin, velocity, target=4.0)
     assert NODE * after + 4.0 * drift == pytest.approx(NODE * velocity, abs=1e-12)
+    turned = np.cross(place, NODE * after) + np.cross(STEP * drift, 4.0 * drift) + spin
+    assert turned == pytest.approx(np.cross(begin, NODE * velocity), abs=1e-12)
     assert place[2] - STEP * drift[2] > -1e-3
 
 
 def test_a_node_that_comes_to_one_wall_alone_is_left_at_that(touched):
     found, _ = touched
-    place, velocity, _, _ = found((0.3, 0.0, 0.001), (-100.0, 0.0, -5.0))
+    place, velocity, _, _, _ = found((0.3, 0.0, 0.001), (-100.0, 0.0, -5.0))
     assert place == pytest.approx((0.2, 0.0, 0.001), abs=1e-9)
     assert velocity == pytest.approx((-100.0, 0.0, 0.0), abs=1e-6)

@@ -88,6 +88,12 @@ def make(composition: Any) -> Contact:
         gap = distance_to(p, local, body)
         if ended and gap >= -WITHIN:
             return 0
+        if ended:  # it acts, as every kick, where the substep began: so angular momentum is kept
+            for axis in range(3):
+                at = node_plane(p, work, X + axis)[node] - h * node_plane(p, work, U + axis)[node]
+                arm[axis] = at - p.target_place[axis]
+            for i in range(3):
+                body[i] = turn[0, i] * arm[0] + turn[1, i] * arm[1] + turn[2, i] * arm[2]
         for i in range(3):
             normal[i] = turn[i, 0] * local[0] + turn[i, 1] * local[1] + turn[i, 2] * local[2]
         cross(lever, arm, normal)
