@@ -8,6 +8,10 @@ from dataclasses import dataclass
 SAMPLE = "~"
 """Before a figure that is one sample of many."""
 
+PAGE = 4
+"""Digits of a figure in a page."""
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 SHOWN_IN = {
     "%": 1e-2,
     "MPa": 1e6,
@@ -51,6 +55,34 @@ class Finding:
         else:
             number = digits(self.value / (SHOWN_IN[self.shown_in] if self.shown_in else 1.0), self.spread)
         return f"{SAMPLE if self.spread else ''}{number} {self.shown_in or self.unit}".rstrip()
+
+
+def spoken(value: float, spread: float = 0.0, most: int = PAGE) -> str:
+    """A number as every page has it: `most` digits, or fewer where fewer hold, and then with `SAMPLE` before it.
+
+    Thousands are parted from 10,000 on; powers of ten are told below 1e-4 and from 1e6 on alone. `spoken` of
+    `templates/scripts/bytes.js` says the same.
+
+    spread    as `Finding` has it
+
+    Checked  tests/report/test_spoken.py: both, against one another
+    """
+    if not math.isfinite(value):
+        return "not known"
+    if not value:
+        return "0"
+    mark = SAMPLE if spread else ""
+    leading = math.floor(math.log10(abs(float(f"{value:.{most - 1}e}"))))
+    place = leading - most + 1
+    if spread:
+        place = max(place, min(math.floor(math.log10(2.0 * spread * abs(value))), leading))
+    if not -4 <= leading < 6:
+        text = f"{value / 10.0**leading:.{leading - place}f}"
+        text = text if spread or "." not in text else text.rstrip("0").rstrip(".")
+        return f"{mark}{text} · 10{str(leading).translate(RAISED)}"
+    rounded = round(value, -place)
+    text = f"{rounded:{',' if leading >= 4 else ''}.{max(-place, 0)}f}"
+    return f"{mark}{text if spread or '.' not in text else text.rstrip('0').rstrip('.')}"
 
 
 def digits(value: float, spread: float, most: int = 6) -> str:

@@ -77,6 +77,17 @@ class Load:
         return margin_of_safety(self.breaks_at, self.tension)
 
     @property
+    def margin_spread(self) -> float:
+        """Standard deviation over mean of the margin, 0 for no sample of many [1]."""
+        margin = self.margin
+        return self.spread * (1.0 + margin) / abs(margin) if margin else self.spread
+
+    @property
+    def failed(self) -> bool:
+        """Whether it broke, or would have in truth."""
+        return self.overloaded or self.broke is not None
+
+    @property
     def where(self) -> str:
         return f"[{self.phase}.{self.line.table}]"
 
@@ -175,7 +186,7 @@ def made_of(scene: LineScene) -> str:
     if material is None:
         return ""
     apart = [name.partition(".")[2] for name in scene.apart]
-    own = f"; own {', '.join(apart)}" if apart else ""
+    own = f"; {', '.join(name.replace('_', ' ') for name in apart)} of the scene's own" if apart else ""
     return f"{material.name}, {material.form}{own}"
 
 
@@ -232,17 +243,16 @@ def findings(run: RunResult, name: str) -> Iterator[Finding]:
                 name, f"{key}.stress", f"largest stress of {what}", load.stress, "Pa", load.spread, shown_in="MPa"
             )
         if load.strain is not None:
-            yield Finding(name, f"{key}.strain", "its strain", load.strain, "", load.spread, shown_in="%")
+            yield Finding(name, f"{key}.strain", f"strain of {what}", load.strain, "", load.spread, shown_in="%")
         if load.strength is not None:
-            yield Finding(name, f"{key}.strength", "its strength", load.strength, "Pa", shown_in="MPa")
+            yield Finding(name, f"{key}.strength", f"strength of {what}", load.strength, "Pa", shown_in="MPa")
         yield _of_margin(name, key, load)
 
 
 def _of_margin(name: str, key: str, load: Load) -> Finding:
-    label, margin = "its margin of safety (factor 1)", load.margin
+    label, margin = f"margin of safety of {load.line.label} (factor 1)", load.margin
     if margin is not None:
-        spread = load.spread * (1.0 + margin) / abs(margin) if margin else load.spread
-        return Finding(name, f"{key}.margin_of_safety", label, margin, "", spread)
+        return Finding(name, f"{key}.margin_of_safety", label, margin, "", load.margin_spread)
     if load.breaks_at is None:
         unknown = f"strength not known: name a material in {load.where}"
         text = unknown if load.strength is None else load.lacks_section

@@ -128,7 +128,7 @@ class HandoffRecord:
             worst = "by the first tug the attachment may be out of sight, and the line wraps"
         than = "more than" if not self.bound.accepted else "within"
         left = "" if self.turns or self.bound.accepted else ", but the scene or its FMU leaves no other level"
-        return f"{worst}: {than} the {100 * self.bound.tolerance:g} % of handoff.point_tolerance{left}"
+        return f"{worst}: {than} the {100 * self.bound.tolerance:g} % that the scene allows (handoff.point_tolerance){left}"
 
     def close(self, component: Steppable) -> None:
         close_ledger(self, component)
@@ -295,22 +295,22 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
     relative = handed.joint.velocity - handed.chaser.velocity
     distance = handed.joint.position - handed.chaser.position
     spin, energy = float(np.linalg.norm(handed.joint.spin)), spin_energy(handed.joint)
-    yield Finding("hand-off", "time", "after the shot", record.time, "s")
-    yield Finding("hand-off", "mass", "target and net", handed.joint.mass, "kg")
+    yield Finding("hand-off", "time", "handed over, after the shot", record.time, "s")
+    yield Finding("hand-off", "mass", "mass of target and net", handed.joint.mass, "kg")
     yield Finding("hand-off", "distance", "distance chaser to target", float(np.linalg.norm(distance)), "m")
     yield Finding(
         "hand-off", "relative_speed", "relative speed", float(np.linalg.norm(relative)), "m/s", shown_in="mm/s"
     )
     yield Finding("hand-off", "target", "target in the removal", record.level)
-    yield Finding("hand-off", "target_reason", "since", record.reason)
+    yield Finding("hand-off", "target_reason", "why so", record.reason)
     if record.level == HULL and record.shortfall > 0.0:
         yield Finding("hand-off", "beyond_hull", "it reaches beyond its hull there by at most", record.shortfall, "m")
     what = ("spin", "carried over") if record.turns else ("spin_dropped", "dropped (a point target has none)")
     yield Finding("hand-off", what[0], f"spin {what[1]}", spin, "N m s")
-    what = ("spin_energy", "of it") if record.turns else ("spin_energy_dropped", "of the dropped spin")
+    what = ("spin_energy", "of the spin carried over") if record.turns else ("spin_energy_dropped", "of the dropped spin")
     yield Finding("hand-off", what[0], f"energy {what[1]}", energy, "J")
     yield Finding(
-        "hand-off", "body_rate", "target turns, relative to the line, at", bound.rate, "rad/s", shown_in="deg/s"
+        "hand-off", "body_rate", "target turns, relative to the tether, at", bound.rate, "rad/s", shown_in="deg/s"
     )
     if not record.turns:
         speed = record.spin.attachment_speed
@@ -321,12 +321,12 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
         "hand-off", "tug_speed", "speed of the first tug, estimated", record.spin.tug_speed, "m/s", shown_in="mm/s"
     )
     if np.isfinite(bound.largest):
-        yield Finding("hand-off", "point_bound_time", "a point's first tug comes within", bound.time)
-        yield Finding("hand-off", "point_bound_peak", "and its peak is within", bound.peak)
+        yield Finding("hand-off", "point_bound_time", "a point target shifts the time of the first tug by at most", bound.time, shown_in="%")
+        yield Finding("hand-off", "point_bound_peak", "a point target changes the peak of the first tug by at most", bound.peak, shown_in="%")
     yield from _of_line(record)
     if record.rows:
         worst = max(record.rows, key=lambda row: row.closure)
-        yield Finding("hand-off", "ledger_closure", "ledger closes to", worst.closure)
+        yield Finding("hand-off", "ledger_closure", "ledger closes to, relative to what enters it", worst.closure)
         book = next(row for row in record.rows if row.quantity == "kinetic energy")
         lost = book.accounted - (0.0 if record.turns else spin_energy(handed.joint))
         yield Finding("hand-off", "energy_lost", "energy lost as the net joins", lost, "J")
@@ -336,11 +336,11 @@ def _of_line(record: HandoffRecord) -> Iterator[Finding]:
     """Which line was handed over, and what is not as it was."""
     line = record.line
     if line.length is not None:
-        yield Finding("hand-off", "line", "line, chaser to net's vertex", line.length, "m")
-    yield Finding("hand-off", "attachment_distance", "vertex to centre of mass", line.attachment, "m")
+        yield Finding("hand-off", "line", "tether, chaser to net's vertex", line.length, "m")
+    yield Finding("hand-off", "attachment_distance", "net's vertex to the target's centre of mass", line.attachment, "m")
     for row in record.rows:
         if row.quantity == SLACK:
-            yield Finding("hand-off", "slack", "slack of the line", row.before, "m")
-            yield Finding("hand-off", "slack_after", "slack in the removal", row.after, "m")
+            yield Finding("hand-off", "slack", "slack of the tether", row.before, "m")
+            yield Finding("hand-off", "slack_after", "slack of the tether in the removal", row.after, "m")
         if row.quantity == OFFSET and row.account:
-            yield Finding("hand-off", "line_carried", "line", row.account)
+            yield Finding("hand-off", "line_carried", "tether", row.account)

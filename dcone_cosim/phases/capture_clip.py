@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from dcone_cosim import build
 from dcone_cosim.contract import bullets
+from dcone_cosim.findings import spoken
+from dcone_cosim.phases import chaos
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.scenery import Array, Chart, Clip, Net, Series
@@ -17,6 +20,10 @@ AGAIN = "dcone run ... --replay"
 """What keeps the net for a replay."""
 PER_SECOND = 25.0
 """Frames of the bodies alone."""
+BETWEEN = 0.02
+"""Share by which a tension has to exceed those of the frames to be told."""
+NEAR_ZERO, SAME = 0.01, 0.01
+"""Shares of the largest value of a chart below which a curve lies on 0, or on another."""
 SEVERAL = 2
 """Frames that make a clip."""
 
@@ -31,6 +38,7 @@ def clip(run: RunResult, phase: PhaseScene, result: PhaseResult, marks: Sequence
         return None
     values, terms = {**run.parameters.get(phase.name, {}), **phase.main.made}, phase.main.terms
     net, rows, notes = _net(result, build.net_drawing(values, terms))
+    notes += _between(net, result)
     surface = build.target_surface(values, terms) if "target.position[1]" in recorder else None
     numbers = bullets(recorder.names)
     shots = np.stack([recorder.vector(f"bullet[{b}].position") for b in numbers], axis=1) if numbers else None
@@ -72,6 +80,19 @@ def _net(result: PhaseResult, drawing: build.Drawing | None) -> tuple[Net | None
     return Net(nodes, threads, tensions, rim), rows, notes
 
 
+def _between(net: Net | None, result: PhaseResult) -> Iterator[str]:
+    """That a thread bore more between the frames than any frame shows."""
+    largest = result.recorder["thread.tension_max"].max() if "thread.tension_max" in result.recorder else 0.0
+    if net is None or net.tensions is None or not largest > (1.0 + BETWEEN) * float(net.tensions.max(initial=0.0)):
+        return
+    spread = chaos.CAPTURE["thread.tension_max"]
+    shown = spoken(float(net.tensions.max()), spread)
+    yield (
+        f"the largest tension of a thread, {spoken(float(largest), spread)} N, lasts shorter than a frame: the colours "
+        f"go up to {shown} N, the largest that a frame shows"
+    )
+
+
 def drawn_threads(drawing: build.Drawing | None, count: int) -> Array:
     """Threads from knot to knot where the net is one of ours, (threads, 2)."""
     pairs = [pair for line in drawing[0] for pair in pairwise(line)] if drawing is not None else []
@@ -102,10 +123,21 @@ def charts(result: PhaseResult, marks: Sequence[tuple[float, str]]) -> Iterator[
                 ("energy.elastic", "elastic"),
                 ("target.energy", "of the target"),
                 ("contact.loss", "lost in contact"),
-                ("closing.work", "work of the winches"),
+                ("closing.work", "work of the reels"),
             ),
         ),
     ):
-        series = [Series(label, recorder["time"], recorder[name]) for name, label in rows if name in recorder]
+        series = list(_apart([Series(label, recorder["time"], recorder[name]) for name, label in rows if name in recorder]))
         if series:
             yield Chart(key, title, "time since the shot", unit, series, marks=marks)
+
+
+def _apart(series: Sequence[Series]) -> Iterator[Series]:
+    """Curves that lie on 0 or on another in the chart have that in their names, so that none is looked for in vain."""
+    most = max((float(np.max(np.abs(one.y), initial=0.0)) for one in series), default=0.0)
+    for n, one in enumerate(series):
+        if most and len(series) > 1 and float(np.max(np.abs(one.y))) < NEAR_ZERO * most:
+            yield replace(one, name=f"{one.name} (near 0 here)")
+            continue
+        on = next((other for other in series[:n] if float(np.max(np.abs(one.y - other.y))) < SAME * most), None)
+        yield one if on is None else replace(one, name=f"{one.name} (lies on: {on.name})")

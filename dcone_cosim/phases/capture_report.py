@@ -28,19 +28,19 @@ _CAPTURE_ROWS = (
     ("thread.tension_max", "largest tension of a thread", "N"),
     ("cord.tension_max", "largest tension of the closing cord", "N"),
     ("closing.t_start", "reels started at", "s"),
-    ("mouth.cord_length", "mouth cord still out at the end", "m"),
-    ("mouth.girth", "girth it would have to pass", "m"),
+    ("mouth.cord_length", "closing cord still out at the end", "m"),
+    ("mouth.girth", "girth of the target that the cord has to pass", "m"),
     ("contact.loss", "energy lost in contact", "J"),
-    ("contact.friction_loss", "of that, by friction", "J"),
+    ("contact.friction_loss", "energy lost in contact, by friction", "J"),
     ("contact.depth", "deepest that a node was pressed below the surface", "m"),
     ("closing.work", "work of the reels", "J"),
-    ("thread.dissipated", "taken by the threads' dashpots", "J"),
-    ("cord.dissipated", "taken by the cord's dashpots", "J"),
-    ("closing.spring_energy", "left in the reels' springs", "J"),
-    ("closing.braked", "taken by the reels' brakes, and by slack taken in", "J"),
-    ("air.dissipated", "taken by the air", "J"),
-    ("gravity.work", "given by the change of gravity", "J"),
-    ("energy.remainder", "left over in the energy book", "J"),
+    ("thread.dissipated", "energy taken by the threads' dashpots", "J"),
+    ("cord.dissipated", "energy taken by the cord's dashpots", "J"),
+    ("closing.spring_energy", "energy left in the reels' springs", "J"),
+    ("closing.braked", "energy taken by the reels' brakes, and by slack taken in", "J"),
+    ("air.dissipated", "energy taken by the air", "J"),
+    ("gravity.work", "energy given by the change of gravity", "J"),
+    ("energy.remainder", "energy that the book does not account for", "J"),
     ("tether.paid_out", "tether paid out", "m"),
     ("net.nodes", "nodes of the net", ""),
     ("net.threads", "threads of the net", ""),
@@ -53,7 +53,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     yield from of_end("capture", result)
     if result.located is not None:
         yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
-        yield Finding("capture", "located_by", "found by", result.located_by)
+        yield Finding("capture", "located_by", "hand-over condition located by", result.located_by)
     for name, label, unit in _CAPTURE_ROWS:
         if name in last and not (unit == "s" and last[name] < 0.0):  # an instant that has not come is told as -1
             whole = not unit and math.isfinite(last[name])
@@ -74,15 +74,15 @@ def _of_hardest(last: Mapping[str, float]) -> Iterator[Finding]:
     nodes = [last.get(f"thread.tension_max_node[{end}]", 0.0) for end in (1, 2)]
     if all(nodes):
         text = f"{nodes[0]:.0f} and {nodes[1]:.0f}"
-        yield Finding("capture", "thread.tension_max_node", "between the nodes", text)
-        yield Finding("capture", "thread.tension_max_time", "at", last["thread.tension_max_time"], "s")
+        yield Finding("capture", "thread.tension_max_node", "largest tension of a thread, between the nodes", text)
+        yield Finding("capture", "thread.tension_max_time", "largest tension of a thread, at", last["thread.tension_max_time"], "s")
 
 
 _CATCH_ROWS = (
     ("t_capture", "captured at", "s"),
-    ("enclosure.at_capture", "share of the target inside by then", ""),
-    ("mouth.margin_at_capture", "girth less mouth cord by then", "m"),
-    ("enclosure.least", "least share inside since", ""),
+    ("enclosure.at_capture", "share of the target inside the net when captured", ""),
+    ("mouth.margin_at_capture", "girth of the target less closing cord out, when captured", "m"),
+    ("enclosure.least", "least share of the target inside the net from then on", ""),
 )
 
 
@@ -101,8 +101,8 @@ def _of_catch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Findin
     elif seen > 1e-6:
         text = f"yes, for the {seen:.3g} s to the end of the phase"
     else:
-        text = "not seen: the phase ends here"
-    yield Finding("capture", "lasted", "did it last", text)
+        text = "not followed: the phase ends at the capture"
+    yield Finding("capture", "lasted", "did the catch last", text)
 
 
 def _vector(values: dict[str, float], name: str) -> Any:

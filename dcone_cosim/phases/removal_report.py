@@ -73,7 +73,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_tension(phase, result)
     last = recorder.last()
     if last.get("break.broken"):
-        yield Finding(phase, "broke_at", "the line broke, and both ends fly on, at", last["break.time"], "s")
+        yield Finding(phase, "broke_at", "the tether broke, and both ends fly on, at", last["break.time"], "s")
     for name, label, unit, shown_in in (
         ("separation", "distance at the end", "m", ""),
         ("altitude", "altitude at the end", "m", "km"),
@@ -96,7 +96,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
 def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:
     """When the line had come to rest, so that its vibration was stepped over; the rows tell when else."""
     times = round(last["level.times_settled"])
-    yield Finding(phase, "times_settled", "times the line came to rest", times)
+    yield Finding(phase, "times_settled", "times the tether came to rest", times)
     if last["level.settled"]:
         yield Finding(phase, "settled_since", "at rest until the end, from", last["level.settled_since"], "s")
     if times and len(result.recorder) > 1:
@@ -114,7 +114,7 @@ def _of_environment(phase: str, result: PhaseResult, last: Mapping[str, float]) 
     if "electrodynamic.power" in columns and len(columns) > 1:
         for key, label, unit in (("emf", "voltage", "V"), ("current", "current", "A"), ("force", "force on it", "N")):
             largest = float(np.max(np.abs(columns[f"electrodynamic.{key}"])))
-            yield Finding(phase, f"electrodynamic_{key}", f"largest {label}, line that conducts", largest, unit)
+            yield Finding(phase, f"electrodynamic_{key}", f"largest {label}, tether that conducts", largest, unit)
         power, time = columns["electrodynamic.power"], columns["time"]
         mean = float(np.trapezoid(power, time) / (time[-1] - time[0]))
         yield Finding(phase, "electrodynamic_power", "mean power it takes from the orbit (of rows)", mean, "W")
@@ -138,7 +138,7 @@ def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
     if tension is None:
         return
     when, window = (
-        ("last orbit", "that orbit, in whole steps") if tension.is_orbit else ("whole phase", "less than an orbit:")
+        ("last orbit", "length of that last orbit, in whole steps") if tension.is_orbit else ("whole phase", "length of the phase, less than an orbit")
     )
     for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
         sampled = " (of rows)" if what in tension.sampled else ""
@@ -152,7 +152,7 @@ def _of_approach(phase: str, result: PhaseResult) -> Iterator[Finding]:
     if nearest is not None:
         recorded = " recorded" if nearest.recorded else ""
         yield Finding(phase, "approach", f"least distance{recorded}", nearest.distance, "m")
-        yield Finding(phase, "approach_time", "that was at", nearest.time, "s")
+        yield Finding(phase, "approach_time", "least distance at", nearest.time, "s")
 
 
 def room(values: Mapping[str, float], reach: float | None) -> float:
@@ -203,10 +203,10 @@ def unsafe(run: RunResult, phase: str, result: PhaseResult, reach: float | None)
 def _of_reel(run: RunResult, phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
     """What a reel has done, and what its loop is: rest, gains, poles and margins."""
     for name, label, unit in (
-        ("reel.paid_out", "line wound out at the end", "m"),
+        ("reel.paid_out", "tether wound out at the end", "m"),
         ("reel.work", "work of the reel's motor", "J"),
         ("reel.heat", "heat of the brake", "J"),
-        ("tether.heat", "heat of the line's dashpot", "J"),
+        ("tether.heat", "heat of the tether's dashpot", "J"),
     ):
         if name in last:
             yield Finding(phase, name, label, last[name], unit)
@@ -269,7 +269,7 @@ def _of_lowering(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Fi
     key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
     yield Finding(phase, key, f"orbit {key} by", abs(lowered), "m")
     if elapsed >= orbital_period(float(axis[0])):
-        yield Finding(phase, rate, "that is", abs(lowered) / elapsed, "m/s", shown_in="m/day")
+        yield Finding(phase, rate, f"orbit {key} by, per day", abs(lowered) / elapsed, "m/s", shown_in="m/day")
 
 
 def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterator[Finding]:
@@ -277,11 +277,11 @@ def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterat
     tugs = result.tugs
     if tugs is None:
         return
-    note = " (no recoil)" if suffix else ""
+    note = " (had the shot no recoil)" if suffix else ""
     taut = _is_taut_from_start(result)
     yield Finding(phase, f"tugs{suffix}", f"tugs{note}", tugs.count - taut)
     if taut:
-        yield Finding(phase, f"taut_from_start{suffix}", f"line{note}", "taut from the start")
+        yield Finding(phase, f"taut_from_start{suffix}", f"tether{note}", "taut from the start")
     if tugs.missed:
         label = f"of these not seen: more than {tugs.ring} in one macro step{note}"
         yield Finding(phase, f"tugs_missed{suffix}", label, tugs.missed)
@@ -290,8 +290,8 @@ def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterat
         time, peak, speed = tugs.rows[real[0]]
         seen, mark = ("_seen", " seen") if real[0] > 1 + taut else ("", "")
         yield Finding(phase, f"first_tug{seen}{suffix}", f"first tug{mark} after{begin}{note}", time, "s")
-        yield Finding(phase, f"first_tug{seen}_speed{suffix}", f"its speed{note}", speed, "m/s", shown_in="mm/s")
-        yield Finding(phase, f"first_tug{seen}_peak{suffix}", f"its peak{note}", peak, "N")
+        yield Finding(phase, f"first_tug{seen}_speed{suffix}", f"first tug{mark}, speed{note}", speed, "m/s", shown_in="mm/s")
+        yield Finding(phase, f"first_tug{seen}_peak{suffix}", f"first tug{mark}, peak{note}", peak, "N")
     recorder = result.recorder
     if tugs.missed and "tether.tension_peak" in recorder:
         largest = float(np.max(recorder["tether.tension_peak"]))
@@ -299,7 +299,7 @@ def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterat
         largest = max(peak for _, peak, _ in tugs.rows.values())
     else:
         return
-    label = "largest tension" if taut else "largest tug"
+    label = "largest tension" if taut else "largest tug, peak"
     seen, mark = ("_seen", " seen") if tugs.missed and "tether.tension_peak" not in recorder else ("", "")
     yield Finding(phase, f"largest_tug{seen}_peak{suffix}", f"{label}{mark}{note}", largest, "N")
 

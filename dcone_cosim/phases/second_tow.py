@@ -180,11 +180,11 @@ class TowHandover:
             Finding(place, "time", "after the tow before began", self.time, "s"),
             Finding(place, "distance", "distance chaser to target", apart, "m"),
             Finding(place, "relative_speed", "relative speed", speed, "m/s", shown_in="mm/s"),
-            Finding(place, "tension_cut", "tension of the line as it was cut", self.left[TENSION], "N"),
+            Finding(place, "tension_cut", "tension of the tether as it was cut", self.left[TENSION], "N"),
         ]
         if self.rows:
             closure = max(row.closure for row in self.rows)
-            rows.append(Finding(place, "ledger_closure", "ledger closes to", closure))
+            rows.append(Finding(place, "ledger_closure", "ledger closes to, relative to what enters it", closure))
         return rows
 
     def told(self) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from dcone_cosim.findings import spoken
 from dcone_cosim.plots.style import time_axis
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import PhaseResult
@@ -48,9 +49,15 @@ def clip(
         attitude = _seen_from(_axes(recorder, rows), recorder.vector("target.attitude", 4)[rows])
     peak = next((one for one in ("tether.tension_peak", "tether.tension") if one in recorder), "")
     taut = recorder["tether.taut"][rows] > 0 if "tether.taut" in recorder else None
-    notes = ["seen from the target, which stays in the middle; the line is coloured by the largest tension of its step"]
+    notes = ["seen from the target, which stays in the middle; the tether is coloured by the largest tension of its step"]
     if attitude is None:
-        notes.append("the target is a point in this phase: its turning is not computed")
+        notes.append("the target is a point in this phase, drawn as a ball: its shape and its turning are not computed")
+        reach = values.get("target.attachment_distance", 0.0)
+        if reach:
+            notes.append(
+                f"the tether is made fast {spoken(reach)} m from the centre of mass; that piece, of net and target, "
+                "is drawn in the colour of the target"
+            )
     if len(rows) < len(recorder):
         notes.append(f"{len(rows):,} of {len(recorder):,} steps are shown")
     return Clip(
@@ -65,6 +72,7 @@ def clip(
         _line_end(values, chaser, attitude),
         recorder[peak][rows] if peak else None,
         taut,
+        held=attitude is None,
         marks=_marks(result),
         notes=notes,
     )
@@ -129,12 +137,12 @@ def charts(result: PhaseResult, beside: PhaseResult | None, since: str) -> Itera
     time = recorder["time"] / divisor
     if "tether.tension" in recorder:
         series = [
-            Series("tension at the macro steps", time, recorder["tether.tension"]),
+            Series("tension at the communication steps", time, recorder["tether.tension"]),
             *_tugs(result, divisor, "tugs"),
         ]
         if beside is not None:
-            series += _tugs(beside, divisor, "tugs without the shot's recoil", True)
-        yield Chart("tension", "Tension of the line, with its tugs", since, "N", series, unit, log=True)
+            series += _tugs(beside, divisor, "tugs, had the shot no recoil", True)
+        yield Chart("tension", "Tension of the tether, with its tugs", since, "N", series, unit, log=True)
     if "separation" in recorder:
         yield Chart(
             "distance", "Distance of the bodies", since, "m", [Series("distance", time, recorder["separation"])], unit
@@ -142,7 +150,7 @@ def charts(result: PhaseResult, beside: PhaseResult | None, since: str) -> Itera
     if "center.semi_major_axis" in recorder:
         axis = recorder["center.semi_major_axis"]
         change = Series("semi-major axis of the pair, change", time, axis - axis[0])
-        yield Chart("orbit", "Orbit of the pair", since, "m", [change], unit)
+        yield Chart("orbit", "Change of the orbit", since, "m", [change], unit)
 
 
 def _tugs(result: PhaseResult, divisor: float, name: str, faint: bool = False) -> Sequence[Series]:

@@ -36,11 +36,13 @@ def write_page(
     whole: bool = True,
     pdf: bool = False,
     live: bool = False,
+    up: str = "",
 ) -> list[Path]:
     """Write the page of the run of a folder, and print it if asked; where both are.
 
     out      the file; in the folder of the run if not given, and then a file of that run
     whole    all of it, otherwise the replay alone
+    up       address of the index that the page is of
     live     with the model in it, whose library is built if it is not in the cache
     """
     name = REPORT if whole else REPLAY
@@ -50,7 +52,7 @@ def write_page(
     browser = _browser() if pdf else ""
     with progress.working("writing"):
         progress.say("reading the run")
-        text = of_folder(run, path, also, whole, progress if live else None)
+        text = of_folder(run, path, also, whole, progress if live else None, up)
         check_folder(path.parent)
         path.parent.mkdir(parents=True, exist_ok=True)
         with Scratch(path.parent) as draft:

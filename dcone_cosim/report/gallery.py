@@ -20,14 +20,19 @@ from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import DconeError
 from dcone_cosim.loading import load, named, shipped
 from dcone_cosim.progress import Progress
-from dcone_cosim.report import told
+from dcone_cosim.report import tiles
 from dcone_cosim.report.commands import write_page
+from dcone_cosim.report.live import NET
 from dcone_cosim.reports import pages
+from dcone_cosim.results import RunResult
 from dcone_cosim.run_reading import read_run
 from dcone_cosim.scratch import Scratch
 
 INDEX = "index.html"
 DAY = 86400.0
+GROUPS = ("Shot, capture and tow", "Shot and capture", "Tows", "Runs that fail, or whose lines do not bear it")
+"""Headings of the index, in order."""
+COMPLETED = "completed"
 CARD = (
     "capture_in_space.png",
     "tether_tension.png",
@@ -56,7 +61,7 @@ def make(scenes: Sequence[str], out: Path, progress: Progress, full: bool = Fals
             if not folder.is_dir():
                 run_and_write(scene, folder, progress, settings=[] if full else cuts(scene), replay=True)
             if not page.is_file():
-                write_page(folder, page, progress, live=True)
+                write_page(folder, page, progress, live=True, up=INDEX)
         except DconeError as error:
             failed[name] = str(error)
     return _index(out, [name for name in known if name not in failed]), failed
@@ -74,9 +79,19 @@ def _index(out: Path, names: Sequence[str]) -> Path:
     """The index of all that has a page."""
     cards = [_card(out, name) for name in names]
     with Scratch(out) as draft:
-        text = pages.render("gallery.html", title="Scenes of D-CoNe co-simulation", cards=cards)
+        groups = [(name, [card for card in cards if card["group"] == name]) for name in GROUPS]
+        groups = [(name, found) for name, found in groups if found]
+        text = pages.render("gallery.html", title="Scenes of D-CoNe co-simulation", groups=groups)
         (draft / INDEX).write_text(text, encoding="utf-8")
         return placed.put(draft / INDEX, out / INDEX)
+
+
+def group_of(run: RunResult) -> str:
+    """One of `GROUPS`: by whether it came to its end and its lines bore it, and by the phases that it has."""
+    if run.status != COMPLETED:
+        return GROUPS[-1]
+    nets = [phase.main.model == NET for phase in run.scene.phases]
+    return GROUPS[0] if any(nets) and not all(nets) else GROUPS[1] if all(nets) else GROUPS[2]
 
 
 def _card(out: Path, name: str) -> dict[str, Any]:
@@ -86,8 +101,9 @@ def _card(out: Path, name: str) -> dict[str, Any]:
     return {
         "name": name,
         "title": run.scene.title,
-        "status": run.status,
-        "good": run.exit_code == 0,
-        "chief": told.chief(run),
+        "badges": tiles.badges(run),
+        "good": run.status == COMPLETED,
+        "group": group_of(run),
+        "chief": tiles.chief(run),
         "picture": "" if picture is None else base64.b64encode(picture.read_bytes()).decode(),
     }

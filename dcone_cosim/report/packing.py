@@ -78,6 +78,7 @@ def clip(one: Clip) -> dict[str, Any]:
         "chaser": singles(one.chaser[keep]),
         "marks": [{"time": time, "what": what} for time, what in one.marks],
         "notes": notes,
+        "held": one.held,
     }
     for name, values in (
         ("target", one.target),

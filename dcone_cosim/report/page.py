@@ -5,18 +5,20 @@ from __future__ import annotations
 import base64
 import json
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from dcone_cosim.findings import spoken
 from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
-from dcone_cosim.report import links, live, packing, scripts, told
+from dcone_cosim.report import links, live, packing, scripts, tiles, told
 from dcone_cosim.report.forces import PICTURE, ForceMap
 from dcone_cosim.report.links import Linked
 from dcone_cosim.report.live import Live
 from dcone_cosim.reports import pages
 from dcone_cosim.reports.warnings import warnings
+from dcone_cosim.results import RunResult
 from dcone_cosim.run_reading import provenance_of, read_run
 
 PICTURES = {"capture": "capture_in_space.png", "removal": "tether_tension.png", "second_tow": "second_tow_tension.png"}
@@ -34,11 +36,13 @@ def of_folder(
     linked: Sequence[Linked] = (),
     whole: bool = True,
     progress: Progress | None = None,
+    up: str = "",
 ) -> str:
     """The page of the run of a folder, to be put at `place`; `InputError` where it is no run.
 
     whole    all of it; otherwise the replay alone, with the tugs
     progress    is told of what is built; with none the model is not put into the page
+    up    address of the index that the page is of, "" for none
     """
     run, about = read_run(folder), provenance_of(folder)
     here = shlex.quote(f"./{folder.absolute().name}")  # a bare name may be that of a scene
@@ -63,11 +67,13 @@ def of_folder(
     data |= {name: {**model.told, "folder": here} for name, model in models.items() if isinstance(model, Live)}
     values: dict[str, Any] = {
         "title": run.scene.title,
-        "status": run.status,
-        "message": run.message,
+        "badges": tiles.badges(run),
+        "said": tiles.said(run),
+        "inputs": list(tiles.inputs(run)),
+        "up": up,
         "good": run.exit_code == 0,
         "whole": whole,
-        "chief": told.chief(run),
+        "chief": tiles.chief(run),
         "warnings": warnings(run),
         "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
@@ -90,10 +96,22 @@ def of_folder(
             "live": _shown(models, [_head(clip) for clip in clips]),
             "workers": [(one, live.worker(one)) for one in live.SCRIPTS],
             "scene": run.scene.text,
+            "scene_file": base64.b64encode(run.scene.text.encode()).decode(),
+            "scene_name": run.scene.name,
+            "tugs": list(tables(run)),
             "forces": None if forces is None else forces.hardest(),
             "force_picture": picture_of(folder / PICTURE),
         }
     return pages.render("run.html", **values)
+
+
+def tables(run: RunResult) -> Iterator[tuple[str, int, str]]:
+    """Phase, number and table, as CSV in base64, of all tugs of each tow."""
+    for name, result in run.phases.items():
+        if result.tugs is not None and result.tugs.rows:
+            lines = ["tug,time [s],peak [N],speed [m/s]"]
+            lines += [f"{n},{t!r},{peak!r},{v!r}" for n, (t, peak, v) in sorted(result.tugs.rows.items())]
+            yield name, len(result.tugs.rows), base64.b64encode("\n".join([*lines, ""]).encode()).decode()
 
 
 def packed(data: Mapping[str, Any]) -> dict[str, str]:
@@ -124,7 +142,7 @@ def _head(clip: Mapping[str, Any]) -> dict[str, Any]:
     scaled = (
         None
         if of is None or not of["most"]
-        else [(n, f"{of['most'] * of['floor'] ** (1.0 - n):.3g}") for n in (0.0, 1 / 3, 2 / 3, 1.0)]
+        else [(n, spoken(of["most"] * of["floor"] ** (1.0 - n), most=3)) for n in (0.0, 1 / 3, 2 / 3, 1.0)]
     )
     return {
         "key": clip["key"],
@@ -133,6 +151,7 @@ def _head(clip: Mapping[str, Any]) -> dict[str, Any]:
         "scale": scaled,
         "net": "net" in clip,
         "forces": "forces" in clip,
+        "cord": bool(clip.get("net", {}).get("rim")),
     }
 
 

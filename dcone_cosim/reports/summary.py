@@ -115,6 +115,6 @@ def _of_coupling(name: str, counts: Mapping[str, float]) -> Iterator[Finding]:
 
 
 def _of_effort(name: str, result: PhaseResult) -> Iterator[Finding]:
-    yield Finding(name, "steps", "macro steps", result.steps)
+    yield Finding(name, "steps", "communication steps", result.steps)
     yield from _of_coupling(name, result.coupling)
-    yield Finding(name, "wall", "time taken", result.wall, "s")
+    yield Finding(name, "wall", "time that computing took", result.wall, "s")

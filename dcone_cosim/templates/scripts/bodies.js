@@ -5,6 +5,7 @@ import { Places, Tensions, unpack } from "dcone/bytes";
 import { Lines } from "dcone/lines";
 
 const SLACK = [0.62, 0.68, 0.75, 0.5];
+const HELD = [0.79, 0.63, 0.37, 0.9];
 const CORD = [0.9, 0.6, 0.85, 1];
 const COLOURS = { target: 0xc9a15f, chaser: 0x6fb1e8, bullet: 0xf0f0f0, edge: 0x2a2115 };
 
@@ -50,9 +51,13 @@ export class Bodies {
     if (this.line) {
       this.tether = new Lines(1, colours, [0.75, 0.8, 0.86, 0.8], [1.2, 4]);
       scene.add(this.tether.object);
+      if (this.target && clip.held) {
+        this.held = new Lines(1, colours, HELD, [1.4, 1.4]);
+        scene.add(this.held.object);
+      }
     }
     if (clip.net) this.hang(clip.net, colours, scene);
-    this.ribbons = [this.tether, this.threads, this.rim].filter(Boolean);
+    this.ribbons = [this.tether, this.held, this.threads, this.rim].filter(Boolean);
   }
 
   hang(net, colours, scene) {
@@ -124,6 +129,8 @@ export class Bodies {
       const ends = [...this.chaser.at(frame), ...this.line.at(frame)];
       this.tether.put(0, ends, 0, 1, this.tension ? Bodies.tone(this.tension.code(frame)) : -1);
       this.tether.done();
+      this.held?.put(0, [...this.line.at(frame), ...this.target.at(frame)], 0, 1, -1);
+      this.held?.done();
     }
     if (this.threads) {
       const points = this.nodes.at(frame);

@@ -55,11 +55,28 @@ export class Tensions {
   }
 }
 
-/** A number with so many digits, as a reader takes it. */
-export function spoken(value, digits = 4) {
+const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/**
+ * A number as every page has it: so many digits, or fewer where fewer hold, and then with ~ before it. `spoken` of
+ * dcone_cosim/findings.py says the same.
+ *
+ * spread    standard deviation over mean of one sample of many, 0 for any other
+ */
+export function spoken(value, digits = 4, spread = 0) {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
-  const size = Math.abs(value);
-  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1).replace("e", " · 10^").replace("+", "");
-  return Number(value.toPrecision(digits)).toLocaleString("en", { maximumSignificantDigits: digits, useGrouping: size >= 1e4 });
+  const size = Math.abs(value), mark = spread ? "~" : "";
+  const leading = Number(size.toExponential(digits - 1).split("e")[1]);
+  let place = leading - digits + 1;
+  if (spread) place = Math.max(place, Math.min(Math.floor(Math.log10(2 * spread * size)), leading));
+  const bare = (text) => (spread || !text.includes(".") ? text : text.replace(/\.?0+$/, ""));
+  if (leading < -4 || leading >= 6) {
+    const raised = String(leading).replace("-", "⁻").replace(/\d/g, (digit) => RAISED[digit]);
+    return `${mark}${bare((value / Math.pow(10, leading)).toFixed(leading - place))} · 10${raised}`;
+  }
+  const unit = Math.pow(10, Math.max(place, 0)), rounded = place > 0 ? Math.round(value / unit) * unit : value;
+  const [whole, ...part] = bare(rounded.toFixed(Math.max(-place, 0))).split(".");
+  const parted = leading >= 4 ? whole.replace(/\B(?=(\d{3})+$)/g, ",") : whole;
+  return mark + [parted, ...part].join(".");
 }

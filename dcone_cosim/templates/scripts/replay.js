@@ -78,7 +78,7 @@ export class Replay {
     const span = this.times[this.end] - this.times[0];
     const offered = SPEEDS.filter((one) => span / one >= 1 && span / one <= 600);
     const usual = span <= LONGEST_AS_IT_IS && span > 2 ? 1 : offered.find((one) => span / one <= LONGEST) ?? 1;
-    speed.append(...(offered.length ? offered : [1]).map((one) => new Option(one === 1 ? "as fast as it is" : `${one.toLocaleString("en")} times as fast`, String(one), one === usual, one === usual)));
+    speed.append(...(offered.length ? offered : [1]).map((one) => new Option(one === 1 ? "real time" : `${one.toLocaleString("en")} × real time`, String(one), one === usual, one === usual)));
     const names = [...Object.keys(VIEWS), ...(this.clip.surface ? [NEAR] : [])];
     view.append(...names.map((name) => new Option(name, name, name === "slanting", name === "slanting")));
     view.addEventListener("change", () => this.look(view.value));
@@ -86,7 +86,7 @@ export class Replay {
     for (const mark of [...this.clip.marks].sort((a, b) => a.time - b.time)) {
       if (mark.time < this.times[0] || mark.time > this.times[this.end]) continue;
       const made = Object.assign(document.createElement("button"), { type: "button", textContent: `${mark.what} ${spoken(mark.time)} s` });
-      made.addEventListener("click", () => { this.stop(); this.go(this.nearest(mark.time)); });
+      made.addEventListener("click", () => { this.stop(); this.go(this.showing(mark.time)); });
       marks.append(made);
     }
     find("forces")?.addEventListener("change", (event) => { this.bodies.cells.visible = event.target.checked; this.ask(); });
@@ -112,6 +112,14 @@ export class Replay {
     let best = 0;
     for (let i = 1; i < this.times.length; i++) if (Math.abs(this.times[i] - time) < Math.abs(this.times[best] - time)) best = i;
     return best;
+  }
+
+  /** The frame that shows what was at an instant: of a tow, whose tether has the colour of the step behind it, the one at the end of that step. */
+  showing(time) {
+    if (!this.clip.tension) return this.nearest(time);
+    let frame = 0;
+    while (frame < this.end && this.times[frame] < time) frame++;
+    return frame;
   }
 
   look(name) {
@@ -154,8 +162,8 @@ export class Replay {
     time.value = `${spoken(this.times[this.frame], 6)} s ${this.clip.clock}`;
     slider.setAttribute("aria-valuetext", time.value);
     const now = this.bodies.told(this.frame);
-    if (now && this.bodies.tensions) told.textContent = `tautest thread ${spoken(now.most, 3)} N; ${now.taut.toLocaleString("en")} of ${now.count.toLocaleString("en")} threads taut`;
-    else if (now) told.textContent = now.taut ? `line bears up to ${spoken(now.most, 3)} N in this step` : "line slack";
+    if (now && this.bodies.tensions) told.textContent = `tautest thread now ${spoken(now.most, 2)} N; ${now.taut.toLocaleString("en")} of ${now.count.toLocaleString("en")} threads taut`;
+    else if (now) told.textContent = now.taut ? `tether bears up to ${spoken(now.most, 3)} N in the step up to here` : "tether slack in the step up to here";
     this.ask();
   }
 
@@ -184,6 +192,7 @@ export class Replay {
       const sign = at === 2 ? -1 : 1, x = 34 * sign * turn[4 * at], y = -34 * sign * turn[4 * at + 1];
       const line = this.parts.axes.querySelector(`line[data-axis="${name}"]`), text = this.parts.axes.querySelector(`text[data-axis="${name}"]`);
       line.setAttribute("x2", x); line.setAttribute("y2", y);
+      text.style.visibility = Math.hypot(x, y) < 14 ? "hidden" : "";  // it points at the reader, and would lie on another
       text.setAttribute("x", 1.25 * x); text.setAttribute("y", 1.25 * y + 4);
     }
   }
