@@ -81,7 +81,7 @@ class Clip:
     chaser     (frames, 3) [m]
     line_end   where the line ends at the target or net (frames, 3) [m]; None: there is no line
     tension    of that line (frames,) [N], told by `tension_is`
-    held       whether the rest from the end of the line to the target is drawn: net and target, of a target that is a point
+    held       whether the rest, from the end of the line to a target that is a point, is drawn
     taut       whether it is (frames,)
     bullets    (frames, bullets, 3) [m]
     marks      instants and what they are

@@ -128,7 +128,7 @@ class HandoffRecord:
             worst = "by the first tug the attachment may be out of sight, and the line wraps"
         than = "more than" if not self.bound.accepted else "within"
         left = "" if self.turns or self.bound.accepted else ", but the scene or its FMU leaves no other level"
-        return f"{worst}: {than} the {100 * self.bound.tolerance:g} % that the scene allows (handoff.point_tolerance){left}"
+        return f"{worst}: {than} the {100 * self.bound.tolerance:g} % allowed (handoff.point_tolerance){left}"
 
     def close(self, component: Steppable) -> None:
         close_ledger(self, component)
@@ -307,7 +307,9 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
         yield Finding("hand-off", "beyond_hull", "it reaches beyond its hull there by at most", record.shortfall, "m")
     what = ("spin", "carried over") if record.turns else ("spin_dropped", "dropped (a point target has none)")
     yield Finding("hand-off", what[0], f"spin {what[1]}", spin, "N m s")
-    what = ("spin_energy", "of the spin carried over") if record.turns else ("spin_energy_dropped", "of the dropped spin")
+    what = (
+        ("spin_energy", "of the spin carried over") if record.turns else ("spin_energy_dropped", "of the dropped spin")
+    )
     yield Finding("hand-off", what[0], f"energy {what[1]}", energy, "J")
     yield Finding(
         "hand-off", "body_rate", "target turns, relative to the tether, at", bound.rate, "rad/s", shown_in="deg/s"
@@ -321,8 +323,20 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
         "hand-off", "tug_speed", "speed of the first tug, estimated", record.spin.tug_speed, "m/s", shown_in="mm/s"
     )
     if np.isfinite(bound.largest):
-        yield Finding("hand-off", "point_bound_time", "a point target shifts the time of the first tug by at most", bound.time, shown_in="%")
-        yield Finding("hand-off", "point_bound_peak", "a point target changes the peak of the first tug by at most", bound.peak, shown_in="%")
+        yield Finding(
+            "hand-off",
+            "point_bound_time",
+            "a point target shifts the time of the first tug by at most",
+            bound.time,
+            shown_in="%",
+        )
+        yield Finding(
+            "hand-off",
+            "point_bound_peak",
+            "a point target changes the peak of the first tug by at most",
+            bound.peak,
+            shown_in="%",
+        )
     yield from _of_line(record)
     if record.rows:
         worst = max(record.rows, key=lambda row: row.closure)
@@ -337,7 +351,9 @@ def _of_line(record: HandoffRecord) -> Iterator[Finding]:
     line = record.line
     if line.length is not None:
         yield Finding("hand-off", "line", "tether, chaser to net's vertex", line.length, "m")
-    yield Finding("hand-off", "attachment_distance", "net's vertex to the target's centre of mass", line.attachment, "m")
+    yield Finding(
+        "hand-off", "attachment_distance", "net's vertex to the target's centre of mass", line.attachment, "m"
+    )
     for row in record.rows:
         if row.quantity == SLACK:
             yield Finding("hand-off", "slack", "slack of the tether", row.before, "m")

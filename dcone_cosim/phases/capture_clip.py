@@ -127,7 +127,9 @@ def charts(result: PhaseResult, marks: Sequence[tuple[float, str]]) -> Iterator[
             ),
         ),
     ):
-        series = list(_apart([Series(label, recorder["time"], recorder[name]) for name, label in rows if name in recorder]))
+        series = list(
+            _apart([Series(label, recorder["time"], recorder[name]) for name, label in rows if name in recorder])
+        )
         if series:
             yield Chart(key, title, "time since the shot", unit, series, marks=marks)
 

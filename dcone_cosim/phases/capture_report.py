@@ -75,7 +75,13 @@ def _of_hardest(last: Mapping[str, float]) -> Iterator[Finding]:
     if all(nodes):
         text = f"{nodes[0]:.0f} and {nodes[1]:.0f}"
         yield Finding("capture", "thread.tension_max_node", "largest tension of a thread, between the nodes", text)
-        yield Finding("capture", "thread.tension_max_time", "largest tension of a thread, at", last["thread.tension_max_time"], "s")
+        yield Finding(
+            "capture",
+            "thread.tension_max_time",
+            "largest tension of a thread, at",
+            last["thread.tension_max_time"],
+            "s",
+        )
 
 
 _CATCH_ROWS = (

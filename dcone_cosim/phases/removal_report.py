@@ -138,7 +138,9 @@ def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
     if tension is None:
         return
     when, window = (
-        ("last orbit", "length of that last orbit, in whole steps") if tension.is_orbit else ("whole phase", "length of the phase, less than an orbit")
+        ("last orbit", "length of that last orbit, in whole steps")
+        if tension.is_orbit
+        else ("whole phase", "length of the phase, less than an orbit")
     )
     for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
         sampled = " (of rows)" if what in tension.sampled else ""
@@ -290,7 +292,9 @@ def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterat
         time, peak, speed = tugs.rows[real[0]]
         seen, mark = ("_seen", " seen") if real[0] > 1 + taut else ("", "")
         yield Finding(phase, f"first_tug{seen}{suffix}", f"first tug{mark} after{begin}{note}", time, "s")
-        yield Finding(phase, f"first_tug{seen}_speed{suffix}", f"first tug{mark}, speed{note}", speed, "m/s", shown_in="mm/s")
+        yield Finding(
+            phase, f"first_tug{seen}_speed{suffix}", f"first tug{mark}, speed{note}", speed, "m/s", shown_in="mm/s"
+        )
         yield Finding(phase, f"first_tug{seen}_peak{suffix}", f"first tug{mark}, peak{note}", peak, "N")
     recorder = result.recorder
     if tugs.missed and "tether.tension_peak" in recorder:

@@ -49,7 +49,9 @@ def clip(
         attitude = _seen_from(_axes(recorder, rows), recorder.vector("target.attitude", 4)[rows])
     peak = next((one for one in ("tether.tension_peak", "tether.tension") if one in recorder), "")
     taut = recorder["tether.taut"][rows] > 0 if "tether.taut" in recorder else None
-    notes = ["seen from the target, which stays in the middle; the tether is coloured by the largest tension of its step"]
+    notes = [
+        "seen from the target, which stays in the middle; the tether is coloured by the largest tension of its step"
+    ]
     if attitude is None:
         notes.append("the target is a point in this phase, drawn as a ball: its shape and its turning are not computed")
         reach = values.get("target.attachment_distance", 0.0)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from dcone_cosim.units import by_name
 SHOT = "bullets.speed"
 EACH = tuple(f"[{i}]" for i in (1, 2, 3))
 SPIN = tuple(f"target.start_rate{each}" for each in EACH)
+THRUST = "thrust.level"
 REST_LENGTH = "tether.rest_length"
 SLOWEST, FASTEST = 0.7, 1.4
 """Shares of the shot's speed between which its momentum alone is followed."""
@@ -44,11 +45,11 @@ class Row:
 
 
 ROWS = (
-    Row("tether.diameter", "diameter of the line", "mm", 0.1, 10.0, True),
-    Row("tether.youngs_modulus", "its E", "GPa", 0.1, 10.0, True),
-    Row("tether.damping_ratio", "its damping ratio", "1", 0.01, 20.0, True),
-    Row(REST_LENGTH, "its length", "m", 0.5, 5.0, True),
-    Row("thrust.level", "thrust", "N", 0.0, 5.0),
+    Row("tether.diameter", "diameter of the tether", "mm", 0.1, 10.0, True),
+    Row("tether.youngs_modulus", "Young's modulus of the tether", "GPa", 0.1, 10.0, True),
+    Row("tether.damping_ratio", "damping ratio of the tether", "1", 0.01, 20.0, True),
+    Row(REST_LENGTH, "length of the tether", "m", 0.5, 5.0, True),
+    Row(THRUST, "thrust", "N", 0.0, 5.0),
 )
 """Of a tow."""
 SHOTS = (
@@ -108,7 +109,8 @@ def knobs_of(phase: PhaseScene, bounds: Mapping[str, tuple[float, float]], run: 
     for row in ROWS:
         value = values.get(row.name, math.nan)
         if row.name in bounds and math.isfinite(value) and value:
-            yield _own(phase.name, row, value, bounds[row.name], before)
+            told = f"{row.label}, {signed(phase.main.terms)}" if row.name == THRUST else row.label
+            yield _own(phase.name, replace(row, label=told), value, bounds[row.name], before)
     if isinstance(record, HandoffRecord):
         yield from _shot(record, run, before)
     yield from _spin(phase.name, values, bounds, run, before)
@@ -121,6 +123,12 @@ def knobs_of_shot(phase: PhaseScene, bounds: Mapping[str, tuple[float, float]]) 
         value = values.get(row.name, math.nan)
         if row.name in bounds and math.isfinite(value) and value:
             yield _own(phase.name, row, value, bounds[row.name], "")
+
+
+def signed(terms: Mapping[str, str]) -> str:
+    """What the sign of a thrust means."""
+    direction = terms.get("thrust", "").replace("_", " ")
+    return f"{direction} (minus: against it)" if direction else "minus: against its direction"
 
 
 def _shown(si: float, factor: float) -> float:
@@ -162,7 +170,7 @@ def _shot(record: HandoffRecord, run: RunResult, before: str) -> Iterator[Knob]:
     sets = {name: (still[name], (own[name] - still[name]) / speed) for name in names}
     text = "the net is not shot again: its places and instants stay, velocities follow the shot's momentum"
     yield Knob(
-        f"{before}.{SHOT}", "speed of the shot", "m/s", 1.0, _shown(speed, 1.0),
+        f"{before}.{SHOT}", "speed of the shot, by its momentum alone", "m/s", 1.0, _shown(speed, 1.0),
         _shown(SLOWEST * speed, 1.0), _shown(FASTEST * speed, 1.0), False, sets, again=True, estimate=text,
     )  # fmt: skip
 

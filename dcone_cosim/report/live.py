@@ -38,6 +38,8 @@ LARGEST = ("tether.tension_peak", "tether.tension")
 """Outputs of which the first that there is tells the largest tension."""
 PER_SECOND = 25.0
 """Frames of a shot."""
+SPREADS = {"tugs": "tugs", "first": "first_tug", "peak": "first_tug_peak", "largest": "largest_tug_peak"}
+"""Figures of the tow, and what tells how far they are one sample of many."""
 FIGURES = ("mouth.area", "thread.tension_max", "t_capture")
 """What is told of a shot, where its FMU tells it."""
 WORKER = Path(__file__).parents[1] / "templates" / "worker"
@@ -127,6 +129,7 @@ def _tow(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, An
     result = run.phases[phase.name]
     load = next((one for one in loads.of_run(run) if one.phase == phase.name and one.line.name == "line"), None)
     given = run.scene.sizing.get("factor_of_safety")
+    spreads = kind_of(phase.name).spreads(run, result)
     whole = phase.duration if result.error is None else result.end - result.start
     duration = min(whole, LONGEST)
     divisor, unit = time_axis(duration)
@@ -152,7 +155,9 @@ def _tow(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, An
             "strength": None if load is None else load.strength,
             "factor": FACTOR if given is None else float(given),
             "dashpot": DASHPOT_GOVERNS,
+            "reach": float(result.recorder["tether.length"][0]) if "tether.length" in result.recorder else None,
         },
+        "spreads": {name: spreads[key] for name, key in SPREADS.items() if key in spreads},
         "native": {"wall": result.wall, "duration": result.end - result.start},
     }
 
@@ -162,6 +167,7 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
     phase, references = carried.phase, carried.references
     result = run.phases[phase.name]
     values = {**run.parameters[phase.name], **phase.main.made}
+    spreads = kind_of(phase.name).spreads(run, result)
     last = result.recorder.last()
     nodes = int(last["net.nodes"])
     drawing = build.net_drawing(values, phase.main.terms)
@@ -193,6 +199,8 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
         "most": float(max(map(np.max, frames.tensions))) if frames is not None and taut else 0.0,
         "floor": packing.FLOOR,
         "ends": packing.wholes(ends),
+        "spreads": {name: spreads[name] for name in FIGURES if name in spreads}
+        | ({"mouth.area": spreads["mouth.area_max"]} if "mouth.area_max" in spreads else {}),
         "run": {name: float(np.max(result.recorder[name])) for name in FIGURES if name in result.recorder},
         "native": {"wall": result.wall, "duration": result.end - result.start},
     }

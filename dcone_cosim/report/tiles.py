@@ -8,6 +8,7 @@ from dcone_cosim import loads
 from dcone_cosim.contract import FAILED_OUTCOMES, FLOWN
 from dcone_cosim.findings import SHOWN_IN, Finding, spoken
 from dcone_cosim.phases import kind_of
+from dcone_cosim.report.knobs import THRUST, signed
 from dcone_cosim.reports import summary
 from dcone_cosim.results import RunResult
 
@@ -44,7 +45,6 @@ def cells(row: Finding) -> tuple[str, str]:
     elif unit == "m" and size >= 1e4:
         value, unit = value / 1e3, "km"
     return spoken(value, row.spread), SHOWN_AS.get(unit, unit)
-
 
 
 def chief(run: RunResult) -> list[Tile]:
@@ -189,8 +189,9 @@ def inputs(run: RunResult) -> Iterator[tuple[str, str]]:
         values = run.parameters.get(phase.name, {})
         for name, label, unit, factor in INPUTS:
             value = values.get(name)
-            if value is not None and (value or name == "thrust.level"):
-                yield f"{spoken_phase(phase.name)}: {label}", f"{spoken(value / factor)} {unit}".strip()
+            if value is not None and (value or name == THRUST):
+                told = f"{label}, {signed(phase.main.terms)}" if name == THRUST else label
+                yield f"{spoken_phase(phase.name)}: {told}", f"{spoken(value / factor)} {unit}".strip()
 
 
 INPUTS = (
@@ -202,7 +203,7 @@ INPUTS = (
     ("net.mass", "mass of the net", "kg", 1.0),
     ("bullets.mass", "mass of a bullet", "kg", 1.0),
     ("bullets.speed", "speed of the bullets", "m/s", 1.0),
-    ("thrust.level", "thrust along the motion (minus: brakes)", "N", 1.0),
+    (THRUST, "thrust", "N", 1.0),
     ("tether.rest_length", "length of the tether", "m", 1.0),
     ("tether.diameter", "diameter of the tether", "mm", 1e-3),
     ("tether.youngs_modulus", "Young's modulus of the tether", "GPa", 1e9),

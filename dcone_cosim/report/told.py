@@ -123,7 +123,8 @@ def events(run: RunResult) -> Iterator[dict[str, Any]]:
                 spoken(event.time, spreads.get(event.time, 0.0)),
                 event.what,
                 "" if event.peak != event.peak else spoken(event.peak, spreads.get(event.peak, 0.0)),
-            ) for event in told
+            )
+            for event in told
         ]
         yield {"phase": name, "clock": kind.clock(run), "rows": rows, "more": max(len(tugs) - 1, 0)}
 
@@ -138,11 +139,15 @@ def trust(run: RunResult) -> list[str]:
         recorder = result.recorder
         if len(recorder) and {"energy.remainder", "energy.total"} <= set(recorder.names):
             left, size = abs(float(recorder["energy.remainder"][-1])), float(recorder["energy.total"].max())
-            said.append(f"{name}: its energy book does not account for {spoken(left, most=2)} J of {spoken(size)} J: the scheme's own error")
+            said.append(
+                f"{name}: its energy book leaves {spoken(left, most=2)} J of {spoken(size)} J open: the scheme's own error"
+            )
     for name, handover in run.handovers.items():
         if handover.rows:
             worst = max(row.closure for row in handover.rows)
-            said.append(f"hand-over to the {name}: mass, momentum, angular momentum and energy close to {spoken(worst, most=1)}")
+            said.append(
+                f"hand-over to the {name}: mass, momenta and energy agree within {spoken(worst, most=1)} of what enters"
+            )
     return said
 
 

@@ -62,6 +62,11 @@ export class Knob {
     this.slider.closest(".knob").classList.toggle("moved", this.moved);
   }
 
+  /** Show that the model refuses the value, or that it does not. */
+  refuse(refused) {
+    this.number.setAttribute("aria-invalid", String(refused));
+  }
+
   /** What the model gets, by name. */
   get values() {
     const si = this.told.factor === 1 ? this.value : this.told.factor * this.value;

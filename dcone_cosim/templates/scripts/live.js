@@ -7,16 +7,18 @@ import { Knob, workerOf } from "dcone/knob";
 /** How far two numbers are apart, as a share of the larger. */
 const apart = (one, other) => (one === other ? 0 : Math.abs(one - other) / Math.max(Math.abs(one), Math.abs(other)));
 
-/** A figure in two columns: of the run, and as moved. */
+/** A figure in two columns, of the run and with the reader's values, and which spread it has. A tether that is taut from the start counts that as no tug. */
 const FIGURES = {
-  tugs: (told) => told.tugs.length,
-  first: (told) => told.tugs[0]?.[0],
-  peak: (told) => told.tugs[0]?.[1],
-  largest: (told) => told.largest,
-  stress: (told) => told.stress / 1e6,
-  margin: (told) => told.margin,
-  required: (told) => told.required,
+  tugs: [(told) => told.tugs.length - told.taut, "tugs"],
+  first: [(told) => told.tugs[told.taut]?.[0], "first"],
+  peak: [(told) => told.tugs[told.taut]?.[1], "peak"],
+  largest: [(told) => told.largest, "largest"],
+  stress: [(told) => told.stress / 1e6, "largest"],
+  margin: [(told) => told.margin, "margin"],
+  required: [(told) => told.required, "largest"],
 };
+/** How long an answer may take before what is drawn of the values before is taken away [ms]. */
+const PATIENCE = 300;
 
 export class Live {
   constructor(root, data) {
@@ -35,7 +37,7 @@ export class Live {
     part("reset").addEventListener("click", () => { for (const knob of this.knobs) knob.put(knob.told.value); this.ask(); });
     this.factor.addEventListener("change", () => { this.results.run = null; this.ask(); });
     const { phase, clock, unit } = data;
-    this.chart = new Chart(part("chart"), { key: `${phase}-live`, title: "Tension of the line", clock, unit: "N", xUnit: unit, log: true, range: [0, data.plan.duration / data.divisor], marks: [], series: this.series() });
+    this.chart = new Chart(part("chart"), { key: `${phase}-live`, title: "Tension of the tether", clock, unit: "N", xUnit: unit, log: true, range: [0, data.plan.duration / data.divisor], marks: [], series: this.series() });
     this.tell();
     this.begin();
   }
@@ -47,8 +49,8 @@ export class Live {
     const found = [{ name: "tugs of the run", kind: "stems", faint: Boolean(moved), hue: 0, x: every(0, per), y: every(1, 1) }];
     if (!moved) return found;
     const { tugs, drawn } = moved;
-    found.push({ name: "tugs as moved", kind: "stems", faint: false, hue: 1, x: Float64Array.from(tugs, ([t]) => t / per), y: Float64Array.from(tugs, ([, p]) => p) });
-    found.push({ name: "tension as moved", kind: "line", faint: false, hue: 1, x: Float64Array.from(drawn.time, (t) => t / per), y: Float64Array.from(drawn["tether.tension"] ?? []) });
+    found.push({ name: "tugs with your values", kind: "stems", faint: false, hue: 1, x: Float64Array.from(tugs, ([t]) => t / per), y: Float64Array.from(tugs, ([, p]) => p) });
+    found.push({ name: "tension with your values", kind: "line", faint: false, hue: 1, x: Float64Array.from(drawn.time, (t) => t / per), y: Float64Array.from(drawn["tether.tension"] ?? []) });
     return found;
   }
 
@@ -70,8 +72,23 @@ export class Live {
 
   ask() {
     if (this.state === "broken") return;
+    [this.failed, this.results.moved] = ["", null];  // they were of other values
+    clearTimeout(this.later);
+    this.later = setTimeout(() => { if (!this.results.moved) this.chart.give(this.series()); }, PATIENCE);
     this.tell();
     this.post();
+  }
+
+  /** A value as it stands, SI; 0 for one that cannot be moved. */
+  si(name, moved = this.moved) {
+    const knob = this.knobs.find((one) => one.told.sets[name]);
+    return knob ? knob.told.factor * (moved.includes(knob) ? knob.value : knob.told.value) : 0;
+  }
+
+  /** Standard deviation over mean of a figure that is one sample of many, 0 of any other; of a margin, by that of its load. */
+  spread(name, value) {
+    const own = this.told.spreads[name === "margin" ? "largest" : name] ?? 0;
+    return name === "margin" && value ? (own * (1 + value)) / Math.abs(value) : own;
   }
 
   /** Have the latest values simulated; while the worker is busy they wait, and only the last of them are. */
@@ -82,11 +99,7 @@ export class Live {
     const moved = this.results.run ? this.moved : [];
     const values = Object.assign({}, ...moved.map((knob) => knob.values));
     this.which = this.results.run && moved.length ? "moved" : "run";
-    const si = (name) => {
-      const knob = this.knobs.find((one) => one.told.sets[name]);
-      return knob ? knob.told.factor * (moved.includes(knob) ? knob.value : knob.told.value) : 0;
-    };
-    [this.diameter, this.damping] = [si("tether.diameter"), si("tether.damping_ratio")];
+    [this.diameter, this.damping] = ["tether.diameter", "tether.damping_ratio"].map((name) => this.si(name, moved));
     this.number += 1;
     this.root.dataset.number = this.number;
     const factor = Math.max(Number(this.factor.value) || 1, 1);
@@ -104,16 +117,17 @@ export class Live {
       told.margin = strength && told.stress ? strength / told.stress - 1 : NaN;
       told.required = NaN;
       told.damping = this.damping;
+      told.taut = told.drawn["tether.tension"]?.[0] > 0 ? Math.min(told.tugs.length, 1) : 0;
       if (this.which === "run") { this.results = { run: told, moved: null }; this.hold(told); } else this.results.moved = told;
       this.failed = "";
     } else if (told.kind === "required") {
-      Object.assign(this.results[this.which], { sought: false, required: told.diameter * 1e3, jumps: told.jumps, why: told.why });
+      if (this.results[this.which]) Object.assign(this.results[this.which], { sought: false, required: told.diameter * 1e3, jumps: told.jumps, why: told.why });
     } else {
       this.busy = false;
-      this.failed = told.text;
+      if (!this.waiting) this.failed = told.text;
     }
     this.tell();
-    if (told.kind !== "required") this.chart.give(this.series());
+    if (told.kind !== "required" && !this.waiting) this.chart.give(this.series());
     if (told.kind === "tow" && (this.waiting || (this.which === "run" && this.moved.length))) this.post();
     else if (this.waiting) this.post();
   }
@@ -137,34 +151,46 @@ export class Live {
     const governing = (told) => {
       if (!told) return "";
       const load = told.damping >= this.told.line.dashpot ? "dashpot" : "snap";
-      if (told.governing) return `${load}: tug ${told.governing} of ${told.tugs.length}, at ${spoken(told.tugs[told.governing - 1][0], 6)} s`;
-      return told.largest > 0 ? `steady load, at ${spoken(told.largestAt, 6)} s` : "nothing: the line stays slack";
+      if (told.taut && told.governing === 1) return "the stretch it has at 0 s: it is taut from the start";
+      if (told.governing) return `${load}: tug ${told.governing - told.taut} of ${told.tugs.length - told.taut}, at ${spoken(told.tugs[told.governing - 1][0])} s`;
+      return told.largest > 0 ? `steady load, at ${spoken(told.largestAt)} s` : "none: the tether stays slack";
     };
     for (const which of ["run", "moved"]) {
-      const told = which === "run" ? run : now.length ? moved : null;
-      for (const [name, of] of Object.entries(FIGURES)) {
+      const told = which === "run" ? run : now.length && !this.failed ? moved : null;
+      const waits = which === "moved" && now.length > 0 && !this.failed && !told;
+      for (const [name, [of, spread]] of Object.entries(FIGURES)) {
         const cell = this.root.querySelector(`[data-figure="${name}"] [data-of="${which}"]`);
         if (!cell) continue;
         const value = told ? of(told) : NaN;
-        cell.textContent = Number.isFinite(value) ? spoken(value) : told ? (name === "required" && told.sought ? "…" : "–") : "";
+        cell.textContent = Number.isFinite(value) ? spoken(value, 4, this.spread(spread, value)) : told ? (name === "required" && told.sought ? "…" : "–") : waits ? "…" : "";
+        if (name === "margin") {
+          cell.classList.toggle("bad", value < 0);
+          if (value < 0) cell.textContent += ": breaks";
+        }
       }
       const cell = this.root.querySelector(`[data-figure="governing"] [data-of="${which}"]`);
-      cell.textContent = governing(told);
+      cell.textContent = waits ? "…" : governing(told);
     }
     const told = now.length ? moved : run;
     const shown = told && told.number === this.number;
-    this.status.textContent = this.failed ? `The model refuses that: ${this.failed}.` : !told ? "…"
-      : `${spoken(told.time / 3600)} h simulated in ${spoken(told.took, 2)} s, in this page; native code took ${spoken((this.told.native.wall * told.time) / this.told.native.duration, 2)} s for them. ${this.same ?? ""}` + (told.ended ? ` It ended early: ${told.ended}.` : "");
+    this.status.classList.toggle("refused", Boolean(this.failed));
+    for (const knob of this.knobs) knob.refuse(Boolean(this.failed) && Object.keys(knob.told.sets).some((name) => this.failed.includes(name)));
+    this.status.textContent = this.failed ? `The model refuses that, and nothing is computed: ${this.failed}.` : !told ? "computing …"
+      : `${spoken(told.time / 3600)} h simulated in ${spoken(told.took, 2)} s, in this page; the compiled FMU took ${spoken((this.told.native.wall * told.time) / this.told.native.duration, 2)} s for them. ${this.same ?? ""}` + (told.ended ? ` It ended early: ${told.ended}.` : "");
     this.root.classList.toggle("waits", !shown && !this.failed);
     this.root.dataset.done = shown && !this.waiting && !this.busy ? this.number : "";
     const again = now.some((knob) => knob.told.again);
     const settings = now.flatMap((knob) => knob.settings);
     const from = this.told.handed && !again ? ` --from ${this.told.phase}` : "";
-    this.command.textContent = now.length ? ["dcone run", this.told.folder + from, ...settings, "-o moved"].join(" ") : `dcone run ${this.told.folder}`;
+    const offered = !now.length || Boolean(moved && !this.failed);
+    this.command.parentElement.classList.toggle("gone", !offered);
+    this.command.textContent = !offered ? "" : now.length ? ["dcone run", this.told.folder + from, ...settings, "-o moved"].join(" ") : `dcone run ${this.told.folder}`;
     const notes = now.filter((knob) => knob.told.estimate).map((knob) => `${knob.told.label}: ${knob.told.estimate}`);
-    if (again && !notes.length) notes.push("the shell shoots the net anew; here it is as it was handed over");
-    if (told?.jumps) notes.push("required diameter: the peak jumps there");
-    if (told?.why) notes.push(`required diameter: ${told.why}`);
+    if (again && !notes.length) notes.push("the command shoots the net anew; here the tow begins with the net as it was handed over");
+    const length = this.si("tether.rest_length"), { reach } = this.told.line;
+    if (told && reach && length && length < reach) notes.push(`a tether of ${spoken(length)} m is shorter than the ${spoken(reach)} m that it has to span at the start: it is stretched from 0 s on, and that tension is of the stretch, not of a tug`);
+    if (told?.jumps) notes.push("least diameter: the peak jumps there");
+    if (told?.why) notes.push(`least diameter: ${told.why}`);
     this.note.textContent = notes.length ? `${notes.join("; ")}.` : "";
   }
 }

@@ -16,8 +16,8 @@ export class ShotView {
     this.told = told;
     const part = (name) => root.querySelector(`[data-part="${name}"]`);
     [this.status, this.command, this.note, this.button] = ["status", "command", "note", "shoot"].map(part);
-    this.knobs = told.knobs.map((one, i) => new Knob(root.querySelector(`[data-knob="${i}"]`), one, () => this.tell()));
-    part("reset").addEventListener("click", () => { for (const knob of this.knobs) knob.put(knob.told.value); this.tell(); });
+    this.knobs = told.knobs.map((one, i) => new Knob(root.querySelector(`[data-knob="${i}"]`), one, () => this.change()));
+    part("reset").addEventListener("click", () => { for (const knob of this.knobs) knob.put(knob.told.value); this.change(); });
     this.button.addEventListener("click", () => this.shoot());
     this.number = 0;
     this.over = null;
@@ -59,6 +59,14 @@ export class ShotView {
 
   get moved() { return this.knobs.filter((knob) => knob.moved); }
 
+  /** The values have changed: what stands there is not of them. */
+  change() {
+    this.failed = "";
+    this.tell();
+  }
+
+  get settings() { return this.moved.flatMap((knob) => knob.settings); }
+
   shoot() {
     if (this.state !== "ready") return;
     this.number += 1;
@@ -68,6 +76,7 @@ export class ShotView {
     this.failed = "";
     this.took = 0;
     this.shot = this.moved.length;
+    this.shotWith = this.settings.join(" ");
     this.replay.stop();
     this.root.dataset.done = "";
     this.worker.postMessage({ number: this.number, values: Object.assign({}, ...this.moved.map((knob) => knob.values)) });
@@ -116,23 +125,27 @@ export class ShotView {
   }
 
   tell() {
-    const { run } = this.told, over = this.over;
+    const { run, spreads } = this.told, over = this.over, settings = this.settings;
+    const stale = this.held > 0 && this.shotWith !== undefined && this.shotWith !== settings.join(" ");
     for (const name of Object.keys(FIGURES)) {
       const row = this.root.querySelector(`[data-figure="${name}"]`);
       if (!row) continue;
       const found = over ? (name === "mouth.area" ? this.most : over.figures[name]) : NaN;
-      const shown = (value) => (Number.isFinite(value) && (name !== "t_capture" || value > 0) ? spoken(value, 3) : "–");
+      const shown = (value) => (Number.isFinite(value) && (name !== "t_capture" || value > 0) ? spoken(value, 4, spreads[name] ?? 0) : "–");
       row.querySelector('[data-of="run"]').textContent = shown(run[name]);
-      row.querySelector('[data-of="moved"]').textContent = over ? shown(found) : this.held ? "…" : "";
+      row.querySelector('[data-of="moved"]').textContent = stale || this.failed ? "" : over ? shown(found) : this.held ? "…" : "";
     }
     const here = this.held ? this.replay.times[this.held - 1] : 0;
     const same = over && !this.shot && this.told.plan.figures.filter((name) => name !== "mouth.area").every((name) => over.figures[name] === run[name]);
-    const speed = this.took > 0 ? ` in ${spoken(this.took, 2)} s of computing, ${spoken(here / this.took, 2)} times as fast as it is` : "";
-    this.status.textContent = this.failed ? `The model refuses that: ${this.failed}.`
-      : over ? `${spoken(over.time, 3)} s simulated${speed}; native code took ${spoken((this.told.native.wall * over.time) / this.told.native.duration, 2)} s for them. It came to: ${over.outcome || over.ended || "the end of its time"}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: something is rounded otherwise here, and a net is chaotic, so that these are two samples."}`
+    const speed = this.took > 0 ? ` in ${spoken(this.took, 2)} s of computing, ${spoken(here / this.took, 2)} × real time` : "";
+    this.status.classList.toggle("refused", Boolean(this.failed));
+    for (const knob of this.knobs) knob.refuse(Boolean(this.failed) && Object.keys(knob.told.sets).some((name) => this.failed.includes(name)));
+    this.status.textContent = this.failed ? `The model refuses that, and nothing is shot: ${this.failed}.`
+      : stale && over ? "The values have changed since the shot that is shown: shoot again."
+      : over ? `${spoken(over.time, 3)} s simulated${speed}; the compiled FMU took ${spoken((this.told.native.wall * over.time) / this.told.native.duration, 2)} s for them. Outcome: ${(over.outcome || over.ended || "the end of its time").replaceAll("_", " ")}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: something is rounded otherwise here, and a net is chaotic, so that these are two samples."}`
         : this.held ? `${spoken(here, 3)} s simulated${speed} …`
           : this.state === "ready" ? "Nothing is shot yet." : "…";
-    const settings = this.moved.flatMap((knob) => knob.settings);
-    this.command.textContent = ["dcone run", this.told.folder, ...settings, ...(settings.length ? ["-o moved"] : [])].join(" ");
+    this.command.parentElement.classList.toggle("gone", Boolean(this.failed));
+    this.command.textContent = this.failed ? "" : ["dcone run", this.told.folder, ...settings, ...(settings.length ? ["-o moved"] : [])].join(" ");
   }
 }
