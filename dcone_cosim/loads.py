@@ -186,7 +186,7 @@ def made_of(scene: LineScene) -> str:
     if material is None:
         return ""
     apart = [name.partition(".")[2] for name in scene.apart]
-    own = f"; {', '.join(name.replace('_', ' ') for name in apart)} of the scene's own" if apart else ""
+    own = f"; {', '.join(name.replace('_', ' ') for name in apart)} as the scene has it" if apart else ""
     return f"{material.name}, {material.form}{own}"
 
 

@@ -74,7 +74,7 @@ def of_folder(
         "good": run.exit_code == 0,
         "whole": whole,
         "chief": tiles.chief(run),
-        "warnings": warnings(run),
+        "warnings": [one for one in warnings(run) if one not in tiles.said(run)],
         "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
         "about": told.provenance(about, run, here),

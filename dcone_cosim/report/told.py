@@ -140,7 +140,7 @@ def trust(run: RunResult) -> list[str]:
         if len(recorder) and {"energy.remainder", "energy.total"} <= set(recorder.names):
             left, size = abs(float(recorder["energy.remainder"][-1])), float(recorder["energy.total"].max())
             said.append(
-                f"{name}: its energy book leaves {spoken(left, most=2)} J of {spoken(size)} J open: the scheme's own error"
+                f"{name}: its energy book leaves {spoken(left, most=2)} J of {spoken(size)} J open: its scheme's error"
             )
     for name, handover in run.handovers.items():
         if handover.rows:

@@ -192,8 +192,9 @@ export class Replay {
       const sign = at === 2 ? -1 : 1, x = 34 * sign * turn[4 * at], y = -34 * sign * turn[4 * at + 1];
       const line = this.parts.axes.querySelector(`line[data-axis="${name}"]`), text = this.parts.axes.querySelector(`text[data-axis="${name}"]`);
       line.setAttribute("x2", x); line.setAttribute("y2", y);
-      text.style.visibility = Math.hypot(x, y) < 14 ? "hidden" : "";  // it points at the reader, and would lie on another
-      text.setAttribute("x", 1.25 * x); text.setAttribute("y", 1.25 * y + 4);
+      const long = Math.hypot(x, y), out = Math.max(1.25, 32 / long);
+      text.setAttribute("visibility", long < 10 ? "hidden" : "visible");  // it points at the reader, and would lie on another
+      text.setAttribute("x", out * x); text.setAttribute("y", out * y + 4);
     }
   }
 }
