@@ -65,7 +65,7 @@ def spoken(value: float, spread: float = 0.0, most: int = PAGE) -> str:
 
     spread    as `Finding` has it
 
-    Checked  tests/report/test_spoken.py: both, against one another
+    Checked  tests/report/test_browser.py: both, against one another
     """
     if not math.isfinite(value):
         return "not known"

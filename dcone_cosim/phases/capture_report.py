@@ -98,7 +98,8 @@ def _of_catch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Findin
         return
     for name, label, unit in _CATCH_ROWS:
         if name in last:
-            yield Finding("capture", name, label, last[name], unit)
+            shown_in = "%" if name.startswith("enclosure.") else ""
+            yield Finding("capture", name, label, last[name], unit, shown_in=shown_in)
     if "t_lost" not in last:
         return
     seen = result.end - result.start - last["t_capture"]

@@ -74,7 +74,8 @@ def chief(run: RunResult) -> list[Tile]:
 
 
 def spoken_phase(name: str) -> str:
-    return name.replace("_", " ")
+    """Name of a phase, or of what is told between two, as a page says it."""
+    return name.replace("_", " ").replace("hand-off", "hand-over")
 
 
 def _tile(run: RunResult, row: Finding, known: Mapping[str, Finding], several: bool) -> Tile:

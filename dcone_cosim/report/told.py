@@ -24,7 +24,7 @@ def figures(run: RunResult) -> Iterator[dict[str, Any]]:
     rows = [row for row in summary.findings(run) if row.key not in CLOCK]
     for phase in dict.fromkeys(row.phase for row in rows):
         told = [(row.label, *tiles.cells(row), isinstance(row.value, str)) for row in rows if row.phase == phase]
-        yield {"phase": phase, "rows": told}
+        yield {"phase": tiles.spoken_phase(phase), "rows": told}
 
 
 def lines(run: RunResult) -> list[dict[str, Any]]:

@@ -26,7 +26,11 @@ SEEN = "yes, for the 5 s to the end of the phase"
     [
         (row(capture__outcome="captured", capture__lasted=SEEN), "captured", True),
         (row(capture__outcome="settled", capture__lasted=SEEN), "captured", True),
-        (row(capture__outcome="captured", capture__lasted="not seen: the phase ends here"), "captured", True),
+        (
+            row(capture__outcome="captured", capture__lasted="not followed: the phase ends at the capture"),
+            "captured",
+            True,
+        ),
         (
             row(capture__outcome="slipped off", capture__lasted="no: the target was out again 3 s later"),
             "out again",

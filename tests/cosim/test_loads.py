@@ -95,7 +95,7 @@ def test_a_line_a_hundredth_beyond_its_strength(make_scene: MakeScene, share: fl
     summary.show(run, console)
     printed = console.file.getvalue()  # type: ignore[attr-defined]
     told = summary.as_dict(run)
-    sentence = "OVERLOADED: removal: the line (Kevlar 29, yarn) bore 2316 N, and breaks at 2293 N"
+    sentence = "OVERLOADED: removal: the tether (Kevlar 29, yarn) bore 2316 N, and breaks at 2293 N"
     assert printed.startswith(sentence) is overloaded
     assert (sentence in printed) is overloaded
     assert str(told["message"]).startswith(sentence) is overloaded
@@ -121,7 +121,7 @@ def test_a_line_that_may_break_is_not_overloaded(make_scene: MakeScene) -> None:
     broke = tow(make_scene, [0.0, 900.0, 0.0], KEVLAR, breaking, break_broken=[0, 1, 1], break_time=[0, 44.5, 44.5])
     loads.judge(broke)
     assert (broke.status, broke.exit_code) == ("broken", SUCCESS)
-    assert broke.message == "BROKEN: removal: the line (Kevlar 29, yarn) broke at 44.5 s, at 900 N"
+    assert broke.message == "BROKEN: removal: the tether (Kevlar 29, yarn) broke at 44.5 s, at 900 N"
 
 
 def net(make_scene: MakeScene, lines: Mapping[str, LineScene], **columns: float) -> RunResult:
@@ -207,7 +207,7 @@ def test_by_the_program(dcone: Dcone) -> None:
     Path("weak.toml").write_text(SCENE)
     code, out, err = dcone("run", "weak.toml", "--no-figures", "-o", "over")
     assert code == OVERLOADED == 8
-    assert out.startswith("OVERLOADED: removal: the line (weak, yarn) bore 2.967 N, and breaks at 2.937 N")
+    assert out.startswith("OVERLOADED: removal: the tether (weak, yarn) bore 2.967 N, and breaks at 2.937 N")
     assert "warning: OVERLOADED" in err
     told = json.loads(Path("over/summary.json").read_text())
     assert (told["status"], told["exit_code"]) == ("overloaded", 8)

@@ -140,7 +140,7 @@ class TestLasting:
         assert self.rows(make_scene, 19.7, 20.2)["lasted"].value == "no: the target was out again 4.5 s later"
 
     def test_a_phase_that_ends_with_the_capture(self, make_scene: MakeScene) -> None:
-        assert self.rows(make_scene, -1.0, 15.2)["lasted"].value == "not seen: the phase ends here"
+        assert self.rows(make_scene, -1.0, 15.2)["lasted"].value == "not followed: the phase ends at the capture"
 
     def test_nothing_without_a_capture(self, whole: RunResult, make_scene: MakeScene) -> None:
         def instantiate(phase: str, name: str):

@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from PIL import Image
 
+from dcone_cosim.findings import spoken
 from dcone_cosim.report.page import colours, of_folder
 from tests.report.browser import Browser, chromium
 
@@ -75,6 +76,39 @@ def test_a_turning_body_and_its_net_are_in_one_frame(browser: Browser, kept: Pat
     turn = Rotation.from_quat([last[f"target.attitude[{i}]"] for i in range(1, 5)], scalar_first=True)
     radial, along, cross = turn.apply(told[3]) + [last[f"target.position[{i}]"] for i in (1, 2, 3)]
     assert told[:3] == pytest.approx([along, radial, -cross], abs=1e-5)
+
+
+def test_a_number_is_told_alike_by_page_and_package(browser: Browser, rng: np.random.Generator) -> None:
+    values = [*(rng.uniform(-1.0, 1.0, 400) * 10.0 ** rng.uniform(-9.0, 9.0, 400)), 0.0, 999.96, 9999.7, 1e6, 1e-4]
+    rows = [(float(value), float(spread)) for value in values for spread in (0.0, 3e-4, 0.31, 1.4)]
+    told = browser.ask(
+        f"import('dcone/bytes').then((m) => {[list(row) for row in rows]}.map(([v, s]) => m.spoken(v, 4, s)))"
+    )
+    assert [(row, one) for row, one in zip(rows, told, strict=True) if spoken(*row) != one] == []
+
+
+def test_a_tug_is_shown_by_the_frame_that_has_it(browser: Browser, kept: Path) -> None:
+    """The buttons of first and largest tug lead to the row whose step had it, where the tether is not slack."""
+    replay = "window.dcone.replays.removal"
+    marks = browser.ask(f"{replay}.clip.marks")
+    rows = pd.read_parquet(kept / "removal.parquet")
+    assert marks
+    for n, mark in enumerate(marks):
+        browser.ask(f"{replay}.parts.marks.children[{n}].click()")
+        time = browser.ask(f"{replay}.times[{replay}.frame]")
+        assert time == rows["time"][rows["time"] >= mark["time"]].min()
+        said = browser.ask(f"{replay}.parts.told.textContent")
+        peak = rows.loc[rows["time"] == time, "tether.tension_peak"].iloc[0]
+        assert float(said.split("up to ")[1].split(" N")[0]) == pytest.approx(peak, rel=0.02)
+
+
+def test_the_tether_and_what_holds_it_reach_the_target(browser: Browser) -> None:
+    """Of a target that is a point, on which the tether ends short of the centre of mass."""
+    bodies = "window.dcone.replays.removal.bodies"
+    begin, end = browser.ask(f"[[...{bodies}.held.begin.array], [...{bodies}.held.end.array]]")
+    assert begin == pytest.approx(browser.ask(f"[...{bodies}.tether.end.array]"))
+    assert end == pytest.approx(browser.ask(f"{bodies}.body.position.toArray()"), abs=1e-5)
+    assert np.linalg.norm(np.subtract(end, begin)) > 0.5
 
 
 def test_keys_step_play_and_turn(browser: Browser) -> None:

@@ -23,6 +23,8 @@ def test_pages_and_index(tmp_path: Path, kept: Path) -> None:
     page = Page(index.read_text())
     assert "small.html" in page.links
     assert "first tug" in page.text
+    assert "Shot, capture and tow" in page.text
+    assert "index.html" in Page((out / "small.html").read_text()).links
     assert Page((out / "small.html").read_text()).data["clips"][0]["net"]["tensions"]
     before = (out / "small.html").stat().st_mtime_ns
     make([str(scene)], out, Progress())

@@ -203,10 +203,36 @@ def test_what_the_model_refuses_is_told_and_undone(asked: Asked, table2: Path) -
     asked.wait(f"{TOW}.failed")
     assert "tether.damping_ratio = -1" in asked.said("status")
     assert "out of its bounds" in asked.said("status")
+    shown = "[...document.querySelectorAll('#live-tow [data-of=moved]')].map((one) => one.textContent).join('')"
+    assert asked.browser.ask(shown) == ""
+    assert asked.said("command") == ""
+    assert asked.browser.ask("getComputedStyle(document.querySelector('#live-tow .command')).visibility") == "hidden"
+    error = asked.browser.ask("getComputedStyle(document.querySelector('#live-tow [data-part=status]')).color")
+    assert error != asked.browser.ask("getComputedStyle(document.querySelector('#live-tow [data-part=note]')).color")
+    assert asked.browser.ask(f"{TOW}.chart.series.length") == 1
     asked.browser.ask("document.querySelector('#live-tow [data-part=reset]').click()")
     asked.settle()
     assert "bit for bit" in asked.said("status")
     assert asked.said("command") == "dcone run ./table2"
+
+
+def test_a_tether_that_is_too_short_breaks_and_the_page_says_why(asked: Asked, table2: Path) -> None:
+    """It is stretched from the start, which is no tug; while it is computed nothing of the values before is shown."""
+    asked.open(page_of(table2))
+    reach = pd.read_parquet(table2 / "removal.parquet")["tether.length"][0]
+    asked.move(diameter=1.5)
+    asked.settle()
+    asked.browser.ask(f"{TOW}.busy = true")  # the worker stays silent
+    asked.move(rest_length=0.6 * reach)
+    shown = "[...document.querySelectorAll('#live-tow [data-of=moved]')].map((one) => one.textContent)"
+    assert set(asked.browser.ask(shown)) == {"…"}
+    assert asked.said("command") == ""
+    asked.browser.ask(f"{TOW}.busy = false; {TOW}.ask()")
+    asked.settle()
+    cell = "document.querySelector('#live-tow [data-figure={}] [data-of=moved]').textContent"
+    assert asked.browser.ask(cell.format("margin")).endswith(": breaks")
+    assert "taut from the start" in asked.browser.ask(cell.format("governing"))
+    assert "is shorter than the" in asked.said("note")
 
 
 def test_the_net_in_the_page_is_that_of_the_fmu(asked: Asked, kept: Path) -> None:
