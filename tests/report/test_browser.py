@@ -78,7 +78,8 @@ def test_a_turning_body_and_its_net_are_in_one_frame(browser: Browser, kept: Pat
     assert told[:3] == pytest.approx([along, radial, -cross], abs=1e-5)
 
 
-def test_a_number_is_told_alike_by_page_and_package(browser: Browser, rng: np.random.Generator) -> None:
+def test_a_number_is_told_alike_by_page_and_package(browser: Browser) -> None:
+    rng = np.random.default_rng(7)
     values = [*(rng.uniform(-1.0, 1.0, 400) * 10.0 ** rng.uniform(-9.0, 9.0, 400)), 0.0, 999.96, 9999.7, 1e6, 1e-4]
     rows = [(float(value), float(spread)) for value in values for spread in (0.0, 3e-4, 0.31, 1.4)]
     told = browser.ask(

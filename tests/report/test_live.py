@@ -216,10 +216,10 @@ def test_what_the_model_refuses_is_told_and_undone(asked: Asked, table2: Path) -
     assert asked.said("command") == "dcone run ./table2"
 
 
-def test_a_tether_that_is_too_short_breaks_and_the_page_says_why(asked: Asked, table2: Path) -> None:
+def test_a_tether_that_is_too_short_breaks_and_the_page_says_why(asked: Asked, mission: Path) -> None:
     """It is stretched from the start, which is no tug; while it is computed nothing of the values before is shown."""
-    asked.open(page_of(table2))
-    reach = pd.read_parquet(table2 / "removal.parquet")["tether.length"][0]
+    asked.open(page_of(mission))
+    reach = pd.read_parquet(mission / "removal.parquet")["tether.length"][0]
     asked.move(diameter=1.5)
     asked.settle()
     asked.browser.ask(f"{TOW}.busy = true")  # the worker stays silent
@@ -229,6 +229,7 @@ def test_a_tether_that_is_too_short_breaks_and_the_page_says_why(asked: Asked, t
     assert asked.said("command") == ""
     asked.browser.ask(f"{TOW}.busy = false; {TOW}.ask()")
     asked.settle()
+    assert asked.said("command").endswith("-o moved")
     cell = "document.querySelector('#live-tow [data-figure={}] [data-of=moved]').textContent"
     assert asked.browser.ask(cell.format("margin")).endswith(": breaks")
     assert "taut from the start" in asked.browser.ask(cell.format("governing"))

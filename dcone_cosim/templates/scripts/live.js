@@ -188,7 +188,7 @@ export class Live {
     const notes = now.filter((knob) => knob.told.estimate).map((knob) => `${knob.told.label}: ${knob.told.estimate}`);
     if (again && !notes.length) notes.push("the command shoots the net anew; here the tow begins with the net as it was handed over");
     const length = this.si("tether.rest_length"), { reach } = this.told.line;
-    if (told && reach && length && length < reach) notes.push(`a tether of ${spoken(length)} m is shorter than the ${spoken(reach)} m that it has to span at the start: it is stretched from 0 s on, and that tension is of the stretch, not of a tug`);
+    if (now.length && reach && length && length < reach) notes.push(`a tether of ${spoken(length)} m is shorter than the ${spoken(reach)} m that it has to span at the start: it is stretched from 0 s on, and that tension is of the stretch, not of a tug`);
     if (told?.jumps) notes.push("least diameter: the peak jumps there");
     if (told?.why) notes.push(`least diameter: ${told.why}`);
     this.note.textContent = notes.length ? `${notes.join("; ")}.` : "";
