@@ -128,7 +128,7 @@ class HandoffRecord:
             worst = "by the first tug the attachment may be out of sight, and the line wraps"
         than = "more than" if not self.bound.accepted else "within"
         left = "" if self.turns or self.bound.accepted else ", but the scene or its FMU leaves no other level"
-        return f"{worst}: {than} the {100 * self.bound.tolerance:g} % allowed (handoff.point_tolerance){left}"
+        return f"{worst}: {than} the {100 * self.bound.tolerance:g} % of handoff.point_tolerance{left}"
 
     def close(self, component: Steppable) -> None:
         close_ledger(self, component)

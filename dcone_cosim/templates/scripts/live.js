@@ -124,7 +124,7 @@ export class Live {
       if (this.results[this.which]) Object.assign(this.results[this.which], { sought: false, required: told.diameter * 1e3, jumps: told.jumps, why: told.why });
     } else {
       this.busy = false;
-      if (!this.waiting) this.failed = told.text;
+      if (!this.waiting) this.failed = told.text.replace(" 1 is out", " is out");  // a pure number has no unit to tell
     }
     this.tell();
     if (told.kind !== "required" && !this.waiting) this.chart.give(this.series());
@@ -186,7 +186,7 @@ export class Live {
     this.command.parentElement.classList.toggle("gone", !offered);
     this.command.textContent = !offered ? "" : now.length ? ["dcone run", this.told.folder + from, ...settings, "-o moved"].join(" ") : `dcone run ${this.told.folder}`;
     const notes = now.filter((knob) => knob.told.estimate).map((knob) => `${knob.told.label}: ${knob.told.estimate}`);
-    if (again && !notes.length) notes.push("the command shoots the net anew; here the tow begins with the net as it was handed over");
+    if (again && !notes.length && !this.failed) notes.push("the command shoots the net anew; here the tow begins with the net as it was handed over");
     const length = this.si("tether.rest_length"), { reach } = this.told.line;
     if (now.length && reach && length && length < reach) notes.push(`a tether of ${spoken(length)} m is shorter than the ${spoken(reach)} m that it has to span at the start: it is stretched from 0 s on, and that tension is of the stretch, not of a tug`);
     if (told?.jumps) notes.push("least diameter: the peak jumps there");

@@ -85,7 +85,7 @@ async function requiredDiameter(strength, factor, begin, peak, peakOf, { close =
   const surplus = (d, t) => Math.log((strength * Math.PI * d * d) / 4 / (factor * t));
   let thin = null, thick = null, thickPeak = NaN, at = begin, pull = peak;
   for (let n = 0; n < rounds; n++) {
-    if (!(pull > 0)) throw new Error("the line bears nothing");
+    if (!(pull > 0)) throw new Error("the tether bears nothing");
     const over = surplus(at, pull);
     if (over >= 0) [thick, thickPeak] = [[at, over], pull];
     else thin = [at, over];
@@ -99,8 +99,8 @@ async function requiredDiameter(strength, factor, begin, peak, peakOf, { close =
       const wanted = n > 6 ? 0.5 : share + (thick[1] < -thin[1] ? -beyond : beyond);
       at = thin[0] * Math.exp(width * Math.min(Math.max(wanted, 0.02), 0.98));
     }
-    if (at < range[0]) throw new Error(`a line of ${range[0] * 1e6} µm bears it too`);
-    if (at > range[1]) throw new Error(`even a line of ${range[1] * 1e2} cm does not bear it`);
+    if (at < range[0]) throw new Error(`a tether of ${range[0] * 1e6} µm bears it too`);
+    if (at > range[1]) throw new Error(`even a tether of ${range[1] * 1e2} cm does not bear it`);
     pull = await peakOf(at);
     if (pull === null) return null;
   }
