@@ -28,6 +28,8 @@ TETHER = "line"
 """Name of the line of a tow in the table of lines; all others are of a net."""
 SHOWN_AS = {"m2": "m²", "m3": "m³"}
 """Units as a page writes them."""
+MARGIN = "strength over stress, less 1; breaks below 0"
+"""What a margin is."""
 Tile = dict[str, str]
 
 
@@ -67,9 +69,8 @@ def chief(run: RunResult) -> list[Tile]:
     governing = weakest(run)
     if governing is not None:
         value = spoken(governing.margin or 0.0, governing.margin_spread)
-        more = "breaks below 0; strength over stress, less 1"
-        text = f"{governing.line.label}, {spoken_phase(governing.phase)}; {more}"
-        found.append({"label": "least margin of safety", "value": value, "unit": "", "since": text})
+        text = f"{governing.line.label}, {spoken_phase(governing.phase)}"
+        found.append({"label": "least margin of safety", "value": value, "unit": "", "since": text, "more": MARGIN})
     return found
 
 
