@@ -192,8 +192,9 @@ export class Replay {
       const sign = at === 2 ? -1 : 1, x = 34 * sign * turn[4 * at], y = -34 * sign * turn[4 * at + 1];
       const line = this.parts.axes.querySelector(`line[data-axis="${name}"]`), text = this.parts.axes.querySelector(`text[data-axis="${name}"]`);
       line.setAttribute("x2", x); line.setAttribute("y2", y);
-      const long = Math.hypot(x, y), out = Math.max(1.25, 32 / long);
+      const long = Math.hypot(x, y), out = 1.15;
       text.setAttribute("visibility", long < 10 ? "hidden" : "visible");  // it points at the reader, and would lie on another
+      text.style.textAnchor = x > 6 ? "start" : x < -6 ? "end" : "middle";
       text.setAttribute("x", out * x); text.setAttribute("y", out * y + 4);
     }
   }
