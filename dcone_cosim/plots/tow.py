@@ -52,7 +52,7 @@ def tension(result: PhaseResult, comparison: PhaseResult | None, since: str, tit
     style.margins(figure, 0.6)
     pull = recorder["tether.tension"]
     visible = np.where(pull > LEAST, pull, np.nan)
-    above.plot(time / divisor, visible, color=style.CHASER, linewidth=0.9, label="tension at the macro steps")
+    above.plot(time / divisor, visible, color=style.CHASER, linewidth=0.9, label="tension at the communication steps")
     _stems(above, sets, divisor)
     values = np.concatenate([pull, *(rows[:, 1] for _, rows, _, _ in sets)])
     values = values[values > LEAST]
@@ -91,7 +91,7 @@ def _tug_sets(result: PhaseResult, comparison: PhaseResult | None) -> list[tuple
     """
     sets = []
     for phase, label, colour, strong in (
-        (comparison, "tugs, had there been no recoil", style.MUTED, False),
+        (comparison, "tugs, had the shot no recoil", style.MUTED, False),
         (result, "tugs", style.BULLET, True),
     ):
         if phase is not None and phase.tugs is not None and phase.tugs.rows:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from dcone_cosim.errors import OVERLOADED
 from dcone_cosim.loading import named, shipped
 from dcone_cosim.progress import Progress
-from dcone_cosim.report.gallery import DAY, cuts, make
+from dcone_cosim.report.gallery import DAY, GROUPS, cuts, group_of, make
+from dcone_cosim.run_reading import read_run
 from tests.report.conftest import Page
 from tests.runs import COARSE
 
@@ -29,6 +31,13 @@ def test_pages_and_index(tmp_path: Path, kept: Path) -> None:
     before = (out / "small.html").stat().st_mtime_ns
     make([str(scene)], out, Progress())
     assert (out / "small.html").stat().st_mtime_ns == before
+
+
+def test_a_run_whose_lines_do_not_bear_it_is_not_among_those_that_do(bare: Path) -> None:
+    run = read_run(bare)
+    assert group_of(run) == GROUPS[0]
+    run.fail("overloaded", "", OVERLOADED)
+    assert group_of(run) == GROUPS[-1]
 
 
 def test_long_phases_are_cut_to_a_day() -> None:

@@ -267,6 +267,9 @@ def test_another_shot_is_that_of_the_run_with_its_values(asked: Asked, kept: Pat
     asked.browser.ask(
         f"(() => {{ const k = {SHOT}.knobs[0]; k.number.value = 3.3; k.number.dispatchEvent(new Event('change')); }})()"
     )
+    cells = "[...document.querySelectorAll('#live-shot [data-of=moved]')].map((one) => one.textContent).join('')"
+    assert asked.browser.ask(cells) == "", "they would be those of the shot before"
+    assert "shoot again" in asked.said("status", "live-shot")
     words = shlex.split(asked.said("command", "live-shot"))
     assert words[-4:] == ["--set", "capture.bullets.speed=3.3 m/s", "-o", "moved"]
     asked.browser.ask("document.querySelector('#live-shot [data-part=shoot]').click()")

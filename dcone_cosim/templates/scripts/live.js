@@ -156,7 +156,7 @@ export class Live {
       return told.largest > 0 ? `steady load, at ${spoken(told.largestAt)} s` : "none: the tether stays slack";
     };
     for (const which of ["run", "moved"]) {
-      const told = which === "run" ? run : now.length && !this.failed ? moved : null;
+      const told = which === "run" ? run : now.length ? moved : null;
       const waits = which === "moved" && now.length > 0 && !this.failed && !told;
       for (const [name, [of, spread]] of Object.entries(FIGURES)) {
         const cell = this.root.querySelector(`[data-figure="${name}"] [data-of="${which}"]`);
