@@ -236,7 +236,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     """An empty cache, and tools that only pretend; what they were called for."""
     called: list[str] = []
 
-    def emit(model: Model, terms: Any, ir: Path) -> None:
+    def emit(model: Model, terms: Any, ir: Path, kept: Path) -> None:
         called.append(f"compile {model.name}")
         ir.write_text("; no kernels")
 

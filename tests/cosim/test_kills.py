@@ -175,7 +175,7 @@ def test_without_a_replacement_finished_the_old_run_comes_back(place: Path) -> N
 @pytest.fixture
 def pretended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A compiler and a linker that only pretend, and a cache and a folder for what is temporary of their own."""
-    monkeypatch.setattr(builds.compile, "emit", lambda name, terms, ir: ir.write_text("; no kernels"))
+    monkeypatch.setattr(builds.compile, "emit", lambda name, terms, ir, kept: ir.write_text("; no kernels"))
     monkeypatch.setattr(builds.link, "link", lambda ir, header, library, platform: library.write_bytes(b"library"))
     monkeypatch.setattr(builds.picture, "png", lambda interface: b"picture")
     monkeypatch.setenv("DCONE_CACHE", str(tmp_path / "cache"))

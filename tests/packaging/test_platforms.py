@@ -257,7 +257,9 @@ def test_fmus_of_one_origin_are_united(tmp_path):
 
 def test_kernels_are_worked_out_once_for_all_platforms(tmp_path, monkeypatch):
     emitted, linked = [], []
-    monkeypatch.setattr(compile, "emit", lambda model, terms, path: (emitted.append(model.name), path.write_text("IR")))
+    monkeypatch.setattr(
+        compile, "emit", lambda model, terms, path, kept: (emitted.append(model.name), path.write_text("IR"))
+    )
     monkeypatch.setattr(
         link, "link", lambda ir, header, library, targets: (linked.append(targets), library.write_bytes(b"1"))
     )
@@ -312,7 +314,7 @@ def test_each_machine_builds_for_itself(system, machine, name, monkeypatch):
 @pytest.fixture
 def without_tools(tmp_path, monkeypatch):
     """Builds that neither compile nor link: what an archive is called and holds is seen without."""
-    monkeypatch.setattr(compile, "emit", lambda model, terms, path: path.write_text("IR"))
+    monkeypatch.setattr(compile, "emit", lambda model, terms, path, kept: path.write_text("IR"))
     monkeypatch.setattr(
         link, "link", lambda ir, header, library, targets: library.write_text(" ".join(t.triple for t in targets))
     )

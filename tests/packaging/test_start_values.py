@@ -288,7 +288,7 @@ def build(monkeypatch, tmp_path):
     """Write a reel control's FMU with values; compiler and linker only pretend, and are counted."""
     called = []
 
-    def emit(model, terms, ir):
+    def emit(model, terms, ir, kept):
         called.append("compiled")
         ir.write_text("; no kernels")
 

@@ -389,7 +389,7 @@ def with_table():
 def write(monkeypatch, tmp_path):
     """Write such an FMU; compiler and linker only pretend, and are counted."""
     called = []
-    monkeypatch.setattr(builds.compile, "emit", lambda model, terms, ir: (called.append("compiled"), ir.touch()))
+    monkeypatch.setattr(builds.compile, "emit", lambda model, terms, ir, kept: (called.append("compiled"), ir.touch()))
     monkeypatch.setattr(
         builds.link, "link", lambda ir, header, library, targets: (called.append("linked"), library.touch())
     )

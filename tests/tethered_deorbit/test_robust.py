@@ -33,6 +33,7 @@ from fmu_src.tethered_deorbit.interface import (
     NOT_FINITE,
     PERIGEE_LOW,
     PERIGEE_RAISED,
+    RELEASED_AT_START,
     START_STRETCHED,
     STEP_NOT_MET,
     TIME_GAP,
@@ -133,6 +134,7 @@ ELSEWHERE = {
         (CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE, ENDS_AT_START), "test_ends.py"
     ),
     NO_ARCS: "test_burn.py",
+    RELEASED_AT_START: "test_release.py",
     NO_ATTITUDE: "test_aocs.py",
     NO_VERTICAL: "test_regulator.py",
     BAD_SCHEDULE: "test_winding.py",
