@@ -16,6 +16,7 @@ from dcone_cosim.campaign import inputs as inputs_module
 from dcone_cosim.campaign.answers import answers, required_diameters
 from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.engine import Engine, Made, Work, key_of
+from dcone_cosim.campaign.figures import OPTIONAL, check_figures, check_names
 from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, summary_of, table
 from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.outcomes import settled
@@ -35,13 +36,12 @@ from dcone_cosim.cases.work import make_ready
 from dcone_cosim.cases.workers import cores
 from dcone_cosim.commands import Written, run_and_write
 from dcone_cosim.errors import CASES_FAILED, SUCCESS
-from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.report.commands import write_page
 from dcone_cosim.run_folder import default_folder
 from dcone_cosim.run_reading import json_of
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.scene.mistakes import Mistake, SceneError, unknown
+from dcone_cosim.scene.mistakes import Mistake, SceneError
 from dcone_cosim.scenes.kept import keep
 from dcone_cosim.scenes.reading import parse
 from dcone_cosim.scratch import Scratch
@@ -51,8 +51,6 @@ CHECKED = (0.025, 0.5, 0.975)
 """Where on their distributions values are shown by `--check`."""
 MOST_ABSENT = 10_000
 """Cases without a row after which no more are looked for."""
-OPTIONAL = "?"
-"""Behind the name of a figure that a case may lack."""
 
 
 @dataclass
@@ -114,6 +112,7 @@ def checked(path: Path) -> tuple[Spec, Scene, Inputs]:
     spec = read(path)
     base = base_of(spec)
     spec = settled(spec, base)
+    check_names(spec, base)
     inputs = inputs_of(spec, base)
     check_grid(spec, inputs.names, [one.points for one in inputs.inputs])
     if spec.sampler == SALTELLI and spec.correlations:
@@ -179,7 +178,7 @@ def campaign(
         ground = ground_of(plan.base, isolate, tuple(name.removesuffix(OPTIONAL) for name in spec.record))
         engine = Engine(spec, plan.inputs, ground, plan.identity, store, workers, progress, work)
         nominal = engine.nominal()
-        _check_figures(spec, nominal)
+        check_figures(spec, nominal)
         found = _run(engine, coordinates, count)
         store.gather_if_many()
         command = f"dcone campaign {shlex.quote(path.name)}"
@@ -211,32 +210,6 @@ def _keep_scene(base: Scene, folder: Path) -> None:
                 place.parent.mkdir(parents=True, exist_ok=True)
                 path.replace(place)
             (draft / SCENE).replace(folder / SCENE)
-
-
-def _check_figures(spec: Spec, nominal: Row) -> None:
-    """`SceneError` for a figure that is to be kept, judged or explained, and that the scene as it is does not have."""
-    known = list(nominal.figures)
-    if not known:
-        return
-    wrong = []
-    for name, figures in (("record", spec.record), ("indices", spec.indices)):
-        for place, figure in enumerate(figures):
-            if not figure.endswith(OPTIONAL) and figure not in nominal.figures:
-                said = f'is no figure of {spec.scene} as it is; where some cases alone have it, write "{figure}?"'
-                wrong.append(unknown((name, place), figure, said, figure, known))
-    figure = spec.success.figure
-    if figure and figure not in nominal.figures:
-        wrong.append(unknown(("success", "figure"), figure, f"is no figure of {spec.scene} as it is", figure, known))
-    if spec.record:
-        for name, figures in (("indices", spec.indices), ("success", (figure,) if figure else ())):
-            kept_names = [one.removesuffix(OPTIONAL) for one in spec.record]
-            lacking = [one for one in figures if one.removesuffix(OPTIONAL) not in kept_names]
-            wrong += [
-                Mistake((name,), one, f"is not kept{did_you_mean(one, kept_names)}; add it to record")
-                for one in lacking
-            ]
-    if wrong:
-        raise SceneError(wrong, spec.places)
 
 
 def _written(
