@@ -17,7 +17,7 @@ from dcone_cosim.campaign.answers import answers, required_diameters
 from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.engine import Engine, Made, Work, key_of
 from dcone_cosim.campaign.figures import OPTIONAL, check_figures, check_names
-from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, summary_of, table
+from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, study_of, summary_of, table
 from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.outcomes import settled
 from dcone_cosim.campaign.reading import read
@@ -30,7 +30,7 @@ from dcone_cosim.cases.case import code, content, digest
 from dcone_cosim.cases.commands import TOLD
 from dcone_cosim.cases.report import write_report
 from dcone_cosim.cases.rows import Row
-from dcone_cosim.cases.store import STUDY, Store
+from dcone_cosim.cases.store import Store
 from dcone_cosim.cases.table import Entry, as_arrow, timings
 from dcone_cosim.cases.work import make_ready
 from dcone_cosim.cases.workers import cores
@@ -39,7 +39,6 @@ from dcone_cosim.errors import CASES_FAILED, SUCCESS
 from dcone_cosim.progress import Progress
 from dcone_cosim.report.commands import write_page
 from dcone_cosim.run_folder import default_folder
-from dcone_cosim.run_reading import json_of
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import Mistake, SceneError
 from dcone_cosim.scenes.kept import keep
@@ -281,11 +280,11 @@ def _cost(made: Sequence[Made]) -> dict[str, Any]:
 
 def shown(folder: Path) -> tuple[str, list[str], Mapping[str, Any], dict[str, Any]]:
     """Title, sentences, figures and content of the campaign of a folder, as far as it has come."""
-    told = summary_of(folder)
+    study, told = study_of(folder), summary_of(folder)
     if told is not None:
         return told["title"], told["said"], told["figures"], told
     found = kept(folder)
-    spec, study = found.spec, json_of(folder / STUDY)
+    spec = found.spec
     made: list[Made] = []
     with Store(folder, study) as store:
         identity = [content(found.base), study["fmus"], study["code"], list(spec.record)]
