@@ -19,6 +19,7 @@ from dcone_cosim.campaign.engine import Engine, Made, Work, key_of
 from dcone_cosim.campaign.figures import OPTIONAL, check_figures, check_names
 from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, study_of, summary_of, table
 from dcone_cosim.campaign.inputs import Inputs
+from dcone_cosim.campaign.intervals import HAVE
 from dcone_cosim.campaign.outcomes import settled
 from dcone_cosim.campaign.reading import read
 from dcone_cosim.campaign.sampling import check_grid, count_of, points
@@ -240,14 +241,16 @@ def _written(
     }
     notes = [*plan.base.notes, *spread.notes]
     done = Done(spec.title, folder, made, content_of, said, notes)
-    worth = worst(spec, made, folder)
+    worth, bounded = worst(spec, made, folder), spec.sampler in HAVE
 
     def draw(draft: Path, about: Mapping[str, Any]) -> None:
         import pyarrow.parquet
 
         pyarrow.parquet.write_table(as_arrow(timings([Entry(one.row) for one in made])), draft / TIMINGS)
         pictures = plot.draw(spec, plan.inputs, made, told, spread, draft) if with_figures else []
-        page.write(spec.title, said, plan.inputs, told, spread, worth, pictures, plan.text, notes, about, draft)
+        page.write(
+            spec.title, said, plan.inputs, told, spread, worth, pictures, plan.text, bounded, notes, about, draft
+        )
 
     write_report(
         folder, [plan.base], table(plan.inputs, made, derived), content_of, draw, started, done.exit_code, command

@@ -97,7 +97,7 @@ BY_PHASE: Mapping[str, Mapping[str, str | None]] = {
     "second_tow": _rows(_OF_TOW, _OF_ALL),
     HANDOFF: _rows(_OF_HANDOFF),
 }
-"""Figures of the phases that are known: units by name, SI; `TEXT` for a text, None where the unit hangs on the scene."""
+"""Figures of the phases that are known: SI units by name; `TEXT` for a text, None where it hangs on the scene."""
 
 
 def tellable(base: Scene) -> dict[str, Mapping[str, str | None]] | None:

@@ -108,8 +108,9 @@ def succeeded(row: Row, success: Success) -> bool | None:
 
 
 def margin(row: Row, success: Success) -> float:
-    """How far a case is on the good side of the bound, SI; NaN where it does not have the figure. `InputError` where the
-    figure is in another unit than its bound.
+    """How far a case is on the good side of the bound, SI; NaN where it does not have the figure.
+
+    `InputError` where the figure is in another unit than its bound.
 
     Checked  tests/campaign/test_outcomes.py
     """
