@@ -16,6 +16,11 @@ if TYPE_CHECKING:
 
 MOST_FIGURES = 30
 """Figures whose percentiles are printed."""
+HEADS = ("cases", "mean", "spread", "5 %", "median", "95 %", "99 %")
+WIDEST = 1000
+"""Characters of a line that is as wide as can be."""
+PLACES = 11
+"""Characters of a number with the space before it."""
 
 
 def probability(found: Share) -> str:
@@ -59,18 +64,30 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
         return
     table = Table(title_justify="left", box=None, pad_edge=False)
     table.add_column("", overflow="fold", min_width=20)
-    for head in ("cases", "mean", "spread", "5 %", "median", "95 %", "99 %"):
+    for head in HEADS:
         table.add_column(head, justify="right", no_wrap=True)
     figures = {name: one for name, one in figures.items() if one["standard_deviation"] != 0.0}
-    for name, one in list(figures.items())[:MOST_FIGURES]:
-        numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
-        unit = "" if one["unit"] == "1" else f" [{one['unit']}]"
-        table.add_row(
-            Text(f"{name}{unit}"), cases(one["count"], one["lacking"]), *(_number(value) for value in numbers)
-        )
-    console.print(table)
+    rows = [(_headed(name, one), _cells(one)) for name, one in list(figures.items())[:MOST_FIGURES]]
+    for name, cells in rows:
+        table.add_row(Text(name), *cells)
+    needs = console.measure(table, options=console.options.update(max_width=WIDEST)).minimum
+    if console.soft_wrap or needs <= console.width:
+        console.print(table)
+    else:  # no digit is lost where a line has no room for name and numbers
+        for name, cells in [("", HEADS), *rows]:
+            console.print(Text(name), highlight=False)
+            console.print(Text("".join(f"{cell:>{PLACES}}" for cell in cells)), highlight=False)
     if len(figures) > MOST_FIGURES:
         console.print(f"and {len(figures) - MOST_FIGURES} more figures in summary.json", highlight=False)
+
+
+def _headed(name: str, one: Mapping[str, Any]) -> str:
+    return name if one["unit"] == "1" else f"{name} [{one['unit']}]"
+
+
+def _cells(one: Mapping[str, Any]) -> list[str]:
+    numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
+    return [cases(one["count"], one["lacking"]), *map(_number, numbers)]
 
 
 def cases(count: int, lacking: int) -> str:

@@ -117,3 +117,15 @@ def test_a_table_says_of_how_many_cases(lacking: int, told: str) -> None:
     assert line.startswith("removal.peak")
     assert told in line
     assert intervals.told(spec) == "95 % interval of Wilson"
+
+
+@pytest.mark.parametrize("width", [80, 160])
+def test_a_table_loses_no_digit(width: int) -> None:
+    made = [Made(n, (0.0,), Row(str(n), "completed", 0, "", {"removal.peak": 1.2345e-5 * n})) for n in range(1, 9)]
+    content = show.as_dict(spec_of(BOUND), answers(spec_of(BOUND), made, {}))
+    out = io.StringIO()
+    show.show("t", [], content["figures"], Console(file=out, width=width))
+    told = out.getvalue().split()
+    assert told[told.index("removal.peak") + 1 :] == (
+        ["8", "5.555e-05", "3.024e-05", "1.667e-05", "5.555e-05", "9.444e-05", "9.79e-05"]
+    )
