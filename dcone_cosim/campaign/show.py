@@ -74,7 +74,7 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
     if console.soft_wrap or needs <= console.width:
         console.print(table)
     else:  # no digit is lost where a line has no room for name and numbers
-        for name, cells in [("", HEADS), *rows]:
+        for name, cells in [("", list(HEADS)), *rows]:
             console.print(Text(name), highlight=False)
             console.print(Text("".join(f"{cell:>{PLACES}}" for cell in cells)), highlight=False)
     if len(figures) > MOST_FIGURES:
