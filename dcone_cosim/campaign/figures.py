@@ -142,7 +142,7 @@ def check_names(spec: Spec, base: Scene) -> None:
             wrong.append(Mistake(path, name, "is a text; expected a figure that is a number"))
         elif path[0] == "success":
             wrong += misfit(spec, unit)
-    wrong += lacking(spec)
+    wrong = wrong or list(lacking(spec))
     if wrong:
         raise SceneError(wrong, spec.places)
 
@@ -164,7 +164,7 @@ def check_figures(spec: Spec, nominal: Row) -> None:
             said += f'; where some cases alone have it, write "{name}?"'
         wrong.append(unknown(path, name, said, name, known))
     wrong += misfit(spec, nominal.units.get(spec.success.figure))
-    wrong += lacking(spec)
+    wrong = wrong or list(lacking(spec))
     if wrong:
         raise SceneError(wrong, spec.places)
 

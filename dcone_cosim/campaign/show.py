@@ -47,9 +47,13 @@ def sentences(spec: Spec, found: Answers) -> Iterator[str]:
     if found.unanswered:
         told = ", ".join(f"{count} {status}" for status, count in found.unanswered.items())
         yield f"no answer from {sum(found.unanswered.values())} of {found.cases} cases: {told}"
-        if found.success is not None:
-            low, high = found.bounds
-            yield f"had all of them failed, the share were {low:.4g}, had all succeeded {high:.4g}"
+    judged = found.cases if found.success is None else found.success.of
+    lacking = found.cases - judged - sum(found.unanswered.values())
+    if lacking > 0:
+        yield f"{lacking} of {found.cases} cases do not have {spec.success.figure}: neither success nor failure"
+    if judged < found.cases:
+        low, high = found.bounds
+        yield f"had all of them failed, the share were {low:.4g}, had all succeeded {high:.4g}"
 
 
 def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any]], console: Console) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -152,6 +153,15 @@ def test_check_runs_nothing(drift: Path, dcone: Dcone) -> None:
     assert (code, "60 cases by monte-carlo" in out) == (0, True), err
     assert f"{VELOCITY}: 0.00060801 m/s, 0.001 m/s, 0.001392 m/s at 2.5 %" in out
     assert not list(Path().glob("runs"))
+    file = put_campaign(drift.parent, 'record = ["removal.separatoin"]\n' + DRIFT)
+    code, _, err = dcone("campaign", str(file), "--check")
+    assert (code, "is no figure that drift.toml can tell; did you mean 'removal.separation'?" in err) == (2, True), err
+    file = put_campaign(drift.parent, DRIFT.replace("10.12563103 m", "10.12563103 kg"))
+    code, _, err = dcone("campaign", str(file), "--check")
+    assert (code, "removal.separation is in m, its bound is in kg" in err) == (2, True), err
+    file = put_campaign(drift.parent, re.sub("success = .*", 'success = "captured"', DRIFT))
+    code, _, err = dcone("campaign", str(file), "--check")
+    assert (code, "no case of drift can come out so" in err) == (2, True), err
 
 
 @pytest.mark.parametrize("name", sorted(shipped()))

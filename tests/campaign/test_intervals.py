@@ -16,7 +16,7 @@ from dcone_cosim.campaign import intervals, show
 from dcone_cosim.campaign.answers import answers
 from dcone_cosim.campaign.engine import Made, Tally
 from dcone_cosim.campaign.sampling import hypercube, monte_carlo, sobol
-from dcone_cosim.cases.rows import Row
+from dcone_cosim.cases.rows import Row, refused
 from dcone_cosim.cases.statistics import share
 from tests.campaign.conftest import spec_of
 
@@ -104,6 +104,19 @@ def test_no_case_has_the_figure() -> None:
     spec = spec_of(BOUND)
     told = next(show.sentences(spec, answers(spec, rows(6, 6), {})))
     assert told == "removal.peak below 2 N: none of 6 cases has removal.peak: no probability follows"
+
+
+def test_cases_that_lack_the_figure_are_told() -> None:
+    """Where no tug came, none is below a bound, and none above it: the share of the others is no probability of all."""
+    spec = spec_of(BOUND)
+    told = list(show.sentences(spec, answers(spec, [*rows(60, 2), Made(61, (0.0,), refused("61", "no"))], {})))
+    assert told[0].startswith("removal.peak below 2 N: 29 of 58 cases, probability 0.5 ")
+    assert told[2:] == [
+        "no answer from 1 of 61 cases: 1 refused",
+        "2 of 61 cases do not have removal.peak: neither success nor failure",
+        "had all of them failed, the share were 0.4754, had all succeeded 0.5246",
+    ]
+    assert len(list(show.sentences(spec, answers(spec, rows(60), {})))) == 2
 
 
 @pytest.mark.parametrize(("lacking", "told"), [(0, " 60 "), (2, " 58 of 60 ")])
