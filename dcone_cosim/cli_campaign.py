@@ -50,7 +50,14 @@ def run(
         ),
     ] = None,
     jobs: Jobs = None,
-    check: Annotated[bool, typer.Option("--check", help="Hold the file against its scene, and run nothing.")] = False,
+    check: Annotated[
+        bool,
+        typer.Option(
+            "--check",
+            help="Hold the file against its scene: keys, values, names of figures, units of bounds. Runs nothing; "
+            "which figures the scene as it is has shows as the campaign begins.",
+        ),
+    ] = False,
     json: Json = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw pictures.")] = True,
     isolate: Annotated[

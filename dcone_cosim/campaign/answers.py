@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dcone_cosim.campaign import intervals
 from dcone_cosim.campaign.engine import Made
 from dcone_cosim.campaign.outcomes import answered, outcome, succeeded
 from dcone_cosim.campaign.spec import RANDOM, Spec
-from dcone_cosim.cases.statistics import Share, share
+from dcone_cosim.cases.statistics import Share
 from dcone_cosim.scene.data import Scene
 
 PERCENTS = (5.0, 50.0, 95.0, 99.0)
@@ -80,12 +81,12 @@ def answers(spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[flo
     count = sum(words.values())
     found = Answers(confidence, len(made), good=good)
     found.unanswered = dict(Counter(one.row.status for one in made if not answered(one.row)).most_common())
-    found.outcomes = {word: share(number, count, confidence) for word, number in words.most_common()}
+    found.outcomes = {word: intervals.of_share(spec, number, count) for word, number in words.most_common()}
     if known and sample:
-        found.success = share(good, len(known), confidence)
+        found.success = intervals.of_share(spec, good, len(known))
         found.bounds = (good / len(made), (good + lost) / len(made))
     if sample:
-        found.figures = dict(_figures(made, confidence, derived))
+        found.figures = dict(_figures(made, confidence if spec.sampler in intervals.HAVE else math.nan, derived))
     return found
 
 
@@ -109,6 +110,8 @@ def _figures(
 def distribution(numbers: Sequence[float], unit: str, lacking: int, confidence: float) -> Distribution:
     """Mean, spread and percentiles of a figure.
 
+    confidence   of the intervals of percentiles [1]; NaN for none
+
     Checked  tests/campaign/test_answers.py
     """
     ordered = np.sort(np.asarray(numbers, dtype=float))
@@ -127,6 +130,8 @@ def percentile(ordered: np.ndarray, percent: float, confidence: float) -> Percen
     """
     from scipy.stats import binom
 
+    if math.isnan(confidence):
+        return Percentile(percent, float(np.percentile(ordered, percent)), intervals.NONE)
     n, p, tail = len(ordered), percent / 100.0, 0.5 * (1.0 - confidence)
     low = int(binom.ppf(tail, n, p))  # the largest l with P(B <= l - 1) <= tail, counted from 1
     high = int(binom.ppf(1.0 - tail, n, p)) + 1

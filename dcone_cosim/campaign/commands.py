@@ -16,8 +16,10 @@ from dcone_cosim.campaign import inputs as inputs_module
 from dcone_cosim.campaign.answers import answers, required_diameters
 from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.engine import Engine, Made, Work, key_of
-from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, summary_of, table
+from dcone_cosim.campaign.figures import OPTIONAL, check_figures, check_names
+from dcone_cosim.campaign.folder import KIND, SCENE, Kept, kept, settings_of, study_of, summary_of, table
 from dcone_cosim.campaign.inputs import Inputs
+from dcone_cosim.campaign.intervals import HAVE
 from dcone_cosim.campaign.outcomes import settled
 from dcone_cosim.campaign.reading import read
 from dcone_cosim.campaign.sampling import check_grid, count_of, points
@@ -29,19 +31,17 @@ from dcone_cosim.cases.case import code, content, digest
 from dcone_cosim.cases.commands import TOLD
 from dcone_cosim.cases.report import write_report
 from dcone_cosim.cases.rows import Row
-from dcone_cosim.cases.store import STUDY, Store
+from dcone_cosim.cases.store import Store
 from dcone_cosim.cases.table import Entry, as_arrow, timings
 from dcone_cosim.cases.work import make_ready
 from dcone_cosim.cases.workers import cores
 from dcone_cosim.commands import Written, run_and_write
 from dcone_cosim.errors import CASES_FAILED, SUCCESS
-from dcone_cosim.names import did_you_mean
 from dcone_cosim.progress import Progress
 from dcone_cosim.report.commands import write_page
 from dcone_cosim.run_folder import default_folder
-from dcone_cosim.run_reading import json_of
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.scene.mistakes import Mistake, SceneError, unknown
+from dcone_cosim.scene.mistakes import Mistake, SceneError
 from dcone_cosim.scenes.kept import keep
 from dcone_cosim.scenes.reading import parse
 from dcone_cosim.scratch import Scratch
@@ -51,8 +51,6 @@ CHECKED = (0.025, 0.5, 0.975)
 """Where on their distributions values are shown by `--check`."""
 MOST_ABSENT = 10_000
 """Cases without a row after which no more are looked for."""
-OPTIONAL = "?"
-"""Behind the name of a figure that a case may lack."""
 
 
 @dataclass
@@ -114,6 +112,7 @@ def checked(path: Path) -> tuple[Spec, Scene, Inputs]:
     spec = read(path)
     base = base_of(spec)
     spec = settled(spec, base)
+    check_names(spec, base)
     inputs = inputs_of(spec, base)
     check_grid(spec, inputs.names, [one.points for one in inputs.inputs])
     if spec.sampler == SALTELLI and spec.correlations:
@@ -179,7 +178,7 @@ def campaign(
         ground = ground_of(plan.base, isolate, tuple(name.removesuffix(OPTIONAL) for name in spec.record))
         engine = Engine(spec, plan.inputs, ground, plan.identity, store, workers, progress, work)
         nominal = engine.nominal()
-        _check_figures(spec, nominal)
+        check_figures(spec, nominal)
         found = _run(engine, coordinates, count)
         store.gather_if_many()
         command = f"dcone campaign {shlex.quote(path.name)}"
@@ -213,32 +212,6 @@ def _keep_scene(base: Scene, folder: Path) -> None:
             (draft / SCENE).replace(folder / SCENE)
 
 
-def _check_figures(spec: Spec, nominal: Row) -> None:
-    """`SceneError` for a figure that is to be kept, judged or explained, and that the scene as it is does not have."""
-    known = list(nominal.figures)
-    if not known:
-        return
-    wrong = []
-    for name, figures in (("record", spec.record), ("indices", spec.indices)):
-        for place, figure in enumerate(figures):
-            if not figure.endswith(OPTIONAL) and figure not in nominal.figures:
-                said = f'is no figure of {spec.scene} as it is; where some cases alone have it, write "{figure}?"'
-                wrong.append(unknown((name, place), figure, said, figure, known))
-    figure = spec.success.figure
-    if figure and figure not in nominal.figures:
-        wrong.append(unknown(("success", "figure"), figure, f"is no figure of {spec.scene} as it is", figure, known))
-    if spec.record:
-        for name, figures in (("indices", spec.indices), ("success", (figure,) if figure else ())):
-            kept_names = [one.removesuffix(OPTIONAL) for one in spec.record]
-            lacking = [one for one in figures if one.removesuffix(OPTIONAL) not in kept_names]
-            wrong += [
-                Mistake((name,), one, f"is not kept{did_you_mean(one, kept_names)}; add it to record")
-                for one in lacking
-            ]
-    if wrong:
-        raise SceneError(wrong, spec.places)
-
-
 def _written(
     plan: Plan,
     engine: Engine,
@@ -268,14 +241,16 @@ def _written(
     }
     notes = [*plan.base.notes, *spread.notes]
     done = Done(spec.title, folder, made, content_of, said, notes)
-    worth = worst(spec, made, folder)
+    worth, bounded = worst(spec, made, folder), spec.sampler in HAVE
 
     def draw(draft: Path, about: Mapping[str, Any]) -> None:
         import pyarrow.parquet
 
         pyarrow.parquet.write_table(as_arrow(timings([Entry(one.row) for one in made])), draft / TIMINGS)
         pictures = plot.draw(spec, plan.inputs, made, told, spread, draft) if with_figures else []
-        page.write(spec.title, said, plan.inputs, told, spread, worth, pictures, plan.text, notes, about, draft)
+        page.write(
+            spec.title, said, plan.inputs, told, spread, worth, pictures, plan.text, bounded, notes, about, draft
+        )
 
     write_report(
         folder, [plan.base], table(plan.inputs, made, derived), content_of, draw, started, done.exit_code, command
@@ -308,11 +283,11 @@ def _cost(made: Sequence[Made]) -> dict[str, Any]:
 
 def shown(folder: Path) -> tuple[str, list[str], Mapping[str, Any], dict[str, Any]]:
     """Title, sentences, figures and content of the campaign of a folder, as far as it has come."""
-    told = summary_of(folder)
+    study, told = study_of(folder), summary_of(folder)
     if told is not None:
         return told["title"], told["said"], told["figures"], told
     found = kept(folder)
-    spec, study = found.spec, json_of(folder / STUDY)
+    spec = found.spec
     made: list[Made] = []
     with Store(folder, study) as store:
         identity = [content(found.base), study["fmus"], study["code"], list(spec.record)]

@@ -6,6 +6,7 @@ every distribution, and a value hangs on nothing but its own u.
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dcone_cosim.names import LONGEST
+
+ALIKE = 0.75
+"""How much like a name of scipy's a word must be spelt to be taken for it [1]."""
 Quantile = Callable[[float], float]
 Numbers = Mapping[str, float]
 
@@ -166,6 +171,16 @@ def names() -> list[str]:
 
     own = [*KINDS, DISCRETE]
     return own + [name for name in dir(stats) if isinstance(getattr(stats, name), stats.rv_continuous)]
+
+
+def like(word: str) -> list[str]:
+    """Words that one that is not known may have been meant for: our own, and of the hundred of scipy those alone that
+    are nearly spelt so, since among so many some resemble any word by chance.
+
+    Checked  tests/campaign/test_reading.py
+    """
+    own = [*KINDS, DISCRETE]
+    return own + difflib.get_close_matches(word[:LONGEST], [one for one in names() if one not in own], 3, ALIKE)
 
 
 def chooser(weights: Sequence[float]) -> Callable[[float], int]:

@@ -11,17 +11,17 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from dcone_cosim.campaign import intervals
 from dcone_cosim.campaign.cluster import Cluster, SchedulerGone
 from dcone_cosim.campaign.inputs import Inputs, Point
 from dcone_cosim.campaign.outcomes import outcome, succeeded
 from dcone_cosim.campaign.shots import Ground, Shot, run_shot
-from dcone_cosim.campaign.spec import Spec, Success
+from dcone_cosim.campaign.spec import RANDOM, Spec
 from dcone_cosim.campaign.stopping import enough, looks, needed
 from dcone_cosim.cases.case import digest
 from dcone_cosim.cases.pace import Pace
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.cases.runner import Rows, Runner
-from dcone_cosim.cases.statistics import share
 from dcone_cosim.errors import Interrupted
 from dcone_cosim.progress import Progress
 
@@ -49,13 +49,13 @@ def key_of(identity: Any, settings: Sequence[str]) -> str:
 class Tally:
     """What has come so far, for whoever waits."""
 
-    def __init__(self, success: Success, confidence: float, total: int) -> None:
-        self.pace, self._success, self._confidence = Pace(total), success, confidence
+    def __init__(self, spec: Spec, total: int) -> None:
+        self.pace, self._spec = Pace(total), spec
         self.good = self.answered = 0
         self.words: Counter[str] = Counter()
 
     def count(self, row: Row, before: bool) -> None:
-        good = succeeded(row, self._success)
+        good = succeeded(row, self._spec.success)
         self.pace.count(good is not None, before)
         self.good += good is True
         self.answered += good is not None
@@ -64,9 +64,9 @@ class Tally:
     def told(self) -> str:
         """ "412 of 1825, 1.3 per s, 18 min to go; 391 captured, 21 missed; 0.949 (0.923 to 0.966)"."""
         parts = [self.pace.told(), ", ".join(f"{count} {word}" for word, count in self.words.most_common(4))]
-        if self.answered:
-            found = share(self.good, self.answered, self._confidence)
-            parts.append(f"{found.share:.4g} ({found.interval[0]:.3g} to {found.interval[1]:.3g})")
+        if self.answered and self._spec.sampler in RANDOM:
+            found = intervals.of_share(self._spec, self.good, self.answered)
+            parts.append(f"{found.share:.4g}{intervals.bounds(found)}")
         return "; ".join(filter(None, parts))
 
 
@@ -90,7 +90,7 @@ class Engine:
         self.spec, self.inputs, self._ground, self._identity = spec, inputs, ground, identity
         self._store, self._cluster, self._progress, self._work = store, cluster, progress, work
         self.made: list[Made] = []
-        self.tally = Tally(spec.success, spec.confidence, 0)
+        self.tally = Tally(spec, 0)
 
     def shot(self, number: int, values: Sequence[float]) -> Shot:
         """A case by its number and values."""

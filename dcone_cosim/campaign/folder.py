@@ -10,7 +10,6 @@ provenance.json            what made it
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -59,14 +58,34 @@ class Kept:
     inputs: Inputs
 
 
-def kept(folder: Path) -> Kept:
-    """The campaign of a folder; `InputError` where it is none."""
+def study_of(folder: Path) -> Mapping[str, Any]:
+    """What the folder of a campaign is of; `InputError` where it is none, or damaged.
+
+    Checked  tests/campaign/test_folder.py
+    """
+    if not folder.is_dir():
+        raise InputError(f"{folder} is not the folder of a campaign: {'a file' if folder.exists() else 'not there'}")
     if not (folder / STUDY).is_file():
         raise InputError(f"{folder} is not the folder of a campaign: it has no {STUDY}")
     told = json_of(folder / STUDY)
-    if told.get("kind") != KIND or "campaign" not in told:
+    if told.get("kind") != KIND:
         raise InputError(f"{folder} holds {told.get('kind', 'something else')}, not {KIND}")
-    spec = parse(str(told["campaign"]), str(told["name"]), str(told["file"]))
+    for name, kind in (("campaign", str), ("name", str), ("file", str), ("fmus", dict), ("code", dict)):
+        if not isinstance(told.get(name), kind):
+            raise _damaged(folder / STUDY, f"has no {name}")
+    return told
+
+
+def _damaged(file: Path, why: str) -> InputError:
+    return InputError(f"{file} {why}: the folder of this campaign is damaged; give its command again with a new -o")
+
+
+def kept(folder: Path) -> Kept:
+    """The campaign of a folder; `InputError` where it is none."""
+    told = study_of(folder)
+    if not (folder / SCENE).is_file():
+        raise _damaged(folder / SCENE, "is not there")
+    spec = parse(told["campaign"], told["name"], told["file"])
     base = base_of(spec, folder / SCENE)
     spec = settled(spec, base)
     return Kept(folder, spec, base, inputs_of(spec, base))
@@ -98,7 +117,10 @@ def _from_table(found: Kept, number: int) -> list[float]:
 
     if not (found.folder / TABLE).is_file():
         raise InputError(f"{found.folder} is not complete: give the campaign's command again first")
-    rows = pyarrow.parquet.read_table(found.folder / TABLE)
+    try:
+        rows = pyarrow.parquet.read_table(found.folder / TABLE, columns=found.inputs.names)
+    except (OSError, ValueError, KeyError) as error:
+        raise _damaged(found.folder / TABLE, f"cannot be read ({error})") from None
     if not 1 <= number <= len(rows):
         raise InputError(f"case {number}: expected 0 for the scene as it is, or 1 to {len(rows):,}")
     return [
@@ -114,5 +136,8 @@ def summary_of(folder: Path) -> dict[str, Any] | None:
     file = folder / SUMMARY
     if not file.is_file():
         return None
-    told: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    told = json_of(file)
+    for name, kind in (("title", str), ("said", list), ("figures", dict)):
+        if not isinstance(told.get(name), kind):
+            raise InputError(f"{file} has no {name}: it is damaged; give the campaign's command again, no case is lost")
     return told

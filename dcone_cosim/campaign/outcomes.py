@@ -8,8 +8,10 @@ from dataclasses import replace
 from dcone_cosim.campaign.spec import Spec, Success
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.contract import FLOWN, NEVER
-from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS
+from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS, InputError
 from dcone_cosim.scene.data import Scene
+from dcone_cosim.scene.mistakes import Mistake, SceneError
+from dcone_cosim.units import NO_UNIT, PURE, by_name, spoken
 
 LOST_AGAIN = "no:"
 """How `capture.lasted` begins of a target that came out again."""
@@ -27,15 +29,39 @@ WORDS = (CAUGHT[0], *FAILED, UNDECIDED, OUT_AGAIN, BROKE, NOT_HANDED_OVER, FLOWN
 """Every outcome of a case that gives an answer."""
 
 
-def settled(spec: Spec, base: Scene) -> Spec:
-    """The same with what counts as success, where it does not say that: a capture; where nothing can be caught, a net
-    that is flown to its end; in a scene without a capture, that it comes to its end."""
+def possible(base: Scene) -> tuple[str, ...]:
+    """Outcomes that cases of a scene can have, the one first that counts as success where a campaign does not say: a
+    capture; where nothing can be caught, a net that is flown to its end; without a capture, that it comes to its end.
+
+    Checked  tests/campaign/test_outcomes.py
+    """
     capture = next((phase for phase in base.phases if phase.name == "capture"), None)
-    if spec.success != Success() or (capture is not None and capture.options.hand_over != NEVER):
-        return spec
     if capture is None:
-        return replace(spec, success=Success(DONE, text=DONE))
-    return spec if "closing" in capture.main.terms else replace(spec, success=Success(FLOWN, text=FLOWN))
+        return DONE, BROKE
+    if capture.options.hand_over != NEVER:
+        return tuple(word for word in WORDS if word not in (FLOWN, DONE))
+    words = tuple(word for word in WORDS if word not in (FLOWN, DONE, NOT_HANDED_OVER, UNDECIDED))
+    if "closing" in capture.main.terms:
+        return (*words, FLOWN)
+    needs_closing = () if capture.main.fmu is not None else (CAUGHT[0], "not closed", OUT_AGAIN)
+    return (FLOWN, *(word for word in words if word not in needs_closing))
+
+
+def settled(spec: Spec, base: Scene) -> Spec:
+    """The same with what counts as success, where it does not say that; `SceneError` for an outcome that no case of the
+    scene can have, whose probability would be told all the same.
+
+    Checked  tests/campaign/test_outcomes.py
+    """
+    words, success = possible(base), spec.success
+    if success.figure:
+        return spec
+    if not success.said:
+        return replace(spec, success=Success(words[0], text=words[0]))
+    if success.outcome not in words:
+        text = f"no case of {base.name} can come out so: expected one of {', '.join(words)}, or a figure with a bound"
+        raise SceneError([Mistake(("success",), success.outcome, text)], spec.places)
+    return spec
 
 
 def answered(row: Row) -> bool:
@@ -78,11 +104,38 @@ def succeeded(row: Row, success: Success) -> bool | None:
     if success.figure:
         value = margin(row, success)
         return None if math.isnan(value) else value > 0.0
-    word = outcome(row)
-    return word == success.outcome or (success.outcome == "captured" and word in (*CAUGHT, DONE))
+    return outcome(row) == success.outcome
 
 
 def margin(row: Row, success: Success) -> float:
-    """How far a case is on the good side of the bound, in the figure's unit; NaN where it does not have the figure."""
+    """How far a case is on the good side of the bound, SI; NaN where it does not have the figure.
+
+    `InputError` where the figure is in another unit than its bound.
+
+    Checked  tests/campaign/test_outcomes.py
+    """
     value = row.figures.get(success.figure)
-    return success.margin(float(value)) if isinstance(value, int | float) else math.nan
+    if isinstance(value, str) or value is None:
+        return math.nan
+    wrong = unlike(success, row.units.get(success.figure))
+    if wrong:
+        raise InputError(f"success = {success.text}: {wrong}")
+    return success.margin(float(value))
+
+
+def unlike(success: Success, unit: str | None) -> str:
+    """Why a figure in this unit cannot be held against the bound, or "".
+
+    Checked  tests/campaign/test_outcomes.py
+    """
+    if unit is None:
+        return ""
+    bound, figure = by_name(success.unit), by_name(unit)
+    there, here = (PURE if one.name == NO_UNIT.name else one.dimension for one in (figure, bound))
+    if there is None or there == here:
+        return ""
+    given = f"in {spoken(bound.name)}" if here != PURE else "a pure number"
+    if there == PURE:
+        return f"{success.figure} is a pure number, its bound is {given}; expected a bare number"
+    told = spoken(unit)
+    return f'{success.figure} is in {told}, its bound is {given}; expected one with its unit such as "10 {told}"'

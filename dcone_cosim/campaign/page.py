@@ -10,6 +10,7 @@ from typing import Any
 from dcone_cosim.campaign.answers import Answers
 from dcone_cosim.campaign.explained import Explained
 from dcone_cosim.campaign.inputs import Inputs, shown
+from dcone_cosim.campaign.show import cases
 from dcone_cosim.campaign.worst import Worth
 
 PAGE = "report.html"
@@ -26,13 +27,15 @@ def write(
     worth: Sequence[Worth],
     pictures: Sequence[tuple[str, str]],
     text: str,
+    bounded: bool,
     notes: Sequence[str],
     about: Mapping[str, Any],
     folder: Path,
 ) -> None:
     """`report.html`, with the pictures that are in the folder.
 
-    text    of the campaign's file
+    text      of the campaign's file
+    bounded   whether percentiles have intervals
     """
     from dcone_cosim.reports import pages
 
@@ -44,7 +47,8 @@ def write(
         inputs=[(one.name, [shown(one, one.value(u)) for u in AT]) for one in inputs.inputs],
         at=[f"{100.0 * u:g} %" for u in AT],
         confidence=f"{100.0 * found.confidence:g} %",
-        figures=list(_figures(found)),
+        figures=list(_figures(found, bounded)),
+        bounded=bounded,
         indices=[(one.figure, one.samples, [_index(index) for index in one.inputs]) for one in spread.indices],
         surrogates=list(_surrogates(spread)),
         worth=worth,
@@ -55,16 +59,17 @@ def write(
     (folder / PAGE).write_text(page, encoding="utf-8")
 
 
-def _figures(found: Answers) -> Iterator[dict[str, Any]]:
+def _figures(found: Answers, bounded: bool) -> Iterator[dict[str, Any]]:
     for name, one in found.figures.items():
         yield {
             "name": name,
             "unit": "" if one.unit == "1" else one.unit,
-            "cases": one.of,
+            "cases": cases(one.of, one.lacking),
             "mean": f"{one.mean:.5g}",
             "spread": f"{one.deviation:.3g}",
             "percentiles": [
-                f"{p.value:.5g} ({_or_none(p.interval[0])} to {_or_none(p.interval[1])})" for p in one.percentiles
+                f"{p.value:.5g}" + (f" ({_or_none(p.interval[0])} to {_or_none(p.interval[1])})" if bounded else "")
+                for p in one.percentiles
             ],
         }
 

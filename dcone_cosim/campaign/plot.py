@@ -13,9 +13,9 @@ from dcone_cosim.campaign.answers import Answers
 from dcone_cosim.campaign.engine import Made
 from dcone_cosim.campaign.explained import NOTHING, Explained
 from dcone_cosim.campaign.inputs import Inputs
+from dcone_cosim.campaign.intervals import HAVE, of_share
 from dcone_cosim.campaign.outcomes import succeeded
 from dcone_cosim.campaign.spec import ADAPTIVE, GRID, Spec
-from dcone_cosim.cases.statistics import share
 from dcone_cosim.plots import style
 
 ESTIMATE, FIGURES, MAP, SENSITIVITY = "estimate.png", "figures.png", "map.png", "sensitivity.png"
@@ -53,14 +53,15 @@ def _estimate(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, 
     verdicts = [v for v in (succeeded(one.row, spec.success) for one in made) if v is not None]
     sums = np.cumsum(verdicts)
     places = np.unique(np.geomspace(1, len(verdicts), DRAWN).astype(int))
-    shares = [share(int(sums[n - 1]), int(n), found.confidence) for n in places]
+    shares = [of_share(spec, int(sums[n - 1]), int(n)) for n in places]
+    bounded = spec.sampler in HAVE
     figure = style.new_figure(9.2, 3.4)
     left, right = figure.subplots(1, 2, width_ratios=(3, 2))
     figure.subplots_adjust(left=0.075, right=0.98, bottom=0.15, top=0.82, wspace=0.45)
     low, high = ([one.interval[i] for one in shares] for i in (0, 1))
-    left.fill_between(
-        places, low, high, color=style.NET, alpha=0.25, lw=0, label=f"{100 * found.confidence:g} % interval"
-    )
+    if bounded:
+        label = f"{100 * found.confidence:g} % interval"
+        left.fill_between(places, low, high, color=style.NET, alpha=0.25, lw=0, label=label)
     left.plot(
         places, [one.share for one in shares], color=style.CHASER, lw=1.3, label=f"probability of: {spec.success.text}"
     )
@@ -72,10 +73,11 @@ def _estimate(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, 
     words = list(found.outcomes.items())[::-1]
     for place, (_, one) in enumerate(words):
         right.barh(place, one.share, color=style.NET, alpha=0.8, height=0.6)
-        right.plot(one.interval, (place, place), color="black", lw=1.0, marker="|", ms=7)
+        if bounded:
+            right.plot(one.interval, (place, place), color="black", lw=1.0, marker="|", ms=7)
     right.set_yticks(range(len(words)), [f"{word} ({one.count})" for word, one in words], parse_math=False)
     right.set_xlim(0.0, 1.02)
-    right.set_xlabel("share of the cases, with its interval")
+    right.set_xlabel("share of the cases" + (", with its interval" if bounded else ""))
     return figure
 
 

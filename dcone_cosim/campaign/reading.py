@@ -47,6 +47,8 @@ OF_CORRELATION = ("between", "coefficient")
 OF_SUCCESS = ("figure", "above", "below")
 MOST = 1_000_000
 """Cases of a campaign."""
+MOST_FACTOR = 100.0
+"""Largest factor of safety: beyond, it is a number that was meant for something else."""
 _UNTIL = re.compile(r"\s*(\d+(?:\.\d*)?)\s*%\s*within\s*(\d+(?:\.\d*)?)\s*%\s*")
 _TEXT = "expected a text"
 
@@ -86,7 +88,7 @@ class Reader:
             correlations=tuple(self._correlations(document.get("correlation", []))),
             settings=tuple(self._settings(document.get("set", {}))),
             indices=self._texts(("indices",), document.get("indices", [])),
-            factor_of_safety=self._number(("factor_of_safety",), document.get("factor_of_safety", 2.0)),
+            factor_of_safety=self._factor(document.get("factor_of_safety", 2.0)),
         )
         self._together(spec)
         self.end()
@@ -98,7 +100,7 @@ class Reader:
 
     def _together(self, spec: Spec) -> None:
         """What goes together."""
-        if not spec.dispersions and not spec.jitter:
+        if not self.document.get("dispersion", []) and not spec.jitter:
             self._miss(("dispersion",), "expected at least one [[dispersion]], or jitter = true")
         if spec.until is not None and spec.sampler != MONTE_CARLO:
             why = f'needs sampler = "{MONTE_CARLO}": only independent cases may be stopped at any number'
@@ -135,7 +137,7 @@ class Reader:
         if isinstance(given, str):
             if given not in WORDS:
                 self._unknown(("success",), given, "expected an outcome", WORDS)
-            return Success(outcome=given, text=given)
+            return Success(outcome=given, text=given, said=True)
         if not isinstance(given, Mapping):
             self._say(("success",), given, 'expected an outcome such as "captured", or a table with figure and bound')
             return Success()
@@ -145,8 +147,10 @@ class Reader:
             self._miss(("success", "above"), "expected one of above and below")
             return Success()
         side = "above" if "above" in given else "below"
-        bound, _ = self._quantity(("success", side), given[side])
-        return Success("", figure, bound, side == "above", f"{figure} {side} {given[side]}")
+        bound, unit = self._quantity(("success", side), given[side])
+        return Success(
+            "", figure, bound, side == "above", f"{figure} {side} {given[side]}", unit, given[side], said=True
+        )
 
     def _settings(self, given: Any) -> Iterator[str]:
         """The table `set` as the settings of a command line."""
@@ -170,7 +174,8 @@ class Reader:
                 continue
             kind = distributions.KINDS.get(word) or distributions.of_scipy(word)
             if kind is None:
-                self._unknown((*path, "distribution"), word, "expected a distribution", distributions.names())
+                said = "expected a distribution: one of these, or a continuous one of scipy.stats"
+                self._unknown((*path, "distribution"), word, said, distributions.like(word))
                 continue
             parameters = (*kind.needs, *kind.may)
             self._known(path, table, (*OF_DISPERSION, *parameters))
@@ -230,15 +235,17 @@ class Reader:
                 self._say((name, place), table, "expected a table")
 
     def _quantity(self, path: KeyPath, given: Any) -> tuple[float, str]:
-        """A number in SI with the name of its unit: a bare one is a pure number."""
+        """A number in SI with the name of the unit that it was given in: a bare one is a pure number."""
+        number, name = math.nan, ""
         if isinstance(given, int | float) and not isinstance(given, bool):
-            return float(given), "1"
-        number, name = (number_and_unit(given) if isinstance(given, str) else None) or (math.nan, "")
+            number = float(given)
+        elif isinstance(given, str):
+            number, name = number_and_unit(given) or (math.nan, "")
         unit = named(name) if name else by_name("1")
-        if math.isnan(number) or unit is None:
-            self._missing(path, given, 'expected a number, or one with its unit such as "24 m"')
+        if not math.isfinite(number) or unit is None:
+            self._missing(path, given, 'expected a finite number, or one with its unit such as "24 m"')
             return 0.0, "1"
-        return unit.to_si(number), name
+        return unit.to_si(number), unit.name
 
     def _known(self, path: KeyPath, table: Mapping[str, Any], known: Sequence[str]) -> None:
         for key in table:
@@ -285,6 +292,14 @@ class Reader:
             self._missing(path, given, "expected a number")
             return 0.0
         return float(given)
+
+    def _factor(self, given: Any) -> float:
+        """A factor of safety: a line that is to bear less than its tug would be none."""
+        path: KeyPath = ("factor_of_safety",)
+        if isinstance(given, int | float) and not isinstance(given, bool) and not 1.0 <= given <= MOST_FACTOR:
+            self._say(path, given, f"expected a number from 1 to {MOST_FACTOR:g}")
+            return 1.0
+        return self._number(path, given)
 
 
 def flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, str]]:

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from dcone_cosim.campaign import intervals
 from dcone_cosim.campaign.answers import Answers, Distribution
-from dcone_cosim.campaign.spec import Spec
+from dcone_cosim.campaign.spec import RANDOM, Spec
 from dcone_cosim.cases.statistics import Share
 
 if TYPE_CHECKING:
@@ -15,22 +16,30 @@ if TYPE_CHECKING:
 
 MOST_FIGURES = 30
 """Figures whose percentiles are printed."""
+HEADS = ("cases", "mean", "spread", "5 %", "median", "95 %", "99 %")
+WIDEST = 1000
+"""Characters of a line that is as wide as can be."""
+PLACES = 11
+"""Characters of a number with the space before it."""
 
 
 def probability(found: Share) -> str:
     """ "0.949 (0.923 to 0.966)"."""
-    return f"{found.share:.4g} ({found.interval[0]:.4g} to {found.interval[1]:.4g})"
+    return f"{found.share:.4g}{intervals.bounds(found)}"
 
 
 def sentences(spec: Spec, found: Answers) -> Iterator[str]:
     """What came out, in words."""
-    what = f"{100.0 * found.confidence:g} % interval"
     if found.success is not None:
         one = found.success
-        yield (f"{spec.success.text}: {one.count} of {one.of} cases, probability {probability(one)}, {what} of Wilson")
+        what = intervals.told(spec)
+        yield f"{spec.success.text}: {one.count} of {one.of} cases, probability {probability(one)}, {what}"
         width = 0.5 * (one.interval[1] - one.interval[0])
         if spec.until is not None and width > spec.until.within:
             yield f"the interval is not as narrow as asked ({spec.until.text}): {found.cases} cases are all so far"
+    elif found.cases and spec.sampler in RANDOM:
+        what = f"has {spec.success.figure}" if spec.success.figure and found.outcomes else "gives an answer"
+        yield f"{spec.success.text}: none of {found.cases} cases {what}: no probability follows"
     elif found.cases:
         yield f"{spec.success.text}: {found.good} of {found.cases} cases; they are no sample: no probability follows"
     for word, one in found.outcomes.items():
@@ -38,9 +47,13 @@ def sentences(spec: Spec, found: Answers) -> Iterator[str]:
     if found.unanswered:
         told = ", ".join(f"{count} {status}" for status, count in found.unanswered.items())
         yield f"no answer from {sum(found.unanswered.values())} of {found.cases} cases: {told}"
-        if found.success is not None:
-            low, high = found.bounds
-            yield f"had all of them failed, the share were {low:.4g}, had all succeeded {high:.4g}"
+    judged = found.cases if found.success is None else found.success.of
+    lacking = found.cases - judged - sum(found.unanswered.values())
+    if lacking > 0:
+        yield f"{lacking} of {found.cases} cases do not have {spec.success.figure}: neither success nor failure"
+    if judged < found.cases:
+        low, high = found.bounds
+        yield f"had all of them failed, the share were {low:.4g}, had all succeeded {high:.4g}"
 
 
 def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any]], console: Console) -> None:
@@ -55,16 +68,35 @@ def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any
         return
     table = Table(title_justify="left", box=None, pad_edge=False)
     table.add_column("", overflow="fold", min_width=20)
-    for head in ("mean", "spread", "5 %", "median", "95 %", "99 %"):
+    for head in HEADS:
         table.add_column(head, justify="right", no_wrap=True)
     figures = {name: one for name, one in figures.items() if one["standard_deviation"] != 0.0}
-    for name, one in list(figures.items())[:MOST_FIGURES]:
-        numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
-        unit = "" if one["unit"] == "1" else f" [{one['unit']}]"
-        table.add_row(Text(f"{name}{unit}"), *(_number(value) for value in numbers))
-    console.print(table)
+    rows = [(_headed(name, one), _cells(one)) for name, one in list(figures.items())[:MOST_FIGURES]]
+    for name, cells in rows:
+        table.add_row(Text(name), *cells)
+    needs = console.measure(table, options=console.options.update(max_width=WIDEST)).minimum
+    if console.soft_wrap or needs <= console.width:
+        console.print(table)
+    else:  # no digit is lost where a line has no room for name and numbers
+        for name, cells in [("", list(HEADS)), *rows]:
+            console.print(Text(name), highlight=False)
+            console.print(Text("".join(f"{cell:>{PLACES}}" for cell in cells)), highlight=False)
     if len(figures) > MOST_FIGURES:
         console.print(f"and {len(figures) - MOST_FIGURES} more figures in summary.json", highlight=False)
+
+
+def _headed(name: str, one: Mapping[str, Any]) -> str:
+    return name if one["unit"] == "1" else f"{name} [{one['unit']}]"
+
+
+def _cells(one: Mapping[str, Any]) -> list[str]:
+    numbers = [one["mean"], one["standard_deviation"], *(p["value"] for p in one["percentiles"].values())]
+    return [cases(one["count"], one["lacking"]), *map(_number, numbers)]
+
+
+def cases(count: int, lacking: int) -> str:
+    """Of how many cases that give an answer a figure is: "60", or "58 of 60" where some do not have it."""
+    return f"{count} of {count + lacking}" if lacking else str(count)
 
 
 def _number(value: Any) -> str:
@@ -86,7 +118,11 @@ def as_dict(spec: Spec, found: Answers) -> dict[str, Any]:
 
 
 def _share(one: Share) -> dict[str, Any]:
-    return {"count": one.count, "of": one.of, "share": one.share, "interval": list(one.interval)}
+    return {"count": one.count, "of": one.of, "share": one.share, "interval": _interval(one.interval)}
+
+
+def _interval(given: Sequence[float]) -> list[float | None]:
+    return [None if math.isnan(x) else x for x in given]
 
 
 def _distribution(one: Distribution) -> dict[str, Any]:
@@ -97,7 +133,6 @@ def _distribution(one: Distribution) -> dict[str, Any]:
         "mean": one.mean,
         "standard_deviation": one.deviation,
         "percentiles": {
-            f"{p.percent:g}": {"value": p.value, "interval": [None if math.isnan(x) else x for x in p.interval]}
-            for p in one.percentiles
+            f"{p.percent:g}": {"value": p.value, "interval": _interval(p.interval)} for p in one.percentiles
         },
     }

@@ -74,6 +74,9 @@ class Until:
 class Success:
     """What counts as success: an outcome by its word, or a figure above or below a bound, SI.
 
+    unit       that the bound was given in; "1" for a bare number
+    given      the bound as the file has it
+    said       whether the campaign's file says it
     margin     > 0 is success: the figure less the bound, or the bound less the figure
     """
 
@@ -82,6 +85,9 @@ class Success:
     bound: float = 0.0
     above: bool = True
     text: str = "captured"
+    unit: str = "1"
+    given: object = None
+    said: bool = field(default=False, compare=False)
 
     def margin(self, value: float) -> float:
         return value - self.bound if self.above else self.bound - value

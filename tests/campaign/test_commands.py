@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -77,7 +78,8 @@ def test_every_dispersion_is_applied(drift: Path, tmp_path: Path) -> None:
     for key, least, most in (("velocity[1]", "0 mm/s", "9 mm/s"), ("position[2]", "9 m", "11 m")):
         text += f'[[dispersion]]\nkey = "removal.start.relative_{key}"\ndistribution = "uniform"\n'
         text += f'least = "{least}"\nmost = "{most}"\n'
-    commands.campaign(put_campaign(drift.parent, text), tmp_path / "out", Progress(), "processes", jobs=1)
+    file = put_campaign(drift.parent, text)
+    commands.campaign(file, tmp_path / "out", Progress(), "processes", jobs=1, with_figures=False)
     table = pd.read_parquet(tmp_path / "out" / "table.parquet")
     across, along = 100.0 * table["removal.start.relative_velocity[1]"], 100.0 * table[VELOCITY]
     expected = np.hypot(across, table["removal.start.relative_position[2]"] + along)
@@ -90,8 +92,8 @@ def test_it_goes_on_with_more(once: Path, tmp_path: Path) -> None:
     folder = shutil.copytree(once, tmp_path / "out")
     campaign = once.parent / "scene" / "campaign.toml"
     more = put_campaign(campaign.parent, DRIFT.replace("n = 60", "n = 70"))
-    commands.campaign(more, folder, Progress(), "processes")
-    commands.campaign(more, tmp_path / "one", Progress(), "processes", jobs=1)
+    commands.campaign(more, folder, Progress(), "processes", with_figures=False)
+    commands.campaign(more, tmp_path / "one", Progress(), "processes", jobs=1, with_figures=False)
     put_campaign(campaign.parent, DRIFT)
     assert tables(folder) == tables(tmp_path / "one")
     assert pd.read_parquet(folder / "table.parquet")[:60].equals(pd.read_parquet(once / "table.parquet"))
@@ -151,6 +153,15 @@ def test_check_runs_nothing(drift: Path, dcone: Dcone) -> None:
     assert (code, "60 cases by monte-carlo" in out) == (0, True), err
     assert f"{VELOCITY}: 0.00060801 m/s, 0.001 m/s, 0.001392 m/s at 2.5 %" in out
     assert not list(Path().glob("runs"))
+    file = put_campaign(drift.parent, 'record = ["removal.separatoin"]\n' + DRIFT)
+    code, _, err = dcone("campaign", str(file), "--check")
+    assert (code, "is no figure that drift.toml can tell; did you mean 'removal.separation'?" in err) == (2, True), err
+    file = put_campaign(drift.parent, DRIFT.replace("10.12563103 m", "10.12563103 kg"))
+    code, _, err = dcone("campaign", str(file), "--check")
+    assert (code, "removal.separation is in m, its bound is in kg" in err) == (2, True), err
+    file = put_campaign(drift.parent, re.sub("success = .*", 'success = "captured"', DRIFT))
+    code, _, err = dcone("campaign", str(file), "--check")
+    assert (code, "no case of drift can come out so" in err) == (2, True), err
 
 
 @pytest.mark.parametrize("name", sorted(shipped()))
@@ -161,7 +172,8 @@ def test_shipped_campaigns_hold(name: str, dcone: Dcone) -> None:
 
 def test_a_failure_is_a_row_with_its_reason(drift: Path, tmp_path: Path) -> None:
     """Of 60 cases, three give no answer: they are told with their reason, and are no part of the probability."""
-    done = commands.campaign(drift, tmp_path / "out", Progress(), "processes", jobs=1, work=fakes.refuses)
+    out, work = tmp_path / "out", fakes.refuses
+    done = commands.campaign(drift, out, Progress(), "processes", jobs=1, with_figures=False, work=work)
     table = pd.read_parquet(tmp_path / "out" / "table.parquet")
     bad = table["status"] == "refused"
     assert table["case"][bad].tolist() == [20, 40, 60]
@@ -176,6 +188,17 @@ def test_values_that_do_not_go_together() -> None:
     row = run_shot(Shot("k", 1, ("removal.tether.damping_ratio=-1",), ground_of(load("table2-deorbit"))))
     assert (row.key, row.status, row.exit_code) == ("k", "refused", 2)
     assert row.message.startswith("removal.tether.damping_ratio = -1: must be at least 0")
+
+
+def test_a_local_cluster_of_dask() -> None:
+    """One process, one case; `-m evidence` runs a whole campaign on two."""
+    from dcone_cosim.campaign import cluster
+
+    pytest.importorskip("distributed")
+    shot = Shot("k", 1, ('removal.value="0.25"',), ground_of(load("table2-deorbit")))
+    with cluster.opened(None, 1) as found:
+        assert found.what == "a local cluster of 1 processes"
+        assert found.executor.submit(fakes.row_of, shot).result(60.0) == fakes.row_of(shot)
 
 
 def test_without_dask_it_runs_on_processes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -227,11 +250,11 @@ def test_killed_and_gone_on_with(once: Path, tmp_path: Path) -> None:
     process.communicate()
     assert 5 < rows(out) < 61
     assert not (out / "table.parquet").exists()
-    commands.campaign(file, out, Progress(), "processes")
+    commands.campaign(file, out, Progress(), "processes", with_figures=False)
     assert tables(out) == tables(once)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_on_dask(once: Path, tmp_path: Path) -> None:
     """A local cluster of dask gives the same bits as plain processes."""
     pytest.importorskip("distributed")

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from dcone_cosim.campaign.outcomes import margin, outcome, settled, succeeded
+from dcone_cosim.campaign.outcomes import margin, outcome, settled, succeeded, unlike
 from dcone_cosim.campaign.spec import Success
 from dcone_cosim.cases.rows import Row, lost, refused
+from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
+from dcone_cosim.scene.mistakes import SceneError
 from tests.campaign.conftest import spec_of
 
 
@@ -42,7 +45,7 @@ SEEN = "yes, for the 5 s to the end of the phase"
         (row(capture__outcome="flown"), "flown", False),
         (row(3, "capture failed", capture__outcome="flying"), "undecided at the end", False),
         (row(4, "hand-off refused", capture__outcome="captured"), "not handed over", False),
-        (row(), "completed", True),
+        (row(), "completed", False),
         (row(5, "FMU failed"), "FMU failed", None),
         (lost("k", "died"), "lost", None),
         (refused("k", "no"), "refused", None),
@@ -50,6 +53,34 @@ SEEN = "yes, for the 5 s to the end of the phase"
 )
 def test_words(one: Row, word: str, good: bool | None) -> None:
     assert (outcome(one), succeeded(one, Success())) == (word, good)
+
+
+def test_a_bound_in_another_unit_is_never_compared() -> None:
+    """Whatever the case: 47 N are not below 50 kg."""
+    below = Success("", "removal.peak", 50.0, False, "peak below 50 kg", "kg")
+    one = replace(row(removal__peak=47.0), units={"removal.peak": "N"})
+    with pytest.raises(InputError, match=r"removal\.peak is in N, its bound is in kg"):
+        succeeded(one, below)
+    assert succeeded(replace(one, units={"removal.peak": "kg"}), below) is True
+
+
+@pytest.mark.parametrize(
+    ("bound", "figure", "fits"),
+    [
+        ("N", "kg.m/s2", True),
+        ("mm", "m", True),
+        ("1", "1", True),
+        ("%", "1", True),
+        ("deg/s", "rad/s", True),
+        ("1", "rad", False),
+        ("1/s", "rad/s", False),
+        ("deg", "1", False),
+        ("1", "N", False),
+        ("K", "no unit", True),
+    ],
+)
+def test_units_of_bounds(bound: str, figure: str, fits: bool) -> None:
+    assert (not unlike(Success("", "a", unit=bound), figure)) == fits
 
 
 def test_a_bound() -> None:
@@ -70,5 +101,31 @@ def test_another_outcome() -> None:
 )
 def test_what_counts_where_a_campaign_does_not_say(scene: str, word: str) -> None:
     assert settled(spec_of("jitter = true\n"), load(scene)).success.outcome == word
-    told = spec_of('jitter = true\nsuccess = "missed"\n')
-    assert settled(told, load(scene)).success.outcome == "missed"
+    bound = spec_of('jitter = true\nsuccess = { figure = "a.b", below = 1 }\n')
+    assert settled(bound, load(scene)) == bound
+
+
+@pytest.mark.parametrize(
+    ("scene", "word", "good"),
+    [
+        ("table2-deorbit", "captured", False),
+        ("table2-deorbit", "missed", False),
+        ("table2-deorbit", "completed", True),
+        ("table2-deorbit", "broke", True),
+        ("deployment", "captured", False),
+        ("deployment", "completed", False),
+        ("deployment", "flown", True),
+        ("table1-capture", "captured", True),
+        ("table1-capture", "missed", True),
+        ("table1-capture", "completed", False),
+        ("table1-capture", "flown", False),
+    ],
+)
+def test_an_outcome_that_no_case_can_have(scene: str, word: str, good: bool) -> None:
+    """A probability of 1 or 0 would be told of it."""
+    spec = spec_of(f'jitter = true\nsuccess = "{word}"\n')
+    if good:
+        assert settled(spec, load(scene)).success.outcome == word
+        return
+    with pytest.raises(SceneError, match=f'line 7: success = "{word}": no case of {scene} can come out so: expected'):
+        settled(spec, load(scene))

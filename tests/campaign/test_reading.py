@@ -56,6 +56,13 @@ def test_what_it_says() -> None:
         ('deviation = "5 %"', 'deviaton = "5 %"', 15, "did you mean 'deviation'?"),
         ("weights = [3, 1]", "weights = [3]", 20, "expected a number for each value"),
         ('values = ["Kevlar 29", "Dyneema SK75"]', 'values = ["Kevlar 29"]', 19, "two values or more"),
+        ("jitter = false", "factor_of_safety = -1", 5, "expected a number from 1 to 100"),
+        ("jitter = false", "factor_of_safety = 0", 5, "expected a number from 1 to 100"),
+        ("jitter = false", "factor_of_safety = 0.99", 5, "expected a number from 1 to 100"),
+        ("jitter = false", "factor_of_safety = true", 5, "expected a number"),
+        ('"50 N"', "inf", 6, "expected a finite number"),
+        ('"50 N"', '"50 furlong-ish"', 6, "expected a finite number"),
+        ('"50 N"', "true", 6, "expected a finite number"),
     ],
 )
 def test_mistakes(old: str, new: str, line: int, told: str) -> None:
@@ -70,6 +77,23 @@ def test_all_at_once() -> None:
     text = GOOD.replace("jitter = false", "jitter = 3").replace("[3, 1]", "[0, 0]").replace('"normal"', '"normle"')
     with pytest.raises(SceneError, match="3 mistakes"):
         parse(text, "t", "t.toml")
+
+
+def test_a_distribution_that_there_is_not() -> None:
+    """It is the one mistake: the dispersion is there, and no name is guessed that merely shares some letters."""
+    one = '[[dispersion]]\nkey = "removal.thrust.level"\ndistribution = "WORD"\n'
+    text = 'title = "t"\nscene = "table2-deorbit"\nn = 3\n' + one
+    for word, said in (
+        ("nosuch", "known: discrete, lognormal, normal, triangular, uniform"),
+        ("weibul_min", "did you mean 'weibull_min'?"),
+        ("gausian", "known: discrete"),
+        ("unifrom", "did you mean 'uniform'?"),
+    ):
+        with pytest.raises(SceneError, match="1 mistake\n  line 6: dispersion") as error:
+            parse(text.replace("WORD", word), "t", "t.toml")
+        assert said in str(error.value)
+    with pytest.raises(SceneError, match=r"expected at least one \[\[dispersion\]\]"):
+        parse(text.partition("[[")[0], "t", "t.toml")
 
 
 @pytest.mark.parametrize("text", ["scene = ", "a = 1\na = 2", "[[dispersion]"])

@@ -59,15 +59,18 @@ def test_what_has_no_indices() -> None:
     assert (found.samples, found.left_out) == (7, 1)
 
 
-def test_surrogates() -> None:
-    """Of 400 cases; the error that is told is that of cases it has not seen."""
+@pytest.mark.parametrize(
+    ("cases", "off", "most"), [(150, 0.02, 0.2), pytest.param(400, 0.002, 0.1, marks=pytest.mark.evidence)]
+)
+def test_surrogates(cases: int, off: float, most: float) -> None:
+    """The error that is told is that of cases it has not seen."""
     pytest.importorskip("openturns")
-    points = hypercube(1, 400, 3)
+    points = hypercube(1, cases, 3)
     chaos, process = surrogates(NAMES, (False,) * 3, points, ishigami(points))
-    assert chaos.error < 0.02
+    assert chaos.error < off
     for place, name in enumerate(NAMES):
-        assert chaos.indices[name] == pytest.approx((FIRST[place], TOTAL[place]), abs=0.02)
-    assert process.error < 0.1
+        assert chaos.indices[name] == pytest.approx((FIRST[place], TOTAL[place]), abs=off)
+    assert process.error < most
 
 
 def test_noise_is_not_explained() -> None:
