@@ -176,7 +176,8 @@ _CONDUCTING = (
     output("electrodynamic.field", "T", "magnetic flux density at the middle of the line", 3e-5),
     output("electrodynamic.emf", "V", "induced between its ends, positive from the chaser to the target", 100.0),
     output("electrodynamic.current", "A", "through it, from the chaser to the target", 1.0),
-    output("electrodynamic.power", "W", "that the current takes from the orbit", 100.0),
+    output("electrodynamic.power", "W", "voltage times current: what the air's frame, which turns, is given", 100.0),
+    output("electrodynamic.orbit_power", "W", "that the force takes from the orbit", 100.0),
     output("electrodynamic.force", "N", "on it", 0.01),
     vector("state.field", "T", "where the line is", "state"),
 )  # fmt: skip
