@@ -78,6 +78,7 @@ class Tow(Phase):
         ("optional", ("approach.distance", "approach.time", "tether.taut", "tether.tug_count")),
         ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
         ("optional", ("break.broken", "break.time", "release.released", "release.time")),
+        ("optional", ("release.returned", "release.return_distance", "release.return_time")),
         ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
         ("hand-over", tuple(f"{whose}{each}" for whose in _STATES for each in EACH)),
     )
