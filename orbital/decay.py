@@ -30,7 +30,7 @@ def mean_orbit(position: npt.NDArray[np.float64], velocity: npt.NDArray[np.float
 
     position, velocity   from the centre, along the equator and the axis  (3,) [m], [m/s]
 
-    Valid    bound orbits; the air acts slowly beside a revolution; what J3 does over months is left out (7 km of perigee)
+    Valid    bound orbits; the air acts slowly beside a revolution; what J3 does over months is left out (perigee: 7 km)
     Source   the averages themselves, in place of Brouwer's or Kozai's series
     Raises   ValueError where the orbit is not bound
     Checked  tests/orbital/test_decay.py: the same from all over an orbit, and the lifetime of the motion itself

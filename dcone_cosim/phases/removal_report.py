@@ -18,6 +18,8 @@ from dcone_cosim.phases.tension import last_orbit, orbital_period
 from dcone_cosim.results import PhaseResult, RunResult
 from orbital.constants import EARTH_MU
 
+SEVERAL = 1.5
+"""Orbits from which on what rows tell is not called that of the last one [1]."""
 UNKNOWN_EXTENT = 1.0
 """How far a body of which nothing is known is taken to reach from its centre of mass [m]."""
 
@@ -114,10 +116,17 @@ def _of_environment(phase: str, result: PhaseResult, last: Mapping[str, float]) 
     if "electrodynamic.power" in columns and len(columns) > 1:
         for key, label, unit in (("emf", "voltage", "V"), ("current", "current", "A"), ("force", "force on it", "N")):
             largest = float(np.max(np.abs(columns[f"electrodynamic.{key}"])))
-            yield Finding(phase, f"electrodynamic_{key}", f"largest {label}, tether that conducts", largest, unit)
-        power, time = columns["electrodynamic.power"], columns["time"]
-        mean = float(np.trapezoid(power, time) / (time[-1] - time[0]))
-        yield Finding(phase, "electrodynamic_power", "mean power it takes from the orbit (of rows)", mean, "W")
+            yield Finding(
+                phase, f"electrodynamic_{key}", f"largest {label}, tether that conducts (of rows)", largest, unit
+            )
+        time = columns["time"]
+        for key, label in (
+            ("orbit_power", "mean power it takes from the orbit"),
+            ("power", "mean of voltage times current"),
+        ):
+            if f"electrodynamic.{key}" in columns:
+                mean = float(np.trapezoid(columns[f"electrodynamic.{key}"], time) / (time[-1] - time[0]))
+                yield Finding(phase, f"electrodynamic_{key}", f"{label} (of rows)", mean, "W")
 
 
 def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
@@ -137,11 +146,12 @@ def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
     tension = last_orbit(result)
     if tension is None:
         return
-    when, window = (
-        ("last orbit", "length of that last orbit, in whole steps")
-        if tension.is_orbit
-        else ("whole phase", "length of the phase, less than an orbit")
-    )
+    if not tension.is_orbit:
+        when, window = "whole phase", "length of the phase, less than an orbit"
+    elif tension.orbits < SEVERAL:
+        when, window = "last orbit", "length of that last orbit, in whole steps"
+    else:
+        when, window = f"last {tension.orbits:.3g} orbits", "length of these, as far as rows are apart"
     for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
         sampled = " (of rows)" if what in tension.sampled else ""
         told: float | str = "not reported: tugs fall between the rows" if value is None else value

@@ -3,9 +3,9 @@
     ln rho(h, z, tau) = sum_k B_k(h) sum_lm d^m P_l/dz^m (z) (c_klm Re + s_klm Im) (x + i y)^m,   l <= 6
 
 x, y and z are the components of the place's direction along the Sun's meridian, east of it and along the axis; B_k are
-cubic B-splines of the altitude, so that the density is smooth to its second derivative. The altitude is the distance from
-the Earth's centre less that of the WGS 84 ellipsoid in the same direction, which is the height over it within 6 m. What the model says of
-longitude is averaged over the day, the season stays that of the epoch.
+cubic B-splines of the altitude, so that the density is smooth to its second derivative. The altitude is the distance
+from the Earth's centre less that of the WGS 84 ellipsoid in the same direction, which is the height over it within 6 m.
+What the model says of longitude is averaged over the day, the season stays that of the epoch.
 
 Checked  tests/tethered_deorbit/test_msis.py
 """
