@@ -236,6 +236,9 @@ def _of_reel(run: RunResult, phase: str, last: Mapping[str, float]) -> Iterator[
                 yield Finding(phase, row.key, row.label, row.value, row.unit, shown_in=shown_in)
 
 
+NO_SLACK = 1e-9
+"""Way at the speed of the first tug since the start [m] up to which it is no tug: the line began at its length, and the
+slack it took up is rounding."""
 NEAR = 1e-3
 """Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
 
@@ -258,6 +261,21 @@ def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.f
     return np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
 
 
+def _while_held(result: PhaseResult) -> tuple[npt.NDArray[np.intp], str]:
+    """Rows in which a line holds the two bodies together, and what ended that, "" for nothing."""
+    time, last = result.recorder["time"] - result.recorder["time"][0], result.recorder.last()
+    ends = [
+        (last.get(when, 0.0), told)
+        for what, when, told in (
+            ("release.released", "release.time", "the line was cut"),
+            ("break.broken", "break.time", "the line broke"),
+        )
+        if last.get(what)
+    ]
+    end, told = min(ends, default=(math.inf, ""))
+    return np.flatnonzero(time <= end), told
+
+
 def _of_lowering(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Finding]:
     """How far the semi-major axis of the pair fell, where that is an orbit's.
 
@@ -269,17 +287,24 @@ def _of_lowering(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Fi
     if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
         return
     axis = axis_of(run, phase, result)
-    share = float(np.max(recorder["separation"])) / float(np.min(axis))
+    rows, until = _while_held(result)
+    if len(rows) < 2:
+        yield Finding(phase, "lowered", "orbit lowered by", f"not reported: no row before {until}")
+        return
+    axis, until = axis[rows], f", until {until}" if until else ""
+    share = float(np.max(recorder["separation"][rows])) / float(np.min(axis))
     if not 0.0 <= share <= NEAR:
         text = f"not reported: chaser and target are up to {share:.2g} of the orbit's radius apart, more than {NEAR:g}"
-        yield Finding(phase, "lowered", "orbit lowered by", text)
+        yield Finding(phase, "lowered", f"orbit lowered by{until}", text)
         return
     lowered, elapsed = float(axis[0] - axis[-1]), result.end - result.start
+    if until:
+        elapsed = float(recorder["time"][rows[-1]] - recorder["time"][0])
     if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
-        yield Finding(phase, "lowered", "orbit lowered by", "too little to tell from the pair's own motion")
+        yield Finding(phase, "lowered", f"orbit lowered by{until}", "too little to tell from the pair's own motion")
         return
     key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
-    yield Finding(phase, key, f"orbit {key} by", abs(lowered), "m")
+    yield Finding(phase, key, f"orbit {key} by{until}", abs(lowered), "m")
     if elapsed >= orbital_period(float(axis[0])):
         yield Finding(phase, rate, f"orbit {key} by, per day", abs(lowered) / elapsed, "m/s", shown_in="m/day")
 
@@ -338,8 +363,12 @@ def own_events(result: PhaseResult) -> Iterator[Event]:
 
 
 def _is_taut_from_start(result: PhaseResult) -> bool:
-    """Whether the line carried tension as the phase began; the FMU counts that as its first tug."""
+    """Whether the line carried tension as the phase began, or had less slack than counts; the FMU counts that as its
+    first tug."""
     recorder = result.recorder
+    first = result.tugs.rows.get(1) if result.tugs is not None else None
+    if first is not None and 0.0 <= first[0] * first[2] < NO_SLACK:
+        return True
     return "tether.taut" in recorder and len(recorder) > 0 and bool(recorder["tether.taut"][0])
 
 
