@@ -48,6 +48,9 @@ _NOUNS = """
 """
 """What a dimension is called, and a unit of it."""
 
+_CELSIUS = ("degC", "\u00b0C")
+"""How people write it, beside astropy's own names."""
+
 _TURNS = re.compile(r"([a-zA-Z]?Hz|rp[ms]|(rev|revs|revolutions?|turns?|cycles?)\b)", re.ASCII)
 """Names of units that count turns."""
 
@@ -176,6 +179,8 @@ def named(name: str) -> Unit | None:
 def _of_astropy(name: str) -> Unit | None:
     from astropy import units
 
+    if name in _CELSIUS:
+        name = "deg_C"
     try:
         unit = units.Unit(name.replace(".", " ") if "(" not in name else name)
         if unit == units.deg_C:

@@ -52,9 +52,11 @@ def mean_orbit(position: npt.NDArray[np.float64], velocity: npt.NDArray[np.float
     period = 2.0 * math.pi * math.sqrt(axis**3 / EARTH_MU)
     begin = np.concatenate([position, velocity])
     found = solve_ivp(slope, (0.0, 2.2 * period), begin, method="DOP853", dense_output=True, rtol=1e-10, atol=1e-3)
+    motion = found.sol
+    assert motion is not None, "it is asked for"
     time = np.linspace(0.0, 2.2 * period, 8 * SAMPLES)
     turning = np.cross(position, velocity)
-    x, y = (found.sol(time)[:3].T @ way / np.linalg.norm(way) for way in (position, np.cross(turning, position)))
+    x, y = (motion(time)[:3].T @ way / np.linalg.norm(way) for way in (position, np.cross(turning, position)))
     angle = np.unwrap(np.arctan2(y, x))
     # from apogee to apogee: what turns the apsides does so in between
     lowest = np.cross(velocity, turning) / EARTH_MU - position / radius
@@ -64,7 +66,7 @@ def mean_orbit(position: npt.NDArray[np.float64], velocity: npt.NDArray[np.float
     apogee = (apogee + math.pi) % (2.0 * math.pi)
     time = np.interp(apogee + np.linspace(0.0, 2.0 * math.pi, SAMPLES), angle, time)
     period = float(time[-1] - time[0])
-    places, speeds = np.split(found.sol(time).T, 2, axis=1)
+    places, speeds = np.split(motion(time).T, 2, axis=1)
     distance, momentum = np.linalg.norm(places, axis=1), np.cross(places, speeds)
     vectors = np.cross(speeds, momentum) / EARTH_MU - places / distance[:, None]
     axis = float(np.trapezoid(1.0 / (2.0 / distance - np.sum(speeds**2, axis=1) / EARTH_MU), time)) / period

@@ -134,7 +134,7 @@ def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
     times = {mode: last.get(f"level.{mode}", 0.0) for mode in MODES}
     whole = sum(times.values())
     for mode, told in MODES.items():
-        if times[mode] > 0.0:
+        if times[mode] > 0.0 or (mode == "averaged" and "level.averaged" in last and whole > 0.0):
             yield Finding(phase, f"level_{mode}", told, times[mode] / whole)
     yield Finding(phase, "level_error", "bound of a tug's relative error", last["level.error"])
     if times["averaged"] > 0.0:

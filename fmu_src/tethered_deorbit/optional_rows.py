@@ -309,6 +309,8 @@ _MAPPED = (
     state("state.bounces", "1", "the step ends where the line goes slack", kind="Integer"),
 )  # fmt: skip
 
+REVOLUTIONS = 3.0
+"""Fewest between two communication points that the averaged level takes at once."""
 POINTS_ONLY = ("event_map", "averaged")
 """Levels of two points: what else they cannot carry is refused."""
 NO_BREAK = ("break", "release", "power", "electrodynamic")
