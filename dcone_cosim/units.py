@@ -30,7 +30,7 @@ _SCALED = """
     ms 1e-3 s; min 60 s; h 3600 s; d 86400 s; wk 604800 s; yr 31557600 s; day 86400 s; Hz 1 1/s; g 1e-3 kg; t 1e3 kg
     mrad 1e-3 rad; deg 0.017453292519943295 rad; arcmin 0.0002908882086657216 rad; arcsec 4.84813681109536e-06 rad
     N 1 kg.m/s2; mN 1e-3 N; kN 1e3 N; MN 1e6 N; Pa 1 N/m2; kPa 1e3 Pa; MPa 1e6 Pa; GPa 1e9 Pa; bar 1e5 Pa
-    J 1 N.m; mJ 1e-3 J; kJ 1e3 J; MJ 1e6 J; W 1 J/s; mW 1e-3 W; kW 1e3 W; V 1 W/A; ohm 1 V/A
+    J 1 N.m; mJ 1e-3 J; kJ 1e3 J; MJ 1e6 J; W 1 J/s; mW 1e-3 W; kW 1e3 W; V 1 W/A; ohm 1 V/A; T 1 kg/A.s2
 """
 """Symbols with their factor and unit. astropy knows them and many more, but takes a fifth of a second to load."""
 
@@ -44,7 +44,7 @@ _NOUNS = """
     length m; area m2; volume m3; speed m/s; acceleration m/s2; mass kg; mass density kg/m3; moment of inertia kg.m2
     time s; frequency 1/s; angle rad; angular speed rad/s; angular acceleration rad/s2; temperature K; pure number 1
     force N; rate of force N/s; stiffness N/m; pressure Pa; energy J; power W; momentum N.s; angular momentum N.m.s
-    electrical current A; electrical potential V; electrical resistance ohm
+    electrical current A; electrical potential V; electrical resistance ohm; magnetic flux density T
 """
 """What a dimension is called, and a unit of it."""
 
