@@ -289,7 +289,7 @@ def _of_lowering(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Fi
     axis = axis_of(run, phase, result)
     rows, until = _while_held(result)
     if len(rows) < 2:
-        yield Finding(phase, "lowered", "orbit lowered by", f"not reported: no row before {until}")
+        yield Finding(phase, "lowered", "orbit lowered by", f"not reported: too few rows before {until}")
         return
     axis, until = axis[rows], f", until {until}" if until else ""
     share = float(np.max(recorder["separation"][rows])) / float(np.min(axis))

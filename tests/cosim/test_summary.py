@@ -124,7 +124,7 @@ class TestLowering:
         assert rows["lowering_rate"].shown() == "400 m/day"
         columns = {key: [column[0], column[-1]] for key, column in columns.items()}
         rows = found(removal_run(make_scene("removal"), columns, [0.0, 172800.0], TugLog(1)))
-        assert rows["lowered"].value == f"not reported: no row before {told}"
+        assert rows["lowered"].value == f"not reported: too few rows before {told}"
 
     def test_not_of_a_pair_far_apart(self, make_scene: MakeScene) -> None:
         rows = self.rows(make_scene, 20e3, 554.8, 1.0)
