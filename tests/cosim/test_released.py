@@ -11,9 +11,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
+from dcone_cosim.phases.lowering import axis_of
 from dcone_cosim.phases.passive import conic
 from dcone_cosim.phases.released import apsides, findings, nearest_return, returning
-from dcone_cosim.phases.removal_report import axis_of
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_J2, EARTH_MU
 
 

@@ -33,6 +33,7 @@ from fmu_src.tethered_deorbit.interface import (
     NOT_FINITE,
     PERIGEE_LOW,
     PERIGEE_RAISED,
+    RELEASED_AT_START,
     START_STRETCHED,
     STEP_NOT_MET,
     TIME_GAP,
@@ -136,6 +137,7 @@ ELSEWHERE = {
     NO_ATTITUDE: "test_aocs.py",
     NO_VERTICAL: "test_regulator.py",
     BAD_SCHEDULE: "test_winding.py",
+    RELEASED_AT_START: "test_release.py",
     NO_BODY: "test_hulls.py",
 }
 
