@@ -39,6 +39,7 @@ from fmu_src.packaging.sources import SHIM
 from fmu_src.tables import Table, from_files
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit import lines as tethered_deorbit_lines
+from fmu_src.tethered_deorbit import optional_rows as tethered_deorbit_rows
 from fmu_src.tethered_deorbit import stress as tethered_deorbit_stress
 from fmu_src.tethered_deorbit import trade as tethered_deorbit_trade
 from fmu_src.tethered_deorbit.interface import MODEL as TETHERED_DEORBIT
@@ -352,6 +353,10 @@ def extremes(model: str, terms: Mapping[str, str]) -> list[Extreme]:
     groups = CATALOGUE[model].groups
     of_parts = [one for group, term in terms.items() for one in groups[group].terms[term].extremes]
     return [*of_parts, *STRESSES[model].EXTREMES]
+
+
+LEAP_REVOLUTIONS = tethered_deorbit_rows.REVOLUTIONS
+"""Fewest revolutions that a tow of ours takes at once, between two communication points."""
 
 
 def air_of(

@@ -30,7 +30,7 @@ _SCALED = """
     ms 1e-3 s; min 60 s; h 3600 s; d 86400 s; wk 604800 s; yr 31557600 s; day 86400 s; Hz 1 1/s; g 1e-3 kg; t 1e3 kg
     mrad 1e-3 rad; deg 0.017453292519943295 rad; arcmin 0.0002908882086657216 rad; arcsec 4.84813681109536e-06 rad
     N 1 kg.m/s2; mN 1e-3 N; kN 1e3 N; MN 1e6 N; Pa 1 N/m2; kPa 1e3 Pa; MPa 1e6 Pa; GPa 1e9 Pa; bar 1e5 Pa
-    J 1 N.m; mJ 1e-3 J; kJ 1e3 J; MJ 1e6 J; W 1 J/s; mW 1e-3 W; kW 1e3 W; V 1 W/A; ohm 1 V/A; T 1 V.s/m2; nT 1e-9 T
+    J 1 N.m; mJ 1e-3 J; kJ 1e3 J; MJ 1e6 J; W 1 J/s; mW 1e-3 W; kW 1e3 W; V 1 W/A; ohm 1 V/A; T 1 kg/A.s2; nT 1e-9 T
 """
 """Symbols with their factor and unit. astropy knows them and many more, but takes a fifth of a second to load."""
 
@@ -47,6 +47,9 @@ _NOUNS = """
     electrical current A; electrical potential V; electrical resistance ohm; magnetic flux density T
 """
 """What a dimension is called, and a unit of it."""
+
+_CELSIUS = ("degC", "\u00b0C")
+"""How people write it, beside astropy's own names."""
 
 _TURNS = re.compile(r"([a-zA-Z]?Hz|rp[ms]|(rev|revs|revolutions?|turns?|cycles?)\b)", re.ASCII)
 """Names of units that count turns."""
@@ -176,6 +179,8 @@ def named(name: str) -> Unit | None:
 def _of_astropy(name: str) -> Unit | None:
     from astropy import units
 
+    if name in _CELSIUS:
+        name = "deg_C"
     try:
         unit = units.Unit(name.replace(".", " ") if "(" not in name else name)
         if unit == units.deg_C:

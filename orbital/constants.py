@@ -13,6 +13,9 @@ EARTH_MU = 3.986004418e14
 # Equatorial radius [m]. WGS 84, NGA.STND.0036 table 3.1. The reference the paper's altitudes are taken above.
 EARTH_EQUATORIAL_RADIUS = 6378137.0
 
+# Flattening of the ellipsoid [-]. WGS 84, NGA.STND.0036 table 3.1. NRLMSIS counts its altitude from that.
+EARTH_FLATTENING = 1.0 / 298.257223563
+
 # Second zonal harmonic, unnormalised [-]. EGM96: -sqrt(5) C20 with C20 = -4.84165371736e-4, in the tide-free
 # system (Lemoine et al., NASA/TP-1998-206861).
 EARTH_J2 = math.sqrt(5.0) * 4.84165371736e-4

@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim import build
-from dcone_cosim.findings import Finding
+from dcone_cosim.findings import SHOWN_IN, Finding
 from dcone_cosim.phases.passive import Nearest
 from dcone_cosim.results import PhaseResult, RunResult
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
-from orbital.decay import lifetime
+from orbital.decay import lifetime, mean_orbit
 
 Vectors = npt.NDArray[np.float64]
 EACH = tuple(f"[{i}]" for i in (1, 2, 3))
@@ -50,9 +50,17 @@ def nearest_return(time: Vectors, position: Vectors, velocity: Vectors) -> Neare
     return best
 
 
+TOLD = ("release.returned", "release.return_distance", "release.return_time")
+"""By which an FMU tells itself how near they came again, between rows as well."""
+
+
 def after_the_cut(result: PhaseResult) -> Nearest | None:
-    """The nearest return after the line was cut [m], and when since the phase began [s]."""
+    """The nearest return after the line was cut [m], and when since the phase began [s]: by the FMU's own watch or,
+    without that, by the rows there are."""
     recorder = result.recorder
+    if set(TOLD) <= set(recorder.names):
+        returned, distance, when = (recorder.last()[name] for name in TOLD)
+        return Nearest(distance, when) if returned else None
     needed = {f"relative.{what}{each}" for what in ("position", "velocity") for each in EACH}
     if not needed <= set(recorder.names) or not recorder.last().get("release.released"):
         return None
@@ -89,10 +97,11 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         return
     yield Finding(phase, "released_at", "the line was cut at", last["release.time"], "s")
     back = after_the_cut(result)
+    label = "nearest return of the bodies" + ("" if set(TOLD) <= set(recorder.names) else " (by the rows)")
     if back is None:
-        yield Finding(phase, "return_distance", "nearest return of the bodies", "none: they drift apart")
+        yield Finding(phase, "return_distance", label, _without_return(last))
     else:
-        yield Finding(phase, "return_distance", "nearest return of the bodies", back.distance, "m")
+        yield Finding(phase, "return_distance", label, back.distance, "m")
         yield Finding(phase, "return_time", "that was at", back.after, "s")
     main = next(one.main for one in run.scene.phases if one.name == phase)
     values = {**main.asked, **main.defaults, **run.parameters.get(phase, {})}
@@ -104,27 +113,47 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         axis, e, low, high = apsides(state[:3], state[3:])
         if not (0.0 <= e < 1.0 and axis > 0.0):
             continue
-        yield Finding(phase, f"{body}_perigee", f"{body}'s perigee at the end", low, "m", shown_in="km")
-        yield Finding(phase, f"{body}_apogee", f"{body}'s apogee at the end", high, "m", shown_in="km")
-        yield from _lifetime(phase, body, state, values, main.terms)
+        told = ""
+        if "oblateness" in main.terms:
+            axis, e = mean_orbit(state[:3], state[3:])
+            low, high = (axis * (1.0 + side * e) - EARTH_EQUATORIAL_RADIUS for side in (-1.0, 1.0))
+            told = ", in the mean"
+        yield Finding(phase, f"{body}_perigee", f"{body}'s perigee at the end{told}", low, "m", shown_in="km")
+        yield Finding(phase, f"{body}_apogee", f"{body}'s apogee at the end{told}", high, "m", shown_in="km")
+        yield from _lifetime(phase, body, (axis, e), state, values, main.terms)
+
+
+def _without_return(last: Mapping[str, float]) -> str:
+    """What is told where the bodies have not come nearer again and passed: how the last row leaves them."""
+    position, velocity = (
+        [last.get(f"relative.{what}{each}", 0.0) for each in EACH] for what in ("position", "velocity")
+    )
+    closing = sum(x * v for x, v in zip(position, velocity, strict=True)) < 0.0
+    return "none within the run" + (", which ends as they come nearer" if closing else "")
 
 
 def _lifetime(
-    phase: str, body: str, state: Vectors, values: Mapping[str, float], terms: Mapping[str, str]
+    phase: str,
+    body: str,
+    orbit: tuple[float, float],
+    state: Vectors,
+    values: Mapping[str, float],
+    terms: Mapping[str, str],
 ) -> Iterator[Finding]:
-    """How long it stays up in the air of the scene, as that is; nothing without air."""
+    """How long it stays up in the air of the scene, as that is, with the digits that hold; nothing without air."""
     density = build.air_of(values, terms)
     ballistic = values.get("air.drag_coefficient", 0.0) * values.get(f"air.{body}_area", 0.0) / values[f"{body}.mass"]
     if density is None or not ballistic > 0.0:
         return
-    axis, e, _, _ = apsides(state[:3], state[3:])
     normal = np.cross(state[:3], state[3:])
-    time = lifetime(axis, e, ballistic, density, float(normal[2] / np.linalg.norm(normal)), LOW, LONGEST)
-    label = f"{body}'s lifetime from there, in this air"
+    time = lifetime(*orbit, ballistic, density, float(normal[2] / np.linalg.norm(normal)), LOW, LONGEST)
+    label = f"{body}'s lifetime from there, in this air, about"
     if math.isinf(time):
         yield Finding(phase, f"{body}_lifetime", label, f"more than {LONGEST / YEAR:.0f} years")
     else:
-        yield Finding(phase, f"{body}_lifetime", label, time, "s", shown_in="yr" if time > YEAR else "day")
+        shown_in = "yr" if time > YEAR else "day"
+        rounded = float(f"{time / SHOWN_IN[shown_in]:.2g}") * SHOWN_IN[shown_in]
+        yield Finding(phase, f"{body}_lifetime", label, rounded, "s", shown_in=shown_in)
 
 
 def returning(phase: str, result: PhaseResult, room: float) -> Iterator[str]:

@@ -23,6 +23,7 @@ from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
 from dcone_cosim.phases import chaos, passive, removal_criteria, removal_quantities, removal_report, tow_clip
 from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
 from dcone_cosim.phases.stepping import PhaseLoop
+from dcone_cosim.phases.tension import orbital_period
 from dcone_cosim.plots import tow
 from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import Handover, PhaseResult, RunResult
@@ -32,6 +33,7 @@ from dcone_cosim.scene.mistakes import Mistake, shown
 from dcone_cosim.scene.toml_lines import Path, given_at
 from dcone_cosim.scenery import Chart, Clip
 from dcone_cosim.transaction import HandoffRecord, check_before
+from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
 COARSE = 16
 """Macro steps of a tow that are one of its comparison without recoil: of that, tugs and largest tension are told."""
@@ -78,6 +80,7 @@ class Tow(Phase):
         ("optional", ("approach.distance", "approach.time", "tether.taut", "tether.tug_count")),
         ("optional", tuple(f"{TUG_PREFIX}{i}].{field}" for i in (1, 2) for field in TUG_FIELDS)),
         ("optional", ("break.broken", "break.time", "release.released", "release.time")),
+        ("optional", ("release.returned", "release.return_distance", "release.return_time")),
         ("optional", ("altitude", "center.semi_major_axis", "chaser.radius", "target.radius", "chaser.propellant")),
         ("hand-over", tuple(f"{whose}{each}" for whose in _STATES for each in EACH)),
     )
@@ -190,6 +193,19 @@ class Tow(Phase):
     def charts(self, run: RunResult, result: PhaseResult) -> Iterator[Chart]:
         return tow_clip.charts(result, run.comparisons.get(self.name), self._since(run))
 
+    def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
+        """Macro steps too short for the level of detail that takes many revolutions between two of them."""
+        altitude = own.setting("orbit.altitude")
+        if own.main.fmu is not None or own.main.terms.get("level") != "averaged" or altitude is None:
+            return
+        needed = build.LEAP_REVOLUTIONS * orbital_period(EARTH_EQUATORIAL_RADIUS + altitude)
+        if own.macro_step <= needed:
+            yield (
+                f'{self.name}.level: detail = "averaged" takes no revolutions at once in macro steps of '
+                f"{own.macro_step:g} s; it needs more than {build.LEAP_REVOLUTIONS:g} revolutions in one, here "
+                f"{needed:.6g} s, and steps as event_map does"
+            )
+
 
 class Removal(Tow):
     name = "removal"
@@ -260,6 +276,8 @@ class Removal(Tow):
         return line_notes(offered)
 
     def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
+        """Those of every tow, and frames that do not turn alike."""
+        yield from super().cautions(before, own)
         law = None if before is None else before.main.terms.get("gravity", "hill")
         if before is not None and law != "hill":
             yield (

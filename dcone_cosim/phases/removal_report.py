@@ -7,17 +7,17 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from dcone_cosim import build
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
-from dcone_cosim.phases import passive, released
+from dcone_cosim.phases import lowering, passive, released
 from dcone_cosim.phases.end import of_end
-from dcone_cosim.phases.tension import last_orbit, orbital_period
+from dcone_cosim.phases.tension import last_orbit
 from dcone_cosim.results import PhaseResult, RunResult
-from orbital.constants import EARTH_MU
 
+SEVERAL = 1.5
+"""Orbits from which on what rows tell is not called that of the last one [1]."""
 UNKNOWN_EXTENT = 1.0
 """How far a body of which nothing is known is taken to reach from its centre of mass [m]."""
 
@@ -82,7 +82,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         if name in last:
             yield Finding(phase, name, label, last[name], unit, shown_in=shown_in)
     yield from _of_approach(phase, result)
-    yield from _of_lowering(run, phase, result)
+    yield from lowering.findings(run, phase, result)
     yield from _of_safety(run, phase, result)
     yield from _of_environment(phase, result, last)
     yield from released.findings(run, phase, result)
@@ -114,10 +114,17 @@ def _of_environment(phase: str, result: PhaseResult, last: Mapping[str, float]) 
     if "electrodynamic.power" in columns and len(columns) > 1:
         for key, label, unit in (("emf", "voltage", "V"), ("current", "current", "A"), ("force", "force on it", "N")):
             largest = float(np.max(np.abs(columns[f"electrodynamic.{key}"])))
-            yield Finding(phase, f"electrodynamic_{key}", f"largest {label}, tether that conducts", largest, unit)
-        power, time = columns["electrodynamic.power"], columns["time"]
-        mean = float(np.trapezoid(power, time) / (time[-1] - time[0]))
-        yield Finding(phase, "electrodynamic_power", "mean power it takes from the orbit (of rows)", mean, "W")
+            yield Finding(
+                phase, f"electrodynamic_{key}", f"largest {label}, tether that conducts (of rows)", largest, unit
+            )
+        time = columns["time"]
+        for key, label in (
+            ("orbit_power", "mean power it takes from the orbit"),
+            ("power", "mean of voltage times current"),
+        ):
+            if f"electrodynamic.{key}" in columns:
+                mean = float(np.trapezoid(columns[f"electrodynamic.{key}"], time) / (time[-1] - time[0]))
+                yield Finding(phase, f"electrodynamic_{key}", f"{label} (of rows)", mean, "W")
 
 
 def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
@@ -125,7 +132,7 @@ def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
     times = {mode: last.get(f"level.{mode}", 0.0) for mode in MODES}
     whole = sum(times.values())
     for mode, told in MODES.items():
-        if times[mode] > 0.0:
+        if times[mode] > 0.0 or (mode == "averaged" and "level.averaged" in last and whole > 0.0):
             yield Finding(phase, f"level_{mode}", told, times[mode] / whole)
     yield Finding(phase, "level_error", "bound of a tug's relative error", last["level.error"])
     if times["averaged"] > 0.0:
@@ -137,11 +144,12 @@ def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
     tension = last_orbit(result)
     if tension is None:
         return
-    when, window = (
-        ("last orbit", "length of that last orbit, in whole steps")
-        if tension.is_orbit
-        else ("whole phase", "length of the phase, less than an orbit")
-    )
+    if not tension.is_orbit:
+        when, window = "whole phase", "length of the phase, less than an orbit"
+    elif tension.orbits < SEVERAL:
+        when, window = "last orbit", "length of that last orbit, in whole steps"
+    else:
+        when, window = f"last {tension.orbits:.3g} orbits", "length of these, as far as rows are apart"
     for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
         sampled = " (of rows)" if what in tension.sampled else ""
         told: float | str = "not reported: tugs fall between the rows" if value is None else value
@@ -226,52 +234,9 @@ def _of_reel(run: RunResult, phase: str, last: Mapping[str, float]) -> Iterator[
                 yield Finding(phase, row.key, row.label, row.value, row.unit, shown_in=shown_in)
 
 
-NEAR = 1e-3
-"""Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
-
-
-def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.float64]:
-    """Semi-major axis of the pair (rows,) [m]: osculating, or where the Earth is flattened, by the orbit's energy.
-
-        a = -mu M/(2 E),   E with the potential of the flattening in it
-
-    The osculating one breathes by kilometres there, twice a revolution, and two samples of it tell nothing.
-    """
-    recorder = result.recorder
-    main = next(one.main for one in run.scene.phases if one.name == phase)
-    values = run.parameters.get(phase, {})
-    known = {"chaser.mass", "target.mass"} <= values.keys() and "energy.orbital" in recorder
-    if main.fmu is not None or "oblateness" not in main.terms or not known:
-        return recorder["center.semi_major_axis"]
-    mass = values["chaser.mass"] + values["target.mass"]
-    used = recorder["chaser.propellant"] if "engine" in main.terms else 0.0
-    return np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
-
-
-def _of_lowering(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Finding]:
-    """How far the semi-major axis of the pair fell, where that is an orbit's.
-
-    Gravity on the pair is not that on its mass at the centre: it differs by (3/2) (s/r)^2 at most, and moves the
-    osculating axis by some of that. What is smaller than this is not told, and nothing when the pair is far apart;
-    a rate per day needs a whole revolution.
-    """
-    recorder = result.recorder
-    if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
-        return
-    axis = axis_of(run, phase, result)
-    share = float(np.max(recorder["separation"])) / float(np.min(axis))
-    if not 0.0 <= share <= NEAR:
-        text = f"not reported: chaser and target are up to {share:.2g} of the orbit's radius apart, more than {NEAR:g}"
-        yield Finding(phase, "lowered", "orbit lowered by", text)
-        return
-    lowered, elapsed = float(axis[0] - axis[-1]), result.end - result.start
-    if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
-        yield Finding(phase, "lowered", "orbit lowered by", "too little to tell from the pair's own motion")
-        return
-    key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
-    yield Finding(phase, key, f"orbit {key} by", abs(lowered), "m")
-    if elapsed >= orbital_period(float(axis[0])):
-        yield Finding(phase, rate, f"orbit {key} by, per day", abs(lowered) / elapsed, "m/s", shown_in="m/day")
+NO_SLACK = 1e-9
+"""Way at the speed of the first tug since the start [m] up to which it is no tug: the line began at its length, and the
+slack it took up is rounding."""
 
 
 def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterator[Finding]:
@@ -328,8 +293,12 @@ def own_events(result: PhaseResult) -> Iterator[Event]:
 
 
 def _is_taut_from_start(result: PhaseResult) -> bool:
-    """Whether the line carried tension as the phase began; the FMU counts that as its first tug."""
+    """Whether the line carried tension as the phase began, or had less slack than counts; the FMU counts that as its
+    first tug."""
     recorder = result.recorder
+    first = result.tugs.rows.get(1) if result.tugs is not None else None
+    if first is not None and 0.0 <= first[0] * first[2] < NO_SLACK:
+        return True
     return "tether.taut" in recorder and len(recorder) > 0 and bool(recorder["tether.taut"][0])
 
 

@@ -17,12 +17,14 @@ class Tension(NamedTuple):
 
     window     its length [s], a whole number of macro steps
     is_orbit   it holds a whole orbit; the phase was shorter otherwise, and this is all of it
+    orbits     how many it is long: more than one where rows are far apart               [1]
     mean       None where tugs fall between rows that are all there is
     sampled    which of mean, least and largest are those of the rows alone, since the FMU does not tell better
     """
 
     window: float
     is_orbit: bool
+    orbits: float
     mean: float | None
     least: float
     largest: float
@@ -77,4 +79,4 @@ def last_orbit(result: PhaseResult) -> Tension | None:
             sampled.add(what)
         extremes.append(float(extreme(recorder[output][steps] if output in recorder else tension)))
     least, largest = extremes
-    return Tension(window, is_orbit, mean, least, max([largest, *peaks]), frozenset(sampled))
+    return Tension(window, is_orbit, window / period, mean, least, max([largest, *peaks]), frozenset(sampled))

@@ -147,6 +147,8 @@ class Expected:
         return ", ".join(found)
 
     def _number(self, value: float) -> str:
+        if self.date:
+            return self._date(value)
         if self.unit == "1":
             return f"{value:.10g}"
         shown = by_name(self.display_unit or self.unit)
@@ -165,7 +167,7 @@ class Expected:
         if self.kind == "Integer":
             return str(int(value))
         if self.date:
-            text = f'"{(J2000 + timedelta(seconds=value)).strftime("%Y-%m-%d %H:%M:%S.%f").rstrip("0").rstrip(".")}"'
+            text = f'"{self._date(value)}"'
             return text if self._instant(text[1:-1]) == value else f'"{value!r} s"'
         if self.unit == "1":
             return repr(value)
@@ -177,6 +179,11 @@ class Expected:
                     return f'"{text}"'
         return f'"{value!r} {spoken(self.unit)}"'
 
+    @staticmethod
+    def _date(value: float) -> str:
+        """Seconds from J2000 as a date in UTC."""
+        return (J2000 + timedelta(seconds=value)).strftime("%Y-%m-%d %H:%M:%S.%f").rstrip("0").rstrip(".")
+
     def _out_of_bounds(self, number: float, unit: Unit) -> str | None:
         """Why an SI value is out of bounds, told in the unit it was written with."""
         if not math.isfinite(number):
@@ -187,6 +194,8 @@ class Expected:
             words, bound = "at most", self.maximum
         else:
             return None
+        if self.date:
+            return f"must be {words} {self._date(bound)}"
         return f"must be {words} {unit.from_si(bound):.10g}{'' if unit is NO_UNIT else f' {unit.name}'}"
 
     def _instant(self, value: object) -> float:

@@ -87,10 +87,15 @@ class Places:
         return key_lines(self.text)
 
     def override(self, path: Path) -> Override | None:
-        """The argument that set this key, a part of it, or, for a table the file does not have, something in it."""
+        """The argument that set this key, a part of it, or, for a table the file does not have, something in it or
+        beside it: a table that only an argument speaks of lacks what it lacks because of that."""
         for override in reversed(self.overrides):
             shared = min(len(path), len(override.path))
             if path[:shared] == override.path[:shared] and (shared == len(override.path) or path not in self.lines):
+                return override
+        for override in reversed(self.overrides):
+            table = override.path[:-1]
+            if len(table) > 1 and path[: len(table)] == table and table not in self.lines:
                 return override
         return None
 

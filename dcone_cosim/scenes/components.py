@@ -406,6 +406,7 @@ def _unknown(part: ReadComponent, names: tuple[str, ...], value: object) -> Mist
         return unknown(path, value, "unknown key", key, tables - {SHARED})
     keys = [name.partition(".")[2] for name in (*part.keys, *part.files) if name.startswith(names[0] + ".")]
     keys += list(keys_of(part.lines[names[0]], part.keys)) if names[0] in part.lines else []
+    keys += [group.selector for name, group in part.groups.items() if (group.table or name) == names[0]]
     return unknown(path, value, "unknown key", key, keys)
 
 

@@ -3,8 +3,9 @@
     ln rho(h, z, tau) = sum_k B_k(h) sum_lm d^m P_l/dz^m (z) (c_klm Re + s_klm Im) (x + i y)^m,   l <= 6
 
 x, y and z are the components of the place's direction along the Sun's meridian, east of it and along the axis; B_k are
-cubic B-splines of the altitude, so that the density is smooth to its second derivative. What the model says of
-longitude is averaged over the day, the season stays that of the epoch.
+cubic B-splines of the altitude, so that the density is smooth to its second derivative. The altitude is the distance
+from the Earth's centre less that of the WGS 84 ellipsoid in the same direction, which is the height over it within 6 m.
+What the model says of longitude is averaged over the day, the season stays that of the epoch.
 
 Checked  tests/tethered_deorbit/test_msis.py
 """
@@ -20,6 +21,7 @@ import numpy.typing as npt
 
 from fmu_src.interface import Laid, Undesigned
 from fmu_src.tables import Table
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_FLATTENING
 
 Rows = npt.NDArray[np.float64]
 LOW, SPACING, COUNT = 100e3, 10e3, 91
@@ -29,6 +31,8 @@ COLUMNS = (DEGREE + 1) ** 2
 VERSION = 2.1
 NAME = "air.harmonics"
 TABLE = Table(NAME, "1", "ln of the density [kg/m^3]: a row per B-spline of the altitude, a column per harmonic", 2)
+PLACES = 12
+"""Places of an orbit, and times of the day, over which a mean profile is taken."""
 HOURS = 8
 """Times of the day over which longitude is averaged."""
 
@@ -54,13 +58,39 @@ def harmonics(x: Rows, y: Rows, z: Rows) -> Rows:
     return np.stack(columns, axis=1)
 
 
+def ground(latitude: Rows) -> Rows:
+    """Distance of the WGS 84 ellipsoid from the Earth's centre [m], at geocentric latitudes [rad]."""
+    squeezed = EARTH_FLATTENING * (2.0 - EARTH_FLATTENING)
+    polar = EARTH_EQUATORIAL_RADIUS * (1.0 - EARTH_FLATTENING)
+    return np.asarray(polar / np.sqrt(1.0 - squeezed * np.cos(latitude) ** 2))
+
+
+def geodetic(latitude: Rows, radius: Rows) -> tuple[Rows, Rows]:
+    """Latitude [rad] and height [m] over the WGS 84 ellipsoid, of geocentric latitudes [rad] and distances [m].
+
+        z = (N (1 - e^2) + h) sin(phi),   p = (N + h) cos(phi),   N = R/sqrt(1 - e^2 sin^2(phi))
+
+    Source   Vallado (2013), algorithm 12, by turns; four leave 1e-11 rad
+    Checked  tests/tethered_deorbit/test_msis.py, against astropy
+    """
+    squeezed = EARTH_FLATTENING * (2.0 - EARTH_FLATTENING)
+    p, z = radius * np.cos(latitude), radius * np.sin(latitude)
+    found = latitude
+    for _ in range(6):
+        curved = EARTH_EQUATORIAL_RADIUS / np.sqrt(1.0 - squeezed * np.sin(found) ** 2)
+        found = np.arctan2(z + squeezed * curved * np.sin(found), p)
+    curved = EARTH_EQUATORIAL_RADIUS / np.sqrt(1.0 - squeezed * np.sin(found) ** 2)
+    height = p * np.cos(found) + z * np.sin(found) - curved * (1.0 - squeezed * np.sin(found) ** 2)
+    return np.asarray(found), np.asarray(height)
+
+
 def densities(
     altitudes: Rows, latitude: Rows, hour: Rows, epoch: float, f107: float, f107_average: float, ap: float
 ) -> Rows:
     """ln of the density [kg/m^3] (n, altitudes), in the mean over the day; `Undesigned` without pymsis.
 
-    altitudes            [m]
-    latitude, hour       geographic [rad], local solar [rad] from noon (n,)
+    altitudes            distance from the centre less that of the ellipsoid [m]
+    latitude, hour       geocentric [rad], local solar [rad] from noon (n,)
     epoch                UTC since 2000-01-01 12:00 [s]
     f107, f107_average, ap   of the day before, of 81 days [sfu]; planetary index
     """
@@ -70,6 +100,8 @@ def densities(
         raise Undesigned("air.law", "nrlmsis", "needs pymsis: pip install 'dcone-cosim[air]'") from None
     day = (np.datetime64("2000-01-01T12:00:00") + np.timedelta64(round(epoch), "s")).astype("datetime64[D]")
     size, count = len(latitude), len(altitudes)
+    across, radius = np.repeat(latitude, count), np.repeat(ground(latitude), count) + np.tile(altitudes, size)
+    north, height = geodetic(across, radius)
     found = np.zeros((size, count))
     for k in range(HOURS):
         minutes = 1440 * k // HOURS
@@ -77,8 +109,8 @@ def densities(
         out = pymsis.calculate(
             np.full(size * count, day + np.timedelta64(minutes, "m")),
             np.repeat(np.remainder(east, 360.0), count),
-            np.repeat(np.degrees(latitude), count),
-            np.tile(altitudes / 1e3, size),
+            np.degrees(north),
+            height / 1e3,
             # all of them: it would fetch what it is not given
             f107s=np.full(size * count, f107),
             f107as=np.full(size * count, f107_average),
@@ -133,10 +165,16 @@ def lay(values: Mapping[str, float], sources: Mapping[str, Any]) -> Laid:
 
 
 def mean_profile(values: Mapping[str, float]) -> Callable[[Rows], Rows]:
-    """Density [kg/m^3] of altitudes [m], the mean over latitude and local time."""
-    latitude, hour, weight = _grid()
+    """Density [kg/m^3] of altitudes over the equatorial radius [m], as `orbital.decay` counts them: the mean over an
+    orbit of that inclination, wherever its perigee and its node are."""
+    along = 2.0 * math.pi * (np.arange(PLACES) + 0.5) / PLACES
+    turned = 2.0 * math.pi * np.arange(PLACES) / PLACES
+    up, hours = np.meshgrid(np.arcsin(np.sin(values["orbit.inclination"]) * np.sin(along)), turned, indexing="ij")
+    latitude, hour = up.ravel(), hours.ravel()
     altitudes = _altitudes()
     indices = (values[f"air.{name}"] for name in ("f107", "f107_average", "ap"))
     found = densities(altitudes, latitude, hour, values["orbit.epoch"], *indices)
-    mean = np.log(np.average(np.exp(found), axis=0, weights=weight))
+    higher = EARTH_EQUATORIAL_RADIUS - ground(latitude)
+    rows = [np.interp(altitudes + more, altitudes, row) for more, row in zip(higher, found, strict=True)]
+    mean = np.log(np.mean(np.exp(rows), axis=0))
     return lambda altitude: np.exp(np.interp(altitude, altitudes, mean))

@@ -1,4 +1,5 @@
-"""Largest and least on the way: the tension over a macro step and over a tug, the separation since the start.
+"""Largest and least on the way: the tension over a macro step and over a tug, the separation since the start, and
+since a cut of the line.
 
 What is carried from step to step comes from whole steps of the integrator alone, so that it does not depend on the
 communication points; what the part of a step up to a communication point adds is shown there and not carried.
@@ -35,8 +36,10 @@ class Extremes(NamedTuple):
     publish: Callable[..., Any]
 
 
-def make_extremes(events: Events, held: Held) -> Extremes:
+def make_extremes(events: Events, held: Held, releases: bool = False) -> Extremes:
     """The kernels for one law of the line and one integrator.
+
+    releases     the line may be cut on the way
 
     Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
     """
@@ -50,6 +53,9 @@ def make_extremes(events: Events, held: Held) -> Extremes:
         r = record[0]
         r.state_approach_distance = r.approach_distance
         r.state_approach_time = r.approach_time
+        if releases:
+            r.state_returned = r.release_returned
+            r.state_return_distance, r.state_return_time = r.release_return_distance, r.release_return_time
         if r.state_taut and not r.state_tug_begun:
             r.state_tug_peak = r.tug_peak[0]
 
@@ -64,6 +70,10 @@ def make_extremes(events: Events, held: Held) -> Extremes:
         r.tether_tension_least = r.tether_tension
         r.approach_distance = r.separation
         r.approach_time = 0.0
+        if releases:
+            r.release_returned = 0
+            r.release_return_distance = 0.0
+            r.release_return_time = 0.0
         begin_anew(record)
 
     @kernel
@@ -148,6 +158,30 @@ def make_extremes(events: Events, held: Held) -> Extremes:
             r.state_approach_distance, r.state_approach_time = r.approach_distance, r.approach_time
 
     @kernel
+    def note_return(record: Any, work: Array, last: float, begin: Any, end: Any) -> None:
+        """Take in a pass [m] after the line is cut: every turn of the separation until one is found, then nearer ones.
+
+        Arguments as in `note_approach`.
+
+        Checked  tests/tethered_deorbit/test_release.py, against two Kepler orbits
+        """
+        r = record[0]
+        r.release_returned = r.state_returned
+        r.release_return_distance, r.release_return_time = r.state_return_distance, r.state_return_time
+        fastest = max(abs(begin[RATE]), abs(end[RATE]))
+        fastest += r.state_step * max(abs(begin[RATE_SLOPE]), abs(end[RATE_SLOPE]))
+        within_reach = min(begin[SEPARATION], end[SEPARATION]) - 0.5 * r.state_step * fastest
+        if r.state_returned and within_reach >= r.state_return_distance - r.solver_tolerance_separation:
+            return
+        fraction, distance = events.nearest(record, work, last)
+        if fraction >= 0.0 and not (r.state_returned and distance >= r.state_return_distance):
+            r.release_returned = 1
+            r.release_return_distance, r.release_return_time = distance, r.state_begin + fraction * r.state_step
+        if last == 1.0:
+            r.state_returned = r.release_returned
+            r.state_return_distance, r.state_return_time = r.release_return_distance, r.release_return_time
+
+    @kernel
     def note(record: Any, work: Array, until: float) -> None:
         """Take in the current step up to a time [s]: see `Extremes`.
 
@@ -164,5 +198,8 @@ def make_extremes(events: Events, held: Held) -> Extremes:
         else:
             r.state_least = 0.0
         note_approach(record, work, last, begin, end)
+        if releases:
+            if r.state_released and r.state_begin >= r.release_time:
+                note_return(record, work, last, begin, end)
 
     return Extremes(start, begin_macro_step, note, begin_anew, publish)

@@ -106,7 +106,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     level, leap = make_level(terms, derivative, reel, bodies, held, layout, places)
     leaps = leap is not never
     events = make_events(reel, bodies, held, scheme, places)
-    extremes = make_extremes(events, held)
+    extremes = make_extremes(events, held, "release" in terms)
     acting = together((reel.acting, thrust.acting, perturbing.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)

@@ -77,7 +77,13 @@ _RELEASE = (
     Variable("release.stops_thrust", "1", "parameter", "the thruster stops as the line is cut", True, kind="Boolean"),
     flag("release.released", "the line is cut"),
     peak("release.time", "s", "when it was cut, since the start of this instance; zero before"),
+    flag("release.returned", "since then the bodies have come nearer again, and passed"),
+    peak("release.return_distance", "m", "least separation at such a pass; zero before one", 10.0),
+    peak("release.return_time", "s", "when that was, since the start of this instance; zero before"),
     state("state.released", "1", "the line is cut", kind="Integer"),
+    state("state.returned", "1", "they have passed, up to the begin of the step", kind="Integer"),
+    state("state.return_distance", "m", "least separation at a pass, up to the begin of the step"),
+    state("state.return_time", "s", "when that was"),
 )
 
 RELEASE = Group(
@@ -303,6 +309,8 @@ _MAPPED = (
     state("state.bounces", "1", "the step ends where the line goes slack", kind="Integer"),
 )  # fmt: skip
 
+REVOLUTIONS = 3.0
+"""Fewest between two communication points that the averaged level takes at once."""
 POINTS_ONLY = ("event_map", "averaged")
 """Levels of two points: what else they cannot carry is refused."""
 NO_BREAK = ("break", "release", "power", "electrodynamic")

@@ -15,8 +15,8 @@ FIFTY_YEARS = 50.0 * 365.25 * 86400.0
 EPOCH = parameter(
     "orbit.epoch",
     "s",
-    "when the instance begins: UTC since 2000-01-01 12:00, in days of 86400 s; a scene says a date. The axes are the "
-    "mean equator and equinox of then",
+    "when the instance begins: UTC since 2000-01-01 12:00, in days of 86400 s; a scene says a date, 1950 to "
+    "2050-01-01. The axes are the mean equator and equinox of then",
     9496.5 * 86400.0,
     -FIFTY_YEARS,
     FIFTY_YEARS,
@@ -132,8 +132,8 @@ SUNLIGHT = Group(
         "pressure": Term(
             "the Sun's light presses on each of the two bodies, as much of it as the Earth lets pass",
             (
-                at_least_zero("sunlight.coefficient", "1", "1 for a body that swallows all light, 2 for a mirror that "
-                              "faces it", 1.3, 10.0),
+                parameter("sunlight.coefficient", "1", "1 for a body that swallows all light, 2 for a mirror that "
+                          "faces it", 1.3, 1.0, 2.0),
                 at_least_zero("sunlight.chaser_area", "m2", "that the chaser shows the Sun", 10.0, 1e6),
                 at_least_zero("sunlight.target_area", "m2", "that the target shows the Sun", 10.0, 1e6),
                 output("sunlight.chaser_force", "N", "on the chaser, away from the Sun", 1e-4),
@@ -176,7 +176,8 @@ _CONDUCTING = (
     output("electrodynamic.field", "T", "magnetic flux density at the middle of the line", 3e-5),
     output("electrodynamic.emf", "V", "induced between its ends, positive from the chaser to the target", 100.0),
     output("electrodynamic.current", "A", "through it, from the chaser to the target", 1.0),
-    output("electrodynamic.power", "W", "that the current takes from the orbit", 100.0),
+    output("electrodynamic.power", "W", "voltage times current: what the air's frame, which turns, is given", 100.0),
+    output("electrodynamic.orbit_power", "W", "that the force takes from the orbit", 100.0),
     output("electrodynamic.force", "N", "on it", 0.01),
     vector("state.field", "T", "where the line is", "state"),
 )  # fmt: skip

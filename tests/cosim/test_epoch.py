@@ -47,6 +47,12 @@ def test_what_is_no_date_is_told(value: object) -> None:
         DATE.read(value)
 
 
+def test_bounds_of_a_date_are_dates() -> None:
+    with pytest.raises(InputError, match=r'orbit.epoch = "2051-01-01": must be at most 2050-01-01 00:00:00;'):
+        load("eclipse-powered", ('orbit.epoch="2051-01-01"',))
+    assert Expected("s", date=True, minimum=0.0).bounds() == "at least 2000-01-01 12:00:00"
+
+
 def test_a_scene_has_its_air_made_at_its_epoch() -> None:
     pytest.importorskip("pymsis")
     air = '\n[removal.air]\nlaw = "nrlmsis"\nf107 = 150.0\nf107_average = 145.0\nap = 12.0\n'

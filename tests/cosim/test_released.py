@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
+from dcone_cosim.phases.lowering import axis_of
 from dcone_cosim.phases.passive import conic
 from dcone_cosim.phases.released import apsides, findings, nearest_return, returning
-from dcone_cosim.phases.removal_report import axis_of
-from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_J2, EARTH_MU
 
 
 def test_nearest_return_of_two_orbits() -> None:
@@ -118,12 +119,66 @@ def test_what_is_told_of_two_bodies_that_no_line_holds() -> None:
     found = {row.key: row for row in findings(run, "removal", result)}
     assert found["released_at"].value == 320.0
     assert 600.0 <= found["return_time"].value <= 610.0
+    assert found["return_distance"].label == "nearest return of the bodies (by the rows)"
     assert found["return_distance"].value == pytest.approx(30.0, abs=6.0)
     assert found["chaser_perigee"].value == pytest.approx(250e3, abs=1.0)
     assert "chaser_lifetime" not in found
     assert 1.0 < found["target_lifetime"].value / 86400.0 < 60.0
     assert list(returning("removal", result, 20.0)) == []
     assert "may meet" in next(returning("removal", result, 50.0))
+    columns |= {"release.returned": np.ones(101), "release.return_distance": np.full(101, 12.5)}
+    columns["release.return_time"] = np.full(101, 611.0)
+    run, result = told({}, columns, values)
+    found = {row.key: row for row in findings(run, "removal", result)}
+    assert found["return_distance"].label == "nearest return of the bodies"
+    assert (found["return_distance"].value, found["return_time"].value) == (12.5, 611.0)
+    assert "may meet" in next(returning("removal", result, 20.0))
+    columns["release.returned"] = np.zeros(101)
+    run, result = told({}, columns, values)
+    found = {row.key: row for row in findings(run, "removal", result)}
+    assert found["return_distance"].value == "none within the run"
+    columns["relative.velocity[1]"] = -np.ones(101)
+    run, result = told({}, columns, values)
+    found = {row.key: row for row in findings(run, "removal", result)}
+    assert found["return_distance"].value == "none within the run, which ends as they come nearer"
     columns["release.released"] = np.zeros(101)
     run, result = told({}, columns, values)
     assert [row.value for row in findings(run, "removal", result)] == ["not within the run"]
+
+
+def test_what_is_told_of_an_orbit_does_not_hang_on_the_instant() -> None:
+    """Round a flattened Earth: of states of one revolution, by scipy, the same perigee and lifetime in the mean."""
+    radius = EARTH_EQUATORIAL_RADIUS + 250e3
+    speed = float(np.sqrt(EARTH_MU / radius))
+
+    def slope(_: float, y: Any) -> Any:
+        r, up = np.linalg.norm(y[:3]), np.array([0.0, 0.0, 1.0])
+        k = 1.5 * EARTH_J2 * (EARTH_EQUATORIAL_RADIUS / r) ** 2
+        return [*y[3:], *(-EARTH_MU / r**3 * ((1.0 + k * (1.0 - 5.0 * (y[2] / r) ** 2)) * y[:3] + 2.0 * k * y[2] * up))]
+
+    begin = [radius, 0.0, 0.0, 0.0, 0.0, speed]
+    states = solve_ivp(slope, (0.0, 5400.0), begin, t_eval=np.linspace(0.0, 5400.0, 5), rtol=1e-9, atol=1e-3).y.T
+    values = {
+        "chaser.mass": 2000.0, "target.mass": 1000.0, "air.drag_coefficient": 2.2, "air.chaser_area": 10.0,
+        "air.target_area": 10.0, "air.base_density": 7e-11, "air.base_altitude": 250e3, "air.scale_height": 20e3,
+    }  # fmt: skip
+    perigees, lives, osculating = [], [], []
+    for state in states:
+        columns = {"time": np.array([0.0, 1.0]), "release.released": np.ones(2), "release.time": np.zeros(2)}
+        for k in range(3):
+            columns[f"relative.position[{k + 1}]"] = columns[f"relative.velocity[{k + 1}]"] = np.ones(2)
+            for body in ("chaser", "target"):
+                columns[f"{body}.position[{k + 1}]"] = np.full(2, state[k])
+                columns[f"{body}.velocity[{k + 1}]"] = np.full(2, state[3 + k])
+        for terms in ({"oblateness": "J2"}, {}):
+            run, result = told({"air": "exponential", "release": "time", **terms}, columns, values)
+            found = {row.key: row for row in findings(run, "removal", result)}
+            life = found["target_lifetime"].value / 86400.0
+            assert float(f"{life:.2g}") == pytest.approx(life, rel=1e-12)
+            (lives if terms else osculating).append(life)
+            if terms:
+                perigees.append(found["target_perigee"].value)
+                assert found["target_perigee"].label == "target's perigee at the end, in the mean"
+    assert np.ptp(perigees) < 100.0
+    assert max(lives) / min(lives) < 1.1
+    assert max(osculating) / min(osculating) > 1.3

@@ -76,6 +76,15 @@ class TestTugs:
         rows = found(removal_run(make_scene("removal"), self.columns(taut=1.0), [0.0, 50.0, 100.0], tugs))
         assert rows["taut_from_start"].value == "taut from the start"
         assert (rows["tugs"].value, rows["first_tug"].value) == (1, 60.0)
+        rounded = TugLog(2)
+        rounded.update(2, np.array([[60.0, 2.0, 0.01], [5.7e-6, 30.0, 1.4e-9]]))
+        rows = found(removal_run(make_scene("removal"), self.columns(), [0.0, 50.0, 100.0], rounded))
+        assert rows["taut_from_start"].value == "taut from the start"
+        assert (rows["tugs"].value, rows["first_tug"].value) == (1, 60.0)
+        slack = TugLog(2)
+        slack.update(1, np.array([[0.01, 30.0, 0.01], [0.0, 0.0, 0.0]]))
+        rows = found(removal_run(make_scene("removal"), self.columns(), [0.0, 50.0, 100.0], slack))
+        assert (rows["tugs"].value, rows["first_tug"].value) == (1, 0.01)
         alone = TugLog(2)
         alone.update(1, np.array([[0.0, 30.0, 0.0], [0.0, 0.0, 0.0]]))
         rows = found(removal_run(make_scene("removal"), self.columns(taut=1.0), [0.0, 50.0, 100.0], alone))
@@ -98,6 +107,24 @@ class TestLowering:
         assert rows["lowering_rate"].value == pytest.approx(554.8 / 86400.0)
         assert rows["lowering_rate"].shown() == "554.8 m/day"
         assert rows["lowering_rate"].unit == "m/s"
+
+    @pytest.mark.parametrize(("name", "told"), [("release", "the line was cut"), ("break", "the line broke")])
+    def test_of_a_pair_that_is_let_go_until_then(self, make_scene: MakeScene, name: str, told: str) -> None:
+        """It falls 100 m in each quarter of the first day; in the second the bodies are far apart and free."""
+        time = np.arange(0.0, 2.01, 0.25) * 86400.0
+        flags = {"release": "release.released", "break": "break.broken"}
+        columns = {
+            "center.semi_major_axis": list(7.178e6 - np.minimum(time, 86400.0) * 400.0 / 86400.0 + 9e3 * (time > 9e4)),
+            "separation": list(np.where(time > 86400.0, 5e4, 12.0)), "altitude": [8e5] * 9,
+            flags[name]: [0.0] * 4 + [1.0] * 5, f"{name}.time": [86400.0] * 9,
+        }  # fmt: skip
+        rows = found(removal_run(make_scene("removal"), columns, list(time), TugLog(1)))
+        assert rows["lowered"].label == f"orbit lowered by, until {told}"
+        assert rows["lowered"].value == pytest.approx(400.0)
+        assert rows["lowering_rate"].shown() == "400 m/day"
+        columns = {key: [column[0], column[-1]] for key, column in columns.items()}
+        rows = found(removal_run(make_scene("removal"), columns, [0.0, 172800.0], TugLog(1)))
+        assert rows["lowered"].value == f"not reported: too few rows before {told}"
 
     def test_not_of_a_pair_far_apart(self, make_scene: MakeScene) -> None:
         rows = self.rows(make_scene, 20e3, 554.8, 1.0)

@@ -68,6 +68,16 @@ class TestWindow:
         assert (told.window, told.is_orbit) == (6000.0, False)
         assert last_orbit(recorded(make_scene("removal"), end=6100.0, tether__tension=self.TENSION)).is_orbit
 
+    def test_rows_far_apart_tell_of_several_orbits_and_say_so(self, make_scene: MakeScene) -> None:
+        """A row an hour and a half apart from the next holds one orbit, rows a day apart hold fourteen."""
+        for apart, label in ((3000.0, "mean tension, last orbit"), (86400.0, "mean tension, last 14.3 orbits")):
+            time = np.arange(4) * apart
+            columns = {"tether.tension": [0.02] * 4, "tether.impulse": list(0.02 * time),
+                       "center.semi_major_axis": [AXIS] * 4}  # fmt: skip
+            rows = found(removal_run(make_scene("removal"), columns, list(time), TugLog(1)))
+            assert rows["tension_mean"].label == label
+            assert rows["tension_mean"].value == pytest.approx(0.02, rel=1e-12)
+
     def test_what_holds_over_a_macro_step_counts_from_the_first_step_of_the_window(self, make_scene: MakeScene) -> None:
         """The row at 1400 s tells of the step before it, which is not in the window."""
         least, peak = np.full(76, 0.01), np.full(76, 0.5)

@@ -121,3 +121,58 @@ def test_a_line_without_stiffness_has_no_period(keys: str) -> None:
     with pytest.raises(InputError, match=r"removal\.burn\.(duration|edge)"):
         parse(text, "wrong", "wrong.toml")
     parse(text.replace('"0 s"', '"2 s"').replace("notch", "ramp"), "right", "right.toml")
+
+
+def test_averaged_says_where_its_macro_step_is_too_short() -> None:
+    """Three revolutions at 800 km take 18,157 s."""
+    for step, told in (("60 s", True), ("18100 s", True), ("18200 s", False), ("1 day", False)):
+        scene = parse(
+            TABLE_2, "mine", "mine.toml", settings=('removal.level.detail="averaged"', f'removal.macro_step="{step}"')
+        )
+        said = [text for text in scene.cautions if "averaged" in text]
+        assert bool(said) == told
+        assert not said or "18157" in said[0].replace(",", "")
+
+
+def test_a_selector_that_is_misspelt_has_its_nearest_key() -> None:
+    for table in ("level", "release", "electrodynamic", "air", "shadow"):
+        selector = {"level": "detail", "release": "when", "electrodynamic": "field", "air": "law", "shadow": "shape"}[
+            table
+        ]
+        with pytest.raises(
+            InputError, match=rf"removal.{table}.{selector}s = .*unknown key; did you mean '{selector}'"
+        ):
+            parse(TABLE_2, "mine", "mine.toml", settings=(f'removal.{table}.{selector}s="x"',))
+
+
+def test_what_a_table_of_an_argument_lacks_is_told_of_the_argument() -> None:
+    with pytest.raises(InputError) as told:
+        parse(TABLE_2, "mine", "mine.toml", settings=('removal.release.att="3 s"',))
+    lines = str(told.value).splitlines()[1:]
+    assert lines
+    assert all(line.strip().startswith("--set removal.release.att") for line in lines)
+    with pytest.raises(InputError, match=r"line \d+: removal.release.when missing"):
+        parse(
+            TABLE_2 + '[removal.release]\nat = "3 s"\nfar = 1\n',
+            "mine",
+            "mine.toml",
+            settings=("removal.release.att=1",),
+        )
+
+
+@pytest.mark.parametrize("value", ["0.5", "2.1"])
+def test_light_presses_between_black_and_a_mirror(value: str) -> None:
+    text = find("eclipse-powered").read_text(encoding="utf-8")
+    with pytest.raises(InputError, match=r"sunlight.coefficient = \d.\d: must be at (least 1|most 2);"):
+        parse(text, "mine", "mine.toml", settings=(f"removal.sunlight.coefficient={value}",))
+
+
+@pytest.mark.parametrize("value", ["1226.85 degC", "1226.85 \u00b0C", "1226.85 deg_C", "1500 K"])
+def test_degrees_celsius_as_people_write_them(value: str) -> None:
+    scene = parse(
+        find("edt").read_text(encoding="utf-8"),
+        "mine",
+        "mine.toml",
+        settings=(f'removal.electrodynamic.electron_temperature="{value}"',),
+    )
+    assert scene.phases[0].main.parameters["electrodynamic.electron_temperature"] == pytest.approx(1500.0, rel=1e-12)

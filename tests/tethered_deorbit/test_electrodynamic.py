@@ -68,9 +68,9 @@ def test_forces_on_both_ends(resistance: float) -> None:
 
 def test_what_it_takes_from_the_orbit() -> None:
     """Energy that the orbit loses in a third of a revolution: the work of the force at the middle of the line, by
-    Simpson's rule over what is told; and nothing once the line is cut."""
+    Simpson's rule over what is told, the power told and that worked out; and nothing once the line is cut."""
     i = low.tow(air__chaser_area=0.0, air__target_area=0.0, release__at=2400.0)
-    work, energy, power = [], [i["energy.orbital"]], []
+    work, energy, lost = [], [i["energy.orbital"]], []
     for _ in range(41):
         r_c, r_t = i.array("chaser_position"), i.array("target_position")
         middle, velocity = 0.5 * (r_c + r_t), 0.5 * (i.array("chaser_velocity") + i.array("target_velocity"))
@@ -82,12 +82,14 @@ def test_what_it_takes_from_the_orbit() -> None:
         force = i["electrodynamic.current"] * np.cross(r_t - r_c, b)
         assert i["electrodynamic.power"] == pytest.approx(-force @ wind, rel=1e-4)
         assert i["electrodynamic.force"] == pytest.approx(np.linalg.norm(force), rel=1e-4)
-        power.append(i["electrodynamic.power"])
+        lost.append(i["electrodynamic.orbit_power"])
         work.append(float(force @ i.array("center_velocity")))
         if len(work) < 41:
             i.step(59.9)
             energy.append(i["energy.orbital"])
-    simpson = np.array([1.0, *[4.0, 2.0] * 19, 4.0, 1.0]) @ np.array(work) * 59.9 / 3.0
+    weights = np.array([1.0, *[4.0, 2.0] * 19, 4.0, 1.0]) * 59.9 / 3.0
+    simpson = weights @ np.array(work)
+    assert energy[0] - energy[-1] == pytest.approx(weights @ np.array(lost), rel=2e-2)
     assert energy[-1] - energy[0] == pytest.approx(simpson, rel=2e-2)
     assert simpson < -1e6
     i.step(60.0)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 
 from fmu_src.instance import ModelFault
 from fmu_src.tethered_deorbit.interface import MODEL
@@ -50,6 +51,39 @@ def test_cut_at_a_time_both_fall_freely(stops: bool) -> None:
         assert off < 1e-5 if free else off == pytest.approx(0.5 * 20.0 / 2000.0 * 300.0**2, rel=0.05)
     spent = 20.0 * (97.5 if stops else 400.0) / (3000.0 * 9.80665)
     assert i["chaser.propellant"] == pytest.approx(spent, rel=1e-12)
+
+
+@pytest.mark.parametrize("step", [100.0, 10000.0])
+@pytest.mark.parametrize(("level", "at"), [(-200.0, 97.5), (-2.0, 900.0), (-0.5, 900.0)])
+def test_the_nearest_return_is_told_whatever_the_step(step: float, level: float, at: float) -> None:
+    """Against a search over the two conics of the cut, and nothing before they have passed. In the first case they were
+    nearer before the cut, in the second the first pass is the nearest, in the third the last."""
+    i = tow("time", release__at=at, thrust__level=level, tether__damping_ratio=0.1)
+    begin = tow("time", release__at=at, thrust__level=level, tether__damping_ratio=0.1)
+    begin.step(at)
+    states = [[np.array(begin.array(f"{body}_{what}")) for what in ("position", "velocity")]
+              for body in ("chaser", "target")]  # fmt: skip
+
+    def apart(elapsed: float) -> float:
+        places = np.zeros((2, 3))
+        for place, (position, velocity) in zip(places, states, strict=True):
+            propagate(place, np.zeros(3), position, velocity, float(elapsed), EARTH_MU)
+        return float(np.linalg.norm(places[1] - places[0]))
+
+    grid = np.arange(0.0, 20000.0 - at, 10.0)
+    seen = np.array([apart(t) for t in grid])
+    turns = [k for k in range(1, len(grid) - 1) if seen[k - 1] > seen[k] <= seen[k + 1]]
+    assert turns
+    low = min(turns, key=lambda k: seen[k])
+    best = minimize_scalar(apart, bounds=(grid[low - 1], grid[low + 1]), method="bounded", options={"xatol": 1e-6})
+    assert not begin["release.returned"]
+    assert begin["release.return_distance"] == 0.0
+    while i.time < 20000.0:
+        i.step(step)
+    assert i["release.returned"]
+    assert i["release.return_distance"] == pytest.approx(best.fun, abs=2e-3 if level == -200.0 else 1e-5)
+    assert i["release.return_time"] == pytest.approx(at + best.x, abs=0.5)
+    assert (i["approach.distance"] < i["release.return_distance"] - 0.1) == (level == -200.0)
 
 
 @pytest.mark.parametrize(("when", "low"), [("altitude", 799.9e3), ("perigee", 780e3)])

@@ -134,10 +134,10 @@ ELSEWHERE = {
         (CAME_DOWN, PERIGEE_LOW, PERIGEE_RAISED, CAME_CLOSE, WRAPPED_UP, BROKE, ENDS_AT_START), "test_ends.py"
     ),
     NO_ARCS: "test_burn.py",
-    RELEASED_AT_START: "test_release.py",
     NO_ATTITUDE: "test_aocs.py",
     NO_VERTICAL: "test_regulator.py",
     BAD_SCHEDULE: "test_winding.py",
+    RELEASED_AT_START: "test_release.py",
     NO_BODY: "test_hulls.py",
 }
 

@@ -156,7 +156,8 @@ def make_electrodynamic(terms: Mapping[str, str], field: Callable[..., Any]) -> 
 
     @kernel
     def publish(record: Any, time: float) -> None:
-        """Field [T], voltage [V], current [A], force [N], and the power that the current takes from the orbit [W].
+        """Field [T], voltage [V], current [A], force [N], and powers [W]: I E, that of the plasma's frame, which turns,
+        and -F . V, which the orbit loses, V being the velocity of the centre of mass.
 
         Checked  tests/tethered_deorbit/test_electrodynamic.py
         """
@@ -172,6 +173,7 @@ def make_electrodynamic(terms: Mapping[str, str], field: Callable[..., Any]) -> 
         r.electrodynamic_current = current
         r.electrodynamic_power = emf * current
         cross(velocity, line, r.state_field)
+        r.electrodynamic_orbit_power = -current * dot(velocity, r.center_velocity)
         r.electrodynamic_force = abs(current) * norm(velocity)
 
     return Disturbing(add, publish)

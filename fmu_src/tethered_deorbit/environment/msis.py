@@ -7,9 +7,13 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.air_table import COUNT, DEGREE, LOW, SPACING
-from orbital.constants import EARTH_EQUATORIAL_RADIUS
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_FLATTENING
 from orbital.kernel import kernel
 from orbital.vectors import Array, cross, dot, norm
+
+POLAR_RADIUS = EARTH_EQUATORIAL_RADIUS * (1.0 - EARTH_FLATTENING)
+SQUEEZED = EARTH_FLATTENING * (2.0 - EARTH_FLATTENING)
+"""Square of the ellipsoid's eccentricity [-]."""
 
 
 def make_density(reader: Any) -> Callable[..., Any]:
@@ -40,7 +44,8 @@ def make_density(reader: Any) -> Callable[..., Any]:
         y = dot(position, east) * scale
         along = dot(position, r.state_sun) - z * radius * dot(r.state_sun, pole)
         x = along * scale
-        place = (radius - EARTH_EQUATORIAL_RADIUS - LOW) / SPACING
+        ground = POLAR_RADIUS / math.sqrt(1.0 - SQUEEZED * (1.0 - z * z))
+        place = (radius - ground - LOW) / SPACING
         inside = min(max(place, 0.0), COUNT - 1.0)
         first = min(int(inside), COUNT - 2)
         t = inside - first

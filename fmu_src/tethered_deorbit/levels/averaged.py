@@ -43,13 +43,12 @@ from fmu_src.tethered_deorbit.levels.libration import (
     potential,
     swing,
 )
+from fmu_src.tethered_deorbit.optional_rows import REVOLUTIONS
 from fmu_src.tethered_deorbit.outputs import note_pull
 from orbital.constants import EARTH_MU, STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.vectors import Array, cross, dot, norm
 
-REVOLUTIONS = 3.0
-"""Fewest that are worth a leap."""
 CHANGE = 0.02
 """Share by which the orbit's rate changes in a leap at most."""
 MARGIN = 0.1

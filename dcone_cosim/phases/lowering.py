@@ -1,0 +1,83 @@
+"""How far a tow has lowered the orbit of the pair, or raised it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from dcone_cosim.findings import Finding
+from dcone_cosim.phases.tension import orbital_period
+from dcone_cosim.results import PhaseResult, RunResult
+from orbital.constants import EARTH_MU
+
+NEAR = 1e-3
+"""Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
+
+
+def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.float64]:
+    """Semi-major axis of the pair (rows,) [m]: osculating, or where the Earth is flattened, by the orbit's energy.
+
+        a = -mu M/(2 E),   E with the potential of the flattening in it
+
+    The osculating one breathes by kilometres there, twice a revolution, and two samples of it tell nothing.
+    """
+    recorder = result.recorder
+    main = next(one.main for one in run.scene.phases if one.name == phase)
+    values = run.parameters.get(phase, {})
+    known = {"chaser.mass", "target.mass"} <= values.keys() and "energy.orbital" in recorder
+    if main.fmu is not None or "oblateness" not in main.terms or not known:
+        return recorder["center.semi_major_axis"]
+    mass = values["chaser.mass"] + values["target.mass"]
+    used = recorder["chaser.propellant"] if "engine" in main.terms else 0.0
+    return np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
+
+
+def _while_held(result: PhaseResult) -> tuple[npt.NDArray[np.intp], str]:
+    """Rows in which a line holds the two bodies together, and what ended that, "" for nothing."""
+    time, last = result.recorder["time"] - result.recorder["time"][0], result.recorder.last()
+    ends = [
+        (last.get(when, 0.0), told)
+        for what, when, told in (
+            ("release.released", "release.time", "the line was cut"),
+            ("break.broken", "break.time", "the line broke"),
+        )
+        if last.get(what)
+    ]
+    end, told = min(ends, default=(math.inf, ""))
+    return np.flatnonzero(time <= end), told
+
+
+def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Finding]:
+    """How far the semi-major axis of the pair fell, where that is an orbit's.
+
+    Gravity on the pair is not that on its mass at the centre: it differs by (3/2) (s/r)^2 at most, and moves the
+    osculating axis by some of that. What is smaller than this is not told, and nothing when the pair is far apart;
+    a rate per day needs a whole revolution.
+    """
+    recorder = result.recorder
+    if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
+        return
+    axis = axis_of(run, phase, result)
+    rows, until = _while_held(result)
+    if len(rows) < 2:
+        yield Finding(phase, "lowered", "orbit lowered by", f"not reported: too few rows before {until}")
+        return
+    axis, until = axis[rows], f", until {until}" if until else ""
+    share = float(np.max(recorder["separation"][rows])) / float(np.min(axis))
+    if not 0.0 <= share <= NEAR:
+        text = f"not reported: chaser and target are up to {share:.2g} of the orbit's radius apart, more than {NEAR:g}"
+        yield Finding(phase, "lowered", f"orbit lowered by{until}", text)
+        return
+    lowered, elapsed = float(axis[0] - axis[-1]), result.end - result.start
+    if until:
+        elapsed = float(recorder["time"][rows[-1]] - recorder["time"][0])
+    if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
+        yield Finding(phase, "lowered", f"orbit lowered by{until}", "too little to tell from the pair's own motion")
+        return
+    key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
+    yield Finding(phase, key, f"orbit {key} by{until}", abs(lowered), "m")
+    if elapsed >= orbital_period(float(axis[0])):
+        yield Finding(phase, rate, f"orbit {key} by, per day", abs(lowered) / elapsed, "m/s", shown_in="m/day")
