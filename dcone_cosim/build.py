@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import time as clock
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -225,14 +225,9 @@ def laid(model: str, values: Mapping[str, Any], sources: Mapping[str, Any], term
     return Laid(tables, parameters, shown)
 
 
-SPOKEN = {"line": "the tether"}
-"""What a line is called in every report, where its own label may be taken for another's."""
-
-
 def lines(model: str, terms: Mapping[str, str]) -> list[Line]:
     """The lines of a model with these terms; of an FMU from elsewhere, which names none, all that it may have."""
-    found = [line for line in LINES.get(model, ()) if not terms or not line.group or line.group in terms]
-    return [replace(line, label=SPOKEN.get(line.name, line.label)) for line in found]
+    return [line for line in LINES.get(model, ()) if not terms or not line.group or line.group in terms]
 
 
 def known_variables(name: str) -> dict[str, tuple[Variable, Value]]:

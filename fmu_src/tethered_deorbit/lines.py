@@ -7,7 +7,7 @@ from fmu_src.lines import Line
 LINES = (
     Line(
         "line",
-        "the line",
+        "the tether",
         "tether",
         ("tether.tension_peak", "tether.tension"),
         follows={"tether.youngs_modulus": "youngs_modulus", "tether.damping_ratio": "damping_ratio"},
