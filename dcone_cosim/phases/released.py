@@ -105,6 +105,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         yield Finding(phase, "return_time", "that was at", back.after, "s")
     main = next(one.main for one in run.scene.phases if one.name == phase)
     values = {**main.asked, **main.defaults, **run.parameters.get(phase, {})}
+    if "engine" in main.terms and "chaser.mass" in values:
+        values["chaser.mass"] -= last.get("chaser.propellant", 0.0)
     for body in ("chaser", "target"):
         names = [f"{body}.{what}{each}" for what in ("position", "velocity") for each in EACH]
         if not set(names) <= last.keys():

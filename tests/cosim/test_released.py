@@ -126,6 +126,13 @@ def test_what_is_told_of_two_bodies_that_no_line_holds() -> None:
     assert 1.0 < found["target_lifetime"].value / 86400.0 < 60.0
     assert list(returning("removal", result, 20.0)) == []
     assert "may meet" in next(returning("removal", result, 50.0))
+    empty = values | {"chaser.mass": 1000.0, "air.chaser_area": 10.0}
+    lives = []
+    for terms, full in (({}, {"chaser.mass": 1000.0}), ({"engine": "chemical"}, {"chaser.mass": 1500.0})):
+        tank = columns | {"chaser.propellant": np.linspace(0.0, 500.0, 101)}
+        run, result = told({"air": "exponential", "release": "time", **terms}, tank, empty | full)
+        lives.append({row.key: row.value for row in findings(run, "removal", result)})
+    assert lives[0]["chaser_lifetime"] == lives[1]["chaser_lifetime"] == lives[1]["target_lifetime"]
     columns |= {"release.returned": np.ones(101), "release.return_distance": np.full(101, 12.5)}
     columns["release.return_time"] = np.full(101, 611.0)
     run, result = told({}, columns, values)
