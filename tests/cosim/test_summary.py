@@ -303,8 +303,14 @@ class TestSideBySide:
 
         assert side_by_side.halves(work, "a", "b") == ["a", "b"]
 
-    def test_an_interrupt_leaves_no_process(self) -> None:
-        here = os.getpid()
+    def test_an_interrupt_leaves_no_process(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        here, fork, forked = os.getpid(), os.fork, []
+
+        def noted() -> int:
+            forked.append(fork())
+            return forked[-1]
+
+        monkeypatch.setattr(side_by_side.os, "fork", noted)
 
         def work(tasks: Sequence[str]) -> list[str]:
             if os.getpid() == here:
@@ -315,7 +321,7 @@ class TestSideBySide:
         with pytest.raises(KeyboardInterrupt):
             side_by_side.halves(work, "a", "b")
         with pytest.raises(ChildProcessError):
-            os.waitpid(-1, os.WNOHANG)
+            os.waitpid(forked[0], os.WNOHANG)
 
 
 SQUARE = {"net.side": 4.0, "net.mesh": 2.0}
