@@ -10,6 +10,7 @@ from fmu_src.tethered_deorbit.acting import Acting, together
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BROKE
 from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.parted import make_parted
 from orbital.kernel import kernel
 from orbital.vectors import Array
 
@@ -74,28 +75,12 @@ def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) ->
         return 0
 
     @kernel
-    def taut(record: Any, length: float, rate: float) -> bool:
-        """Whether a whole line pulls.
+    def parted(record: Any) -> bool:
+        """Whether it is broken.
 
         Checked  tests/tethered_deorbit/test_ends.py
         """
-        return record[0].state_broken == 0 and bool(reel.taut(record, length, rate))
-
-    @kernel
-    def onset(record: Any, length: float, rate: float, since: float) -> float:
-        """That of a whole line; of a broken one, never.
-
-        Checked  tests/tethered_deorbit/test_ends.py
-        """
-        return -1.0 if record[0].state_broken else float(reel.onset(record, length, rate, since))
-
-    @kernel
-    def onset_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
-        """Its time derivative.
-
-        Checked  tests/tethered_deorbit/test_ends.py
-        """
-        return 0.0 if record[0].state_broken else float(reel.onset_rate(record, length, rate, acceleration, since))
+        return bool(record[0].state_broken != 0)
 
     breaking = Acting(begin=begin, limit=limit, act=act)
-    return reel._replace(taut=taut, onset=onset, onset_rate=onset_rate, acting=together((breaking, reel.acting)))
+    return make_parted(reel, parted)._replace(acting=together((breaking, reel.acting)))

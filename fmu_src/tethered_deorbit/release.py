@@ -13,6 +13,7 @@ from fmu_src.tethered_deorbit.idle import always, no_end
 from fmu_src.tethered_deorbit.interface import RELEASED_AT_START
 from fmu_src.tethered_deorbit.kinematics import perigee_radius
 from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.parted import make_parted
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
@@ -28,7 +29,7 @@ def releasable(reel: Reel, terms: Mapping[str, str], interface: Interface) -> Re
     """
     if "release" not in terms:
         return reel
-    when = terms["release"]
+    when, thrusts = terms["release"], "thrust" in terms
     slot = interface.references[f"release.{'at' if when == 'time' else when}"]
 
     @kernel
@@ -110,32 +111,14 @@ def releasable(reel: Reel, terms: Mapping[str, str], interface: Interface) -> Re
             record[0].state_thrust = 0.0
             record[0].state_thrust_rate = 0.0
 
-    thrusts = "thrust" in terms
-
     @kernel
-    def taut(record: Any, length: float, rate: float) -> bool:
-        """Whether a whole line pulls.
+    def parted(record: Any) -> bool:
+        """Whether it is cut.
 
         Checked  tests/tethered_deorbit/test_release.py
         """
-        return record[0].state_released == 0 and bool(reel.taut(record, length, rate))
-
-    @kernel
-    def onset(record: Any, length: float, rate: float, since: float) -> float:
-        """That of a whole line; of one that is cut, never.
-
-        Checked  tests/tethered_deorbit/test_release.py
-        """
-        return -1.0 if record[0].state_released else float(reel.onset(record, length, rate, since))
-
-    @kernel
-    def onset_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
-        """Its time derivative.
-
-        Checked  tests/tethered_deorbit/test_release.py
-        """
-        return 0.0 if record[0].state_released else float(reel.onset_rate(record, length, rate, acceleration, since))
+        return bool(record[0].state_released != 0)
 
     by_time = when == "time"
     cutting = Acting(begin=begin, due=due if by_time else no_end, holds=always if by_time else holds, act=act)
-    return reel._replace(taut=taut, onset=onset, onset_rate=onset_rate, acting=together((cutting, reel.acting)))
+    return make_parted(reel, parted)._replace(acting=together((cutting, reel.acting)))
