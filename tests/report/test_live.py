@@ -227,7 +227,7 @@ def test_a_tether_that_is_too_short_breaks_and_the_page_says_why(asked: Asked, m
     shown = "[...document.querySelectorAll('#live-tow [data-of=moved]')].map((one) => one.textContent)"
     assert set(asked.browser.ask(shown)) == {"…"}
     assert asked.said("command") == ""
-    asked.browser.ask(f"{TOW}.busy = false; {TOW}.ask()")
+    asked.browser.ask(f"{TOW}.busy = false; {TOW}.change()")
     asked.settle()
     assert asked.said("command").endswith("-o moved")
     cell = "document.querySelector('#live-tow [data-figure={}] [data-of=moved]').textContent"
@@ -242,7 +242,7 @@ def test_the_net_in_the_page_is_that_of_the_fmu(asked: Asked, kept: Path) -> Non
     asked.browser.ask("document.getElementById('live-shot').scrollIntoView()")
     asked.wait(f"{SHOT}?.state === 'ready'")
     assert asked.browser.ask(f"{SHOT}.replay.playing") is False
-    asked.browser.ask("document.querySelector('#live-shot [data-part=shoot]').click()")
+    asked.browser.ask("document.querySelector('#live-shot [data-part=button]').click()")
     asked.wait("document.getElementById('live-shot').dataset.done")
     assert "Unmoved it is the run again, bit for bit" in asked.said("status", "live-shot")
     asked.browser.ask(f"{SHOT}.replay.parts.speed.value = '30'")
@@ -272,7 +272,7 @@ def test_another_shot_is_that_of_the_run_with_its_values(asked: Asked, kept: Pat
     assert "shoot again" in asked.said("status", "live-shot")
     words = shlex.split(asked.said("command", "live-shot"))
     assert words[-4:] == ["--set", "capture.bullets.speed=3.3 m/s", "-o", "moved"]
-    asked.browser.ask("document.querySelector('#live-shot [data-part=shoot]').click()")
+    asked.browser.ask("document.querySelector('#live-shot [data-part=button]').click()")
     asked.wait("document.getElementById('live-shot').dataset.done")
     assert "bit for bit" not in asked.said("status", "live-shot")
     figures = asked.browser.ask(f"{SHOT}.over.figures")

@@ -2,7 +2,7 @@
 
 import { spoken, unpack } from "dcone/bytes";
 import { Chart } from "dcone/chart";
-import { Knob, workerOf } from "dcone/knob";
+import { Panel } from "dcone/panel";
 
 /** How far two numbers are apart, as a share of the larger. */
 const apart = (one, other) => (one === other ? 0 : Math.abs(one - other) / Math.max(Math.abs(one), Math.abs(other)));
@@ -20,24 +20,15 @@ const FIGURES = {
 /** How long an answer may take before what is drawn of the values before is taken away [ms]. */
 const PATIENCE = 300;
 
-export class Live {
+export class Live extends Panel {
   constructor(root, data) {
-    this.root = root;
-    this.told = data;
-    this.number = 0;
+    super(root, data, "tow", ["factor"]);
     this.results = { run: null, moved: null };
     this.recorded = unpack(data.tugs);
-    const part = (name) => root.querySelector(`[data-part="${name}"]`);
-    this.status = part("status");
-    this.command = part("command");
-    this.factor = part("factor");
     this.factor.value = data.line.factor;
-    this.note = part("note");
-    this.knobs = data.knobs.map((told, i) => new Knob(root.querySelector(`[data-knob="${i}"]`), told, () => this.ask()));
-    part("reset").addEventListener("click", () => { for (const knob of this.knobs) knob.put(knob.told.value); this.ask(); });
-    this.factor.addEventListener("change", () => { this.results.run = null; this.ask(); });
+    this.factor.addEventListener("change", () => { this.results.run = null; this.change(); });
     const { phase, clock, unit } = data;
-    this.chart = new Chart(part("chart"), { key: `${phase}-live`, title: "Tension of the tether", clock, unit: "N", xUnit: unit, log: true, range: [0, data.plan.duration / data.divisor], marks: [], series: this.series() });
+    this.chart = new Chart(this.part("chart"), { key: `${phase}-live`, title: "Tension of the tether", clock, unit: "N", xUnit: unit, log: true, range: [0, data.plan.duration / data.divisor], marks: [], series: this.series() });
     this.tell();
     this.begin();
   }
@@ -54,23 +45,9 @@ export class Live {
     return found;
   }
 
-  begin() {
-    try {
-      this.worker = workerOf("tow", this.told, (told) => this.hear(told), (text) => this.fail(text));
-    } catch (error) {
-      this.fail(`this browser gives the page no worker: ${error.message}`);
-    }
-  }
+  ready() { this.post(); }
 
-  fail(text) {
-    this.status.textContent = `Nothing can be simulated here: ${text}.`;
-    this.root.classList.add("off");
-    this.state = "broken";
-  }
-
-  get moved() { return this.knobs.filter((knob) => knob.moved); }
-
-  ask() {
+  change() {
     if (this.state === "broken") return;
     [this.failed, this.results.moved] = ["", null];  // they were of other values
     clearTimeout(this.later);
@@ -98,7 +75,7 @@ export class Live {
     this.busy = true;
     const moved = this.results.run ? this.moved : [];
     const values = Object.assign({}, ...moved.map((knob) => knob.values));
-    this.which = this.results.run && moved.length ? "moved" : "run";
+    this.column = this.results.run && moved.length ? "moved" : "run";
     [this.diameter, this.damping] = ["tether.diameter", "tether.damping_ratio"].map((name) => this.si(name, moved));
     this.number += 1;
     this.root.dataset.number = this.number;
@@ -107,9 +84,6 @@ export class Live {
   }
 
   hear(told) {
-    if (told.kind === "ready") { this.state = "ready"; this.post(); return; }
-    if (told.kind === "broken") { this.fail(told.text); return; }
-    if (told.number !== this.number) return;
     if (told.kind === "tow") {
       this.busy = false;
       const area = (Math.PI * this.diameter * this.diameter) / 4, strength = this.told.line.strength;
@@ -118,17 +92,17 @@ export class Live {
       told.required = NaN;
       told.damping = this.damping;
       told.taut = told.drawn["tether.tension"]?.[0] > 0 ? Math.min(told.tugs.length, 1) : 0;
-      if (this.which === "run") { this.results = { run: told, moved: null }; this.hold(told); } else this.results.moved = told;
+      if (this.column === "run") { this.results = { run: told, moved: null }; this.hold(told); } else this.results.moved = told;
       this.failed = "";
     } else if (told.kind === "required") {
-      if (this.results[this.which]) Object.assign(this.results[this.which], { sought: false, required: told.diameter * 1e3, jumps: told.jumps, why: told.why });
+      if (this.results[this.column]) Object.assign(this.results[this.column], { sought: false, required: told.diameter * 1e3, jumps: told.jumps, why: told.why });
     } else {
       this.busy = false;
       if (!this.waiting) this.failed = told.text.replace(" 1 is out", " is out");  // a pure number has no unit to tell
     }
     this.tell();
     if (told.kind !== "required" && !this.waiting) this.chart.give(this.series());
-    if (told.kind === "tow" && (this.waiting || (this.which === "run" && this.moved.length))) this.post();
+    if (told.kind === "tow" && (this.waiting || (this.column === "run" && this.moved.length))) this.post();
     else if (this.waiting) this.post();
   }
 
@@ -173,18 +147,15 @@ export class Live {
     }
     const told = now.length ? moved : run;
     const shown = told && told.number === this.number;
-    this.status.classList.toggle("refused", Boolean(this.failed));
-    for (const knob of this.knobs) knob.refuse(Boolean(this.failed) && Object.keys(knob.told.sets).some((name) => this.failed.includes(name)));
+    this.refuse(this.failed);
     this.status.textContent = this.failed ? `The model refuses that, and nothing is computed: ${this.failed}.` : !told ? "computing …"
       : `${spoken(told.time / 3600)} h simulated in ${spoken(told.took, 2)} s, in this page; the compiled FMU took ${spoken((this.told.native.wall * told.time) / this.told.native.duration, 2)} s for them. ${this.same ?? ""}` + (told.ended ? ` It ended early: ${told.ended}.` : "");
     this.root.classList.toggle("waits", !shown && !this.failed);
     this.root.dataset.done = shown && !this.waiting && !this.busy ? this.number : "";
     const again = now.some((knob) => knob.told.again);
-    const settings = now.flatMap((knob) => knob.settings);
     const from = this.told.handed && !again ? ` --from ${this.told.phase}` : "";
     const offered = !now.length || Boolean(moved && !this.failed);
-    this.command.parentElement.classList.toggle("gone", !offered);
-    this.command.textContent = !offered ? "" : now.length ? ["dcone run", this.told.folder + from, ...settings, "-o moved"].join(" ") : `dcone run ${this.told.folder}`;
+    this.offer(!offered ? [] : now.length ? ["dcone run", this.told.folder + from, ...this.settings, "-o moved"] : ["dcone run", this.told.folder]);
     const notes = now.filter((knob) => knob.told.estimate).map((knob) => `${knob.told.label}: ${knob.told.estimate}`);
     if (again && !notes.length && !this.failed) notes.push("the command shoots the net anew; here the tow begins with the net as it was handed over");
     const length = this.si("tether.rest_length"), { reach } = this.told.line;

@@ -1,7 +1,7 @@
 // The shot simulated in the page: the net itself opens, meets the target and closes, with its values moved.
 
 import { spoken, unpack } from "dcone/bytes";
-import { Knob, workerOf } from "dcone/knob";
+import { Panel } from "dcone/panel";
 import { Replay } from "dcone/replay";
 
 const LARGEST = 255;
@@ -9,17 +9,11 @@ const LARGEST = 255;
 /** A figure in two columns. */
 const FIGURES = { "mouth.area": "mouth.area", "thread.tension_max": "thread.tension_max", t_capture: "t_capture" };
 
-export class ShotView {
+export class ShotView extends Panel {
   /** `box` is what the run's own replay shows, `surface` its target. */
   constructor(root, told, colours, box, surface) {
-    this.root = root;
-    this.told = told;
-    const part = (name) => root.querySelector(`[data-part="${name}"]`);
-    [this.status, this.command, this.note, this.button] = ["status", "command", "note", "shoot"].map(part);
-    this.knobs = told.knobs.map((one, i) => new Knob(root.querySelector(`[data-knob="${i}"]`), one, () => this.change()));
-    part("reset").addEventListener("click", () => { for (const knob of this.knobs) knob.put(knob.told.value); this.change(); });
+    super(root, told, "shot", ["button"]);
     this.button.addEventListener("click", () => this.shoot());
-    this.number = 0;
     this.over = null;
     [this.held, this.most, this.took, this.failed] = [0, 0, 0, ""];
     this.replay = new Replay(root.querySelector(".replay"), this.clip(box, surface), colours);
@@ -42,30 +36,21 @@ export class ShotView {
     return found;
   }
 
-  begin() {
-    try {
-      this.worker = workerOf("shot", this.told, (told) => this.hear(told), (text) => this.fail(text));
-    } catch (error) {
-      this.fail(`this browser gives the page no worker: ${error.message}`);
-    }
+  ready() {
+    this.button.disabled = false;
+    this.tell();
   }
 
   fail(text) {
-    this.status.textContent = `Nothing can be simulated here: ${text}.`;
-    this.root.classList.add("off");
-    this.state = "broken";
+    super.fail(text);
     this.button.disabled = true;
   }
-
-  get moved() { return this.knobs.filter((knob) => knob.moved); }
 
   /** The values have changed: what stands there is not of them. */
   change() {
     this.failed = "";
     this.tell();
   }
-
-  get settings() { return this.moved.flatMap((knob) => knob.settings); }
 
   shoot() {
     if (this.state !== "ready") return;
@@ -84,9 +69,6 @@ export class ShotView {
   }
 
   hear(told) {
-    if (told.kind === "ready") { this.state = "ready"; this.button.disabled = false; this.tell(); return; }
-    if (told.kind === "broken") { this.fail(told.text); return; }
-    if (told.number !== this.number) return;
     if (told.kind === "first") { this.held = 0; this.put(told.frame); this.held = 0; this.replay.go(0); return; }
     if (told.kind === "frames") {
       const first = this.held === 0;
@@ -138,14 +120,12 @@ export class ShotView {
     const here = this.held ? this.replay.times[this.held - 1] : 0;
     const same = over && !this.shot && this.told.plan.figures.filter((name) => name !== "mouth.area").every((name) => over.figures[name] === run[name]);
     const speed = this.took > 0 ? ` in ${spoken(this.took, 2)} s of computing, ${spoken(here / this.took, 2)} × real time` : "";
-    this.status.classList.toggle("refused", Boolean(this.failed));
-    for (const knob of this.knobs) knob.refuse(Boolean(this.failed) && Object.keys(knob.told.sets).some((name) => this.failed.includes(name)));
+    this.refuse(this.failed);
     this.status.textContent = this.failed ? `The model refuses that, and nothing is shot: ${this.failed}.`
       : stale && over ? "The values have changed since the shot that is shown: shoot again."
       : over ? `${spoken(over.time, 3)} s simulated${speed}; the compiled FMU took ${spoken((this.told.native.wall * over.time) / this.told.native.duration, 2)} s for them. Outcome: ${(over.outcome || over.ended || "the end of its time").replaceAll("_", " ")}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: something is rounded otherwise here, and a net is chaotic, so that these are two samples."}`
         : this.held ? `${spoken(here, 3)} s simulated${speed} …`
           : this.state === "ready" ? "Nothing is shot yet." : "…";
-    this.command.parentElement.classList.toggle("gone", Boolean(this.failed));
-    this.command.textContent = this.failed ? "" : ["dcone run", this.told.folder, ...settings, ...(settings.length ? ["-o moved"] : [])].join(" ");
+    this.offer(this.failed ? [] : ["dcone run", this.told.folder, ...settings, ...(settings.length ? ["-o moved"] : [])]);
   }
 }
