@@ -103,7 +103,19 @@ def test_it_asks_nobody_and_scripts_are_all_in_it(page: Page) -> None:
         "three",
         *(
             f"dcone/{name}"
-            for name in ("bodies", "bytes", "camera", "chart", "knob", "lines", "live", "page", "replay", "shot")
+            for name in (
+                "bodies",
+                "bytes",
+                "camera",
+                "chart",
+                "knob",
+                "lines",
+                "live",
+                "page",
+                "panel",
+                "replay",
+                "shot",
+            )
         ),
     }
     assert all(value.startswith("data:text/javascript;base64,") for value in imported.values())
