@@ -225,7 +225,7 @@ def _second(able: Sequence[Sample], reference: Sample) -> Sample | None:
     others: dict[str, Sample] = {}
     for sample in able:
         own = sample.setting
-        if own.family == of.family or own.peer or _coarse(sample):
+        if own.family == of.family or own.peer or own.detail or _coarse(sample):
             continue
         if own.family not in others or own.size < others[own.family].setting.size:
             others[own.family] = sample

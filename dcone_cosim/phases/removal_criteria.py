@@ -152,13 +152,14 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
     across = _across(evidence)
     steady = reduced * (3.0 * rate**2 * _rest(evidence) + 2.0 * rate * across + across**2 / _rest(evidence))
     steady += abs(force(evidence)) * target / (chaser + target)
-    if math.sqrt(stiffness / reduced) < FAST * max(rate, _spin(evidence)):
+    quickness = math.sqrt(stiffness / reduced)
+    if quickness < FAST * max(rate, _spin(evidence)):
         return  # so long a snap is part of the motion of orbit and bodies
     points = evidence.terms.get("target", "point") == evidence.terms.get("chaser", "point") == "point"
-    begin = evidence.columns["time"][0]
-    # the newest may still grow, and one at the start has no speed of its own
+    begin, end = evidence.columns["time"][0], evidence.columns["time"][-1]
+    # one at the start has no speed of its own, and one that is younger than half a vibration may still grow
     worst, compared = 0.0, 0
-    for _, peak, speed in [tug for tug in evidence.tugs[:-1] if tug[0] > begin][:TUGS]:
+    for _, peak, speed in [tug for tug in evidence.tugs if begin < tug[0] <= end - math.pi / quickness][:TUGS]:
         if not speed > 0.0:
             continue
         expected = damped_snap_peak(speed, stiffness, reduced, zeta)

@@ -190,6 +190,19 @@ def test_nothing_that_ran_is_told_as_such() -> None:
     assert list(sentences(report)) == ["tow: no setting came to an end: it fell over"]
 
 
+def test_a_level_of_detail_judges_no_scheme() -> None:
+    """However near it comes: at its finest it is the same scheme."""
+    made = Made()
+    ladder(made, "plain", 2.0, 1e-3, 1.0)
+    level = made.add("plain, level", 0.05, [TRUE], 0.001)
+    level.setting = replace(level.setting, detail=True)
+    made.add("other", 0.05, [TRUE * (1.0 + 1e-4)], 99.0)
+    axis = made.judged(made.settings[2]).numerics
+    assert axis.second is not None
+    assert axis.second.family == "other"
+    assert cheapest(axis.points, 0.005).setting.family == "plain, level"  # type: ignore[union-attr]
+
+
 def test_what_shows_the_shape_alone_is_never_advised() -> None:
     made = Made()
     ladder(made, "plain", 2.0, 1e-3, 1.0)

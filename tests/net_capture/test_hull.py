@@ -65,7 +65,7 @@ def test_volume_and_area_are_qhulls(validated, hull, name, seed):
     expected = ConvexHull(points)
     known = np.array((expected.volume, expected.area))
     within = np.maximum(1e-5 * known, WITHIN if name == "nearly flat net" else 0.0)
-    validated(other_code("Qhull"), f"hull of a {name}: volume and area", hull(points), known, "m3, m2", abs=within)
+    validated(other_code("Qhull"), f"hull, {name}: volume and area", hull(points), known, "m3, m2", abs=within)
 
 
 def test_bodies_known_by_heart(validated, hull):
