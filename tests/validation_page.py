@@ -72,8 +72,8 @@ def open_experiments() -> tuple[Open, ...]:
             "[the NRC](https://nrc.canada.ca/en/stories/national-research-council-canada-microgravity-research-"
             f"aircraft-tests-deorbiting-technology), which flew it: one net missed its target in {SHOT} parabolas, so "
             f"the share lies within {low:.3f} and {high:.3f} (95 %, Wilson's interval): the row above. "
-            "[ESA's report](https://www.esa.int/ESA_Multimedia/Images/2015/03/Weightless_net_testing): some 20 nets, at "
-            "various speeds, at a model of a satellite",
+            "[ESA's report](https://www.esa.int/ESA_Multimedia/Images/2015/03/Weightless_net_testing): 20 nets, "
+            "at various speeds, at a model of a satellite",
             "side, mesh, thread and mass of the nets; masses and speeds of the weights in each shot; the carton from "
             "which the net leaves; size and place of the model; what counted as a miss",
         ),
