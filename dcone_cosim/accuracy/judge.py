@@ -299,10 +299,11 @@ def own(points: Sequence[Judged]) -> list[Judged]:
 
 
 def better_peers(points: Sequence[Judged]) -> list[Judged]:
-    """Settings of other programs that no setting of ours is as cheap and as exact as; what is far off is no answer."""
+    """Settings of other programs that no setting of ours is as cheap and as exact as, costs within `ALIKE` being one;
+    what is far off is no answer."""
     peers = [p for p in points if p.setting.peer and p.bound < SMALL]
     ours = own(points)
-    return [p for p in peers if not any(q.bound <= p.bound and q.sample.cpu <= p.sample.cpu for q in ours)]
+    return [p for p in peers if not any(q.bound <= p.bound and q.sample.cpu <= ALIKE * p.sample.cpu for q in ours)]
 
 
 def front(points: Sequence[Judged]) -> list[Judged]:
