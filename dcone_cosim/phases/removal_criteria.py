@@ -247,8 +247,8 @@ def _conducts(evidence: Evidence) -> Iterator[Criterion]:
 
         E(t) - E(0) = -int P dt,   E of the orbit with its flattening, P the power that the force takes from it
 
-    The integral is the trapezoids' of what is told, where the pair turns by less than COARSE from row to row and nothing
-    else does work.
+    The integral is that of trapezoids through what is told, where the pair turns by less than COARSE from row to row
+    and nothing else does work.
     """
     columns, time = evidence.columns, evidence.columns["time"]
     if not evidence.has("electrodynamic.power", "electrodynamic.orbit_power"):
@@ -262,9 +262,9 @@ def _conducts(evidence: Evidence) -> Iterator[Criterion]:
         return
     work = np.concatenate([[0.0], np.cumsum(0.5 * (taken[1:] + taken[:-1]) * np.diff(time))])
     energy = columns["energy.orbital"]
-    # beside what the pair's own motion moves it by, as in `_orbit`
-    bend = 3.0 * (float(columns["separation"].max()) / float(np.linalg.norm(place, axis=1).min())) ** 2
-    off = max(0.0, float(np.abs(energy - energy[0] + work).max()) - bend * abs(float(energy[0])))
+    # what the pair's own motion may hold of it, as in `_jacobi`
+    own = 1.5 * float(rates.max()) ** 2 * _masses(evidence)[2] * float(columns["separation"].max()) ** 2
+    off = max(0.0, float(np.abs(energy - energy[0] + work).max()) - own)
     label = "energy of the orbit from what the conducting line takes"
     yield Criterion("orbit_taken", label, off / float(np.abs(work).max()), "1", ACCURATE, STABLE)
 

@@ -47,7 +47,7 @@ def red(criteria: Callable[[Evidence], Any], evidence: Evidence, of: set[str]) -
 
 @pytest.mark.usefixtures("plain")
 def test_a_current_that_flows_the_wrong_way_is_red() -> None:
-    """It would drive the pair on: a resistance below zero, which no scene can have. And a work told a fifth too large."""
+    """It would drive the pair on: a resistance below zero, which no scene can have. So is a work a fifth too large."""
     asked = {"generates", "orbit_taken"}
     sound = conducted()
     assert float(np.abs(sound.columns["electrodynamic.orbit_power"]).min()) > 1.0
