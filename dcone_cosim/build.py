@@ -311,6 +311,11 @@ def beside(model: str) -> Sequence[str]:
     return TRADES[model].BESIDE if model in TRADES else ()
 
 
+def details(model: str) -> Sequence[str]:
+    """Groups that are levels of detail: without one of their terms all is followed."""
+    return TRADES[model].DETAILS if model in TRADES else ()
+
+
 def rungs(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
     """Settings of the scheme that the terms name, coarse to fine; see `fmu_src.trade`."""
     return TRADES[model].rungs(values, terms) if model in TRADES else []

@@ -26,7 +26,9 @@ INTRODUCTIONS = {
     CLOSED_FORM: "Formulas on paper: what the models compute is held against what can be written down.",
     OTHER_CODE: """Programs that share no line with what they judge: other integrators, formulations and languages. What
 other tools make of our FMUs is told in [their own table](../fmu_src/packaging/README.md).""",
-    EXPERIMENT: "What was measured, and is published with enough of its set-up to be computed.",
+    EXPERIMENT: """What was measured. No experiment is published, in what could be read, with enough of its set-up to be
+computed without guessing; a share of shots can be held against that of shots of ours, and says that both are of one
+size, no more.""",
 }
 NO_EXPERIMENT = """No measured number is compared yet. None of the experiments below is published, in what could be
 read, with enough of its set-up to be computed without guessing."""
@@ -67,12 +69,13 @@ def open_experiments() -> tuple[Open, ...]:
     return (
         Open(
             "ESA's net gun on parabolic flights (SKA Polska, Falcon 20, 2015)",
-            f"with {CAUGHT} of {SHOT} shots caught, the share of an ensemble has to lie within {low:.3f} and "
-            f"{high:.3f} (95 %, Wilson's interval). What could be read is [ESA's report](https://www.esa.int/ESA_Multimedia/"
-            "Images/2015/03/Weightless_net_testing): some 20 nets in 21 parabolas, at various speeds, at a model of a "
-            "satellite; it does not say how many caught it",
-            "a publication of the count; side, mesh, thread and mass of the nets; masses and speeds of the weights in "
-            "each shot; the carton from which the net leaves; size and place of the model; what counted as caught",
+            "[the NRC](https://nrc.canada.ca/en/stories/national-research-council-canada-microgravity-research-"
+            f"aircraft-tests-deorbiting-technology), which flew it: one net missed its target in {SHOT} parabolas, so "
+            f"the share lies within {low:.3f} and {high:.3f} (95 %, Wilson's interval): the row above. "
+            "[ESA's report](https://www.esa.int/ESA_Multimedia/Images/2015/03/Weightless_net_testing): 20 nets, "
+            "at various speeds, at a model of a satellite",
+            "side, mesh, thread and mass of the nets; masses and speeds of the weights in each shot; the carton from "
+            "which the net leaves; size and place of the model; what counted as a miss",
         ),
         Open(
             "RemoveDEBRIS, net in orbit (2018)",

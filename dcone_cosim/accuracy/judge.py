@@ -225,7 +225,7 @@ def _second(able: Sequence[Sample], reference: Sample) -> Sample | None:
     others: dict[str, Sample] = {}
     for sample in able:
         own = sample.setting
-        if own.family == of.family or own.peer or _coarse(sample):
+        if own.family == of.family or own.peer or own.detail or _coarse(sample):
             continue
         if own.family not in others or own.size < others[own.family].setting.size:
             others[own.family] = sample
@@ -299,10 +299,11 @@ def own(points: Sequence[Judged]) -> list[Judged]:
 
 
 def better_peers(points: Sequence[Judged]) -> list[Judged]:
-    """Settings of other programs that no setting of ours is as cheap and as exact as; what is far off is no answer."""
+    """Settings of other programs that no setting of ours is as cheap and as exact as, costs within `ALIKE` being one;
+    what is far off is no answer."""
     peers = [p for p in points if p.setting.peer and p.bound < SMALL]
     ours = own(points)
-    return [p for p in peers if not any(q.bound <= p.bound and q.sample.cpu <= p.sample.cpu for q in ours)]
+    return [p for p in peers if not any(q.bound <= p.bound and q.sample.cpu <= ALIKE * p.sample.cpu for q in ours)]
 
 
 def front(points: Sequence[Judged]) -> list[Judged]:

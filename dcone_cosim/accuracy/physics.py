@@ -1,7 +1,8 @@
 """What each piece of physics in a phase changes and costs: the phase with it and without it, by runs of both.
 
 A variant is left out with all that needs it; what can be switched to "none" is; and what the scene leaves out is added
-with its defaults, where the scene can have it so. All run as long as the phase does as it is.
+with its defaults, where the scene can have it so, and named as what could not be tried where not. All run as long as
+the phase does as it is.
 """
 
 from __future__ import annotations
@@ -169,9 +170,10 @@ def variants_of(phase: PhaseScene) -> Iterator[Variant]:
             yield Variant(f"without {name}{others}", (), tuple(model.groups[n].table or n for n in with_it))
         elif name in main.terms and NONE in group.terms and main.terms[name] != NONE:
             yield Variant(f"{name} = {NONE}", (f'{selector}="{NONE}"',))
-        elif name not in main.terms and group.follows is None:
-            term = next(iter(group.terms))
-            yield Variant(f"with {name}: {term}", (f'{selector}="{term}"',))
+        elif name not in main.terms and group.optional and not group.early and name not in build.FAMILIES:
+            usual = group.follows(main.terms, main.values) if group.follows is not None else next(iter(group.terms))
+            label = f"with {name}" if group.follows is not None else f"with {name}: {usual}"
+            yield Variant(label, (f'{selector}="{usual}"',))
 
 
 def _needing(model: build.Model, terms: Mapping[str, str], name: str) -> list[str]:

@@ -144,7 +144,9 @@ def plan(alone: Alone, phase: str, effort: Effort, progress: Progress) -> PhaseP
         except InputError as error:
             if one is here:
                 raise
-            notes.append(f"{phase}: {one.setting.label} is left out: {str(error).splitlines()[-1].strip()}")
+            which = one.setting.family if one.setting.detail else one.setting.label
+            note = f"{phase}: {which} is left out: {str(error).splitlines()[-1].strip()}"
+            notes += [note] if note not in notes else []
             one.keys.clear()
     if effort.peers:
         for one, case in planner.by_peers(notes):

@@ -5,8 +5,8 @@ They lie on axes. Along an axis errors are counted from its finest setting; what
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 
 from dcone_cosim import build
 from dcone_cosim.cases.changes import changes_of, following
@@ -30,6 +30,7 @@ class Setting:
     changes    `KEY=VALUE`, as `--set` takes them; none for the scene as it is
     peer       it is another program's
     partial    not everything that it shows is meant, as with a scheme for the net's shape alone: it is never advised
+    detail     it differs from the scene in its level of detail: what it errs by says nothing of a scheme
     """
 
     axis: str
@@ -38,6 +39,7 @@ class Setting:
     changes: tuple[str, ...]
     peer: bool = False
     partial: bool = False
+    detail: bool = False
 
     @property
     def label(self) -> str:
@@ -63,22 +65,30 @@ def _of_model(phase: PhaseScene, notes: list[str]) -> Iterator[Setting]:
     yield from _rungs(phase, main.terms, main.values, ())
     groups = build.CATALOGUE[main.model].groups
     for name in (*build.numerics(main.model), *build.beside(main.model)):
-        if name not in groups:
+        if name in groups:
+            yield from _others(phase, name, groups[name].terms, notes)
+    for name in build.details(main.model):
+        others = _others(phase, name, groups[name].terms, notes)
+        yield from (replace(setting, detail=True) for setting in others)
+
+
+def _others(phase: PhaseScene, name: str, choices: Iterable[str], notes: list[str]) -> Iterator[Setting]:
+    """Those with another term of a group."""
+    main, model = phase.main, build.CATALOGUE[phase.main.model]
+    group = model.groups[name]
+    key = f"{phase.name}.{group.table or name}.{group.selector}"
+    for term in choices:
+        if term == main.terms.get(name):
             continue
-        group = groups[name]
-        for term in group.terms:
-            if term == main.terms.get(name):
-                continue
-            terms = {**main.terms, name: term}
-            clashing = [other for _, other in build.CATALOGUE[main.model].clashing(terms)]
-            if clashing:
-                tables = " and ".join(f"[{phase.name}.{other}]" for other in clashing)
-                notes.append(f"{phase.name}: {term} is not for this scene: it cannot go together with {tables}")
-                continue
-            interface = build.CATALOGUE[main.model].interface(terms)
-            values = {**build.defaults(interface), **main.given}
-            key = f"{phase.name}.{group.table or name}.{group.selector}"
-            yield from _rungs(phase, interface.terms, values, (f'{key}="{term}"',))
+        terms = {**main.terms, name: term}
+        clashing = [other for _, other in model.clashing(terms)]
+        if clashing:
+            tables = " and ".join(f"[{phase.name}.{other}]" for other in clashing)
+            notes.append(f"{phase.name}: {term} is not for this scene: it cannot go together with {tables}")
+            continue
+        interface = model.interface(terms)
+        values = {**build.defaults(interface), **main.given}
+        yield from _rungs(phase, interface.terms, values, (f'{key}="{term}"',))
 
 
 def _refinements(phase: PhaseScene) -> Iterator[Setting]:
@@ -96,6 +106,7 @@ def _rungs(
     groups = build.CATALOGUE[model].groups
     named = [terms[name] for name in build.numerics(model) if name in terms]
     named += [terms[name] for name in build.beside(model) if terms[name] != groups[name].default]
+    named += [terms[name] for name in build.details(model) if name in terms]
     family = ", ".join(named) or "tolerances"
     partial = not build.whole(model, terms)
     for rung in build.rungs(model, values, terms):

@@ -38,6 +38,8 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
     yield from _flight(evidence)
     yield from _stretch(evidence)
     yield from _depth(evidence)
+    yield from _through(evidence)
+    yield from _hull(evidence)
 
 
 def _step(evidence: Evidence) -> Iterator[Criterion]:
@@ -210,6 +212,34 @@ def _depth(evidence: Evidence) -> Iterator[Criterion]:
     give = _give(evidence)
     label = "deepest node below the target's surface"
     yield Criterion("depth", label, -deepest, "m", DEPTH + 2.0 * give, DEEPEST + 10.0 * give)
+
+
+def _through(evidence: Evidence) -> Iterator[Criterion]:
+    """No taut thread goes through a target round whose edges threads bend."""
+    if evidence.has("wrap.passed"):
+        passed = float(evidence.columns["wrap.passed"][-1])
+        yield Criterion("through", "taut threads that went through the target", passed, "threads", 0.0, 0.0)
+
+
+def _hull(evidence: Evidence) -> Iterator[Criterion]:
+    """No body holds more than a ball of its surface, and a distance between two points is that of the points.
+
+    36 pi V^2 <= S^3
+
+    Source   isoperimetric inequality
+    """
+    columns = evidence.columns
+    if not evidence.has("quality.hull_volume", "quality.hull_surface"):
+        return
+    surface, volume = columns["quality.hull_surface"], columns["quality.hull_volume"]
+    there = surface > 0.0
+    fuller = 36.0 * math.pi * volume[there] ** 2 / surface[there] ** 3 - 1.0
+    beyond = max(float(np.max(fuller, initial=0.0)), float(np.max(-volume, initial=0.0)))
+    yield Criterion("hull", "hull that holds more than a ball of its surface", beyond, "1", 1e-9, 1e-6)
+    if evidence.has("quality.offset", "catch.position", "target.position"):
+        apart = np.linalg.norm(evidence.vector("catch.position") - evidence.vector("target.position"), axis=1)
+        off = float(np.max(np.abs(columns["quality.offset"] - apart)))
+        yield Criterion("offset", "offset of net and target from that of their positions", off, "m", 1e-9, 1e-6)
 
 
 def _give(evidence: Evidence) -> float:

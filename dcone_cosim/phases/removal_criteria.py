@@ -26,6 +26,13 @@ SLOW = 1e-3
 orbit counts as one circle."""
 
 
+COARSE = 0.25
+"""Radians from row to row up to which trapezoids tell a work [1]: of what goes round once they leave h^2/12, half a
+percent, of what goes round twice two percent; over whole turns nothing."""
+OTHER_WORK = frozenset({"thrust", "air", "third_bodies", "sunlight", "release", "break"})
+"""Groups that do work on an orbit, or leave two of one."""
+
+
 def criteria(evidence: Evidence) -> Iterator[Criterion]:
     """All that can be asked of these outputs."""
     yield finite(evidence)
@@ -33,6 +40,7 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
         return
     yield from _line(evidence)
     yield from _orbit(evidence)
+    yield from _conducts(evidence)
     if evidence.terms.get("reel") == "locked":
         yield from _longer(evidence)
         yield from _snaps(evidence)
@@ -152,13 +160,14 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
     across = _across(evidence)
     steady = reduced * (3.0 * rate**2 * _rest(evidence) + 2.0 * rate * across + across**2 / _rest(evidence))
     steady += abs(force(evidence)) * target / (chaser + target)
-    if math.sqrt(stiffness / reduced) < FAST * max(rate, _spin(evidence)):
+    quickness = math.sqrt(stiffness / reduced)
+    if quickness < FAST * max(rate, _spin(evidence)):
         return  # so long a snap is part of the motion of orbit and bodies
     points = evidence.terms.get("target", "point") == evidence.terms.get("chaser", "point") == "point"
-    begin = evidence.columns["time"][0]
-    # the newest may still grow, and one at the start has no speed of its own
+    begin, end = evidence.columns["time"][0], evidence.columns["time"][-1]
+    # one at the start has no speed of its own, and one that is younger than half a vibration may still grow
     worst, compared = 0.0, 0
-    for _, peak, speed in [tug for tug in evidence.tugs[:-1] if tug[0] > begin][:TUGS]:
+    for _, peak, speed in [tug for tug in evidence.tugs if begin < tug[0] <= end - math.pi / quickness][:TUGS]:
         if not speed > 0.0:
             continue
         expected = damped_snap_peak(speed, stiffness, reduced, zeta)
@@ -231,6 +240,33 @@ def _orbit(evidence: Evidence) -> Iterator[Criterion]:
     off = float(np.abs(energy - energy[0] - done).max()) - 0.5 * EARTH_MU * (bend + 1e-11) / float(axis.min())
     share = max(0.0, off) / max(float(np.abs(done).max()), 1e-300)
     yield Criterion("orbit", "energy of the orbit from the work of the thrust", share, "1", ACCURATE, STABLE)
+
+
+def _conducts(evidence: Evidence) -> Iterator[Criterion]:
+    """A conducting line without a source gives nothing to the air's frame, and takes from the orbit what it says.
+
+        E(t) - E(0) = -int P dt,   E of the orbit with its flattening, P the power that the force takes from it
+
+    The integral is that of trapezoids through what is told, where the pair turns by less than COARSE from row to row
+    and nothing else does work.
+    """
+    columns, time = evidence.columns, evidence.columns["time"]
+    if not evidence.has("electrodynamic.power", "electrodynamic.orbit_power"):
+        return
+    power, taken = columns["electrodynamic.power"], columns["electrodynamic.orbit_power"]
+    given = max(0.0, -float(power.min())) / max(float(np.abs(power).max()), 1e-300)
+    yield Criterion("generates", "power that a line without a source gives", given, "1", 1e-9, 1e-6)
+    place, velocity = evidence.vector("center.position"), evidence.vector("center.velocity")
+    rates = np.linalg.norm(np.cross(place, velocity), axis=1) / np.einsum("ij,ij->i", place, place)
+    if OTHER_WORK & evidence.terms.keys() or float((rates[1:] * np.diff(time)).max()) > COARSE or not taken.any():
+        return
+    work = np.concatenate([[0.0], np.cumsum(0.5 * (taken[1:] + taken[:-1]) * np.diff(time))])
+    energy = columns["energy.orbital"]
+    # what the pair's own motion may hold of it, as in `_jacobi`
+    own = 1.5 * float(rates.max()) ** 2 * _masses(evidence)[2] * float(columns["separation"].max()) ** 2
+    off = max(0.0, float(np.abs(energy - energy[0] + work).max()) - own)
+    label = "energy of the orbit from what the conducting line takes"
+    yield Criterion("orbit_taken", label, off / float(np.abs(work).max()), "1", ACCURATE, STABLE)
 
 
 def _jacobi(evidence: Evidence) -> Iterator[Criterion]:

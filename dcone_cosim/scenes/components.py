@@ -138,10 +138,12 @@ def of_model(
             mistakes.append(unknown(path, given, expected, given, names))
         else:
             mistakes.append(Mistake(path, given, expected))
-    for group_name, needed in list(model.missing(part.terms)):
-        text = f"needs the table [{dotted((*part.path, needed))}], which this scene lacks"
-        mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
-        part.terms[needed] = next(iter(model.groups[needed].terms))
+    while lacking := list(model.missing(part.terms)):
+        for group_name, needed in lacking:
+            if group_name in tables:
+                text = f"needs the table [{dotted((*part.path, needed))}], which this scene lacks"
+                mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
+            part.terms[needed] = next(iter(model.groups[needed].terms))
     clashes: dict[str, list[str]] = {}
     several = {name: "1" for name in part.following if name in build.FAMILIES}  # however many follow
     for group_name, other in model.clashing(part.terms | several):
@@ -156,6 +158,9 @@ def of_model(
         path = (*part.path, group.table or group_name, group.selector)
         mistakes.append(Mistake(path, part.terms[group_name], text))
         part.terms[group_name] = group.default or next(iter(group.terms))
+        if group.optional and group_name in (name for name, _ in model.clashing(part.terms)):
+            part.terms.pop(group_name)
+            part.following = [name for name in part.following if name != group_name]
     interface = model.interface(part.terms)
     part.keys = dict(_keys(model.name, tuple(part.terms.items())))
     given = (table for table in build.from_files(interface.tables) if table.name not in interface.laid)

@@ -21,6 +21,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term, fault
 from fmu_src.net_capture.hull import FACE_WORDS, POINT_WORDS, make_hull
 from fmu_src.net_capture.planes import MASS, SHOWN
@@ -202,6 +203,19 @@ PART = Term(
     ),
     needs=("target",),
     faults=(NO_ROOM,),
+    extremes=tuple(
+        Extreme(
+            f"index of a target {length:g} m long",
+            "lengths, surfaces and volumes of net and target decades apart",
+            "hull",
+            {
+                "quality.characteristic_length": length,
+                "quality.target_surface": 6.0 * length**2,
+                "quality.target_volume": length**3,
+            },
+        )
+        for length in (1e-3, 1e3)
+    ),
     make=make,
     refuses=refuses,
 )

@@ -30,6 +30,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.contact.edges import make_way
 from fmu_src.net_capture.contact.section import FACES, MOST
@@ -496,6 +497,21 @@ PART = Term(
     ),
     needs=("target", "contact"),
     excludes=("break",),
+    extremes=(
+        Extreme(
+            "threads wound on at 60 deg/s",
+            "edges turn under the net faster than it closes: each bend wanders from edge to edge",
+            "through",
+            {"target.start_rate": (0.0, 0.0, math.radians(60.0))},
+            chief=True,
+        ),
+        Extreme(
+            "threads flung round edges at 10 m/s",
+            "they meet the edges as fast as they stretch",
+            "through",
+            {"bullets.speed": 10.0},
+        ),
+    ),
     make=make,
     refuses=refuses,
 )

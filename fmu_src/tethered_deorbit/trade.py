@@ -11,6 +11,7 @@ LOOSEST = 0.1
 """Bound of a level's error that is never exceeded [1]."""
 NUMERICS = ("solver",)
 BESIDE: tuple[str, ...] = ()
+DETAILS = ("level",)
 DISTURBED = frozenset({"oblateness", "air", "third_bodies", "sunlight", "electrodynamic"})
 """Groups that disturb an orbit."""
 ALWAYS = "pushes"

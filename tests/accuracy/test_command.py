@@ -12,7 +12,7 @@ import pytest
 
 from dcone_cosim import build
 from dcone_cosim.accuracy import commands
-from dcone_cosim.accuracy.plan import Planned, Planner
+from dcone_cosim.accuracy.plan import Effort, Planned, Planner, plan
 from dcone_cosim.accuracy.settings import COUPLING, MACRO_STEP, NUMERICS, Setting, settings_of
 from dcone_cosim.accuracy.work import measure
 from dcone_cosim.cases import alone
@@ -32,6 +32,7 @@ def measured(folder: Path) -> commands.Done:
     """With the scene's scheme alone: the others would be compiled for these tests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "numerics", lambda model: ())
+        patch.setattr(build, "details", lambda model: ())
         return commands.accuracy("table2-deorbit", folder, Progress(), SHORT, runs=2)
 
 
@@ -89,11 +90,29 @@ def test_a_coupled_phase_has_its_coupling_step() -> None:
     phase = Alone("reel-control", (), None).scene.phases[0]
     found = settings_of(phase, True, notes)
     assert {s.axis for s in found} == {NUMERICS, MACRO_STEP, COUPLING}
-    assert {s.family for s in found if s.axis == NUMERICS} == {"dop853", "gauss", "radau"}
+    assert {s.family for s in found if s.axis == NUMERICS and not s.detail} == {"dop853", "gauss", "radau"}
     steps = {s.size: s.changes for s in found if s.axis == COUPLING}
     assert steps[0.5] == ("removal.coupling.step=1 s",)
     assert steps[1.0] == ()
     assert 100.0 not in steps
+
+
+def test_a_tow_is_tried_in_other_levels_of_detail(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each at its own bounds, the finest at none; and none of them where the scene's checks refuse it, said once."""
+    found = settings_of(Alone("table2-deorbit", (), None).scene.phases[0], True, [])
+    levels = {s.family for s in found if s.detail}
+    assert levels == {"dop853, settled", "dop853, event_map", "dop853, averaged"}
+    finest = min((s for s in found if s.family == "dop853, event_map"), key=lambda s: s.size)
+    assert finest.changes[0] == 'removal.level.detail="event_map"'
+    assert "removal.level.peak_error=0" in finest.changes
+    monkeypatch.setattr(alone.Fmus, "of", lambda *_: {})
+    planned = plan(Alone("reel-control", (), None), "removal", Effort(repeats=1), Progress())
+    assert not any(one.setting.detail for one in planned.settings)
+    refused = [note for note in planned.notes if "event_map" in note]
+    assert refused == [
+        'removal: dop853, event_map is left out: --set removal.level.detail="event_map": removal.level.detail = '
+        '"event_map": a line settles with reel.law = locked alone; leave the table out, or take that'
+    ]
 
 
 def test_a_net_is_tried_in_what_goes_together() -> None:

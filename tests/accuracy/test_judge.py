@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dcone_cosim.accuracy.judge import Report, cheapest, front, judge, own
+from dcone_cosim.accuracy.judge import Report, better_peers, cheapest, front, judge, own
 from dcone_cosim.accuracy.plan import PhasePlan, Planned
 from dcone_cosim.accuracy.settings import MACRO_STEP, NUMERICS, Setting
 from dcone_cosim.accuracy.show import sentences
@@ -188,6 +188,36 @@ def test_nothing_that_ran_is_told_as_such() -> None:
     report = made.judged(one)
     assert report.axes == []
     assert list(sentences(report)) == ["tow: no setting came to an end: it fell over"]
+
+
+@pytest.mark.parametrize(
+    ("off", "cost", "wins"),
+    [(1e-3, 0.5, True), (1e-3, 0.96, False), (4e-3, 0.9, False), (4e-3, 0.05, True), (0.3, 1e-6, False)],
+)
+def test_another_program_is_better_where_none_of_ours_is_as_cheap_and_as_exact(
+    off: float, cost: float, wins: bool
+) -> None:
+    """Ours errs by 0.4 % in a quarter of a second and by 0.1 % in one; times within a twentieth are one."""
+    made = Made()
+    ladder(made, "plain", 1.0, 1e-3, 1.0)
+    made.add("other", 0.25, [TRUE * (1.0 + 2.5e-4)], 99.0)
+    peer = made.add("peer", 1.0, [TRUE * (1.0 + off)], cost)
+    peer.setting = replace(peer.setting, peer=True)
+    points = made.judged(made.settings[2]).numerics.points
+    assert ([p.setting.family for p in better_peers(points)] == ["peer"]) is wins
+
+
+def test_a_level_of_detail_judges_no_scheme() -> None:
+    """However near it comes: at its finest it is the same scheme."""
+    made = Made()
+    ladder(made, "plain", 2.0, 1e-3, 1.0)
+    level = made.add("plain, level", 0.05, [TRUE], 0.001)
+    level.setting = replace(level.setting, detail=True)
+    made.add("other", 0.05, [TRUE * (1.0 + 1e-4)], 99.0)
+    axis = made.judged(made.settings[2]).numerics
+    assert axis.second is not None
+    assert axis.second.family == "other"
+    assert cheapest(axis.points, 0.005).setting.family == "plain, level"  # type: ignore[union-attr]
 
 
 def test_what_shows_the_shape_alone_is_never_advised() -> None:

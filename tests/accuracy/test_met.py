@@ -1,4 +1,4 @@
-"""An accuracy that is asked is met: five scenes of which the table of settings knows nothing.
+"""An accuracy that is asked is met: six scenes of which the table of settings knows nothing, one with contact.
 
 What a run with the chosen setting gives is compared with the mean of many runs at a sixteenth of the default step, or
 with tolerances a hundredth of the default ones, which nothing of the estimate has seen. `pytest -m evidence -s
@@ -44,6 +44,12 @@ SCENES: dict[str, tuple[str, tuple[str, ...], str]] = {
         (*COARSE, "capture.net.side=20 m", "capture.net.damping_ratio=0.3", "capture.bullets.speed=5 m/s",
          "capture.duration=4 s"),
         "capture.solver.step_ratio=0.03",
+    ),
+    "capture": (
+        "table1-capture",
+        ('solver.quantities=["t_capture"]', "solver.runs=60", "capture.net.mesh=2 m", "capture.net.damping_ratio=0.08",
+         "capture.bullets.speed=3.2 m/s"),
+        "capture.solver.step_ratio=0.05",
     ),
     "tow of an undamped line": (
         "table2-deorbit",

@@ -135,3 +135,20 @@ def test_a_unit_that_is_not_known_is_answered_with_those_that_are(key: str, valu
     with pytest.raises(InputError) as told:
         load("mission", [f"{key}={value}"])
     assert f"has the unit '{value.split()[1]}', which is not known; known for {known}" in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("scene", "setting", "told"),
+    [
+        ("edt", 'removal.power.source="solar"', r"removal\.power.*needs the table \[removal\.engine\]"),
+        ("edt", "removal.power.battery_share=0.5", r"removal\.power.*needs the table \[removal\.shadow\]"),
+        ("pull-off", 'capture.leads.kind="plain"', r"capture\.leads.*cannot go together with \[capture\.closing\]"),
+        ("pull-off", 'capture.leads.length="1 m"', r"capture\.leads.*cannot go together with \[capture\.closing\]"),
+    ],
+)
+def test_a_part_whose_need_has_a_need_and_one_without_another_term_are_told(
+    scene: str, setting: str, told: str
+) -> None:
+    """Power needs an engine, which needs a thrust; leads have but one term, which does not go beside a closing."""
+    with pytest.raises(InputError, match=told):
+        load(scene, [setting])

@@ -12,6 +12,7 @@ from fmu_src.net_capture.interface import GROUPS, MODEL
 from fmu_src.net_capture.refusal import Scene
 from tests.net_capture.holding import HOLDING
 from tests.net_capture.memory import shown
+from tests.validation import other_code
 
 
 def expected(points, offset, volume, surface, length):
@@ -20,7 +21,7 @@ def expected(points, offset, volume, surface, length):
 
 
 @pytest.mark.parametrize("flown", [0.5, 7.0])
-def test_the_index_is_that_of_qhull_and_the_formula(shoot, flown):
+def test_the_index_is_that_of_qhull_and_the_formula(validated, shoot, flown):
     """Table 1's box, 4 x 8 x 4 m: 128 m3, 160 m2, and 16/3 m as the mean of its edges."""
     net = shoot({"net.mesh": 2.0, "jam.time": 1e9}, HOLDING)
     assert (net["quality.length"], net["quality.at_capture"]) == (pytest.approx(16.0 / 3.0), -1.0)
@@ -30,7 +31,8 @@ def test_the_index_is_that_of_qhull_and_the_formula(shoot, flown):
     assert net["quality.hull_volume"] == pytest.approx(hull.volume, rel=1e-4)
     assert net["quality.hull_surface"] == pytest.approx(hull.area, rel=1e-5)
     offset = math.dist(net.array("catch_position"), net.array("target_position"))
-    assert net["quality.index"] == pytest.approx(expected(points, offset, 128.0, 160.0, 16.0 / 3.0), rel=1e-5)
+    index = expected(points, offset, 128.0, 160.0, 16.0 / 3.0)
+    validated(other_code("Qhull"), "capture quality index in flight", net["quality.index"], index, "1", rel=1e-5)
 
 
 def test_the_index_takes_the_scenes_own_figures(shoot):

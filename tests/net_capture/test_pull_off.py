@@ -11,6 +11,7 @@ from fmu_src.net_capture.pull_off import STANDS, load
 from fmu_src.net_capture.refusal import Scene
 from tests.net_capture.holding import HOLDING
 from tests.net_capture.memory import graph, planes
+from tests.validation import closed_form
 
 CAUGHT = {"net.mesh": 2.0, "jam.time": 1e9, "tether.length": 100.0, "solver.jitter[1]": 1e-6}
 PULL = {"pull_off.force": 20.0, "pull_off.delay": 1.0, "pull_off.ramp": 0.5, "pull_off.duration": 1.5}
@@ -25,7 +26,7 @@ def pulled(shoot, change):
 
 
 @pytest.mark.parametrize("direction", [(0.0, 0.0, 0.0), (0.0, -3.0, 4.0)])
-def test_momentum_grows_by_the_impulse_of_the_load_and_energy_by_its_work(shoot, direction):
+def test_momentum_grows_by_the_impulse_of_the_load_and_energy_by_its_work(validated, shoot, direction):
     """All of the impulse is F0 (ramp + duration), 40 N s; its direction is the chaser's, or as told."""
     change = {f"pull_off.direction[{i + 1}]": d for i, d in enumerate(direction)}
     for net in pulled(shoot, change):
@@ -34,7 +35,10 @@ def test_momentum_grows_by_the_impulse_of_the_load_and_energy_by_its_work(shoot,
         assert np.abs(net.array("angular_momentum") - moment).max() < 1e-9 * 40.0 * 20.0
     assert net["captured"] == 1
     assert STANDS[net["pull_off.stands"]] == "held"
-    assert np.linalg.norm(impulse) == pytest.approx(40.0, rel=1e-4)
+    pull = closed_form("F (ramp + duration)")
+    validated(pull, "pull-off test: impulse of the load", np.linalg.norm(impulse), 40.0, "N s", rel=1e-4)
+    momentum = np.linalg.norm(net.array("momentum"))
+    validated(pull, "pull-off test: momentum of all bodies, at rest before", momentum, 40.0, "N s", rel=1e-4)
     if any(direction):
         assert impulse / 40.0 == pytest.approx(np.array(direction) / 5.0, abs=1e-4)
     else:

@@ -14,6 +14,9 @@ from fmu_src.net_capture.planes import MASS, U
 from fmu_src.net_capture.refusal import Scene
 from tests.net_capture.holding import ALONE, HOLDING
 from tests.net_capture.memory import nodes, planes, shown
+from tests.validation import other_code
+
+SCIPY = other_code("scipy's DOP853, bullets, cords and springs as point masses")
 
 BULLET, SIDE, LOCK, FIRST = 0.5, 4.0, 0.25, 0.01
 SPRUNG = ALONE | {
@@ -135,14 +138,14 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_springs_draw_the_bullets_as_the_independent_integration_says(sprung, name):
+def test_springs_draw_the_bullets_as_the_independent_integration_says(validated, sprung, name):
     values, until = CASES[name]
     net = sprung(values, until)
     told = Reference(values, until)
     between = np.linalg.norm(told.places[1] - told.places[0])
-    assert sides(net)[0] == pytest.approx(between, rel=1e-4)
-    assert net["mouth.cord_length"] == pytest.approx(sum(told.cords), rel=1e-4)
-    assert net["closing.work"] == pytest.approx(told.work, rel=2e-3, abs=1e-9)
+    validated(SCIPY, f"springs, {name}: distance of two bullets", sides(net)[0], between, "m", rel=1e-4)
+    validated(SCIPY, f"springs, {name}: length of the cord", net["mouth.cord_length"], sum(told.cords), "m", rel=1e-4)
+    validated(SCIPY, f"springs, {name}: their work", net["closing.work"], told.work, "J", abs=2e-3 * told.work + 1e-9)
     slack = 4.0 * (energy(LAW, 10.0) - energy(LAW, told.begin))
     assert net["closing.braked"] - slack == pytest.approx(told.braked, rel=2e-3, abs=2e-3)
     assert abs(net["energy.remainder"]) < 2e-3 * net["energy.kinetic"]
@@ -157,15 +160,16 @@ def test_what_a_weaker_spring_would_do(sprung):
 
 
 @pytest.mark.parametrize("time", [0.0, 0.2])
-def test_a_reel_that_jams_leaves_the_others_drawing(sprung, time):
+def test_a_reel_that_jams_leaves_the_others_drawing(validated, sprung, time):
     """Before the start its cord stays as long as the side of the net, later as long as it is then."""
     jam = {"jam.reel": 2, "jam.time": time}
     net = sprung(LAW | jam, 0.6)
     told = Reference(LAW, 0.6, (math.inf, time, math.inf, math.inf))
-    assert net.array("cord_length")[:4] == pytest.approx(told.cords, rel=2e-4)
-    assert sides(net) == pytest.approx(
-        [math.dist(told.places[(i + 1) % 4], told.places[i]) for i in range(4)], rel=5e-4
+    apart = [math.dist(told.places[(i + 1) % 4], told.places[i]) for i in range(4)]
+    validated(
+        SCIPY, "one spring jams: its cord and the others", net.array("cord_length")[:4], told.cords, "m", rel=2e-4
     )
+    validated(SCIPY, "one spring jams: sides of the mouth", sides(net), apart, "m", rel=5e-4)
     assert net["closed"] == 0
 
 

@@ -21,6 +21,7 @@ from fmu_src.tethered_deorbit.environment.perturbed import make_perturbing
 from fmu_src.tethered_deorbit.interface import MODEL
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_J2, EARTH_J3, EARTH_J4, EARTH_MU, STANDARD_GRAVITY
 from tests.plain import PlainInstance, plain
+from tests.validation import Validated, closed_form, other_code
 
 __all__ = ["plain"]
 
@@ -93,7 +94,7 @@ def added(terms: Mapping[str, str], turning: Any, elapsed: float, time: float = 
 
 @pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize("leaves", ["all", "third_bodies", "sunlight", "oblateness"])
-def test_each_body_moves_as_newton_says(leaves: str) -> None:
+def test_each_body_moves_as_newton_says(validated: Validated, leaves: str) -> None:
     """rho'' is the difference of both accelerations, R'' their mean by mass: to 1e-12 of the difference, which two
     accelerations in doubles would lose."""
     kept = {"reel": "locked"} | {
@@ -116,8 +117,11 @@ def test_each_body_moves_as_newton_says(leaves: str) -> None:
             total += light(record["state_sun"][0], area, mass)
         accelerations.append(total)
     apart, mean = accelerations[1] - accelerations[0], (1.0 - share) * accelerations[0] + share * accelerations[1]
-    assert np.linalg.norm(rate[9:12] - apart.astype(float)) < 1e-12 * np.linalg.norm(apart.astype(float))
-    assert np.linalg.norm(rate[3:6] - mean.astype(float)) < 1e-12 * np.linalg.norm(mean.astype(float))
+    newton = other_code("Newton's law for each body, in 64 bits of mantissa")
+    for what, found, told in (("the line", rate[9:12], apart), ("the centre", rate[3:6], mean)):
+        told = told.astype(float)
+        within = 1e-12 * float(np.linalg.norm(told))
+        validated(newton, f"what disturbs the orbit ({leaves}) on {what}", found, told, "m/s2", abs=np.full(3, within))
     turned, _ = added(kept, np.array([2e-3, -3e-3, 1e-3]), 40.0)
     assert turned[9:] == pytest.approx(rate[9:], rel=1e-7, abs=1e-9 * np.linalg.norm(rate[9:]))
     assert turned[3:6] == pytest.approx(rate[3:6], rel=1e-9, abs=1e-9 * np.linalg.norm(rate[3:6]))
@@ -151,7 +155,7 @@ def share_of_the_sun(x: Any, sun: Any) -> float:
     return float(np.mean(((c + a * y) ** 2 + (a * z) ** 2 > b * b)[disc]))
 
 
-def test_an_orbit_by_scipy_and_astropy() -> None:
+def test_an_orbit_by_scipy_and_astropy(validated: Validated) -> None:
     """Three days on a geostationary orbit in eclipse season, the thruster off: both centres against an orbit of the
     pair's own mass, with Sun and Moon by astropy."""
     days = 3.0
@@ -175,10 +179,11 @@ def test_an_orbit_by_scipy_and_astropy() -> None:
         return np.concatenate([y[3:], total])
 
     end = solve_ivp(slope, (0.0, days * DAY), begin, method="DOP853", rtol=1e-11, atol=1e-3, max_step=600.0).y[:, -1]
-    off = np.linalg.norm(i.array("center_position") - end[:3])
-    moved = np.linalg.norm(end[:3] - turned_by(begin, days * DAY, axis))
+    moved = float(np.linalg.norm(end[:3] - turned_by(begin, days * DAY, axis)))
     assert moved > 3e4
-    assert off < 2e-5 * moved
+    place, within = i.array("center_position"), np.full(3, 1e-5 * moved)
+    what = "geostationary orbit with all that disturbs it: place after three days"
+    validated(other_code("scipy's DOP853 with Sun and Moon by astropy"), what, place, end[:3], "m", abs=within)
     assert i["energy.orbital"] != energy
     assert i["shadow.count"] == 3
     assert i["shadow.lit"] == 1.0
@@ -194,7 +199,7 @@ def turned_by(state: Any, time: float, axis: float) -> Any:
 
 @pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize("above", [False, True])
-def test_share_of_an_orbit_in_shadow(above: bool) -> None:
+def test_share_of_an_orbit_in_shadow(validated: Validated, above: bool) -> None:
     """A cylinder over a circle at 800 km: acos(sqrt(1 - (R/r)^2)/cos(beta))/pi of it, 34.8 % at beta = 0; none above
     62.7 deg. And nothing is left of an earlier epoch."""
     terms = {"reel": "locked", "shadow": "cylinder"}
@@ -213,12 +218,13 @@ def test_share_of_an_orbit_in_shadow(above: bool) -> None:
     inside = math.sqrt(1.0 - (R / radius) ** 2) / math.cos(beta)
     expected = math.acos(inside) / math.pi if inside < 1.0 else 0.0
     assert math.acos(math.sqrt(1.0 - (R / radius) ** 2)) / math.pi == pytest.approx(0.348, abs=5e-4)
-    assert i["shadow.time"] / period == pytest.approx(expected, abs=1e-4)
+    formula = closed_form("acos(sqrt(1 - (R/r)^2)/cos(beta))/pi")
+    validated(formula, "share of a circle in the Earth's shadow", i["shadow.time"] / period, expected, "1", abs=1e-4)
     assert i["shadow.count"] in ((0,) if above else (1, 2))
 
 
 @pytest.mark.usefixtures("plain")
-def test_time_in_the_penumbra_too() -> None:
+def test_time_in_the_penumbra_too(validated: Validated) -> None:
     """From the outer edge of one penumbra to that of the other, by the angle at which the discs touch."""
     i = PlainInstance(
         MODEL, {"reel": "locked", "shadow": "cone"},
@@ -238,7 +244,15 @@ def test_time_in_the_penumbra_too() -> None:
         return apart - math.asin(R / radius) - math.asin(6.957e8 / float(np.linalg.norm(away)))
 
     i.step(period)
-    assert i["shadow.time"] / period == pytest.approx(brentq(touch, 0.5, 1.5) / math.pi, abs=5e-5)
+    share, expected = i["shadow.time"] / period, brentq(touch, 0.5, 1.5) / math.pi
+    validated(
+        closed_form("angle at which two discs touch"),
+        "share of a circle in the penumbra",
+        share,
+        expected,
+        "1",
+        abs=5e-5,
+    )
 
 
 def test_a_thruster_on_solar_power() -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from fmu_src.extremes import Extreme, times
 from fmu_src.interface import Term
 from fmu_src.net_capture.planes import MOST_BULLETS
 from fmu_src.net_capture.refusal import Refusal, Scene
@@ -56,6 +57,21 @@ PART = Term(
         at_least_zero("jam.time", "s", "from when on it holds its cord as it is, since the shot", 0.0),
     ),
     needs=("closing",),
+    extremes=(
+        Extreme(
+            "a reel that jams before it starts",
+            "one side of the mouth keeps all of its cord while the others draw",
+            "energy_gained",
+            {"jam.reel": 1, "jam.time": 0.0},
+            chief=True,
+        ),
+        Extreme(
+            "a reel that jams under a stiff cord",
+            "what it has drawn it holds against the tugs of a cord a hundred times as stiff",
+            "energy_gained",
+            {"jam.reel": 1, "closing.axial_stiffness": times("closing.axial_stiffness", 1e2)},
+        ),
+    ),
     make=make,
     refuses=refuses,
 )

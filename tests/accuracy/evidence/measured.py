@@ -82,7 +82,7 @@ def rows_of(done: Sequence[Done], model: str) -> list[dict[str, Any]]:
 
 def main() -> None:
     every = plan.settings_of
-    plan.settings_of = lambda *of: [s for s in every(*of) if not s.family.startswith(LEFT_OUT)]
+    plan.settings_of = lambda *of: [s for s in every(*of) if not (s.detail or s.family.startswith(LEFT_OUT))]
     models: dict[str, list[Done]] = {"net_capture": [], "tethered_deorbit": []}
     with tempfile.TemporaryDirectory() as folder:
         for number, (scene, settings) in enumerate(SCENES):
