@@ -69,8 +69,10 @@ m    if_*
 """
 _OF_HANDOFF = """
 s    time
-kg   mass
-m    distance beyond_hull line attachment_distance slack slack_after
+kg   mass propellant propellant_spent chaser_mass
+m/s  velocity_change target_speed
+1    nets_left
+m    distance released_axis beyond_hull line attachment_distance slack slack_after
 m/s  relative_speed attachment_speed tug_speed
 N m s  spin spin_dropped
 J    spin_energy spin_energy_dropped energy_lost
@@ -94,7 +96,11 @@ HANDOFF = "hand-off"
 BY_PHASE: Mapping[str, Mapping[str, str | None]] = {
     "capture": _rows(_OF_CAPTURE, _OF_ALL),
     "removal": _rows(_OF_TOW, _OF_ALL),
+    "second_shot": _rows(_OF_CAPTURE, _OF_ALL),
+    "third_shot": _rows(_OF_CAPTURE, _OF_ALL),
     "second_tow": _rows(_OF_TOW, _OF_ALL),
+    "next_capture": _rows(_OF_CAPTURE, _OF_ALL),
+    "next_removal": _rows(_OF_TOW, _OF_ALL),
     HANDOFF: _rows(_OF_HANDOFF),
 }
 """Figures of the phases that are known: SI units by name; `TEXT` for a text, None where it hangs on the scene."""
