@@ -6,7 +6,7 @@ The mapping itself is `handoff`'s, the line's `line`'s; here they are held again
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +44,8 @@ from dcone_cosim.line import (
 )
 from dcone_cosim.scene.data import HandoffOptions, PhaseScene
 
+HAND_OFF, FIRST = "hand-off", "removal"
+"""Under what a hand-over is told, and the tow that needs no name beside it."""
 HULL = "hull"
 """Level of a target that is towed as the hull of some of its corners."""
 CROSS_CHECK = 1e-4
@@ -144,7 +146,9 @@ class HandoffRecord:
         self.failure = told["failure"]
 
     def findings(self) -> list[Finding]:
-        return list(findings(self))
+        """Under "hand-off" of the first tow, by its name of a later one."""
+        place = HAND_OFF if self.phase.name == FIRST else f"{HAND_OFF} to {self.phase.name}"
+        return [replace(finding, phase=place) for finding in findings(self)]
 
     def told(self) -> dict[str, Any]:
         """All of it, with units."""
