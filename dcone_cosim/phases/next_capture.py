@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim.errors import HandoffError
-from dcone_cosim.expended import NET, TOWED_ON, Expended, expended, net_mass
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.phases.capture import Capture, CaptureOptions
+from dcone_cosim.phases.expended import NET, TOWED_ON, Expended, expended, net_mass
 from dcone_cosim.phases.phase import Document, Main, Stage
 from dcone_cosim.phases.second_shot import MASS, FurtherShot, about_handover, elements, vector
 from dcone_cosim.results import Handover, RunResult
@@ -85,7 +85,15 @@ class NextHandover:
         height = self.axes[0] - EARTH_EQUATORIAL_RADIUS
         rows = [
             Finding(place, "time", "debris let go, after its tow began", self.time, "s"),
-            Finding(place, "released_axis", "semi-major axis of the chaser there, less Earth's radius", height, "m", 0.0, "km"),
+            Finding(
+                place,
+                "released_axis",
+                "semi-major axis of the chaser there, less Earth's radius",
+                height,
+                "m",
+                0.0,
+                "km",
+            ),
             *self.expended.findings(place),
         ]
         if self.rows:

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim.errors import HandoffError
-from dcone_cosim.expended import NET, Expended, expended, net_mass
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, Vector, frame_rate
 from dcone_cosim.ledger import AXES, LedgerRow
 from dcone_cosim.level import ATTITUDE, RATE
 from dcone_cosim.phases.capture import Capture, CaptureOptions
+from dcone_cosim.phases.expended import NET, Expended, expended, net_mass
 from dcone_cosim.phases.phase import Document, Main, Phase, Stage
 from dcone_cosim.results import Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene
@@ -92,7 +92,7 @@ class ShotHandover:
 
     def close(self, component: Steppable) -> None:
         """Masses, spin of the target and place and speed of the chaser, by what the FMU of this shot says itself."""
-        names = (MASS, "target.mass", NET, "chaser.start_position", "chaser.start_velocity", "target.spin")
+        names = (MASS, "target.mass", NET, "chaser.position", "chaser.start_velocity", "target.spin")
         each = [one for name in names for one in ((name,) if "mass" in name else elements(name, np.zeros(3)))]
         self.rows = list(_rows(self, component.get(each)))
         broken = [
@@ -155,9 +155,9 @@ def _rows(record: ShotHandover, held: Mapping[str, float]) -> Iterator[LedgerRow
     arrived = flown(there[0], there[1] + record.burns[0], record.rate, record.reload)
     for name, unit, of, at in (
         ("place of the chaser from the target", "m", "position", arrived[0]),
-        ("velocity of the chaser from the target", "m/s", "velocity", arrived[1] + record.burns[1]),
+        ("velocity of the chaser from the target", "m/s", "start_velocity", arrived[1] + record.burns[1]),
     ):
-        now = vector(held, f"chaser.start_{of}")
+        now = vector(held, f"chaser.{of}")
         size = float(np.linalg.norm(there[0 if unit == "m" else 1]) + np.linalg.norm(at))
         size += float(sum(np.linalg.norm(burn) for burn in record.burns)) * (1.0 if unit == "m/s" else record.reload)
         for i, axis in enumerate(AXES):
@@ -177,7 +177,7 @@ def about_handover(kind: Phase, document: Document) -> Iterator[Mistake]:
     if not before:
         return
     if isinstance(told, dict) and "specific_impulse" not in told:
-        text = "expected, of the chaser's engine, such as \"220 s\""
+        text = 'expected, of the chaser\'s engine, such as "220 s"'
         yield Mistake(("handoff", "specific_impulse"), None, text)
     text = f"is set by the hand-off from the {before}; leave it out"
     for section, keys in document.tables[kind.name].items():
@@ -227,8 +227,7 @@ class FurtherShot(Capture):
         reload, rate = phase.options.reload, frame_rate(phase)
         target = vector(left, "target.position"), vector(left, "target.velocity")
         chaser = vector(left, "chaser.position") - target[0], vector(left, "chaser.velocity") - target[1]
-        goal = [np.array([phase.setting(f"chaser.start_{of}[{i}]") for i in (1, 2, 3)]) for of in ("position", "velocity")]
-        burns = two_impulses(*chaser, *goal, rate, reload)
+        burns = two_impulses(*chaser, *_goal(run, phase, before), rate, reload)
         speed = float(sum(np.linalg.norm(burn) for burn in burns))
         record = ShotHandover(
             shot.end + reload,
@@ -266,6 +265,19 @@ class FurtherShot(Capture):
         record = run.handovers.get(self.name)
         before = f", which was {record.time!r} s after the shot before" if record is not None else ""
         return f"since this shot{before}"
+
+
+def _goal(run: RunResult, phase: PhaseScene, before: PhaseScene) -> tuple[Vector, Vector]:
+    """Place [m] and velocity [m/s] from the target that a shot begins with, by its scene; of a file that does not offer
+    them those of the shot before."""
+    place, speed = (
+        np.array([phase.setting(f"chaser.start_{of}[{i}]") or 0.0 for i in (1, 2, 3)])
+        for of in ("position", "velocity")
+    )
+    if phase.setting("chaser.start_position[1]") is None:
+        recorder = run.phases[before.name].recorder
+        place = recorder.vector("chaser.position")[0] - recorder.vector("target.position")[0]
+    return place, speed
 
 
 def since_first_shot(run: RunResult, phase: str) -> float:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from dcone_cosim import build
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
+from dcone_cosim.phases import kind_of
 from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import PhaseScene
 from orbital.constants import STANDARD_GRAVITY
@@ -41,7 +42,7 @@ def net_mass(phase: PhaseScene, left: float | None) -> float:
 class Expended:
     """What a manoeuvre takes, and what there is after it.
 
-    before             mass of the chaser as the phase before left it, nets aboard and propellant of the tow taken off [kg]
+    before             mass of the chaser as the phase before left it, with the nets that are aboard   [kg]
     speed              change of velocity, sum of the sizes of all burns                              [m/s]
     specific_impulse                                                                                  [s]
     net                mass of the net that the next phase shoots                                     [kg]
@@ -112,10 +113,16 @@ def expended(run: RunResult, phase: PhaseScene, before: float, speed: float, net
 
     `HandoffError` where the chaser has not so much propellant.
     """
-    names = [one.name for one in run.scene.phases if one.main.model == SHOOTING]
+    names = [one.name for one in run.scene.phases if kind_of(one.name).model == SHOOTING]
     options = run.scene.handoff
     found = Expended(
-        before, speed, options.specific_impulse, net, len(names) - names.index(phase.name), options.propellant, spent(run)
+        before,
+        speed,
+        options.specific_impulse,
+        net,
+        len(names) - names.index(phase.name),
+        options.propellant,
+        spent(run),
     )
     found.check()
     return found
