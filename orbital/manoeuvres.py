@@ -51,7 +51,7 @@ def two_impulses(
     """
     coasting, _ = flown(position, np.zeros(3), rate, time)
     reached = np.column_stack([flown(np.zeros(3), axis, rate, time)[0] for axis in np.eye(3)])
-    needed = np.linalg.solve(reached, np.asarray(goal, float) - coasting)
+    needed = np.asarray(np.linalg.solve(reached, np.asarray(goal, float) - coasting), float)
     _, arriving = flown(position, needed, rate, time)
     return needed - velocity, goal_velocity - arriving
 
@@ -129,4 +129,5 @@ def _matrix(q: Array) -> Array:
     """Rotation matrix (3, 3) of a unit quaternion."""
     x, y, z = q[1:]
     across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + 2.0 * q[0] * across + 2.0 * across @ across
+    matrix: Array = np.eye(3) + 2.0 * q[0] * across + 2.0 * across @ across
+    return matrix

@@ -32,7 +32,7 @@ def net_mass(phase: PhaseScene, left: float | None) -> float:
     main = phase.main
     if main.fmu is None:
         values = main.values
-        return build.masses_after(values, main.terms)["target.mass"] - values["target.mass"]
+        return float(build.masses_after(values, main.terms)["target.mass"] - values["target.mass"])
     if left is None:
         raise HandoffError(f"hand-off refused: the mass of the net that {main.fmu.name} shoots is not known beforehand")
     return left
@@ -132,4 +132,4 @@ def spent(run: RunResult) -> float:
     """Propellant [kg] of all manoeuvres and tows of a run so far."""
     tows = (left.get(TOWED_ON, 0.0) for left in run.left.values())
     booked = (getattr(record, "expended", None) for record in run.handovers.values())
-    return sum(tows) + sum(one.propellant for one in booked if one is not None)
+    return float(sum(tows) + sum(one.propellant for one in booked if one is not None))

@@ -88,7 +88,7 @@ class NextHandover:
             Finding(
                 place,
                 "released_axis",
-                "semi-major axis of the chaser there, less Earth's radius",
+                "semi-major axis there, less Earth's radius",
                 height,
                 "m",
                 0.0,

@@ -29,6 +29,7 @@ from orbital.manoeuvres import flown, turned_freely, two_impulses
 
 MASS = "chaser.mass"
 INERTIA = tuple(f"target.inertia[{i}]" for i in (1, 2, 3))
+NOTHING = np.zeros(3)
 ADDED = ("chaser", "target", "vertex", "catch")
 """Bodies of a capture whose places and velocities are told in its frame."""
 
@@ -143,32 +144,42 @@ def _rows(record: ShotHandover, held: Mapping[str, float]) -> Iterator[LedgerRow
     whole = before + mass + net
     after = aboard + held["target.mass"]
     yield LedgerRow("mass, all", "kg", whole, after, net + spent.propellant, f"propellant, and what {drifts}", whole)
-    lost = net * vector(left, "catch.velocity")
-    own = mass * vector(left, "target.velocity")
-    size = float(np.linalg.norm(lost) + np.linalg.norm(own))
+    lost, own = net * vector(left, "catch.velocity"), mass * vector(left, "target.velocity")
     _, carried = flown(record.origin[0], record.origin[1], record.rate, -record.reload)
-    for i, axis in enumerate(AXES):
-        was, now = float(lost[i] + own[i]), float(held["target.mass"] * carried[i])
-        yield LedgerRow(f"linear momentum, target and net, {axis}", "N s", was, now, float(lost[i]), drifts, size)
-    place, speed = vector(left, "chaser.position"), vector(left, "chaser.velocity")
-    there = place - vector(left, "target.position"), speed - vector(left, "target.velocity")
-    arrived = flown(there[0], there[1] + record.burns[0], record.rate, record.reload)
-    for name, unit, of, at in (
-        ("place of the chaser from the target", "m", "position", arrived[0]),
-        ("velocity of the chaser from the target", "m/s", "start_velocity", arrived[1] + record.burns[1]),
-    ):
-        now = vector(held, f"chaser.{of}")
-        size = float(np.linalg.norm(there[0 if unit == "m" else 1]) + np.linalg.norm(at))
-        size += float(sum(np.linalg.norm(burn) for burn in record.burns)) * (1.0 if unit == "m/s" else record.reload)
-        for i, axis in enumerate(AXES):
-            yield LedgerRow(f"{name}, {axis}", unit, float(at[i]), float(now[i]), 0.0, "", size)
-    spin, angle = vector(left, "target.spin"), record.rate * record.reload
+    yield from _by_axis(
+        ("linear momentum, target and net", "N s"), lost + own, held["target.mass"] * carried, [lost, own], lost, drifts
+    )
+    place = vector(left, "chaser.position") - vector(left, "target.position")
+    speed = vector(left, "chaser.velocity") - vector(left, "target.velocity")
+    burns, reload = record.burns, record.reload
+    there, arriving = flown(place, speed + burns[0], record.rate, reload)
+    moved = [reload * burn for burn in burns]
+    now = vector(held, "chaser.position")
+    yield from _by_axis(("place of the chaser from the target", "m"), there, now, [place, there, *moved])
+    now = vector(held, "chaser.start_velocity")
+    yield from _by_axis(("velocity of the chaser from the target", "m/s"), arriving + burns[1], now, [speed, *burns])
+    spin, angle = vector(left, "target.spin"), record.rate * reload
     c, s = np.cos(angle), np.sin(angle)
     seen = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ spin
-    now, size = vector(held, "target.spin"), float(np.linalg.norm(spin))
-    for i, axis in enumerate(AXES):
-        quantity = f"angular momentum, spin of the target, {axis}"
-        yield LedgerRow(quantity, "N m s", float(seen[i]), float(now[i]), 0.0, "", size)
+    yield from _by_axis(("angular momentum, spin of the target", "N m s"), seen, vector(held, "target.spin"), [spin])
+
+
+def _by_axis(
+    what: tuple[str, str],
+    before: Vector,
+    after: Vector,
+    entering: Sequence[Vector],
+    accounted: Vector = NOTHING,
+    account: str = "",
+) -> Iterator[LedgerRow]:
+    """A row for each axis of a vector that is kept.
+
+    what       quantity and unit
+    entering   of which the sum of magnitudes is
+    """
+    size = float(sum(np.linalg.norm(one) for one in entering))
+    for axis, was, now, meant in zip(AXES, before.tolist(), after.tolist(), accounted.tolist(), strict=True):
+        yield LedgerRow(f"{what[0]}, {axis}", what[1], was, now, meant, account, size)
 
 
 def about_handover(kind: Phase, document: Document) -> Iterator[Mistake]:
@@ -270,10 +281,8 @@ class FurtherShot(Capture):
 def _goal(run: RunResult, phase: PhaseScene, before: PhaseScene) -> tuple[Vector, Vector]:
     """Place [m] and velocity [m/s] from the target that a shot begins with, by its scene; of a file that does not offer
     them those of the shot before."""
-    place, speed = (
-        np.array([phase.setting(f"chaser.start_{of}[{i}]") or 0.0 for i in (1, 2, 3)])
-        for of in ("position", "velocity")
-    )
+    names = ([f"chaser.start_{of}[{i}]" for i in (1, 2, 3)] for of in ("position", "velocity"))
+    place, speed = (np.array([phase.setting(name) or 0.0 for name in each]) for each in names)
     if phase.setting("chaser.start_position[1]") is None:
         recorder = run.phases[before.name].recorder
         place = recorder.vector("chaser.position")[0] - recorder.vector("target.position")[0]
