@@ -26,7 +26,7 @@ AHEAD = 3
 """Tasks that are out for each worker."""
 MOST_TOGETHER = 50
 """Cases of a task: what a worker that dies leaves undone stays small."""
-TASKS = 200.0
+TASKS = 100.0
 """Tasks a second [1/s] that one scheduler hands out with ease: shorter cases go out several to a task."""
 
 
@@ -64,6 +64,7 @@ class Runner:
     ahead       cases that are submitted at a time: enough that no worker waits for its next
     work        what makes a row of a case, a function of a module
     idle        called now and then while rows are waited for
+    cost        what a case is expected to take, 0 where that is not known [s]
 
     Many cases at once, or short ones, go out several to a task, which a worker does one after the other; where one dies
     on it, they go out again one by one.
@@ -76,8 +77,10 @@ class Runner:
         ahead: int,
         work: Callable[[Any], Row] = run_case,
         idle: Callable[[], object] = lambda: None,
+        cost: float = 0.0,
     ) -> None:
         self._store, self._executor, self._ahead, self._work, self._idle = store, executor, ahead, work, idle
+        self._bundles = Bundles(ahead, cost)
 
     def row(self, case: Keyed) -> Row:
         """The row of one case."""
@@ -91,7 +94,6 @@ class Runner:
         going: dict[Future[Any], list[Keyed]] = {}
         seen: set[str] = set()
         task: list[Keyed] = []
-        self._pace = Pace(self._ahead)
         for case in cases:
             self._heed()
             if case.key in seen:
@@ -102,7 +104,7 @@ class Runner:
                 yield there, True
                 continue
             task.append(case)
-            if len(task) >= self._pace.together:
+            if len(task) >= self._bundles.together:
                 self._give(task, going)
                 task = []
             while len(going) >= self._ahead:
@@ -132,7 +134,7 @@ class Runner:
                     self._give([case], going)
                 continue
             rows += _rows_of(future, [case.key for case in cases])
-        self._pace.look(rows)
+        self._bundles.look(rows)
         self._store.put_all(rows)
         yield from ((row, False) for row in rows)
         self._idle()
@@ -143,15 +145,19 @@ class Runner:
             raise Interrupted(f"interrupted by {interrupts.noted()}")
 
 
-class Pace:
+class Bundles:
     """How many cases go to a task: so many that those that are out at once do not come faster than `TASKS`.
 
     ahead    tasks that are out at once
+    cost     what a case is expected to take, 0 where that is not known [s]
+
+    Checked  tests/cases/test_runner.py
     """
 
-    def __init__(self, ahead: int) -> None:
+    def __init__(self, ahead: int, cost: float = 0.0) -> None:
         self.together, self._ahead = 1, ahead
-        self._cpu, self._cases = 0.0, 0
+        self._cpu, self._cases = cost, int(cost > 0.0)
+        self.look(())
 
     def look(self, rows: Sequence[Row]) -> None:
         """Take in what cases have cost."""
