@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from dcone_cosim.scene.data import PhaseScene
 from orbital import plain
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
@@ -103,6 +104,14 @@ def mean_motion(altitude: float) -> float:
     altitude      over the equatorial radius                     [m]
     """
     return plain.mean_motion(EARTH_EQUATORIAL_RADIUS + altitude, EARTH_MU)
+
+
+def frame_rate(phase: PhaseScene) -> float:
+    """Rate at which the orbital axes of a capture turn [rad/s]: not at all where its gravity lets them stand still."""
+    altitude = phase.setting("orbit.altitude")
+    if altitude is None or phase.main.terms.get("gravity", "hill") != "hill":
+        return 0.0
+    return mean_motion(altitude)
 
 
 def _vector(values: Values, name: str) -> Vector:

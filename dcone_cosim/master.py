@@ -15,7 +15,7 @@ from types import MappingProxyType
 from dcone_cosim.errors import FMU_FAILED, HANDOFF_FAILED, SUCCESS, FmuError, HandoffError, InputError
 from dcone_cosim.fmu.component import NUMBERS, CallError, Steppable
 from dcone_cosim.phases import kind_of
-from dcone_cosim.phases.phase import Adopt, Instantiate, Loop, Stage
+from dcone_cosim.phases.phase import Adopt, Instantiate, Loop, Stage, failed
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import Begun, Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
@@ -44,14 +44,21 @@ def run_scene(
     until    name of the phase that is not run any more; "" to run all
     """
     run, phases = RunResult(scene) if begun is None else begun.run_of(scene), scene.phases
-    for before, phase, after in zip((None, *phases), phases, (*phases[1:], None), strict=False):
+    before: PhaseScene | None = None
+    for place, phase in enumerate(phases):
         if run.exit_code != SUCCESS or phase.name == until:
             break
         if phase.name in run.phases:
+            before = phase
             continue
+        if before is not None and kind_of(phase.name).retries != failed(run.phases[before.name]):
+            continue
+        later = phases[place + 1 :]
+        after = later[0] if later else None
         keeper = Keeper(phase.name, keep[phase.name]) if phase.name in keep else None
         here = begun if begun is not None and begun.state is not None and begun.state.phase == phase.name else None
-        _run(Stage(run, phase, before, after, instantiate, progress, keeper, here), adopt)
+        _run(Stage(run, phase, before, after, instantiate, progress, keeper, here, later), adopt)
+        before = phase
         if keeper is not None:
             run.states += keeper.kept
     return run
@@ -89,8 +96,9 @@ def _run(stage: Stage, adopt: Adopt) -> None:
             run.stop(result.error)
         else:
             kind.judge(stage, result)
-        if run.exit_code == SUCCESS and stage.after is not None:
-            _leave(stage, component)
+        following = stage.next_of(result)
+        if run.exit_code == SUCCESS and following is not None:
+            _leave(stage, component, following)
     finally:
         component.close()
     if run.exit_code == SUCCESS:
@@ -172,11 +180,10 @@ def _initialise(stage: Stage, component: Steppable, values: Mapping[str, float],
     run.inputs[name] = standing(component, "input")
 
 
-def _leave(stage: Stage, component: Steppable) -> None:
+def _leave(stage: Stage, component: Steppable, following: PhaseScene) -> None:
     """Read what the next phase takes over, while there is somebody to ask."""
     run, phase = stage.run, stage.phase
-    assert stage.after is not None
-    next_kind = kind_of(stage.after.name)
+    next_kind = kind_of(following.name)
     missing = [name for name in next_kind.takes if name not in component.variables]
     if missing:
         text = f"the {phase.name} FMU lacks what a hand-off reads: {', '.join(missing)}"
@@ -184,7 +191,8 @@ def _leave(stage: Stage, component: Steppable) -> None:
         return
     there = [name for name in next_kind.takes_too if name in component.variables]
     try:
-        run.left[phase.name] = component.get([*next_kind.takes, *there])
+        left = component.get([*next_kind.takes, *there])
+        run.left[phase.name] = kind_of(phase.name).leaves(run, phase, left)
     except FmuError as error:
         run.fail("FMU failed", str(error), FMU_FAILED)
 

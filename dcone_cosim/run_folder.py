@@ -156,16 +156,16 @@ def tables_of(run: RunResult) -> Iterator[tuple[str, pa.Table]]:
         kind, clock = kind_of(name), kind_of(name).clock(run)
         yield name, phase_table(result, clock)
         if result.snapshots.times:
-            yield NODES, nodes_table(result.snapshots, clock)
+            yield f"{kind.prefix}{NODES}", nodes_table(result.snapshots, clock)
         if result.frames is not None and result.frames.times:
-            yield REPLAY_NODES, replay_nodes_table(result.frames, clock)
+            yield f"{kind.prefix}{REPLAY_NODES}", replay_nodes_table(result.frames, clock)
             if len(result.frames.ends):
-                yield REPLAY_THREADS, replay_threads_table(result.frames, clock)
+                yield f"{kind.prefix}{REPLAY_THREADS}", replay_threads_table(result.frames, clock)
         if result.tugs is not None:
             yield kind.tugs_file, tugs_table(result.tugs, clock)
         cells = force_map.of_run(run, name)
         if cells is not None:
-            yield FORCE_MAP, force_table(cells)
+            yield f"{kind.prefix}{FORCE_MAP}", force_table(cells)
         if result.passive:
             yield f"{name}_passive_safety", passive_table(result, clock)
     for name, result in run.comparisons.items():

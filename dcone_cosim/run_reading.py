@@ -126,7 +126,8 @@ def _recall(run: RunResult, name: str, ledger: Mapping[str, Any]) -> None:
     phases = run.scene.phases
     place = next(i for i, phase in enumerate(phases) if phase.name == name)
     after = phases[place + 1] if place + 1 < len(phases) else None
-    stage = Stage(run, phases[place], phases[place - 1], after, _nobody, Progress())
+    before = next(phase for phase in reversed(phases[:place]) if phase.name in run.phases)
+    stage = Stage(run, phases[place], before, after, _nobody, Progress())
     try:
         record = kind_of(name).take_over(stage)
     except HandoffError:
@@ -148,7 +149,7 @@ def _phase(folder: Path, name: str, about: Mapping[str, Any]) -> PhaseResult:
         name,
         float(about["start"]["value"]),
         recorder_of(folder / f"{name}.parquet"),
-        _snapshots(folder / f"{NODES}.parquet") if kind_of(name).keeps_nodes else Snapshots(),
+        _snapshots(folder / f"{kind_of(name).prefix}{NODES}.parquet") if kind_of(name).keeps_nodes else Snapshots(),
         None if tugs is None else _tugs(folder / f"{kind_of(name).tugs_file}.parquet", tugs),
         out["outcome"],
         None if located is None else float(located["value"]),
@@ -162,7 +163,7 @@ def _phase(folder: Path, name: str, about: Mapping[str, Any]) -> PhaseResult:
         float(out["ended_at"]["value"]),
         float(about["origin"]["value"]),
         _instants(safety) if safety.is_file() else (),
-        _frames(folder, about["options"]) if kind_of(name).keeps_nodes else None,
+        _frames(folder, kind_of(name).prefix, about["options"]) if kind_of(name).keeps_nodes else None,
     )
 
 
@@ -202,16 +203,16 @@ def _snapshots(path: Path) -> Snapshots:
     return found
 
 
-def _frames(folder: Path, options: Mapping[str, Any]) -> Frames | None:
+def _frames(folder: Path, prefix: str, options: Mapping[str, Any]) -> Frames | None:
     """Frames of a replay, None where none were kept."""
-    path = folder / f"{REPLAY_NODES}.parquet"
+    path = folder / f"{prefix}{REPLAY_NODES}.parquet"
     if not path.is_file():
         return None
     columns = {name: values for name, (_, _, values) in _columns(path).items()}
     times = np.unique(columns["time"])
     positions = np.column_stack([columns[f"position[{i}]"] for i in (1, 2, 3)]).astype(np.float32)
     found = Frames(float(options["replay_every"]), times.tolist(), list(positions.reshape(len(times), -1, 3)))
-    threads = folder / f"{REPLAY_THREADS}.parquet"
+    threads = folder / f"{prefix}{REPLAY_THREADS}.parquet"
     if threads.is_file():
         columns = {name: values for name, (_, _, values) in _columns(threads).items()}
         found.tensions = list(columns["tension"].astype(np.float32).reshape(len(times), -1))

@@ -6,7 +6,7 @@ The mapping itself is `handoff`'s, the line's `line`'s; here they are held again
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +44,8 @@ from dcone_cosim.line import (
 )
 from dcone_cosim.scene.data import HandoffOptions, PhaseScene
 
+HAND_OFF, FIRST = "hand-off", "removal"
+"""Under what a hand-over is told, and the tow that needs no name beside it."""
 HULL = "hull"
 """Level of a target that is towed as the hull of some of its corners."""
 CROSS_CHECK = 1e-4
@@ -69,6 +71,7 @@ class HandoffRecord:
     time              of the hand-over, since the shot [s]
     start             the same, as time that the removal's FMU is told to begin at [s]
     phase             the removal, with the level of its target
+    earlier           from the first shot at this target to the one that caught it [s]
     bound             by how much a point would err
     shape             of the capture's target, `level.SHAPE`, or the corners of its hull
     shortfall         by which the target reaches beyond that hull at most [m]
@@ -82,6 +85,7 @@ class HandoffRecord:
     phase: PhaseScene
     handed: Handoff
     line: Line
+    earlier: float = 0.0
     spin: SpinSpeeds = field(default_factory=SpinSpeeds)
     bound: PointBound = field(default_factory=PointBound)
     shape: dict[str, float] = field(default_factory=dict)
@@ -103,11 +107,12 @@ class HandoffRecord:
             self.turning = turning_parameters(self.handed, self.shape, component.variables, inertial)
         else:
             self.line_parameters = line_parameters(self.line, component.variables)
-        anomaly = advanced(self.phase.setting("orbit.true_anomaly") or 0.0, self.handed.turning[2] * self.time)
+        since = self.earlier + self.time
+        anomaly = advanced(self.phase.setting("orbit.true_anomaly") or 0.0, self.handed.turning[2] * since)
         begun = {"orbit.true_anomaly": anomaly, "start.condition": self.phase.choice("start.condition", HANDED_OVER)}
         epoch = self.phase.setting("orbit.epoch")
         if epoch is not None and "orbit.epoch" in component.variables:
-            begun["orbit.epoch"] = epoch + self.time
+            begun["orbit.epoch"] = epoch + since
         return self.handed.parameters | begun | self.line_parameters | self.turning
 
     @property
@@ -141,7 +146,9 @@ class HandoffRecord:
         self.failure = told["failure"]
 
     def findings(self) -> list[Finding]:
-        return list(findings(self))
+        """Under "hand-off" of the first tow, by its name of a later one."""
+        place = HAND_OFF if self.phase.name == FIRST else f"{HAND_OFF} to {self.phase.name}"
+        return [replace(finding, phase=place) for finding in findings(self)]
 
     def told(self) -> dict[str, Any]:
         """All of it, with units."""

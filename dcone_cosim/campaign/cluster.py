@@ -17,6 +17,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, TypeVar
 
+from dcone_cosim.cases.runner import AHEAD
 from dcone_cosim.cases.workers import ONE_CORE, WorkerDied, Workers, cores
 from dcone_cosim.errors import DconeError, InputError
 
@@ -24,8 +25,6 @@ T = TypeVar("T")
 PROCESSES = "processes"
 DEATHS = 3
 """Workers that may die on a case."""
-AHEAD = 3
-"""Cases that are handed out for each worker."""
 RUNNING = ("running", "newly-created")
 """What a client of dask says of itself while its scheduler is there."""
 PATIENCE = "20 s"

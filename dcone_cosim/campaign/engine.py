@@ -91,6 +91,7 @@ class Engine:
         self._store, self._cluster, self._progress, self._work = store, cluster, progress, work
         self.made: list[Made] = []
         self.tally = Tally(spec, 0)
+        self._cost = 0.0
 
     def shot(self, number: int, values: Sequence[float]) -> Shot:
         """A case by its number and values."""
@@ -100,10 +101,13 @@ class Engine:
     def nominal(self) -> Row:
         """The scene as it is, with all figures."""
         shot = Shot(digest("nominal", self._identity), 0, (), self._ground)
-        return self._runner().row(shot)
+        row = self._runner().row(shot)
+        self._cost = row.timings.get("cpu", 0.0)
+        return row
 
     def _runner(self) -> Runner:
-        return Runner(self._store, self._cluster.executor, self._cluster.ahead, self._work, self._idle)
+        cluster = self._cluster
+        return Runner(self._store, cluster.executor, cluster.ahead, self._work, self._idle, self._cost)
 
     def _idle(self) -> None:
         self._cluster.check()

@@ -17,6 +17,7 @@ from dcone_cosim.phases import kinds
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import Mistake, SceneError, unknown
 from dcone_cosim.scene.toml_lines import Path as KeyPath
+from dcone_cosim.transaction import FIRST, HAND_OFF
 
 OPTIONAL = "?"
 """Behind the name of a figure that a case may lack."""
@@ -69,8 +70,10 @@ m    if_*
 """
 _OF_HANDOFF = """
 s    time
-kg   mass
-m    distance beyond_hull line attachment_distance slack slack_after
+kg   mass propellant propellant_spent chaser_mass
+m/s  velocity_change target_speed
+1    nets_left
+m    distance released_axis beyond_hull line attachment_distance slack slack_after
 m/s  relative_speed attachment_speed tug_speed
 N m s  spin spin_dropped
 J    spin_energy spin_energy_dropped energy_lost
@@ -90,12 +93,15 @@ def _rows(*tables: str) -> dict[str, str | None]:
     return found
 
 
-HANDOFF = "hand-off"
 BY_PHASE: Mapping[str, Mapping[str, str | None]] = {
     "capture": _rows(_OF_CAPTURE, _OF_ALL),
     "removal": _rows(_OF_TOW, _OF_ALL),
+    "second_shot": _rows(_OF_CAPTURE, _OF_ALL),
+    "third_shot": _rows(_OF_CAPTURE, _OF_ALL),
     "second_tow": _rows(_OF_TOW, _OF_ALL),
-    HANDOFF: _rows(_OF_HANDOFF),
+    "next_capture": _rows(_OF_CAPTURE, _OF_ALL),
+    "next_removal": _rows(_OF_TOW, _OF_ALL),
+    HAND_OFF: _rows(_OF_HANDOFF),
 }
 """Figures of the phases that are known: SI units by name; `TEXT` for a text, None where it hangs on the scene."""
 
@@ -109,7 +115,7 @@ def tellable(base: Scene) -> dict[str, Mapping[str, str | None]] | None:
             return None
         found[name] = BY_PHASE[name]
         if place:
-            found[HANDOFF if place == 1 and names[0] == "capture" else f"{HANDOFF} to {name}"] = BY_PHASE[HANDOFF]
+            found[HAND_OFF if name == FIRST else f"{HAND_OFF} to {name}"] = BY_PHASE[HAND_OFF]
     return found
 
 

@@ -15,8 +15,10 @@ from dcone_cosim.units import NO_UNIT, PURE, by_name, spoken
 
 LOST_AGAIN = "no:"
 """How `capture.lasted` begins of a target that came out again."""
-CAPTURE_OUTCOME, LASTED = "capture.outcome", "capture.lasted"
-TOLD_BY = (CAPTURE_OUTCOME, LASTED)
+OUTCOME, LASTED = ".outcome", ".lasted"
+SHOTS = ("capture", "second_shot", "third_shot", "next_capture")
+"""Phases that shoot, in their order: the last one that came says how a case came out."""
+TOLD_BY = tuple(f"{shot}{what}" for shot in SHOTS for what in (OUTCOME, LASTED))
 """Figures that say how a case came out; they are always kept."""
 BROKE, OUT_AGAIN, DONE, NOT_HANDED_OVER = "broke", "out again", "completed", "not handed over"
 FLYING, UNDECIDED = "flying", "undecided at the end"
@@ -84,12 +86,13 @@ def outcome(row: Row) -> str:
         return BROKE
     if row.exit_code == HANDOFF_FAILED:
         return NOT_HANDED_OVER
-    told = row.figures.get(CAPTURE_OUTCOME)
-    if not isinstance(told, str):
+    last = next((shot for shot in reversed(SHOTS) if isinstance(row.figures.get(f"{shot}{OUTCOME}"), str)), "")
+    if not last:
         return DONE
+    told = str(row.figures[f"{last}{OUTCOME}"])
     if row.exit_code == CAPTURE_FAILED:
         return UNDECIDED if told == FLYING else told
-    if str(row.figures.get(LASTED, "")).startswith(LOST_AGAIN):
+    if str(row.figures.get(f"{last}{LASTED}", "")).startswith(LOST_AGAIN):
         return OUT_AGAIN
     return CAUGHT[0] if told in CAUGHT else told
 

@@ -33,7 +33,9 @@ from dcone_cosim.scratch import PREFIX, Scratch, clear_left
 STUDY, ROWS = "study.json", "rows"
 GATHERED = 1000
 """Rows of a segment."""
-AT_HAND = 8
+TOGETHER = 16
+"""Rows that come together from which on they are a segment at once: a file less for each costs the disk 4 ms less."""
+AT_HAND = 64
 """Segments in memory: rows are asked for about in the order in which they came."""
 AT_ONCE = 8
 """Rows that are forced to disk side by side: the system waits for the disk once for all of them."""
@@ -150,6 +152,10 @@ class Store:
 
     def put_all(self, rows: Sequence[Row]) -> None:
         """Keep several. They are on the disk when this returns, which takes hardly longer than for one."""
+        whole = [row for row in rows if row.lasting]
+        if len(whole) >= TOGETHER:
+            self._write_segment(sorted(whole, key=lambda row: row.key))
+            rows = [row for row in rows if not row.lasting]
         if len(rows) > 1:
             with ThreadPoolExecutor(min(len(rows), AT_ONCE)) as pool:
                 drafts = list(pool.map(self._draft, rows))

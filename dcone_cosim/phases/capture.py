@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from dcone_cosim import build
@@ -17,7 +17,7 @@ from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS
 from dcone_cosim.phases import capture_clip, capture_criteria, capture_quantities, capture_report, chaos
 from dcone_cosim.phases.capture_loop import CaptureLoop, CapturePlan
-from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage
+from dcone_cosim.phases.phase import Document, Figure, Loop, Main, Phase, Stage, failed
 from dcone_cosim.quantities import Quantity
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
@@ -117,9 +117,8 @@ class Capture(Phase):
 
     def loop(self, stage: Stage, component: Steppable, start: float) -> Loop:
         phase = stage.phase
-        plan = CapturePlan(
-            phase.macro_step, phase.duration, stop_there=stage.after is not None, start=start, **vars(phase.options)
-        )
+        told = {one.name: getattr(phase.options, one.name) for one in fields(CaptureOptions)}
+        plan = CapturePlan(phase.macro_step, phase.duration, stop_there=stage.after is not None, start=start, **told)
         return CaptureLoop(component, plan, stage.progress)
 
     def judge(self, stage: Stage, result: PhaseResult) -> None:
@@ -128,7 +127,7 @@ class Capture(Phase):
         if hand_over == NEVER:
             result.outcome = FLOWN if result.outcome == OUTCOMES[0] else result.outcome
             return
-        if result.located is not None:
+        if result.located is not None or (failed(result) and stage.next_of(result) is not None):
             return
         waited, stands = hand_over.replace("_", " "), result.outcome.replace("_", " ")
         if result.outcome == ENDED:
@@ -172,11 +171,11 @@ class Capture(Phase):
         return chaos.CAPTURE
 
     def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
-        phase = next(phase for phase in run.scene.phases if phase.name == self.name)
-        return capture_report.figures(run, phase, result)
+        phase = next(phase for phase in run.scene.phases if phase.name == result.name)
+        yield from ((f"{self.prefix}{file}", draw) for file, draw in capture_report.figures(run, phase, result))
 
     def clip(self, run: RunResult, result: PhaseResult) -> Clip | None:
-        phase = next(phase for phase in run.scene.phases if phase.name == self.name)
+        phase = next(phase for phase in run.scene.phases if phase.name == result.name)
         return capture_clip.clip(run, phase, result, self.marks(result))
 
     def charts(self, run: RunResult, result: PhaseResult) -> Iterator[Chart]:

@@ -49,34 +49,34 @@ _CAPTURE_ROWS = (
 
 def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     last = result.recorder.last() if len(result.recorder) else {}
-    yield Finding("capture", "outcome", "outcome", result.outcome.replace("_", " "))
+    yield Finding(result.name, "outcome", "outcome", result.outcome.replace("_", " "))
     yield from of_end("capture", result)
     if result.located is not None:
-        yield Finding("capture", "handed_over_at", "hand-over condition met at", result.located, "s")
-        yield Finding("capture", "located_by", "hand-over condition located by", result.located_by)
+        yield Finding(result.name, "handed_over_at", "hand-over condition met at", result.located, "s")
+        yield Finding(result.name, "located_by", "hand-over condition located by", result.located_by)
     for name, label, unit in _CAPTURE_ROWS:
         if name in last and not (unit == "s" and last[name] < 0.0):  # an instant that has not come is told as -1
             whole = not unit and math.isfinite(last[name])
             value = int(last[name]) if whole else last[name]
-            yield Finding("capture", name, label, value, unit)
-    yield from _of_hardest(last)
+            yield Finding(result.name, name, label, value, unit)
+    yield from _of_hardest(last, result)
     yield from _of_catch(last, result)
-    yield from closed_report.findings(last)
-    parameters = run.parameters.get("capture", {})
+    yield from closed_report.findings(result.name, last)
+    parameters = run.parameters.get(result.name, {})
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))
-        yield Finding("capture", "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+        yield Finding(result.name, "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
 
 
-def _of_hardest(last: Mapping[str, float]) -> Iterator[Finding]:
+def _of_hardest(last: Mapping[str, float], result: PhaseResult) -> Iterator[Finding]:
     """Where and when the largest tension of a thread was, of an FMU that tells it."""
     nodes = [last.get(f"thread.tension_max_node[{end}]", 0.0) for end in (1, 2)]
     if all(nodes):
         text = f"{nodes[0]:.0f} and {nodes[1]:.0f}"
-        yield Finding("capture", "thread.tension_max_node", "largest tension of a thread, between the nodes", text)
+        yield Finding(result.name, "thread.tension_max_node", "largest tension of a thread, between the nodes", text)
         yield Finding(
-            "capture",
+            result.name,
             "thread.tension_max_time",
             "largest tension of a thread, at",
             last["thread.tension_max_time"],
@@ -99,7 +99,7 @@ def _of_catch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Findin
     for name, label, unit in _CATCH_ROWS:
         if name in last:
             shown_in = "%" if name.startswith("enclosure.") else ""
-            yield Finding("capture", name, label, last[name], unit, shown_in=shown_in)
+            yield Finding(result.name, name, label, last[name], unit, shown_in=shown_in)
     if "t_lost" not in last:
         return
     seen = result.end - result.start - last["t_capture"]
@@ -109,7 +109,7 @@ def _of_catch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Findin
         text = f"yes, for the {seen:.3g} s to the end of the phase"
     else:
         text = "not followed: the phase ends at the capture"
-    yield Finding("capture", "lasted", "did the catch last", text)
+    yield Finding(result.name, "lasted", "did the catch last", text)
 
 
 def _vector(values: dict[str, float], name: str) -> Any:

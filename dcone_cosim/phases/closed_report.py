@@ -35,31 +35,31 @@ _PULL_ROWS = (
 )
 
 
-def findings(last: Mapping[str, float]) -> Iterator[Finding]:
-    """What the last row tells of either."""
+def findings(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
+    """What the last row of a phase tells of either."""
     for name, label, unit in _QUALITY_ROWS:
         if name in last and last[name] >= 0.0:
-            yield Finding("capture", name, label, last[name], unit)
+            yield Finding(phase, name, label, last[name], unit)
     if "pull_off.stands" in last:
-        yield from _of_pull(last)
+        yield from _of_pull(phase, last)
 
 
-def _of_pull(last: Mapping[str, float]) -> Iterator[Finding]:
+def _of_pull(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
     stands = int(last["pull_off.stands"])
-    yield Finding("capture", "pull_off", "pull-off test", _TOLD[stands])
+    yield Finding(phase, "pull_off", "pull-off test", _TOLD[stands])
     if PULL_OFF[stands] == "waiting":
         return
     for name, label, unit in _PULL_ROWS:
-        yield Finding("capture", name, label, last[name], unit)
+        yield Finding(phase, name, label, last[name], unit)
     slip = [last[f"pull_off.slip[{i}]"] for i in (1, 2, 3)]
     text = ", ".join(f"{way:+.3g}" for way in slip)
-    yield Finding("capture", "pull_off.slip", "the net has moved about the target, its axes", f"{text} m")
+    yield Finding(phase, "pull_off.slip", "the net has moved about the target, its axes", f"{text} m")
     threads = [
         (int(last[f"pull_off.hardest[{i}].thread"]), last[f"pull_off.hardest[{i}].tension"]) for i in range(1, 6)
     ]
     told = ", ".join(f"{tension:.3g} N (thread {number})" for number, tension in threads if number > 0)
     if told:
-        yield Finding("capture", "pull_off.threads", "most borne under the whole load", told)
+        yield Finding(phase, "pull_off.threads", "most borne under the whole load", told)
 
 
 def figures(result: PhaseResult, title: str) -> Iterator[Figure]:

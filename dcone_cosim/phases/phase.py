@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from dcone_cosim.contract import NEVER, Need
+from dcone_cosim.contract import FAILED_OUTCOMES, NEVER, OUTCOMES, Need
 from dcone_cosim.criteria import Criterion, Evidence, finite
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
@@ -97,6 +97,7 @@ class Stage:
     before, after   the phases that hand over to it and that it hands over to, None for none
     keeper          of states on the way, None where none is to be kept
     begun           what the run goes on from, where that is a state of this phase
+    later           phases that may come after it, in their order
     """
 
     run: RunResult
@@ -107,6 +108,18 @@ class Stage:
     progress: Progress
     keeper: Keeper | None = None
     begun: Begun | None = None
+    later: Sequence[PhaseScene] = ()
+
+    def next_of(self, result: PhaseResult) -> PhaseScene | None:
+        """The phase that takes over what this one came to, None for none: after a failure one that tries again."""
+        from dcone_cosim.phases import kind_of
+
+        return next((one for one in self.later if kind_of(one.name).retries == failed(result)), None)
+
+
+def failed(result: PhaseResult) -> bool:
+    """Whether a phase did not come to what it is for, so that one like it may try again."""
+    return result.located is None and result.outcome in (*FAILED_OUTCOMES, OUTCOMES[0])
 
 
 class Phase:
@@ -125,9 +138,11 @@ class Phase:
     takes          outputs and parameters of the phase before that it takes over, by name
     takes_too      the same, of those that the phase before may lack
     taken_over     names of parameters that a hand-over to it sets; one that ends in a dot stands for a whole table
+    retries        it takes over from a phase that has failed, and is left out where none has
     begins_at_zero whether its FMU has to be told to begin at 0
     own_clock      its times count from its begin, whatever time its FMU is told
     tugs_file      name of the table of its tugs
+    prefix         before the names of its pictures and of the tables of its net
     keeps_nodes    the positions of a net's knots are kept of it
     chaotic        its figures are samples: they part company however small a change is
     judged_by      names of its quantities; none: those of its outputs
@@ -147,9 +162,11 @@ class Phase:
     takes: Sequence[str] = ()
     takes_too: Sequence[str] = ()
     taken_over: Sequence[str] = ()
+    retries = False
     begins_at_zero = False
     own_clock = False
     tugs_file = "tugs"
+    prefix = ""
     keeps_nodes = False
     chaotic = False
     judged_by: Sequence[str] = ()
@@ -215,6 +232,10 @@ class Phase:
 
     def judge(self, stage: Stage, result: PhaseResult) -> None:
         """Let the run fail if the phase did not come to what the next one needs."""
+
+    def leaves(self, run: RunResult, phase: PhaseScene, left: Mapping[str, float]) -> dict[str, float]:
+        """What the next phase asked for, as it was read from the FMU, in the frame that the next one knows."""
+        return dict(left)
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """What else is to be run once the phase is over and its FMU closed."""

@@ -22,6 +22,7 @@ from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
 from dcone_cosim.phases import chaos, passive, removal_criteria, removal_quantities, removal_report, tow_clip
 from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
+from dcone_cosim.phases.second_shot import since_first_shot
 from dcone_cosim.phases.stepping import PhaseLoop
 from dcone_cosim.phases.tension import orbital_period
 from dcone_cosim.plots import tow
@@ -209,7 +210,7 @@ class Tow(Phase):
 
 class Removal(Tow):
     name = "removal"
-    follows: Sequence[str] = ("capture",)
+    follows: Sequence[str] = ("capture", "second_shot", "third_shot")
     handoff_keys: Mapping[str, Expected] = {
         "point_tolerance": Expected("1", example="1 %", minimum=0.0, share=True),
         "compare_without_recoil": Expected("1", kind="Boolean"),
@@ -303,7 +304,8 @@ class Removal(Tow):
         handed = prepare(left, mean_motion(altitude))
         line = line_of(handed, left.get(LINE, phase.setting(REST_LENGTH)))
         start = capture.origin + capture.located
-        record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line)
+        earlier = since_first_shot(run, stage.before.name)
+        record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line, earlier)
         run.handovers[self.name] = record
         held = run.parameters[stage.before.name]
         main = stage.before.main

@@ -22,6 +22,7 @@ from dcone_cosim.phases.phase import Document
 from dcone_cosim.scene.data import SHARED, Accuracy, ComponentScene, HandoffOptions, LineScene, PhaseScene, Scene
 from dcone_cosim.scene.mistakes import Enough, Mistake, Mistakes, Places, SceneError, unknown
 from dcone_cosim.scene.toml_lines import Path
+from dcone_cosim.scenes.alike import filled
 from dcone_cosim.scenes.components import (
     RESERVED,
     ReadComponent,
@@ -117,6 +118,7 @@ def check(document: dict[str, Any], name: str, places: Places, folder: File) -> 
 
 
 def _checked(document: dict[str, Any], name: str, places: Places, folder: File, mistakes: list[Mistake]) -> Scene:
+    document = filled(document, mistakes)
     mistakes += [
         Mistake((phase,), document[phase], f"expected a table [{phase}]")
         for phase in kinds()

@@ -128,6 +128,11 @@ MEANING: Mapping[str, str] = {
     "snapshots": "when to keep the positions of the nodes; evenly spread if not given",
     "point_tolerance": "largest change of the first tug's time and peak, by a bound, with which the target is a point; "
     "one that can only be a point is refused above it",
+    "like": "the phase of this scene that it is like, but for what its own table says",
+    "velocity_change": "that the chaser makes to come to the debris, beside the spiral from one orbit to the other",
+    "reload": "from the end of the shot before to this one: the chaser goes back to its place by two burns",
+    "specific_impulse": "of the chaser's engine between two shots",
+    "propellant": "that the chaser has at the first shot; without end if not given",
     "compare_without_recoil": "run the removal once more without the shot's recoil",
     "fmu": "an FMI 2.0 co-simulation FMU that takes the place of our model; relative to the scene's file",
     "model": "a model of ours, built on demand",

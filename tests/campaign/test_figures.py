@@ -9,12 +9,13 @@ from pathlib import Path
 import pytest
 
 import dcone_cosim
-from dcone_cosim.campaign.figures import BY_PHASE, HANDOFF, TEXT, check_figures, check_names, unit_of
+from dcone_cosim.campaign.figures import BY_PHASE, TEXT, check_figures, check_names, unit_of
 from dcone_cosim.campaign.shipped import shipped
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.loading import load
 from dcone_cosim.phases import capture_report, closed_report, removal_report
 from dcone_cosim.scene.mistakes import SceneError
+from dcone_cosim.transaction import HAND_OFF
 from tests.campaign.conftest import spec_of
 
 SOURCES = Path(dcone_cosim.__file__).parent
@@ -27,8 +28,11 @@ TOLD_IN = {
     "phases/closed_report.py": ("capture",),
     "phases/removal_report.py": ("removal", "second_tow"),
     "phases/released.py": ("removal", "second_tow"),
-    "phases/second_tow.py": (HANDOFF,),
-    "transaction.py": (HANDOFF,),
+    "phases/second_tow.py": (HAND_OFF,),
+    "phases/second_shot.py": (HAND_OFF,),
+    "phases/next_capture.py": (HAND_OFF,),
+    "phases/expended.py": (HAND_OFF,),
+    "transaction.py": (HAND_OFF,),
 }
 JUST = '[[dispersion]]\nkey = "removal.thrust.level"\ndistribution = "normal"\ndeviation = "5 %"\n'
 PEAK = 'success = {{ figure = "removal.largest_tug_peak", below = {} }}\n'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
@@ -15,7 +16,7 @@ from dcone_cosim.cases import pace
 from dcone_cosim.cases.case import Case
 from dcone_cosim.cases.pace import Pace
 from dcone_cosim.cases.rows import FAULT, LOST, Row
-from dcone_cosim.cases.runner import Runner
+from dcone_cosim.cases.runner import MOST_TOGETHER, TASKS, Bundles, Runner, several
 from dcone_cosim.cases.store import Store
 from dcone_cosim.cases.workers import WorkerDied, Workers
 from dcone_cosim.errors import FAILED_AFTER, Interrupted
@@ -182,3 +183,42 @@ class TestPace:
     )
     def test_words(self, seconds: float, told: str) -> None:
         assert pace.spoken(seconds) == told
+
+
+@pytest.mark.parametrize(
+    ("ahead", "cost", "together"),
+    [(6, 1.6, 1), (3000, 1.6, 7), (3000, 1000.0, 1), (6, 1e-3, 20), (6, 1e-6, MOST_TOGETHER), (6, 0.0, 1)],
+)
+def test_how_many_cases_go_to_a_task(ahead: int, cost: float, together: int) -> None:
+    """So many that a third of `ahead` workers ask for no more than `TASKS` a second; what cases really take counts."""
+    found = Bundles(ahead, cost)
+    assert found.together == together
+    found.look([Row("k", "completed", 0, "", timings={"cpu": 6.0})] * 1000)
+    assert found.together == max(1, math.ceil(ahead / 3 / (TASKS * 6.0)))
+
+
+def test_cases_of_a_task_whose_worker_died_go_out_alone(store: Store, cases: Cases) -> None:
+    """None is lost, none is counted twice, and one that goes wrong is a row among the others."""
+
+    class Dies(Here):
+        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            if fn is several:
+                self.done.append(len(args[0][1]))
+                future.set_exception(WorkerDied("died"))
+                return future
+            return super().submit(fn, *args, **kwargs)
+
+    dies, wanted = Dies(), cases(20)
+    rows = [row for row, _ in Runner(store, dies, 4, fakes.row_of, cost=1e-3).rows(wanted)]
+    assert sorted(row.key for row in rows) == sorted(case.key for case in wanted)
+    assert all(row.status == "completed" for row in rows)
+    assert dies.done[0] == 14
+
+    def wrong(case: Case) -> Row:
+        if case.seed == 3:
+            raise ValueError("three")
+        return fakes.row_of(case)
+
+    found = several((wrong, wanted))
+    assert [row.status == FAULT for row in found] == [case.seed == 3 for case in wanted]

@@ -171,6 +171,13 @@ fmi2Status model_outputs(model *m) {
 #ifdef INFINITE
     if (m->time > WHEN) m->values[INFINITE] = -INFINITY;
 #endif
+#ifdef MISSES
+    /* a net that arrives from a chaser that is slower sideways than this [m/s] goes past */
+    if (m->values[CAPTURED] > 0.0 && m->values[CHASER_START_VELOCITY_1] < MISSES) {
+        m->values[CAPTURED] = m->values[SETTLED] = 0.0;
+        m->values[OUTCOME] = 3.0;
+    }
+#endif
 #ifdef LIES
     m->values[LIES] += never_restored;
 #endif
