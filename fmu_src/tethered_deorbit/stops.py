@@ -95,8 +95,8 @@ def make_stop(
             taut      2 h max|T'| < min T
             slack     max b + (max b - min b) < 0,   b = (s_0, s_0 + h s_0'/3, s_1 - h s_1'/3, s_1)
 
-        b are the points between which the cubic of the onset s through both ends lies. A line that is taut by length has
-        one then too.
+        b are the points between which the cubic of the onset s through both ends lies. A line that is taut by its
+        length has one then too.
 
         Valid    a slope of the tension that is nowhere in the step twice that of its steeper end; an onset that leaves
                  its cubic by less than the cubic's own range
