@@ -21,10 +21,10 @@ NEARING = 0.5
 """Share of the time in which a slack piece can at the soonest be tight, that a step may take."""
 
 
-def carried_by(bodies: Bodies, place: int, span: Callable[..., Any], books: Books) -> Bodies:
+def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], books: Books) -> Bodies:
     """The bodies with the nodes between them.
 
-    place         of the first node in the state
+    place, heat   of the first node and of the dashpots' heat in the state
     span          kernel of `places`
 
     Checked  tests/tethered_deorbit/test_nodes.py
@@ -88,17 +88,22 @@ def carried_by(bodies: Bodies, place: int, span: Callable[..., Any], books: Book
         """Square of the error's size, of bodies and nodes [-].
 
             sum of (e/tol_s)^2, (e'/(tol_s w))^2,   w of the line's fastest motion
+            (e_Q/(m sum of |v| tol_s w))^2, of the heat: what the tolerance of the velocities leaves of the energy
 
         Checked  tests/tethered_deorbit/test_nodes.py: tolerances rule the error
         """
         r = record[0]
         square = float(bodies.squared_error(record, state, error))
+        allowed = ROUNDING * abs(state[heat])
         for node in range(r.nodes_count):
             at = place + WIDTH * node
             apart = r.solver_tolerance_separation + ROUNDING * norm(state[at : at + 3])
             rate = r.solver_tolerance_separation * r.state_nodes_fastest + ROUNDING * norm(state[at + 3 : at + WIDTH])
             square += dot(error[at : at + 3], error[at : at + 3]) / (apart * apart)
             square += dot(error[at + 3 : at + WIDTH], error[at + 3 : at + WIDTH]) / (rate * rate)
+            allowed += r.state_node_mass * rate * norm(state[at + 3 : at + WIDTH])
+        if allowed > 0.0:
+            square += error[heat] * error[heat] / (allowed * allowed)
         return square
 
     @kernel

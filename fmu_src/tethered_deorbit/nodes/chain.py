@@ -252,4 +252,4 @@ def make_nodes(
         publish=publish,
         by_length=True,
     )
-    return Noded(law, carried_by(bodies, place, span, books), books.watch)
+    return Noded(law, carried_by(bodies, place, heat, span, books), books.watch)
