@@ -375,7 +375,7 @@ MODEL = Model(
     base=BASE,
     groups={
         "reel": REELS,
-        "nodes": NODES,
+        "lumped": NODES,
         "thrust": THRUSTS,
         "burn": BURN,
         "engine": ENGINES,

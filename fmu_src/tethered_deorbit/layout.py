@@ -59,7 +59,7 @@ def state_layout(
 def layout_of(terms: Mapping[str, str], moved: int, gathered: int) -> StateLayout:
     """The components of a pair with these terms, on a line whose law has so many of its own."""
     turning = sum(terms[role] != "point" for role in ("target", "chaser"))
-    if "nodes" in terms:
+    if "lumped" in terms:
         moved, gathered = moved + MOVED, gathered + GATHERED
     return state_layout(turning, "aocs" in terms, "burn" in terms or "engine" in terms, moved, gathered)
 

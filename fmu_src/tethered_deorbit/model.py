@@ -53,7 +53,7 @@ of times that a master adds up."""
 
 IMPLEMENTED = {
     "reel": (*LAWS, *WINCHES),
-    "nodes": ("lumped",),
+    "lumped": ("nodes",),
     "thrust": DIRECTIONS,
     "environment": FIELDS,
     "solver": tuple(SCHEMES),
@@ -97,7 +97,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     reel = breakable(make_reel(terms["reel"], interface, sights), terms, bodies.line)
     reel = releasable(reel, terms, interface)
     watch = Watch()
-    if "nodes" in terms:
+    if "lumped" in terms:
         check_nodes(MODEL.name, terms)
         reel, bodies, watch = make_nodes(reel, bodies, environment, layout, interface)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)

@@ -41,37 +41,37 @@ def unfit(terms: Mapping[str, str]) -> Iterator[tuple[str, str, tuple[str, ...]]
 
 NODES = Group(
     {
-        "lumped": Term(
+        "nodes": Term(
             "the line as nodes with mass between elastic pieces that pull and never push",
             (
-                Variable("nodes.count", "1", "parameter", "nodes of the line, between one piece more", 10,
+                Variable("lumped.nodes", "1", "parameter", "nodes of the line, between one piece more", 10,
                          kind="Integer", minimum=1, maximum=CAPACITY),
-                positive("nodes.density", "kg/m3", "of the line's load-bearing section: half a piece at either end is "
+                positive("lumped.density", "kg/m3", "of the line's load-bearing section: half a piece at either end is "
                          "part of the body's mass", 1440.0, 1e5),
-                choice("nodes.damped_as", "what tether.damping_ratio is a share of: the critical damping of the pair "
+                choice("lumped.damped_as", "what tether.damping_ratio is a share of: the critical damping of the pair "
                        "on the whole line, as that of one massless piece is, or of a node between two pieces",
                        DAMPED_AS),
-                at_least_zero("nodes.toe_strain", "1", "over which the line's stiffness grows from nothing to its full "
-                              "value", 0.0, 0.5),
-                at_least_zero("nodes.end_compliance", "m/N", "in series with the piece at the target: that of a closed "
-                              "net", 0.0, 1e6),
-                output("nodes.mass", "kg", "of all nodes", 0.1),
-                output("nodes.target_tension", "N", "of the piece at the target", 1.0),
-                output("nodes.most_tension", "N", "of the piece that pulls hardest", 1.0),
-                Variable("nodes.most_piece", "1", "output", "which that is, counted from the chaser; zero where none "
+                at_least_zero("lumped.toe_strain", "1", "over which the line's stiffness grows from nothing to its "
+                              "full value", 0.0, 0.5),
+                at_least_zero("lumped.end_compliance", "m/N", "in series with the piece at the target: that of a "
+                              "closed net", 0.0, 1e6),
+                output("lumped.mass", "kg", "of all nodes", 0.1),
+                output("lumped.target_tension", "N", "of the piece at the target", 1.0),
+                output("lumped.most_tension", "N", "of the piece that pulls hardest", 1.0),
+                Variable("lumped.most_piece", "1", "output", "which that is, counted from the chaser; zero where none "
                          "pulls", 0, kind="Integer", minimum=0, maximum=CAPACITY + 1),
-                peak("nodes.peak_tension", "N", "largest of any piece over the last macro step, where the integrator's "
-                     "steps end", 1.0),
-                Variable("nodes.peak_piece", "1", "output", "the piece that had it, counted from the chaser", 0,
+                peak("lumped.peak_tension", "N", "largest of any piece over the last macro step, where the "
+                     "integrator's steps end", 1.0),
+                Variable("lumped.peak_piece", "1", "output", "the piece that had it, counted from the chaser", 0,
                          kind="Integer", minimum=0, maximum=CAPACITY + 1),
-                output("nodes.length", "m", "of the line along its pieces, stretched or slack", 10.0),
-                output("nodes.deflection", "m", "largest distance of a node from the straight line between the "
+                output("lumped.length", "m", "of the line along its pieces, stretched or slack", 10.0),
+                output("lumped.deflection", "m", "largest distance of a node from the straight line between the "
                        "attachments", 1.0),
-                output("nodes.position[#][#]", "m", "of each node from the target's centre of mass, inertial axes; "
+                output("lumped.position[#][#]", "m", "of each node from the target's centre of mass, inertial axes; "
                        "zero where there is none", 10.0, shape=(CAPACITY, 3)),
-                output("nodes.heat", "J", "that the pieces' dashpots have taken, since the start", 0.01,
-                       "rate.nodes_heat"),
-                rate("nodes_heat", "W"),
+                output("lumped.heat", "J", "that the pieces' dashpots have taken, since the start", 0.01,
+                       "rate.lumped_heat"),
+                rate("lumped_heat", "W"),
                 state("state.piece_length", "m", "unloaded, of every piece but the chaser's"),
                 state("state.piece_stiffness", "N/m", "of such a piece"),
                 state("state.piece_lag", "s", "dashpot of a piece over its stiffness"),
@@ -92,5 +92,5 @@ NODES = Group(
         ),
     },
     optional=True,
-    follows=lambda terms, values: "lumped",
+    follows=lambda terms, values: "nodes",
 )  # fmt: skip

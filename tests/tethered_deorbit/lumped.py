@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fmu_src.tethered_deorbit.environment import make_environment
 from fmu_src.tethered_deorbit.bodies import make_bodies
+from fmu_src.tethered_deorbit.environment import make_environment
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.layout import StateLayout, layout_of
 from fmu_src.tethered_deorbit.node_rows import WIDTH
@@ -24,7 +24,7 @@ SECTION = 0.25 * math.pi * DIAMETER**2
 AXIAL = 50.0
 """EA [N]."""
 REDUCED = CHASER * TARGET / (CHASER + TARGET)
-TERMS = {"reel": "locked", "nodes": "lumped", "environment": "none", "solver": "dop853"}
+TERMS = {"reel": "locked", "lumped": "nodes", "environment": "none", "solver": "dop853"}
 VALUES: dict[str, Any] = {
     "chaser.mass": CHASER,
     "target.mass": TARGET,
@@ -39,7 +39,7 @@ Floats = npt.NDArray[np.float64]
 
 def lumped(count: int, density: float, values: Mapping[str, Any], **terms: str) -> PlainInstance:
     """A pair on a line of so many nodes, of a density [kg/m3]."""
-    own = {"nodes.count": count, "nodes.density": density}
+    own = {"lumped.nodes": count, "lumped.density": density}
     return PlainInstance(MODEL, TERMS | terms, VALUES | own | dict(values))
 
 
@@ -63,7 +63,7 @@ def state_of(i: PlainInstance) -> Floats:
 
 def nodes_of(i: PlainInstance) -> tuple[Floats, Floats]:
     """Places from the target [m] and velocities relative to it [m/s] of the nodes, (N, 3) each."""
-    first, count = layout().reel, int(i["nodes.count"])
+    first, count = layout().reel, int(i["lumped.nodes"])
     rows = state_of(i)[first : first + WIDTH * count].reshape(count, WIDTH)
     return rows[:, :3], rows[:, 3:]
 

@@ -58,7 +58,7 @@ def make_books(
         Checked  tests/tethered_deorbit/test_nodes.py
         """
         most, where = 0.0, 0
-        for piece in range(record[0].nodes_count + 1):
+        for piece in range(record[0].lumped_nodes + 1):
             length, rate = span(record, state, piece)
             force, _, _ = pull(record, piece, length, rate, 0.0)
             if force > most:
@@ -94,36 +94,36 @@ def make_books(
         Checked  tests/tethered_deorbit/test_nodes.py
         """
         r = record[0]
-        room, ends, count = r.state_node_room, r.state_ends, r.nodes_count
-        r.nodes_mass = count * r.state_node_mass
-        r.nodes_most_tension, r.nodes_most_piece = hardest(record, state)
-        r.nodes_peak_tension, r.nodes_peak_piece = r.state_nodes_peak, r.state_nodes_peak_piece
-        if r.nodes_most_tension > r.nodes_peak_tension:
-            r.nodes_peak_tension, r.nodes_peak_piece = r.nodes_most_tension, r.nodes_most_piece
-        r.nodes_length = 0.0
+        room, ends, count = r.state_node_room, r.state_ends, r.lumped_nodes
+        r.lumped_mass = count * r.state_node_mass
+        r.lumped_most_tension, r.lumped_most_piece = hardest(record, state)
+        r.lumped_peak_tension, r.lumped_peak_piece = r.state_nodes_peak, r.state_nodes_peak_piece
+        if r.lumped_most_tension > r.lumped_peak_tension:
+            r.lumped_peak_tension, r.lumped_peak_piece = r.lumped_most_tension, r.lumped_most_piece
+        r.lumped_length = 0.0
         for piece in range(count + 1):
             length, rate = span(record, state, piece)
-            r.nodes_length += length
+            r.lumped_length += length
             if piece == count:
-                r.nodes_target_tension, _, _ = pull(record, piece, length, rate, 0.0)
-        r.nodes_heat = state[heat]
+                r.lumped_target_tension, _, _ = pull(record, piece, length, rate, 0.0)
+        r.lumped_heat = state[heat]
         chord, offset = room[0], room[1]
         for i in range(3):
             chord[i] = ends[2][i] - ends[0][i]
         square = chord[0] * chord[0] + chord[1] * chord[1] + chord[2] * chord[2]
-        r.nodes_deflection = 0.0
+        r.lumped_deflection = 0.0
         for node in range(CAPACITY):
             for i in range(3):
-                r.nodes_position[node][i] = state[place + WIDTH * node + i] if node < count else 0.0
+                r.lumped_position[node][i] = state[place + WIDTH * node + i] if node < count else 0.0
             if node >= count:
                 continue
             along = 0.0
             for i in range(3):
-                offset[i] = r.nodes_position[node][i] - ends[0][i]
+                offset[i] = r.lumped_position[node][i] - ends[0][i]
                 along += offset[i] * chord[i]
             for i in range(3):
                 offset[i] -= along / square * chord[i]
-            r.nodes_deflection = max(r.nodes_deflection, norm(offset))
+            r.lumped_deflection = max(r.lumped_deflection, norm(offset))
 
     @kernel
     def energy(record: Any, state: Array, turning: float) -> float:
@@ -144,14 +144,14 @@ def make_books(
         position, velocity, mean, drift = room[2], room[3], room[4], room[5]
         find_ends(record, state)
         total = 0.0
-        for piece in range(r.nodes_count + 1):
+        for piece in range(r.lumped_nodes + 1):
             length, _ = span(record, state, piece)
             total += stored(record, piece, length, 0.0)
-        whole = r.state_total_mass + r.nodes_count * mass
+        whole = r.state_total_mass + r.lumped_nodes * mass
         for i in range(3):
             mean[i] = 0.0
             drift[i] = 0.0
-        for node in range(r.nodes_count):
+        for node in range(r.lumped_nodes):
             at = place + WIDTH * node
             for i in range(3):
                 room[0][i] = state[at + i] + r.state_chaser_share * state[6 + i]
@@ -192,20 +192,20 @@ def make_books(
         motion, moving, mean, drift = r.state_node_motion[0], r.state_node_motion[1], room[2], room[3]
         place_of, mean_of, mean_change = r.state_node_motion[2], r.state_node_motion[3], r.state_node_motion[4]
         find_ends(record, state)
-        r.rate_nodes_heat = rate[heat]
+        r.rate_lumped_heat = rate[heat]
         total = 0.0
-        for piece in range(r.nodes_count + 1):
+        for piece in range(r.lumped_nodes + 1):
             length, speed = span(record, state, piece)
             _, spring, _ = pull(record, piece, length, speed, 0.0)
             total += spring * speed
             if piece == 0:
                 _, unwinding = unloaded(record, piece, 0.0)
                 total += stored_by_length(record, length, 0.0) * unwinding
-        whole = r.state_total_mass + r.nodes_count * mass
+        whole = r.state_total_mass + r.lumped_nodes * mass
         for i in range(6):
             mean_of[i] = 0.0
             mean_change[i] = 0.0
-        for node in range(r.nodes_count):
+        for node in range(r.lumped_nodes):
             at = place + WIDTH * node
             for i in range(3):
                 mean[i] = state[at + i] + r.state_chaser_share * state[6 + i]

@@ -37,7 +37,7 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
         Checked  tests/tethered_deorbit/test_nodes.py: axes change nothing
         """
         bodies.add_turning(record, state, rate, sign)
-        add_turning_to(record, state, rate, sign, place, place + WIDTH * record[0].nodes_count)
+        add_turning_to(record, state, rate, sign, place, place + WIDTH * record[0].lumped_nodes)
 
     @kernel
     def turn_back(record: Any, time: float, state: Array) -> None:
@@ -46,7 +46,7 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
         Checked  tests/tethered_deorbit/test_nodes.py: axes change nothing
         """
         bodies.turn_back(record, time, state)
-        size = WIDTH * record[0].nodes_count
+        size = WIDTH * record[0].lumped_nodes
         turn_vectors_back(record, time, state[place : place + size], size)
 
     @kernel
@@ -56,7 +56,7 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
         Checked  tests/tethered_deorbit/test_nodes.py: axes change nothing
         """
         r = record[0]
-        size = WIDTH * r.nodes_count
+        size = WIDTH * r.lumped_nodes
         if r.state_taut:
             turn_vectors_back(record, time, rate[place : place + size], size)
             add_turning_to(record, state, rate, 1.0, place, place + size)
@@ -73,7 +73,7 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
         r = record[0]
         find_ends(record, state)
         soonest = bodies.longest(record, state)
-        for piece in range(r.nodes_count + 1):
+        for piece in range(r.lumped_nodes + 1):
             length, _ = span(record, state, piece)
             rest, _ = unloaded(record, piece, 0.0)
             if not length < rest:
@@ -95,7 +95,7 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
         r = record[0]
         square = float(bodies.squared_error(record, state, error))
         allowed = ROUNDING * abs(state[heat])
-        for node in range(r.nodes_count):
+        for node in range(r.lumped_nodes):
             at = place + WIDTH * node
             apart = r.solver_tolerance_separation + ROUNDING * norm(state[at : at + 3])
             rate = r.solver_tolerance_separation * r.state_nodes_fastest + ROUNDING * norm(state[at + 3 : at + WIDTH])

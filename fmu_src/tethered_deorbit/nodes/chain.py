@@ -170,7 +170,7 @@ def make_nodes(
         Checked  tests/tethered_deorbit/test_nodes.py: momentum, energy, gravity
         """
         r = record[0]
-        count = r.nodes_count
+        count = r.lumped_nodes
         room = r.state_node_room
         vector, center = room[0], room[3]
         for i in range(3):

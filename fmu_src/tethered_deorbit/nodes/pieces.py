@@ -23,13 +23,13 @@ def tune(record: Any) -> None:
     Checked  tests/tethered_deorbit/test_nodes.py: one massless piece
     """
     r = record[0]
-    r.state_piece_length = r.tether_rest_length / (r.nodes_count + 1.0)
+    r.state_piece_length = r.tether_rest_length / (r.lumped_nodes + 1.0)
     r.state_piece_stiffness = line_stiffness(r.tether_youngs_modulus, r.tether_diameter, r.state_piece_length)
     section = 0.25 * math.pi * r.tether_diameter * r.tether_diameter
-    r.state_node_mass = r.nodes_density * section * r.state_piece_length
+    r.state_node_mass = r.lumped_density * section * r.state_piece_length
     mass, firm = r.state_node_mass, r.state_piece_stiffness
-    if r.nodes_damped_as != AS_NODE:
-        mass, firm = reduced_mass(r.chaser_mass, r.target_mass), firm / (r.nodes_count + 1.0)
+    if r.lumped_damped_as != AS_NODE:
+        mass, firm = reduced_mass(r.chaser_mass, r.target_mass), firm / (r.lumped_nodes + 1.0)
     r.state_piece_lag = dashpot(r.tether_damping_ratio, firm, mass) / firm
 
 
@@ -60,9 +60,9 @@ def stiffness(record: Any, piece: int, length: float) -> float:
     """
     r = record[0]
     along: float = r.state_piece_stiffness * r.state_piece_length / length
-    if piece < r.nodes_count:
+    if piece < r.lumped_nodes:
         return along
-    return float(along / (1.0 + along * r.nodes_end_compliance))
+    return float(along / (1.0 + along * r.lumped_end_compliance))
 
 
 @kernel
@@ -83,7 +83,7 @@ def pull(record: Any, piece: int, length: float, rate: float, since: float) -> t
     stretch = length - rest
     if not stretch > 0.0:
         return 0.0, 0.0, 0.0
-    toe = record[0].nodes_toe_strain * rest
+    toe = record[0].lumped_toe_strain * rest
     slope = stiffness(record, piece, rest)
     if stretch < toe:
         slope *= stretch / toe
@@ -107,7 +107,7 @@ def slopes(record: Any, length: float, rate: float, since: float) -> tuple[float
     if not force > 0.0:
         return 0.0, 0.0, 0.0
     rest, moving = unloaded(record, 0, since)
-    stretch, toe = length - rest, r.nodes_toe_strain * rest
+    stretch, toe = length - rest, r.lumped_toe_strain * rest
     lagging = r.state_piece_lag * (rate - moving)
     if stretch < toe:
         steeper = firm / stretch
@@ -134,7 +134,7 @@ def stored(record: Any, piece: int, length: float, since: float) -> float:
     stretch = length - rest
     if not stretch > 0.0:
         return 0.0
-    toe = record[0].nodes_toe_strain * rest
+    toe = record[0].lumped_toe_strain * rest
     firm = stiffness(record, piece, rest)
     if stretch < toe:
         return float(firm * stretch * stretch * stretch / (6.0 * toe))
@@ -161,7 +161,7 @@ def fastest(record: Any, shortest: float) -> tuple[float, float]:
     firm = r.state_piece_stiffness * max(1.0, r.state_piece_length / shortest)
     node, body = 1.0 / r.state_node_mass, 1.0 / min(r.chaser_mass, r.target_mass)
     ease = 2.0 * node + body
-    if r.nodes_count > 1:
+    if r.lumped_nodes > 1:
         ease = max(ease, 4.0 * node)
     rate = math.sqrt(firm * ease)
     share = 0.5 * r.state_piece_lag * rate
@@ -180,7 +180,7 @@ def stored_by_length(record: Any, length: float, since: float) -> float:
     if not spring > 0.0:
         return 0.0
     rest, _ = unloaded(record, 0, since)
-    strain = record[0].nodes_toe_strain
+    strain = record[0].lumped_toe_strain
     toe, energy = strain * rest, stored(record, 0, length, since)
     if length - rest < toe:
         return float(-spring - 2.0 * energy / rest)

@@ -38,7 +38,7 @@ def make_span(place: int) -> Callable[..., Any]:
         vector, velocity, ends = r.state_node_room[0], r.state_node_room[1], r.state_ends
         first, last = place + WIDTH * (piece - 1), place + WIDTH * piece
         for i in range(3):
-            if piece < r.nodes_count:
+            if piece < r.lumped_nodes:
                 vector[i] = state[last + i]
                 velocity[i] = state[last + 3 + i]
             else:
@@ -53,7 +53,7 @@ def make_span(place: int) -> Callable[..., Any]:
                 velocity[i] -= ends[1][i]
         distance = norm(vector)
         rate: float = distance_rate(vector, velocity, distance)
-        if piece == r.nodes_count:
+        if piece == r.lumped_nodes:
             return distance - r.target_attachment_distance, rate
         return distance, rate
 
@@ -85,7 +85,7 @@ def sum_of_arc(record: Any, half: float) -> tuple[float, float]:
     Checked  tests/tethered_deorbit/test_nodes.py: a slack start
     """
     along = across = 0.0
-    count = record[0].nodes_count
+    count = record[0].lumped_nodes
     for piece in range(count + 1):
         length, _ = unloaded(record, piece, 0.0)
         along += length * math.cos((count - 2 * piece) * half)
@@ -101,7 +101,7 @@ def bow(record: Any, chord: float) -> float:
     Source   halving: the chord falls as the arc bends, up to a closed ring
     Checked  tests/tethered_deorbit/test_nodes.py: a slack start
     """
-    low, high = 0.0, math.pi / (record[0].nodes_count + 1.0)
+    low, high = 0.0, math.pi / (record[0].lumped_nodes + 1.0)
     along, across = sum_of_arc(record, low)
     if chord >= math.hypot(along, across):
         return 0.0
@@ -164,9 +164,9 @@ def make_lay(place: int) -> Callable[..., Any]:
         scale = reaching / size if half == 0.0 else 1.0
         along = across = 0.0
         velocity, offset = room[4], room[5]
-        for node in range(r.nodes_count):
+        for node in range(r.lumped_nodes):
             length, _ = unloaded(record, node, 0.0)
-            angle = (r.nodes_count - 2 * node) * half
+            angle = (r.lumped_nodes - 2 * node) * half
             along += scale * length * (math.cos(angle) * cosine + math.sin(angle) * sine)
             across += scale * length * (math.sin(angle) * cosine - math.cos(angle) * sine)
             for i in range(3):
