@@ -147,7 +147,9 @@ def make_brake(interface: Interface, sights: Sights) -> Reel:
         return float(elastic.tension_rate(record, length, rate, acceleration, since))
 
     @kernel
-    def drive(record: Any, state: Array, rate: Array, length: float, speed: float, tension: float) -> None:
+    def drive(
+        record: Any, state: Array, rate: Array, length: float, speed: float, tension: float, since: float
+    ) -> None:
         """Rates of L and of the two integrals.
 
             B' = (F + T_e^2/(2 EA)) L',   Q' = c (l' - L')^2

@@ -61,9 +61,9 @@ def make_equations(
                 tension = reel.tension(record, length, speed, since)
             bodies.pull(record, state, rate, tension, separation)
             rate[impulse] = tension
-            reel.drive(record, state, rate, length, speed, tension)
+            reel.drive(record, state, rate, length, speed, tension, since)
         else:
-            reel.drive(record, state, rate, 0.0, 0.0, 0.0)
+            reel.drive(record, state, rate, 0.0, 0.0, 0.0, since)
 
     @kernel
     def derivative(record: Any, state: Array, rate: Array, elapsed: float) -> None:

@@ -39,6 +39,7 @@ class Events(NamedTuple):
     first_above(record, work, limit) -> fraction          of the step at which the tension first exceeds one [N], or -1
     nearest(record, work, last) -> (fraction, distance)   where the separation turns from less to more and is least
                                                           [m], up to a fraction of the step; infinite if nowhere
+    by_length                                             as of `law.Reel`
     """
 
     signals: Callable[..., Any]
@@ -47,6 +48,7 @@ class Events(NamedTuple):
     tension_range: Callable[..., Any]
     first_above: Callable[..., Any]
     nearest: Callable[..., Any]
+    by_length: bool
 
 
 def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, places: Places) -> Events:
@@ -60,6 +62,7 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
     first, seen = reel.first, places.moving - reel.first
     work_end, impulse = places.total, places.impulse
     state_seen, rate_seen = bodies.seen, bodies.seen_rate
+    by_length = reel.by_length
 
     @kernel
     def signals(record: Any, state: Array, rate: Array, elapsed: float) -> Signals:
@@ -81,10 +84,12 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
         reel.see_change(record, there, slopes, 1.0)
         tension = reel.tension(record, length, speed, since)
         tension_rate = reel.tension_rate(record, length, speed, change, since)
-        if record[0].state_taut:
+        if record[0].state_taut and not by_length:
             return -tension, -tension_rate, tension, tension_rate, separation, apart, slope
         onset = reel.onset(record, length, speed, since)
         onset_rate = reel.onset_rate(record, length, speed, change, since)
+        if record[0].state_taut:
+            onset, onset_rate = -onset, -onset_rate
         return onset, onset_rate, tension, tension_rate, separation, apart, slope
 
     @kernel
@@ -264,4 +269,4 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
             low, rate_low = high, rate_high
         return found, distance
 
-    return Events(signals, ensure_dense, find_change, tension_range, first_above, nearest)
+    return Events(signals, ensure_dense, find_change, tension_range, first_above, nearest, by_length)

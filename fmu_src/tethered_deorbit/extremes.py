@@ -12,7 +12,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.events import RATE, RATE_SLOPE, SEPARATION, TENSION, TENSION_SLOPE, Events
+from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.level import Held
+from fmu_src.tethered_deorbit.nodes.books import Watch
 from fmu_src.tethered_deorbit.outputs import note_pull
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -36,13 +38,19 @@ class Extremes(NamedTuple):
     publish: Callable[..., Any]
 
 
-def make_extremes(events: Events, held: Held, releases: bool = False) -> Extremes:
+def make_extremes(
+    events: Events, held: Held, places: Places, releases: bool = False, watch: Watch | None = None
+) -> Extremes:
     """The kernels for one law of the line and one integrator.
 
     releases     the line may be cut on the way
+    watch        of a line with tensions of its own along it
 
     Checked  tests/tethered_deorbit/test_extremes.py, test_macro_step.py
     """
+
+    by_length, end_state, here_state = events.by_length, places.end, places.here
+    along = watch or Watch()
 
     @kernel
     def begin_anew(record: Any) -> None:
@@ -85,6 +93,7 @@ def make_extremes(events: Events, held: Held, releases: bool = False) -> Extreme
         r = record[0]
         r.state_peak = 0.0
         r.state_least = math.inf
+        along.begin(record)
 
     @kernel
     def publish(record: Any) -> None:
@@ -124,8 +133,9 @@ def make_extremes(events: Events, held: Held, releases: bool = False) -> Extreme
         short = (begin_change >= 0.0) == (end_change >= 0.0) and r.state_step * r.state_frequency < 1.5
         if held.mapped(record) or not (complete and (still or steady or short)):
             least, largest = events.tension_range(record, work, 0.0, last)
-        note_pull(record, largest)
-        if complete and not r.state_tug_begun:
+        if r.state_taut:
+            note_pull(record, largest)
+        if complete and r.state_taut and not r.state_tug_begun:
             r.state_tug_peak = r.tug_peak[0]
         if first > 0.0:
             least, largest = events.tension_range(record, work, first, last)
@@ -193,10 +203,12 @@ def make_extremes(events: Events, held: Held, releases: bool = False) -> Extreme
         begin, end = r.state_at_begin, r.state_at_end
         last = 1.0 if until >= r.state_end else max(0.0, (until - r.state_begin) / r.state_step)
         first = min(last, max(0.0, (r.state_published - r.state_begin) / r.state_step))
-        if r.state_taut:
+        if r.state_taut or by_length:
             note_tension(record, work, first, last, begin, end)
         else:
             r.state_least = 0.0
+        if last == 1.0:
+            along.note(record, work[end_state:here_state])
         note_approach(record, work, last, begin, end)
         if releases:
             if r.state_released and r.state_begin >= r.release_time:

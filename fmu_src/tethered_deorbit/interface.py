@@ -25,6 +25,7 @@ from fmu_src.rows import (
 )
 from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
+from fmu_src.tethered_deorbit.node_rows import NODES
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, RELEASE, SCHEMES
 from fmu_src.tethered_deorbit.orbit_rows import AIR, ELECTRODYNAMIC, OBLATENESS, POWER, SHADOW, SUNLIGHT, THIRD_BODIES
 from fmu_src.tethered_deorbit.reel_rows import REELS
@@ -374,6 +375,7 @@ MODEL = Model(
     base=BASE,
     groups={
         "reel": REELS,
+        "lumped": NODES,
         "thrust": THRUSTS,
         "burn": BURN,
         "engine": ENGINES,

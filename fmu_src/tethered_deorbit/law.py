@@ -37,14 +37,16 @@ class Reel(NamedTuple):
     first                                                   of the components of the state that it sees
     see_change(record, state, rate, turned)                 and from its rate, before those of a time derivative;
                                                             `turned` is 1 where its axes turn with the step, else 0
-    drive(record, state, rate, length, speed, tension)      rates of its own components, `reel.components`; without a
-                                                            pull the tension is zero
+    drive(record, state, rate, length, speed, tension, since)   rates of its own components, `reel.components`; without
+                                                            a pull the tension is zero
     turn(record, state, length)                             the line has just gone taut or slack: book what it then has
                                                             or no longer has, in the state; `state.taut` is anew
     publish(record, state, length, speed)                   outputs of its own
     differentiate(record, length, speed, acceleration)      and their rates, at since = 0
     at_rest(record, since) -> (l0, l0', l0'', k, c)         of an elastic line with fixed ends, which may settle while
                                                             its input stands still: see `levels.settled`
+    by_length                                               the line is taut while it is longer than it is unloaded, and
+                                                            may pull also while it is not
     """
 
     asked: Callable[..., Any]
@@ -68,3 +70,4 @@ class Reel(NamedTuple):
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
     at_rest: Callable[..., Any] = nothing
+    by_length: bool = False

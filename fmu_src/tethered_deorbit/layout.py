@@ -7,7 +7,7 @@ every body that turns, and what they gather:
     then, for each body that turns, q attitude (4) [-], body to inertial axes, and w its rate (3) [rad/s], body axes
     then, with attitude control, h momentum of the wheels (3) [N m s], body axes
     then, with an engine or burns, the propellant used [kg]
-    then what the law of the line moves
+    then what the law of the line moves; of a line of nodes, place and velocity of each
     then J  impulse of the line [N s]: dJ/dt is the tension that the equations have in them
     last    what the law of the line gathers
 """
@@ -18,6 +18,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from fmu_src.integrators.scheme import AdaptiveScheme
+from fmu_src.tethered_deorbit.node_rows import GATHERED, MOVED
 
 PAIR = 12
 """Components of the motion of the two centres of mass, four vectors. Those of the bodies that turn lie behind."""
@@ -58,6 +59,8 @@ def state_layout(
 def layout_of(terms: Mapping[str, str], moved: int, gathered: int) -> StateLayout:
     """The components of a pair with these terms, on a line whose law has so many of its own."""
     turning = sum(terms[role] != "point" for role in ("target", "chaser"))
+    if "lumped" in terms:
+        moved, gathered = moved + MOVED, gathered + GATHERED
     return state_layout(turning, "aocs" in terms, "burn" in terms or "engine" in terms, moved, gathered)
 
 

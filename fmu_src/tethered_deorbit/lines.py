@@ -10,7 +10,11 @@ LINES = (
         "the tether",
         "tether",
         ("tether.tension_peak", "tether.tension"),
-        follows={"tether.youngs_modulus": "youngs_modulus", "tether.damping_ratio": "damping_ratio"},
+        follows={
+            "tether.youngs_modulus": "youngs_modulus",
+            "tether.damping_ratio": "damping_ratio",
+            "lumped.density": "density",
+        },
         modulus="tether.youngs_modulus",
         diameter="tether.diameter",
         breaks_at="break.strength",

@@ -27,6 +27,8 @@ from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
 from fmu_src.tethered_deorbit.levels.averaged import leapt
 from fmu_src.tethered_deorbit.levels.choosing import check_level, make_held_of, make_level
 from fmu_src.tethered_deorbit.minded import LIMITED
+from fmu_src.tethered_deorbit.nodes.books import Watch
+from fmu_src.tethered_deorbit.nodes.chain import check_nodes, make_nodes
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
@@ -51,6 +53,7 @@ of times that a master adds up."""
 
 IMPLEMENTED = {
     "reel": (*LAWS, *WINCHES),
+    "lumped": ("nodes",),
     "thrust": DIRECTIONS,
     "environment": FIELDS,
     "solver": tuple(SCHEMES),
@@ -93,6 +96,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     sights = Sights(layout.reel, spin, bodies.line, environment.frame)
     reel = breakable(make_reel(terms["reel"], interface, sights), terms, bodies.line)
     reel = releasable(reel, terms, interface)
+    watch = Watch()
+    if "lumped" in terms:
+        check_nodes(MODEL.name, terms)
+        reel, bodies, watch = make_nodes(reel, bodies, environment, layout, interface)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)
@@ -106,7 +113,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     level, leap = make_level(terms, derivative, reel, bodies, held, layout, places)
     leaps = leap is not never
     events = make_events(reel, bodies, held, scheme, places)
-    extremes = make_extremes(events, held, "release" in terms)
+    extremes = make_extremes(events, held, places, "release" in terms, watch)
     acting = together((reel.acting, thrust.acting, perturbing.acting, make_ends(terms, bodies.line, interface)))
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)

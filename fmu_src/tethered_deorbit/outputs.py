@@ -80,7 +80,7 @@ def make_publish(
     reel: Reel, environment: Environment, perturbing: Perturbing, bodies: Bodies, layout: StateLayout
 ) -> Callable[..., Any]:
     """The kernel that fills the outputs from a state; those that remember (tugs, peak) are kept elsewhere."""
-    impulse = layout.impulse
+    impulse, by_length = layout.impulse, reel.by_length
 
     @kernel
     def publish(
@@ -106,7 +106,7 @@ def make_publish(
         r.tether_impulse = state[impulse]
         r.tether_taut = r.state_taut
         reel.see(record, state)
-        r.tether_tension = max(0.0, reel.tension(record, length, rate, since)) if r.state_taut else 0.0
+        r.tether_tension = max(0.0, reel.tension(record, length, rate, since)) if r.state_taut or by_length else 0.0
         for i in range(3):
             r.center_position[i] = state[i]
             r.center_velocity[i] = state[3 + i]

@@ -62,6 +62,7 @@ def make_stop(
     slope_state, stages, last = places.slope, places.stages, places.last
     dense_begin, work_end = places.dense, places.total
     acts = acting is not IDLE
+    by_length = events.by_length
     watches = acts or bodies.holds is not always
     seen, last_seen = bodies.seen, bodies.last_seen
 
@@ -94,7 +95,8 @@ def make_stop(
             taut      2 h max|T'| < min T
             slack     max b + (max b - min b) < 0,   b = (s_0, s_0 + h s_0'/3, s_1 - h s_1'/3, s_1)
 
-        b are the points between which the cubic of the onset s through both ends lies.
+        b are the points between which the cubic of the onset s through both ends lies. A line that is taut by its
+        length has one then too.
 
         Valid    a slope of the tension that is nowhere in the step twice that of its steeper end; an onset that leaves
                  its cubic by less than the cubic's own range
@@ -104,7 +106,7 @@ def make_stop(
         """
         r = record[0]
         begin, end, step = r.state_at_begin, r.state_at_end, r.state_step
-        if r.state_taut:
+        if r.state_taut and not by_length:
             steepest = max(abs(begin[TENSION_SLOPE]), abs(end[TENSION_SLOPE]))
             return bool(2.0 * step * steepest < min(begin[TENSION], end[TENSION]))
         second = begin[CROSSING] + step * begin[CROSSING_SLOPE] / 3.0

@@ -63,9 +63,18 @@ def add_turning(record: Any, state: Array, rate: Array, sign: float) -> None:
     Source   the transport theorem
     Checked  tests/tethered_deorbit/test_turning.py
     """
+    add_turning_to(record, state, rate, sign, 0, layout.PAIR)
+
+
+@kernel
+def add_turning_to(record: Any, state: Array, rate: Array, sign: float, first: int, last: int) -> None:
+    """The same for the vectors that lie from one component to before another.
+
+    Checked  tests/tethered_deorbit/test_turning.py
+    """
     turning = record[0].state_turning
     x, y, z = sign * turning[0], sign * turning[1], sign * turning[2]
-    for i in range(0, layout.PAIR, 3):
+    for i in range(first, last, 3):
         rate[i] += y * state[i + 2] - z * state[i + 1]
         rate[i + 1] += z * state[i] - x * state[i + 2]
         rate[i + 2] += x * state[i + 1] - y * state[i]

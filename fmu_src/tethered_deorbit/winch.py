@@ -86,7 +86,9 @@ def make_winch(
         r.state_winding = state[place + 1]
 
     @kernel
-    def drive(record: Any, state: Array, rate: Array, length: float, speed: float, tension: float) -> None:
+    def drive(
+        record: Any, state: Array, rate: Array, length: float, speed: float, tension: float, since: float
+    ) -> None:
         """Rates of L, v, and of the two integrals.
 
             W' = -(T + T_e^2/(2 EA)) v,   Q' = c (l' - v)^2

@@ -18,6 +18,7 @@ class Environment(NamedTuple):
                                                        the record, and its rate about axis 3 is returned [rad/s]
     same_orbit(record, state) -> fault                 the state at the start, both on one orbit
     add_gravity(record, state, rate)                   rate of the state under gravity alone; writes all twelve
+    gravity_apart(position, offset, out)               gravity at the end of an offset less that where it starts
     along_track(record, state) -> (x, y, z)            direction of the chaser's along-track, of any length
     gradient(position) -> 3 mu/r^5                     strength of its gradient at a place [1/(m2 s2)]
     fallen(position) -> radius                         of a centre of mass that has come down [m], or -1
@@ -33,6 +34,7 @@ class Environment(NamedTuple):
     place: Any
     same_orbit: Any
     add_gravity: Any
+    gravity_apart: Any
     along_track: Any
     gradient: Any
     fallen: Any

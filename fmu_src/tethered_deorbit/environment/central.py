@@ -133,6 +133,16 @@ def add_gravity(record: Any, state: Array, rate: Array) -> None:
 
 
 @kernel
+def gravity_apart(position: Array, offset: Array, out: Array) -> None:
+    """out = gravity at the end of an offset less that where it starts [m/s^2], without cancellation.
+
+    Source   `orbital.twobody.differential_gravity`
+    Checked  tests/tethered_deorbit/test_nodes.py
+    """
+    differential_gravity(out, position, offset, EARTH_MU)
+
+
+@kernel
 def along_track(record: Any, state: Array) -> tuple[float, float, float]:
     """Direction of the chaser's along-track, as long as its velocity across the vertical [m/s].
 
@@ -356,6 +366,7 @@ def make_central(interface: Interface) -> Environment:
         place,
         same_orbit,
         add_gravity,
+        gravity_apart,
         along_track,
         gradient,
         fallen,

@@ -75,6 +75,16 @@ def add_gravity(record: Any, state: Array, rate: Array) -> None:
 
 
 @kernel
+def gravity_apart(position: Array, offset: Array, out: Array) -> None:
+    """out = difference of gravity where there is none [m/s^2].
+
+    Checked  tests/tethered_deorbit/test_nodes.py
+    """
+    for i in range(3):
+        out[i] = 0.0
+
+
+@kernel
 def along_track(record: Any, state: Array) -> tuple[float, float, float]:
     """Axis 2, along which a line lies at the start [-]."""
     return 0.0, 1.0, 0.0
@@ -151,6 +161,7 @@ def make_none(interface: Interface) -> Environment:
         place,
         same_orbit,
         add_gravity,
+        gravity_apart,
         along_track,
         gradient,
         fallen,

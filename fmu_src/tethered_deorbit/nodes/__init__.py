@@ -1,0 +1,1 @@
+"""A line with mass of its own: nodes between elastic pieces."""

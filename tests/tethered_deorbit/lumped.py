@@ -1,0 +1,77 @@
+"""Pairs on lines of lumped nodes for the tests: soft and heavy, so that plain Python gets through them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fmu_src.tethered_deorbit.bodies import make_bodies
+from fmu_src.tethered_deorbit.environment import make_environment
+from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
+from fmu_src.tethered_deorbit.layout import StateLayout, layout_of
+from fmu_src.tethered_deorbit.node_rows import WIDTH
+from fmu_src.tethered_deorbit.nodes.chain import Noded, make_nodes
+from fmu_src.tethered_deorbit.reel import components, make_reel
+from fmu_src.tethered_deorbit.sights import Sights
+from tests.plain import PlainInstance
+
+LENGTH, DIAMETER, CHASER, TARGET = 12.0, 1e-3, 20.0, 10.0
+SECTION = 0.25 * math.pi * DIAMETER**2
+AXIAL = 50.0
+"""EA [N]."""
+REDUCED = CHASER * TARGET / (CHASER + TARGET)
+TERMS = {"reel": "locked", "lumped": "nodes", "environment": "none", "solver": "dop853"}
+VALUES: dict[str, Any] = {
+    "chaser.mass": CHASER,
+    "target.mass": TARGET,
+    "tether.rest_length": LENGTH,
+    "tether.diameter": DIAMETER,
+    "tether.youngs_modulus": AXIAL / SECTION,
+    "tether.damping_ratio": 0.0,
+    "start.condition": HANDED_OVER,
+}
+Floats = npt.NDArray[np.float64]
+
+
+def lumped(count: int, density: float, values: Mapping[str, Any], **terms: str) -> PlainInstance:
+    """A pair on a line of so many nodes, of a density [kg/m3]."""
+    own = {"lumped.nodes": count, "lumped.density": density}
+    return PlainInstance(MODEL, TERMS | terms, VALUES | own | dict(values))
+
+
+def apart(length: float, *velocity: float) -> dict[str, Any]:
+    """Target and chaser so far apart along axis 2 [m], and how the target moves from the chaser [m/s]."""
+    return {"start_relative_position": (0.0, length, 0.0), "start_relative_velocity": velocity}
+
+
+def layout() -> StateLayout:
+    """Where things lie in the state of such a pair."""
+    return layout_of(MODEL.interface(TERMS).terms, *components("locked"))
+
+
+def state_of(i: PlainInstance) -> Floats:
+    """The state at the last communication point, inertial axes."""
+    size = layout().size
+    i.refresh()
+    found: Floats = np.array(i.work[2 * size : 3 * size])
+    return found
+
+
+def nodes_of(i: PlainInstance) -> tuple[Floats, Floats]:
+    """Places from the target [m] and velocities relative to it [m/s] of the nodes, (N, 3) each."""
+    first, count = layout().reel, int(i["lumped.nodes"])
+    rows = state_of(i)[first : first + WIDTH * count].reshape(count, WIDTH)
+    return rows[:, :3], rows[:, 3:]
+
+
+def kernels() -> Noded:
+    """Law, bodies and watch of such a pair, for its record."""
+    interface = MODEL.interface(TERMS)
+    environment, where = make_environment("none", interface), layout()
+    bodies = make_bodies(interface.terms, environment.place, environment.gradient, where.size, interface)
+    reel = make_reel("locked", interface, Sights(where.reel, -1, bodies.line, environment.frame))
+    return make_nodes(reel, bodies, environment, where, interface)
