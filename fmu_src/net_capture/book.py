@@ -28,6 +28,7 @@ def make_balance(composition: Any) -> Any:
     potential_at, bends, given, changes = gravity.potential, gravity.bends, gravity.given, gravity.given is not None
     chaser_potential, target_potential = gravity.chaser_potential, gravity.target_potential
     has_wrap = composition.wrap is not None
+    rubs = composition.terms.get("wrap") == "friction"
     has_air, has_load = composition.air is not None, composition.pull_off is not None
     node_plane = composition.memory.node_plane
 
@@ -70,6 +71,8 @@ def make_balance(composition: Any) -> Any:
             energy += p.tether_friction_loss
         if has_wrap:
             energy += p.wrap_slip_loss
+        if rubs:
+            energy += p.wrap_friction_loss
         if has_load:
             energy -= p.pull_off_work
         if has_break:

@@ -297,7 +297,12 @@ GROUPS = {
     "target": Group(TARGETS, selector="shape", optional=True),
     "contact": Group(CONTACTS, optional=True),
     "force_map": _plain(force_map.PART),
-    "wrap": _plain(wrapping.PART),
+    "wrap": Group(
+        {PLAIN: wrapping.PART, "friction": wrapping.FRICTION},
+        selector="bends",
+        optional=True,
+        follows=lambda terms, values: PLAIN,
+    ),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
     "jam": _plain(jam.PART),
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),

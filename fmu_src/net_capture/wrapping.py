@@ -32,13 +32,15 @@ import numpy as np
 
 from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
+from fmu_src.net_capture.contact.capstan import WITH_FRICTION, make_capstan
+from fmu_src.net_capture.contact.capstan import rows as friction_rows
 from fmu_src.net_capture.contact.edges import make_way
+from fmu_src.net_capture.contact.near import BENT, CLEAR, FINE, FREE, KEPT, PASSED, WAY, make_near
 from fmu_src.net_capture.contact.section import FACES, MOST
 from fmu_src.net_capture.planes import (
     DAMPING,
     FIRST,
     FX,
-    LANES,
     LENGTH,
     SHOWN,
     SHOWN_RATE,
@@ -54,30 +56,15 @@ from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import count, output, peak, state
 from orbital.kernel import kernel
 from orbital.rotations import rotate, rotate_inverse
-from orbital.vectors import cross, dot
+from orbital.vectors import cross
 
 SCHEME = "leapfrog"
 CONVEX = ("box", "cylinder", "frustum", "sphere")
 """Shapes along whose distance a straight line comes to the surface once."""
-AHEAD = 0.05
-"""Metres that a node may move against the target before the threads near it are looked up again."""
-LONGEST_LOOK = 200
-"""Substeps after which they are in any case."""
-
-
 JUMP = 2e-4
 """Metres by which a way may differ from what the ends' speeds made of it a substep ago: 0.3 mJ of Table 1's net."""
 SHARE = 0.5
 """Of what these speeds make in a substep, by which it may differ beside that."""
-FREE, BENT, PASSED = range(3)
-"""States of a thread: clear of the target; round an edge; through it."""
-STATE, WAY, CLEAR, EDGES, CHAIN, KEPT = 0, 1, 2, 3, 4, 7
-"""Whole numbers kept of each thread, one plane of them after another: its state, the length of its way a substep on,
-the substep up to which it is clear of the target, over how many edges it bends, and the faces between them, `PACKED` to
-a number."""
-PACKED, FACE_BITS = 6, 9
-FINE = 1e-12
-"""Metres: lengths are kept in picometres."""
 
 
 class Wrap(NamedTuple):
@@ -101,14 +88,12 @@ def make(composition: Any) -> Wrap:
     if scheme != SCHEME:
         raise ValueError(f"threads bend round the target with {SCHEME}, not {scheme}")
     # after the scheme's own parts are known, see `schemes.asleep`
-    from fmu_src.lanes import lowest
     from fmu_src.net_capture.schemes.asleep import make_asleep
 
     memory = composition.memory
     node_plane, strips, properties, own = memory.node_plane, memory.strips, memory.properties, memory.own
     reals_of, bring, rouse = memory.reals, make_asleep(composition).bring, composition.rouse
-    masks, find, shape = composition.traits.masks, make_way(), composition.target.shape
-    distance_to, faces = shape.distance, shape.faces
+    find, faces = make_way(), composition.target.shape.faces
     if faces is None:
         raise ValueError(f"threads bend round no {composition.terms['target']}: it may have hollows")
     begin_step, rate_of = composition.contact.begin_step, composition.gravity.rate
@@ -116,22 +101,9 @@ def make(composition: Any) -> Wrap:
     so_far, note = peaks.so_far, peaks.note
     has_map = composition.force_map is not None
     add_to_map = composition.force_map.add if has_map else None
-
-    @kernel
-    def words(p):
-        """For each thread a place in the list of those near, and what is kept of it, see `KEPT`.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        return (1 + KEPT) * p.thread_numbers
-
-    @kernel
-    def list_at(p, words):
-        """Where the list begins.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        return words.size - masks * p.strips - (1 + KEPT) * p.thread_numbers
+    rubs = composition.terms["wrap"] == "friction"
+    words, list_at, list_near, recall, keep = make_near(composition, WITH_FRICTION if rubs else KEPT)
+    begin, remember, hold, let_go, stretch_held = make_capstan() if rubs else (None,) * 5
 
     @kernel
     def start(p):
@@ -148,82 +120,8 @@ def make(composition: Any) -> Wrap:
         p.wrap_slipped = 0
         p.wrap_slip_loss = 0.0
         p.wrap_faces = faces(p, p.wrap_planes)
-
-    @kernel
-    def list_near(p, work):
-        """List the threads that may come to lie across the target before the next time, and say when that is.
-
-        A thread whose middle is further from the surface than half its length can not.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        words, table, numbers = own(p, work), strips(p, work), properties(p, work)
-        at = list_at(p, words)
-        for row in range(p.node_slots // p.row_pitch):
-            bring(p, reals_of(work), words, row)
-        fastest = 0.0
-        for node in range(p.node_slots):
-            speed = 0.0
-            for axis in range(3):
-                v = node_plane(p, work, P + axis)[node] - p.target_drift[axis]
-                speed += v * v
-            fastest = max(fastest, speed)
-        reach = p.envelope_radius + AHEAD
-        fastest = math.sqrt(fastest) + math.sqrt(dot(p.target_omega, p.target_omega)) * reach
-        p.wrap_haste = 2.0 * p.solver_substep * max(fastest, 1e-9)
-        p.wrap_substep = p.solver_substep
-        p.wrap_next = p.grid + max(int(min(AHEAD / p.wrap_haste, 1.0 * LONGEST_LOOK)), 1)
-        p.wrap_listed = 0
-        middle, arm = p.wrap_a, p.wrap_b
-        for strip in range(p.strips):
-            s = STRIP_WORDS * strip
-            these = np.uint64(table[s + LANES])
-            while these != np.uint64(0):
-                lane = np.int64(lowest(these))
-                these &= these - np.uint64(1)
-                away = 0.0
-                for axis in range(3):
-                    x = node_plane(p, work, X + axis)
-                    arm[axis] = 0.5 * (x[table[s + A] + lane] + x[table[s + B] + lane]) - p.target_place[axis]
-                    away += arm[axis] * arm[axis]
-                # longer by a third than unstretched no thread is
-                half = 0.67 * numbers[STRIP_NUMBERS * strip + LENGTH] + AHEAD
-                if away < (p.envelope_radius + half) * (p.envelope_radius + half):
-                    rotate_inverse(middle, p.target_pose, arm)
-                    if distance_to(p, p.wrap_line, middle) < half:
-                        words[at + (1 + CLEAR) * p.thread_numbers + table[s + FIRST] + lane] = 0
-                        words[at + p.wrap_listed] = 64 * strip + lane
-                        p.wrap_listed += 1
-                        continue
-                words[at + p.thread_numbers + table[s + FIRST] + lane] = FREE
-
-    @kernel
-    def recall(p, words, at):
-        """Over how many edges a thread bends, 0: none; the faces between them go into `wrap_chain`.
-
-        at        where its state stands
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        if words[at] == FREE:
-            return 0
-        edges = words[at + EDGES * p.thread_numbers]
-        for j in range(edges + 1):
-            word = words[at + (CHAIN + j // PACKED) * p.thread_numbers]
-            p.wrap_chain[j] = (word >> (FACE_BITS * (j % PACKED))) & ((1 << FACE_BITS) - 1)
-        return edges
-
-    @kernel
-    def keep(p, words, at, edges):
-        """Keep over which faces a thread lies.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        words[at + EDGES * p.thread_numbers] = edges
-        for n in range(CHAIN, KEPT):
-            words[at + n * p.thread_numbers] = 0
-        for j in range(edges + 1):
-            words[at + (CHAIN + j // PACKED) * p.thread_numbers] |= p.wrap_chain[j] << (FACE_BITS * (j % PACKED))
+        if rubs:
+            begin(p)
 
     @kernel
     def look(p, work, code, place, rate, edges):
@@ -248,6 +146,8 @@ def make(composition: Any) -> Wrap:
             last[axis] = x[b] - p.target_place[axis]
         rotate_inverse(p.wrap_a, p.target_pose, first)
         rotate_inverse(p.wrap_b, p.target_pose, last)
+        if rubs:
+            remember(p)
         edges = find(p, edges)
         if edges == 0:
             squared = 0.0
@@ -259,6 +159,7 @@ def make(composition: Any) -> Wrap:
             way += p.wrap_pieces[j, 3]
         going = 0.0
         for end in range(2):
+            before = going
             bend, out, node = (1, first, a) if end == 0 else (edges, last, b)
             rotate(turned, p.target_pose, p.wrap_bends[bend])
             cross(p.wrap_moving, p.target_omega, turned)
@@ -270,6 +171,8 @@ def make(composition: Any) -> Wrap:
                 out[axis] /= math.sqrt(squared)
                 v = node_plane(p, work, rate + axis)
                 going += out[axis] * (v[node] - p.target_drift[axis] - p.wrap_moving[axis])
+            if rubs:
+                p.wrap_rates[end] = going - before
         squared = 0.0
         for axis in range(3):
             x = node_plane(p, work, place + axis)
@@ -324,17 +227,25 @@ def make(composition: Any) -> Wrap:
         keep(p, words, at, edges)
 
     @kernel
-    def press(p, edges, tension):
-        """Enter what a tension of a substep [N] gives the target at every bend into the map of forces.
+    def press(p, edges, tension, dashpot):
+        """Enter what the thread gives the target at every bend in a substep into the map of forces.
 
-        Checked  tests/net_capture/test_force_map.py
+        tension     of the whole thread, where nothing rubs          [N]
+        dashpot     its dashpot's share                              [N]
+
+        Checked  tests/net_capture/test_force_map.py, test_capstan.py
         """
         for j in range(edges):
             squared = 0.0
             for axis in range(3):
-                change = p.wrap_pieces[j + 1, axis] - p.wrap_pieces[j, axis]
+                if rubs:
+                    change = max(0.0, p.wrap_pulls[j + 1] + dashpot) * p.wrap_pieces[j + 1, axis]
+                    change -= max(0.0, p.wrap_pulls[j] + dashpot) * p.wrap_pieces[j, axis]
+                else:
+                    change = p.wrap_pieces[j + 1, axis] - p.wrap_pieces[j, axis]
                 squared += change * change
-            add_to_map(p, p.wrap_bends[j + 1], p.solver_substep * tension * math.sqrt(squared))
+            force = math.sqrt(squared) if rubs else tension * math.sqrt(squared)
+            add_to_map(p, p.wrap_bends[j + 1], p.solver_substep * force)
 
     @kernel
     def pull(p, work):
@@ -362,14 +273,24 @@ def make(composition: Any) -> Wrap:
             q = STRIP_NUMBERS * strip
             length, stiffness, damping = numbers[q + LENGTH], numbers[q + STIFFNESS], numbers[q + DAMPING]
             edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
+            slips = p.wrap_slipped
             follow(p, words, kept, edges, way, going, straight, length, stiffness)
             if words[kept] != BENT or way <= length:
+                if rubs:
+                    let_go(p, words, kept)
                 continue
             rouse(p, work, a)
             rouse(p, work, b)
             elastic = stiffness * (way - length)
             tension = max(0.0, elastic + damping * going)
-            p.thread_loss += h * (tension - elastic) * going
+            farther = tension
+            if rubs:
+                hold(p, words, kept, edges, way, length, stiffness, p.wrap_slipped != slips)
+                near, far = p.wrap_pulls[0], p.wrap_pulls[edges]
+                tension, farther = max(0.0, near + damping * going), max(0.0, far + damping * going)
+                p.thread_loss += h * ((tension - near) * p.wrap_rates[0] + (farther - far) * p.wrap_rates[1])
+            else:
+                p.thread_loss += h * (tension - elastic) * going
             chord = 0.0
             if straight > length:
                 elastic = stiffness * (straight - length)
@@ -378,23 +299,25 @@ def make(composition: Any) -> Wrap:
             for axis in range(3):
                 along = chord * p.wrap_line[axis]
                 node_plane(p, work, FX + axis)[a] -= tension * p.wrap_first[axis] + along
-                node_plane(p, work, FX + axis)[b] -= tension * p.wrap_last[axis] - along
+                node_plane(p, work, FX + axis)[b] -= farther * p.wrap_last[axis] - along
             squared = 0.0
             for axis in range(3):
                 push = h * tension * (p.wrap_first[axis] + p.wrap_last[axis])
+                if rubs:
+                    push += h * (farther - tension) * p.wrap_last[axis]
                 p.target_drift[axis] += push / p.target_mass
                 squared += push * push
             for end in range(2):
                 rotate(p.wrap_turned, p.target_pose, p.wrap_bends[1 if end == 0 else edges])
                 cross(p.wrap_moving, p.wrap_turned, p.wrap_first if end == 0 else p.wrap_last)
                 for axis in range(3):
-                    p.target_spin[axis] += h * tension * p.wrap_moving[axis]
+                    p.target_spin[axis] += h * (tension if end == 0 else farther) * p.wrap_moving[axis]
             p.wrap_impulse += math.sqrt(squared)
             if has_map:
-                press(p, edges, tension)
-            if tension > so_far(p, number + 1):
-                note(p, number + 1, tension)
-            p.contact_force = max(p.contact_force, 2.0 * tension)
+                press(p, edges, tension, damping * going)
+            if max(tension, farther) > so_far(p, number + 1):
+                note(p, number + 1, max(tension, farther))
+            p.contact_force = max(p.contact_force, tension + farther)
             if p.contact_first_time < 0.0:
                 p.contact_first_time = now(p)
 
@@ -421,8 +344,13 @@ def make(composition: Any) -> Wrap:
             if edges == 0 or way <= length:
                 continue
             p.wrap_threads += 1
-            stretch = max(0.0, way - 0.5 * p.solver_substep * going - length)
-            p.wrap_stored += 0.5 * numbers[q + STIFFNESS] * stretch * stretch
+            if rubs:
+                p.wrap_stored += stretch_held(p, words, kept, edges, way, length, numbers[q + STIFFNESS])
+                power = p.wrap_pulls[0] * p.wrap_rates[0] + p.wrap_pulls[edges] * p.wrap_rates[1]
+                p.wrap_stored -= 0.5 * p.solver_substep * power
+            else:
+                stretch = max(0.0, way - 0.5 * p.solver_substep * going - length)
+                p.wrap_stored += 0.5 * numbers[q + STIFFNESS] * stretch * stretch
             if straight > length:
                 stretch = straight - length
                 elastic = numbers[q + STIFFNESS] * stretch
@@ -450,51 +378,63 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
         yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')
 
 
-PART = Term(
-    "threads between nodes bend round the edges of the target",
-    (
-        count("wrap.threads", "taut threads that bend round an edge now"),
-        count("wrap.passed", "how often a taut thread has gone through the target"),
-        count("wrap.slipped", "how often a taut thread has slid over a corner"),
-        peak("wrap.slip_loss", "J", "lost by threads that slid over a corner"),
-        peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
-        output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
-        count("wrap_listed", "threads near the target", "state"),
-        count("wrap_next", "substep at which they are looked up again", "state"),
-        count("wrap_faces", "faces of the target", "state"),
-        count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
-        count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
-        state("wrap_clear", "m", "how far a thread is from the target, at least"),
-        state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),
-        state("wrap_substep", "s", "the substep then"),
-        state("wrap_inset", "m", "how far below the surface ways lie"),
-        *(
-            state(f"wrap_{name}[#][#]", "1", text, shape=(rows, columns))
-            for name, rows, columns, text in (
-                ("planes", FACES, 4, "faces of the target, body axes: way out, and distance along it [m]"),
-                ("flat", FACES, 3, "lines of the faces in the plane of a way, the last column in metres"),
-                ("bends", MOST + 2, 3, "points of a way, body axes [m]"),
-                ("pieces", MOST + 1, 4, "directions between them, body axes, and lengths [m]"),
-                ("edges", MOST, 3, "directions of the edges, body axes"),
-                ("feet", MOST, 3, "points on them, body axes [m]"),
-                ("spans", MOST, 4, "where the way crosses them and both ends [m], and slope there"),
-                ("steps", MOST, 4, "Newton's equations of a way"),
-            )
-        ),
-        *(
-            state(f"wrap_{name}[#]", unit, text, shape=(3,))
-            for name, unit, text in (
-                ("a", "m", "one end of a thread, body axes"),
-                ("b", "m", "the other end, body axes"),
-                ("turned", "m", "a bend from the target's centre of mass, frame axes"),
-                ("moving", "m/s", "velocity of the surface there, less that of the centre of mass; a lever"),
-                ("first", "1", "direction from the first bend to one end"),
-                ("last", "1", "direction from the last bend to the other end"),
-                ("line", "1", "direction of the straight thread"),
-                ("up", "1", "direction across it, body axes"),
-            )
-        ),
+ROWS = (
+    count("wrap.threads", "taut threads that bend round an edge now"),
+    count("wrap.passed", "how often a taut thread has gone through the target"),
+    count("wrap.slipped", "how often a taut thread has slid over a corner"),
+    peak("wrap.slip_loss", "J", "lost by threads that slid over a corner"),
+    peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
+    output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
+    count("wrap_listed", "threads near the target", "state"),
+    count("wrap_next", "substep at which they are looked up again", "state"),
+    count("wrap_faces", "faces of the target", "state"),
+    count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
+    count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
+    state("wrap_clear", "m", "how far a thread is from the target, at least"),
+    state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),
+    state("wrap_substep", "s", "the substep then"),
+    state("wrap_inset", "m", "how far below the surface ways lie"),
+    *(
+        state(f"wrap_{name}[#][#]", "1", text, shape=(rows, columns))
+        for name, rows, columns, text in (
+            ("planes", FACES, 4, "faces of the target, body axes: way out, and distance along it [m]"),
+            ("flat", FACES, 3, "lines of the faces in the plane of a way, the last column in metres"),
+            ("bends", MOST + 2, 3, "points of a way, body axes [m]"),
+            ("pieces", MOST + 1, 4, "directions between them, body axes, and lengths [m]"),
+            ("edges", MOST, 3, "directions of the edges, body axes"),
+            ("feet", MOST, 3, "points on them, body axes [m]"),
+            ("spans", MOST, 4, "where the way crosses them and both ends [m], and slope there"),
+            ("steps", MOST, 4, "Newton's equations of a way"),
+        )
     ),
+    *(
+        state(f"wrap_{name}[#]", unit, text, shape=(3,))
+        for name, unit, text in (
+            ("a", "m", "one end of a thread, body axes"),
+            ("b", "m", "the other end, body axes"),
+            ("turned", "m", "a bend from the target's centre of mass, frame axes"),
+            ("moving", "m/s", "velocity of the surface there, less that of the centre of mass; a lever"),
+            ("first", "1", "direction from the first bend to one end"),
+            ("last", "1", "direction from the last bend to the other end"),
+            ("line", "1", "direction of the straight thread"),
+            ("up", "1", "direction across it, body axes"),
+        )
+    ),
+)
+"""Rows of threads that bend, with friction or without."""
+
+PART = Term(
+    "threads between nodes bend round the edges of the target, without friction",
+    ROWS,
+    needs=("target", "contact"),
+    excludes=("break",),
+    make=make,
+    refuses=refuses,
+)
+
+FRICTION = Term(
+    "threads between nodes bend round the edges of the target, and friction holds them there",
+    (*ROWS, *friction_rows()),
     needs=("target", "contact"),
     excludes=("break",),
     extremes=(
