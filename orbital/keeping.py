@@ -1,11 +1,14 @@
 """Kernels kept from one build to the next: a choice of terms compiles what no choice before it had.
 
-Two choices of terms share most of their kernels. What numba makes of one, a module in LLVM's bitcode, is kept under a
-hash of all that it is made from: its code, what it closes over and refers to, the kernels among these likewise, and
-the types of its arguments. One thing differs between any two choices, the places of a record's fields. So a module
-that is kept refers to each place by name, and the entry, linked last, says where the fields lie.
+Two choices of terms share most of their code. What numba makes of a kernel, a module in LLVM's bitcode, is kept under
+a hash of what it is made from: its code, what it closes over and refers to, and the types of its arguments. Two things
+differ between choices where the code is the same, and a module that is kept leaves them open:
 
-    folder/KEY/FIELDS     one module, with the fields that it and all below it use, by name and type
+- the places of a record's fields. It refers to each by name, and the entry, linked last, says where the fields lie.
+- the kernels that it calls. All that counts of them is what they are called with and what they give; which ones they
+  are is told when the module is taken out again. So another force law does not compile the integrator anew.
+
+    folder/KEY/USE     one module, with the fields that it uses, by name and type, and what it calls
 
 A kernel made of something that has no hash here is compiled and not kept, and so is all that calls it.
 
@@ -33,19 +36,24 @@ import numba
 import numpy as np
 from llvmlite import binding as llvm
 from llvmlite import ir
-from numba.core import sigutils, types
+from numba.core import ir_utils, sigutils, types
 from numba.core.compiler import compile_result
 from numba.core.environment import Environment
+from numba.core.errors import NumbaError
 from numba.core.funcdesc import PythonFunctionDescriptor
 from numba.core.typing.templates import signature
 
 from orbital import linking
-from orbital.keys import Keys, NoKeyError, digest, source
+from orbital.keys import Apart, Keys, NoKeyError, digest, source
 from orbital.linking import PartContext, PartDispatcher, PartLibrary, TextLibrary, callers_first
 
 PLACE = "place."
 """What the name of a field's place begins with."""
 WORD = ir.IntType(64)
+OWN, CALLED = "own", "called."
+"""What the names of a kernel's functions, and of those that it calls, begin with where it is kept."""
+NO_RECORD = types.Record([], 0, False)
+"""Where a record is meant, whichever it is."""
 
 
 @cache
@@ -61,28 +69,57 @@ def _tools() -> str:
 class _Kept:
     """What is kept of one kernel, compiled for one set of arguments.
 
-    name      of its function
-    fields    of the record that it and all below it use, with their types
+    fields    of the record that it uses, with their types
     gives     the type it returns
-    bitcode   of its module
-    calls     where the kernels that it calls are kept, as (key, fields)
+    calls     what it calls: number among the kernels that it is made from, types of the arguments, type that it gives
+    bitcode   of its module, whose functions are called by `_numbered`
     """
 
-    name: str
     fields: dict[str, str]
     gives: Any
+    calls: list[tuple[int, tuple[Any, ...], Any]]
     bitcode: bytes
-    calls: list[tuple[str, str]]
+
+
+@dataclass
+class _Made:
+    """What one kernel is made from.
+
+    function  that it was written as
+    args      types of its arguments
+    name      of its function: a hash of all, with the kernels that it calls
+    key       where it is kept: a hash without these
+    apart     the kernels that it may call
+    """
+
+    function: Any
+    args: tuple[Any, ...]
+    name: str
+    key: str
+    apart: Apart
+
+    @property
+    def record(self) -> Any:
+        """The type of the record among the arguments, None where there is none."""
+        kinds = (one for kind in self.args for one in (kind if isinstance(kind, STARRED) else (kind,)))
+        records = (kind.dtype if isinstance(kind, types.Array) else kind for kind in kinds)
+        return next((kind for kind in records if isinstance(kind, types.Record)), None)
+
+
+STARRED = types.StarArgTuple, types.StarArgUniTuple
 
 
 class KeptLibrary(PartLibrary):
     """A kernel's module that refers to a record's fields by name.
 
-    place     where it is kept, None: not at all
-    fields    that it and all below it use, with their types
+    made      what it is made from, None: it is not kept
+    fields    that it uses, with their types
+    loose     whether it is part of a kernel that is not kept
     """
 
-    place: tuple[str, str] | None = None
+    made: _Made | None = None
+    gives: Any = None
+    loose = False
 
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)  # type: ignore[no-untyped-call]
@@ -93,10 +130,11 @@ class KeptLibrary(PartLibrary):
         """What numba made of a function of its own for this kernel becomes part of it."""
         own = {function.name for function in self._final_module.functions if not function.is_declaration}
         called = []
-        for library in self._linking_libraries:
-            if isinstance(library, KeptLibrary) and library.place is not None:
+        for library in dict.fromkeys(self._linking_libraries):
+            if isinstance(library, KeptLibrary) and library.made is not None:
                 called.append(library)
             elif library.name != "nrt":
+                self.loose |= getattr(library, "loose", False)
                 self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         for function in self._final_module.functions:
             if not function.is_declaration and function.name not in own:
@@ -104,14 +142,24 @@ class KeptLibrary(PartLibrary):
         self._linking_libraries = called
         super().finalize()
 
-    def rename(self, name: str) -> None:
-        """Call its function by a name that tells what it is made from, and so what numba adds to it."""
-        added = 0
+    def number(self, name: str) -> None:
+        """Call its functions, the one by this name and what numba added to it, and those that it calls by numbers."""
+        names = {library.made.name: f"{CALLED}{k}" for k, library in enumerate(self._linking_libraries)} | {name: OWN}
         for function in self._final_module.functions:
-            if not function.is_declaration:
-                internal = str(function.linkage) == str(llvm.Linkage.internal)
-                added += internal
-                function.name = f"{name}.{added}" if internal else name
+            if str(function.linkage) == str(llvm.Linkage.internal):
+                names[function.name] = f"{OWN}.{len(names)}"
+            function.name = names.get(function.name, function.name)
+
+    def name_functions(self) -> None:
+        """Call those that have numbers by what they are made from."""
+        assert self.made is not None
+        called = {f"{CALLED}{k}": library.made.name for k, library in enumerate(self._linking_libraries)}
+        for function in self._final_module.functions:
+            own, dot, added = function.name.partition(".")
+            if own == OWN:
+                function.name = self.made.name + dot + added
+            else:
+                function.name = called.get(function.name, function.name)
 
 
 class _Placeless:
@@ -176,34 +224,36 @@ class KeptDispatcher(PartDispatcher):
         args = tuple(args)
         if args in self.overloads:
             return self.overloads[args].entry_point
-        key = self.store.key(self.py_func, self.targetoptions, args)
+        made = self.store.made(self.py_func, self.targetoptions, args)
         context = self._compiler.targetdescr.target_context
-        if key is not None:
-            record = next((kind for kind in args if isinstance(kind, types.Record)), None)
-            found = self.store.find(key, record, context.codegen())
-            if found is not None:
-                return self._adopt(args, context, *found)
+        library = self.store.find(made, context.codegen()) if made is not None else None
+        if library is not None:
+            return self._adopt(context, library)
+        ir_utils._the_max_label.__init__()  # blocks are numbered alike, whatever else was compiled before
         entry_point = super().compile(sig)
         result = self.overloads[args]
-        if key is not None and all(called.place is not None for called in result.library._linking_libraries):
-            self.store.keep(key, self.py_func, result)
+        if made is None or result.library.loose:
+            result.library.loose = True
+        else:
+            self.store.keep(made, result)
         return entry_point
 
-    def _adopt(self, args: tuple[Any, ...], context: Any, kept: _Kept, library: KeptLibrary) -> Any:
+    def _adopt(self, context: Any, library: KeptLibrary) -> Any:
         """Have what is kept for an overload."""
-        library.record = next((kind for kind in args if isinstance(kind, types.Record)), None)
-        function = self.py_func
+        assert library.made is not None
+        function, args, name = self.py_func, library.made.args, library.made.name
+        library.record = library.made.record
         named = function.__code__.co_varnames[: len(args)]
         describe: Any = PythonFunctionDescriptor
         description = describe(
-            True, function.__module__, function.__qualname__, kept.name, "", {}, kept.gives, {}, named, (),
-            mangler=lambda *_, **__: kept.name, argtypes=args, env_name=f"environment of {kept.name}",
+            True, function.__module__, function.__qualname__, name, "", {}, library.gives, {}, named, (),
+            mangler=lambda *_, **__: name, argtypes=args, env_name=f"environment of {name}",
         )  # fmt: skip
         environment = Environment.from_fndesc(description)  # type: ignore[no-untyped-call]
         entry_point = context.get_executable(library, description, environment)
         context.insert_user_function(entry_point, description, [library])
-        made: dict[str, Any] = {
-            "signature": signature(kept.gives, *args),  # type: ignore[no-untyped-call]
+        result: dict[str, Any] = {
+            "signature": signature(library.gives, *args),  # type: ignore[no-untyped-call]
             "library": library,
             "fndesc": description,
             "entry_point": entry_point,
@@ -211,8 +261,7 @@ class KeptDispatcher(PartDispatcher):
             "lifted": (),
             "target_context": context,
         }
-        result = compile_result(**made)  # type: ignore[no-untyped-call]
-        self.add_overload(result)
+        self.add_overload(compile_result(**result))  # type: ignore[no-untyped-call]
         return entry_point
 
 
@@ -251,60 +300,83 @@ class Store:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._keys = Keys()
-        self._loaded: dict[tuple[str, str], tuple[_Kept, KeptLibrary]] = {}
+        self._loaded: dict[tuple[str, Any], KeptLibrary] = {}
 
-    def key(self, function: Any, options: Mapping[str, Any], args: tuple[Any, ...]) -> str | None:
-        """Of a kernel for arguments of these types; None where something has no hash."""
+    def made(self, function: Any, options: Mapping[str, Any], args: tuple[Any, ...]) -> _Made | None:
+        """What a kernel for arguments of these types is made from; None where something has no hash."""
+        apart = Apart(self._keys)
         try:
-            kinds = ("record" if isinstance(kind, types.Record) else self._kind(kind) for kind in args)
-            made = self._keys.of(function), self._keys.of(sorted(options.items()))
-            return digest(_tools(), *made, *kinds)
+            what = function, sorted(options.items()), tuple(_with(NO_RECORD, kind) for kind in args)
+            whole, key = (digest(_tools(), *map(keys.of, what)) for keys in (self._keys, apart))
         except NoKeyError:
             return None
+        where = f"{function.__module__}.{function.__qualname__}".replace(".<locals>", "")
+        return _Made(function, args, f"{where}.{whole[:16]}", key, apart)
 
-    def _kind(self, kind: Any) -> str:
-        if isinstance(kind, types.Dispatcher):
-            return self._keys.of(kind.dispatcher.py_func)
-        return self._keys.of(kind)
-
-    def find(self, key: str, record: Any, codegen: Any) -> tuple[_Kept, KeptLibrary] | None:
-        """What is kept of a kernel for a record that has the fields it uses."""
+    def find(self, made: _Made, codegen: Any) -> KeptLibrary | None:
+        """What is kept of a kernel, for a record that has the fields it uses, and calling what it may call here."""
+        if (made.name, made.record) in self._loaded:
+            return self._loaded[made.name, made.record]
         with suppress(OSError):
-            for path in sorted((self._folder / key).glob("[!.]*")):
-                found = self._load((key, path.name), codegen)
-                if found is not None and _has(record, found[0].fields):
-                    return found
+            for path in sorted((self._folder / made.key).glob("[!.]*")):
+                kept = _read(path)
+                if kept is None or not _has(made.record, kept.fields):
+                    continue
+                called = [_called(made, *call) for call in kept.calls]
+                if None not in called:
+                    library = KeptLibrary(codegen, made.name)
+                    library._final_module = llvm.parse_bitcode(kept.bitcode)
+                    library._linking_libraries = called
+                    library._finalized = True
+                    self._load(library, made, kept)
+                    return library
         return None
 
-    def _load(self, place: tuple[str, str], codegen: Any) -> tuple[_Kept, KeptLibrary] | None:
-        if place not in self._loaded:
-            kept = _read(self._folder.joinpath(*place))
-            called = [self._load(call, codegen) for call in kept.calls] if kept is not None else []
-            if kept is None or None in called:
-                return None
-            library = KeptLibrary(codegen, kept.name)
-            library._final_module = llvm.parse_bitcode(kept.bitcode)
-            library._linking_libraries = [found[1] for found in called if found is not None]
-            library.place, library.fields, library._finalized = place, kept.fields, True
-            self._loaded[place] = kept, library
-        return self._loaded[place]
+    def _load(self, library: KeptLibrary, made: _Made, kept: _Kept) -> None:
+        library.made, library.fields, library.gives = made, kept.fields, kept.gives
+        library.name_functions()
+        self._loaded[made.name, made.record] = library
 
-    def keep(self, key: str, function: Any, result: Any) -> None:
+    def keep(self, made: _Made, result: Any) -> None:
         """Keep what a kernel was compiled to, and name it by what it is made from."""
         library: KeptLibrary = result.library
+        calls = []
         for called in library._linking_libraries:
-            library.fields |= called.fields
+            args = tuple(_with(NO_RECORD, kind) for kind in called.made.args)
+            calls.append((made.apart.number(called.made.function), args, called.gives))
+        library.number(result.fndesc.llvm_func_name)
         fields = dict(sorted(library.fields.items()))
-        place = key, digest(json.dumps(fields))[:32]
-        where = f"{function.__module__}.{function.__qualname__}".replace(".<locals>", "")
-        name = f"{where}.{digest(*place)[:16]}"
-        library.rename(name)
-        result.fndesc.mangled_name = name
-        calls = [called.place for called in library._linking_libraries]
-        kept = _Kept(name, fields, result.signature.return_type, library._final_module.as_bitcode(), calls)
-        library.place = place
-        self._loaded[place] = kept, library
-        _write(self._folder.joinpath(*place), kept)
+        kept = _Kept(fields, result.signature.return_type, calls, library._final_module.as_bitcode())
+        self._load(library, made, kept)
+        result.fndesc.mangled_name = made.name
+        _write(self._folder / made.key / digest(json.dumps(fields), str(calls))[:32], kept)
+
+
+def _called(made: _Made, number: int, args: tuple[Any, ...], gives: Any) -> KeptLibrary | None:
+    """One of the kernels that a kernel may call, compiled for its arguments, if it then gives this type."""
+    dispatcher = made.apart.called[number]._part
+    args = tuple(_with(made.record, kind) for kind in args)
+    with suppress(NumbaError):
+        dispatcher.compile(args)
+        result = dispatcher.overloads[args]
+        if result.signature.return_type == gives:
+            library: KeptLibrary = result.library
+            return library
+    return None
+
+
+def _with(record: Any, kind: Any) -> Any:
+    """A type of an argument with another record in it, if it has one."""
+    match kind:
+        case types.Record():
+            return record
+        case types.Array(dtype=types.Record()):
+            return kind.copy(dtype=record)
+        case types.StarArgTuple() | types.StarArgUniTuple():
+            return types.StarArgTuple([_with(record, one) for one in kind])
+        case types.Dispatcher():
+            raise NoKeyError(f"no hash of an argument that is the kernel {kind}")
+    return kind
 
 
 def _has(record: Any, fields: Mapping[str, str]) -> bool:

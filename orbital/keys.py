@@ -104,6 +104,37 @@ class Keys:
         return digest(self.of(code), self.of(around), self.of(closed), self.of(function.__defaults__))
 
 
+class Apart(Keys):
+    """Hashes of what one kernel is made from apart from those that it calls: of a kernel that is not written out where
+    it is called, only how it may be called counts, and which of several it is.
+
+    called    the kernels that were met, in this order, without repetition
+    """
+
+    def __init__(self, keys: Keys) -> None:
+        super().__init__()
+        self._keys = keys
+        self._numbers: dict[str, int] = {}
+        self.called: list[Kernel] = []
+
+    def number(self, function: Any) -> int | None:
+        """Which of the called kernels a function is."""
+        return self._numbers.get(self._keys.of(function))
+
+    def _made_of(self, value: Any) -> str:
+        if not isinstance(value, Kernel) or "inline" in value._options:
+            return super()._made_of(value)
+        function = value.py_func
+        number = self._numbers.setdefault(self._keys.of(function), len(self.called))
+        if number == len(self.called):
+            self.called.append(value)
+        code = function.__code__
+        arguments = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount], code.co_flags
+        return digest("called", str(number), *map(self._keys.of, (
+            arguments, function.__defaults__, function.__kwdefaults__, sorted(value._options.items()),
+        )))  # fmt: skip
+
+
 def _named(value: Any) -> str:
     return f"{getattr(value, '__module__', '')}.{getattr(value, '__qualname__', value.__class__.__qualname__)}"
 
