@@ -28,14 +28,12 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import llvmlite
 import numba
 import numpy as np
 from llvmlite import binding as llvm
-from llvmlite import ir
 from numba.core import ir_utils, sigutils, types
 from numba.core.compiler import compile_result
 from numba.core.environment import Environment
@@ -45,15 +43,15 @@ from numba.core.typing.templates import signature
 
 from orbital import linking
 from orbital.keys import Apart, Keys, NoKeyError, digest, source
-from orbital.linking import PartContext, PartDispatcher, PartLibrary, TextLibrary, callers_first
+from orbital.linking import PartDispatcher, PartLibrary, TextLibrary, callers_first
+from orbital.places import PlacelessContext, Places
 
-PLACE = "place."
-"""What the name of a field's place begins with."""
-WORD = ir.IntType(64)
 OWN, CALLED = "own", "called."
 """What the names of a kernel's functions, and of those that it calls, begin with where it is kept."""
 NO_RECORD = types.Record([], 0, False)
 """Where a record is meant, whichever it is."""
+STARRED = types.StarArgTuple, types.StarArgUniTuple
+"""What is given to a kernel that takes any number of arguments."""
 
 
 @cache
@@ -61,7 +59,7 @@ def _tools() -> str:
     """Hash of what makes code of a kernel: versions, settings, and our own rules of linking."""
     settings = sorted((name, value) for name, value in os.environ.items() if name.startswith("NUMBA_"))
     versions = numba.__version__, llvmlite.__version__, np.__version__, platform.python_version(), platform.machine()
-    rules = (source(name) for name in ("orbital.kernel", "orbital.linking", "orbital.keeping", "orbital.keys"))
+    rules = (source(f"orbital.{name}") for name in ("kernel", "linking", "places", "keeping", "keys"))
     return digest(*versions, json.dumps(settings), *rules)
 
 
@@ -104,9 +102,6 @@ class _Made:
         kinds = (one for kind in self.args for one in (kind if isinstance(kind, STARRED) else (kind,)))
         records = (kind.dtype if isinstance(kind, types.Array) else kind for kind in kinds)
         return next((kind for kind in records if isinstance(kind, types.Record)), None)
-
-
-STARRED = types.StarArgTuple, types.StarArgUniTuple
 
 
 class KeptLibrary(PartLibrary):
@@ -162,56 +157,6 @@ class KeptLibrary(PartLibrary):
                 function.name = called.get(function.name, function.name)
 
 
-class _Placeless:
-    """A record's type without the places of its fields; all else is the record's own."""
-
-    def __init__(self, record: Any, builder: Any) -> None:
-        self._record, self._builder = record, builder
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._record, name)
-
-    def offset(self, name: str) -> Any:
-        module = self._builder.module
-        place = module.globals.get(PLACE + name)
-        if place is None:
-            place = ir.GlobalVariable(module, WORD, PLACE + name)
-            place.global_constant = True
-        return self._builder.load(place)
-
-
-class KeptContext(PartContext):
-    """Lowers what reads and writes the fields of a record without knowing where they lie."""
-
-    def _note(self, record: Any, name: str) -> None:
-        library = self.active_code_library
-        library.fields[name] = str(record.typeof(name))
-        library.record = record
-
-    def get_getattr(self, typ: Any, attr: str) -> Any:
-        found = super().get_getattr(typ, attr)  # type: ignore[no-untyped-call]
-        if not isinstance(typ, types.Record):
-            return found
-
-        def get(context: Any, builder: Any, typ: Any, value: Any, attr: str) -> Any:
-            self._note(typ, attr)
-            return found(context, builder, _Placeless(typ, builder), value, attr)
-
-        return get
-
-    def get_setattr(self, attr: str, sig: Any) -> Any:
-        record, kind = sig.args
-        if not isinstance(record, types.Record):
-            return super().get_setattr(attr, sig)  # type: ignore[no-untyped-call]
-        put = self._setattrs[None].find((record, kind))
-
-        def set_(builder: Any, args: Any) -> Any:
-            self._note(record, attr)
-            return put(self, builder, SimpleNamespace(args=(_Placeless(record, builder), kind)), args, attr)
-
-        return set_
-
-
 class KeptDispatcher(PartDispatcher):
     """A kernel that is looked for among those kept before it is compiled."""
 
@@ -229,7 +174,7 @@ class KeptDispatcher(PartDispatcher):
         library = self.store.find(made, context.codegen()) if made is not None else None
         if library is not None:
             return self._adopt(context, library)
-        ir_utils._the_max_label.__init__()  # blocks are numbered alike, whatever else was compiled before
+        ir_utils._the_max_label._value = 0  # blocks are numbered alike, whatever else was compiled before
         entry_point = super().compile(sig)
         result = self.overloads[args]
         if made is None or result.library.loose:
@@ -278,20 +223,8 @@ class KeptText(TextLibrary):
         names = set(self.fields).union(*(part.fields for part in parts))
         record = next((part.record for part in (self, *parts) if part.record is not None), None)
         if record is not None:
-            self._linking_libraries.insert(0, _Places({name: record.offset(name) for name in sorted(names)}))
+            self._linking_libraries.insert(0, Places({name: record.offset(name) for name in sorted(names)}))
         super().finalize()
-
-
-class _Places:
-    """A module that says where the fields of a record lie: it is linked behind all that ask."""
-
-    def __init__(self, offsets: Mapping[str, int]) -> None:
-        lines = [f'@"{PLACE}{name}" = linkonce_odr constant i64 {offset}' for name, offset in offsets.items()]
-        self._module = llvm.parse_assembly("\n".join(lines))
-        self._reload_init: set[Any] = set()
-
-    def _get_module_for_linking(self) -> Any:
-        return self._module
 
 
 class Store:
@@ -373,7 +306,7 @@ def _with(record: Any, kind: Any) -> Any:
         case types.Array(dtype=types.Record()):
             return kind.copy(dtype=record)
         case types.StarArgTuple() | types.StarArgUniTuple():
-            return types.StarArgTuple([_with(record, one) for one in kind])
+            return types.StarArgTuple([_with(record, one) for one in kind])  # type: ignore[no-untyped-call]
         case types.Dispatcher():
             raise NoKeyError(f"no hash of an argument that is the kernel {kind}")
     return kind
@@ -408,4 +341,4 @@ def _write(path: Path, kept: _Kept) -> None:
 def keep_in(folder: Path) -> None:
     """From now on have this process look for kernels in a folder, and keep there what it compiles."""
     KeptDispatcher.store = Store(folder)
-    linking.parts = linking.Parts(KeptContext, KeptLibrary, KeptText, KeptDispatcher)
+    linking.parts = linking.Parts(PlacelessContext, KeptLibrary, KeptText, KeptDispatcher)

@@ -117,9 +117,12 @@ class Apart(Keys):
         self._numbers: dict[str, int] = {}
         self.called: list[Kernel] = []
 
-    def number(self, function: Any) -> int | None:
-        """Which of the called kernels a function is."""
-        return self._numbers.get(self._keys.of(function))
+    def number(self, function: Any) -> int:
+        """Which of the called kernels a function is; `NoKeyError` where it was reached past what is looked through."""
+        number = self._numbers.get(self._keys.of(function))
+        if number is None:
+            raise NoKeyError(f"{function.__qualname__} is called and neither closed over nor named by a module of ours")
+        return number
 
     def _made_of(self, value: Any) -> str:
         if not isinstance(value, Kernel) or "inline" in value._options:
