@@ -23,7 +23,7 @@ def next_step_8(step: float, error: float, previous_error: float) -> float:
 
     Valid    estimates that fall with the eighth power of the step
     Source   Gustafsson (1991): exponents 0.75/k and 0.25/k, k = 8
-    Checked  tests/tethered_deorbit/test_integrator.py
+    Checked  tests/tethered_deorbit/test_estimated_error.py
     """
     now = math.sqrt(math.sqrt(math.sqrt(math.sqrt(math.sqrt(max(error, 1.0e-12))))))
     before = math.sqrt(math.sqrt(math.sqrt(math.sqrt(math.sqrt(max(previous_error, 1.0e-4))))))
@@ -40,7 +40,7 @@ def shorter_step_8(step: float, error: float) -> float:
 
     Valid    estimates that fall with the eighth power of the step
     Source   Hairer, Norsett and Wanner, Solving ordinary differential equations I (1993), section II.4
-    Checked  tests/tethered_deorbit/test_integrator.py
+    Checked  tests/tethered_deorbit/test_estimated_error.py
     """
     if not error < 1.0e6:
         return step * LARGEST_CUT
@@ -57,7 +57,7 @@ def next_step_4(step: float, error: float, previous_error: float) -> float:
 
     Valid    estimates that fall with the fourth power of the step
     Source   Gustafsson (1991): exponents 0.75/k and 0.25/k, k = 4
-    Checked  tests/tethered_deorbit/test_integrator.py
+    Checked  tests/tethered_deorbit/test_estimated_error.py
     """
     now = math.sqrt(math.sqrt(math.sqrt(math.sqrt(max(error, 1.0e-12)))))
     before = math.sqrt(math.sqrt(math.sqrt(math.sqrt(max(previous_error, 1.0e-4)))))
@@ -74,7 +74,7 @@ def shorter_step_4(step: float, error: float) -> float:
 
     Valid    estimates that fall with the fourth power of the step
     Source   Hairer, Norsett and Wanner (1993), section II.4
-    Checked  tests/tethered_deorbit/test_integrator.py
+    Checked  tests/tethered_deorbit/test_estimated_error.py
     """
     if not error < 1.0e6:
         return step * LARGEST_CUT

@@ -123,7 +123,7 @@ def make_dop853(
         low, high     room for e3 and e5                             (size + counted,)
 
         Source   as `make_dop853`
-        Checked  tests/tethered_deorbit/test_integrator.py: its size, against scipy's
+        Checked  tests/tethered_deorbit/test_estimated_error.py: its size, against scipy's
         """
         for n in range(width):
             low[n] = 0.0

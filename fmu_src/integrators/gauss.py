@@ -190,7 +190,7 @@ def make_gauss(
         low, high     room for e3 and e5                             (size + counted,)
 
         Source   the factors 1/32 and 1/384 are ours: they keep e above the error itself
-        Checked  tests/tethered_deorbit/test_integrator.py: how it falls, and that it covers the error
+        Checked  tests/tethered_deorbit/test_estimated_error.py: how it falls, and that it covers the error
         """
         if stages[flag] != 0.0:
             return math.inf

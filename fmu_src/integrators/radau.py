@@ -264,7 +264,7 @@ def make_radau(
         low, high     room                                           (size + counted,)
 
         Source   Hairer and Wanner (1996), section IV.8, eq. 8.19 and 8.20
-        Checked  tests/tethered_deorbit/test_integrator.py: how it falls; that it is scipy's
+        Checked  tests/tethered_deorbit/test_estimated_error.py: how it falls; that it is scipy's
         """
         if stages[flag] != 0.0:
             return math.inf

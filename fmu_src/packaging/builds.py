@@ -72,7 +72,7 @@ def fingerprint(interface: Interface) -> str:
     digest = hashlib.sha256()
     model = SOURCES / interface.model.name
     packaging = (p for p in (SOURCES / "packaging").rglob("*") if p.suffix in (".py", ".c", ".h", ".txt"))
-    shared = sorted([*SOURCES.glob("*.py"), *packaging])
+    shared = sorted([*SOURCES.glob("*.py"), *(SOURCES / "integrators").glob("*.py"), *packaging])
     formulas = sorted((SOURCES.parent / "orbital").glob("*.py"))
     for path in [*shared, *formulas, *sorted(p for p in model.rglob("*") if p.suffix in (".py", ".md"))]:
         digest.update(path.relative_to(SOURCES.parent).as_posix().encode() + b"\0" + path.read_bytes())
