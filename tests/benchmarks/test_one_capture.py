@@ -47,8 +47,6 @@ def test_a_hundred_tows(settings: tuple[str, ...], tmp_path: Path) -> None:
         sweeps.append(tows(tmp_path / f"tows-{turn}", *settings))
     wall, cpu = (min(one[i] for one in sweeps) for i in (0, 1))
     of_three, cpu_of_three = (3.0 * min(one[i] for one in captures) for i in (0, 1))
-    print(
-        f"\n100 tows, {', '.join(settings)}: {wall:.2f} s, {wall / of_three:.2f} times three captures ({of_three:.2f} s)"
-    )
-    least = cpu / 2.0 / cpu_of_three
+    ratio, least = wall / of_three, cpu / 2.0 / cpu_of_three
+    print(f"\n100 tows, {', '.join(settings)}: {wall:.2f} s, {ratio:.2f} times three captures ({of_three:.2f} s)")
     print(f"{cpu:.2f} CPU-s on two cores beside {cpu_of_three:.2f} on one: at least {least:.2f} times")
