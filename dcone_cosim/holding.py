@@ -72,6 +72,8 @@ class Held:
     a component that cannot do that loses the older ones, and its log says how many.
 
     extremes   names of its outputs that are extremes of a step
+    watched    these, and those that say whether there are tugs to be read
+    newest     those of the latest tug, which may still grow
 
     Checked  tests/cosim/test_holding.py
     """
@@ -88,11 +90,13 @@ class Held:
         while all(f"{TUG_PREFIX}{ring + 1}].{field}" in self.variables for field in TUG_FIELDS):
             ring += 1
         self._log = TugLog(ring) if ring and COUNT in self.variables else None
+        self.newest: list[str] = []
         self.watched = list(self.extremes)
         if self._log is not None:
             self.watched += [name for name in (COUNT, TAUT) if name in self.variables]
             names = [f"{TUG_PREFIX}{i}].{field}" for i in range(1, ring + 1) for field in TUG_FIELDS]
-            self._read_ring, self._read_newest = component.reader(names), component.reader(names[: len(TUG_FIELDS)])
+            self._read_ring, self.newest = component.reader(names), names[: len(TUG_FIELDS)]
+            self._read_newest = component.reader(self.newest)
         self._read = component.reader(self.watched) if self.watched else None
         self._state = _State()
         self._kept: dict[str, _State] = {}
@@ -143,8 +147,7 @@ class Held:
         self._state.recorded = True
 
     def row(self, names: Sequence[str]) -> Readable:
-        reader = self.component.reader(names)
-        return _Row(self, reader) if self.watched else reader
+        return _Row(self, names) if self.watched else self.component.reader(names)
 
     @property
     def so_far(self) -> Sequence[float]:
@@ -177,20 +180,21 @@ class Held:
         if self._pending:
             self.take_in(self._told())
 
-    def take_in(self, told: Sequence[float]) -> bool:
-        """The same, with the values of `watched` as read; true when the step was taken again in pieces."""
+    def take_in(self, told: Sequence[float], newest: Row | None = None) -> bool:
+        """The same, with the values of `watched` as read, and of `newest`; true when the step was taken again in
+        pieces."""
         self._pending = False
         if self._overflows(told) and self._checkpoint:
             self._again()
             return True
-        self._fold(told)
+        self._fold(told, newest)
         return False
 
     def _overflows(self, told: Sequence[float]) -> bool:
         log = self._log
         return log is not None and told[len(self.extremes)] - log.count > log.ring
 
-    def _fold(self, told: Sequence[float]) -> None:
+    def _fold(self, told: Sequence[float], newest: Row | None = None) -> None:
         state = self._state
         if state.recorded:
             state.so_far, state.recorded = told[: len(self.extremes)], False
@@ -198,7 +202,7 @@ class Held:
             pairs = zip(self._choose, state.so_far, told, strict=False)
             state.so_far = [choose(before, now) for choose, before, now in pairs]
         if self._log is not None:
-            self._gather(self._log, told)
+            self._gather(self._log, told, newest)
 
     def _again(self) -> None:
         """Go back to where the state was saved, take the steps up to the last again, and that one in pieces."""
@@ -242,13 +246,16 @@ class Held:
         values: list[float] = self._read().tolist()
         return [values[self._read.names.index(name)] for name in self.watched]
 
-    def _gather(self, log: TugLog, told: Sequence[float]) -> None:
-        """Put down the tugs in the ring, where one is new or may have grown."""
+    def _gather(self, log: TugLog, told: Sequence[float], newest: Row | None = None) -> None:
+        """Put down the tugs in the ring, where one is new or may have grown; `newest` as read, None to be read."""
         count = int(told[len(self.extremes)])
         taut = len(told) == len(self.extremes) + 1 or bool(told[-1])
         if count and (count != log.count or taut or self._state.taut):
-            read = self._read_newest if count == log.count else self._read_ring
-            log.update(count, read().reshape(-1, len(TUG_FIELDS)))
+            if count != log.count:
+                newest = self._read_ring()
+            elif newest is None:
+                newest = self._read_newest()
+            log.update(count, newest.reshape(-1, len(TUG_FIELDS)))
         self._state.taut = taut
 
     def save(self, key: str = "") -> None:
@@ -286,27 +293,39 @@ class Held:
 
 
 class _Row:
-    """A row of a component's reader with the extremes of all steps in it."""
+    """The outputs of these names with the extremes of all steps in the row.
 
-    def __init__(self, held: Held, reader: Readable) -> None:
-        self._held, self._reader = held, reader
-        self.names, self.values = reader.names, reader.values
-        place = {name: i for i, name in enumerate(reader.names)}
-        all_there = set(held.watched) <= set(place)
+    What is watched is read with them: a call to an FMU costs more than the numbers that it fetches.
+    """
+
+    def __init__(self, held: Held, names: Sequence[str]) -> None:
+        self._held = held
+        all_there = set(held.watched) <= set(names)
+        self._reader = held.component.reader([*names, *held.newest] if all_there else names)
+        place = {name: i for i, name in enumerate(self._reader.names)}
+        newest = set(held.newest) if all_there else set()
+        self.names = tuple(name for name in self._reader.names if name not in newest)
+        self._own = np.array([place[name] for name in self.names])
+        self._newest = np.array([place[name] for name in held.newest]) if newest else None
         self._watched = np.array([place[name] for name in held.watched]) if all_there else None
+        column = {name: i for i, name in enumerate(self.names)}
         self._columns = [
-            (place[name], i, EXTREMES[name].choose, place.get(EXTREMES[name].of, place[name]))
+            (column[name], i, EXTREMES[name].choose, column.get(EXTREMES[name].of, column[name]))
             for i, name in enumerate(held.extremes)
-            if name in place
+            if name in column
         ]
+        self.values = self._reader.values[self._own]
 
     def __call__(self) -> Row:
         held = self._held
         if self._watched is None:
             held.settle()
-        values = self._reader()
-        if self._watched is not None and held.pending and held.take_in(values[self._watched].tolist()):
-            values = self._reader()
+        read = self._reader()
+        if self._watched is not None and held.pending:
+            newest = None if self._newest is None else read[self._newest]
+            if held.take_in(read[self._watched].tolist(), newest):
+                read = self._reader()
+        values: Row = read.take(self._own, out=self.values, mode="clip")
         so_far = held.so_far
         if so_far:
             for place, i, choose, now in self._columns:

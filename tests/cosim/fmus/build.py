@@ -36,6 +36,13 @@ SHIM = {
             "    (void)stop_given, (void)stop;\n    i->m.values[1] = tolerance_given ? tolerance : -1.0;\n",
         ),
     ],
+    # its parameters can be set while it steps too
+    "TUNES": [
+        (
+            "    return model_table[reference].causality == INPUT || i->phase < STEPPING;\n",
+            "    (void)i;\n    return 1;\n",
+        )
+    ],
     # told that nobody goes back to before a step, it throws that away, and refuses to go there
     "FLUSHES": [
         ("    (void)no_going_back;\n", "    if (no_going_back && time > flushed) flushed = time;\n"),
