@@ -70,7 +70,7 @@ def test_gravity_and_pull_in_orbit(validated: Validated) -> None:
     for seconds, allowed, what in ((12, 1e-10, "pulled taut"), (8, 1e-6, "slack again")):
         i.step(float(seconds))
         peer.step(seconds)
-        assert i["lumped.peak_tension"] > 0.05
+        assert i["tether.impulse"] > 0.2
         apart_by, (places, _) = pair.state_of(i)[6:9], pair.nodes_of(i)
         mine = np.vstack([-apart_by, places])
         off = np.abs(mine - (peer.x[:-1] - peer.x[-1]).astype(float)).max()
