@@ -78,6 +78,7 @@ NODES = Group(
                 state("state.node_mass", "kg", "of one"),
                 state("state.nodes_fastest", "rad/s", "of the line's fastest motion"),
                 state("state.nodes_reach", "s", "longest step over it"),
+                state("state.shown_since", "s", "from when the inputs in force began to move to what was last shown"),
                 state("state.end_length", "m", "of the piece at the chaser, as last seen"),
                 state("state.end_speed", "m/s", "its rate"),
                 state("state.end_acceleration", "m/s2", "and the rate of that"),

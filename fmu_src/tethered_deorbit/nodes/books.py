@@ -52,15 +52,17 @@ def make_books(
     """
 
     @kernel
-    def hardest(record: Any, state: Array) -> tuple[float, int]:
+    def hardest(record: Any, state: Array, since: float) -> tuple[float, int]:
         """Largest tension [N] and the piece that has it, counted from 1 at the chaser; after `find_ends`.
+
+        since         since the inputs in force began to move        [s]
 
         Checked  tests/tethered_deorbit/test_nodes.py
         """
         most, where = 0.0, 0
         for piece in range(record[0].lumped_nodes + 1):
             length, rate = span(record, state, piece)
-            force, _, _ = pull(record, piece, length, rate, 0.0)
+            force, _, _ = pull(record, piece, length, rate, since)
             if force > most:
                 most, where = force, piece + 1
         return most, where
@@ -82,7 +84,7 @@ def make_books(
         """
         r = record[0]
         find_ends(record, state)
-        most, where = hardest(record, state)
+        most, where = hardest(record, state, r.state_since + r.state_step)
         if most > r.state_nodes_peak:
             r.state_nodes_peak = most
             r.state_nodes_peak_piece = where
@@ -96,7 +98,7 @@ def make_books(
         r = record[0]
         room, ends, count = r.state_node_room, r.state_ends, r.lumped_nodes
         r.lumped_mass = count * r.state_node_mass
-        r.lumped_most_tension, r.lumped_most_piece = hardest(record, state)
+        r.lumped_most_tension, r.lumped_most_piece = hardest(record, state, r.state_shown_since)
         r.lumped_peak_tension, r.lumped_peak_piece = r.state_nodes_peak, r.state_nodes_peak_piece
         if r.lumped_most_tension > r.lumped_peak_tension:
             r.lumped_peak_tension, r.lumped_peak_piece = r.lumped_most_tension, r.lumped_most_piece
@@ -105,7 +107,7 @@ def make_books(
             length, rate = span(record, state, piece)
             r.lumped_length += length
             if piece == count:
-                r.lumped_target_tension, _, _ = pull(record, piece, length, rate, 0.0)
+                r.lumped_target_tension, _, _ = pull(record, piece, length, rate, r.state_shown_since)
         r.lumped_heat = state[heat]
         chord, offset = room[0], room[1]
         for i in range(3):
@@ -146,7 +148,7 @@ def make_books(
         total = 0.0
         for piece in range(r.lumped_nodes + 1):
             length, _ = span(record, state, piece)
-            total += stored(record, piece, length, 0.0)
+            total += stored(record, piece, length, r.state_shown_since)
         whole = r.state_total_mass + r.lumped_nodes * mass
         for i in range(3):
             mean[i] = 0.0

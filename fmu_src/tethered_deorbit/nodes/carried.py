@@ -75,7 +75,7 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
         soonest = bodies.longest(record, state)
         for piece in range(r.lumped_nodes + 1):
             length, _ = span(record, state, piece)
-            rest, _ = unloaded(record, piece, 0.0)
+            rest, _ = unloaded(record, piece, r.state_since)
             if not length < rest:
                 soonest = 0.0
             speed = norm(r.state_node_room[1])

@@ -131,10 +131,11 @@ def make_nodes(
 
     @kernel
     def tension(record: Any, length: float, rate: float, since: float) -> float:
-        """That of the chaser's piece [N], as last seen.
+        """That of the chaser's piece [N], as last seen; what is shown is of the same instant.
 
         Checked  tests/tethered_deorbit/test_nodes.py
         """
+        record[0].state_shown_since = since
         force, _, _ = pull(record, 0, record[0].state_end_length, record[0].state_end_speed, since)
         return float(force)
 
