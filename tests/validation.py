@@ -3,7 +3,8 @@
     python -m tests.validation
 
 runs the tests that use the fixture `validated` and writes `.readme/validation.json` and, from it,
-`.readme/validation.md`; the extra `peers` has to be installed. In any other run the fixture checks the same
+`.readme/validation.md`; the extra `peers` has to be installed. With test files named after it, these alone are run, and
+the rows of all others stay; the page says which. In any other run the fixture checks the same
 comparisons, and that the page tells of each as it is: so the page says nothing that no test checks, and a test that is
 changed without the page fails.
 
@@ -204,7 +205,7 @@ def keep_validating(config: pytest.Config, items: list[pytest.Item]) -> None:
 def gathered(folder: Path) -> list[Row]:
     """Rows of all processes: by file, and within it as the tests run, which one process does."""
     lines = [line for file in sorted(folder.glob("*.jsonl")) for line in file.read_text(encoding="utf-8").splitlines()]
-    return sorted(map(json.loads, lines), key=lambda row: str(row["test"]).partition("::")[0])
+    return sorted(map(json.loads, lines), key=file_of)
 
 
 def result(rows: Sequence[Row]) -> dict[str, Any]:
@@ -215,6 +216,19 @@ def result(rows: Sequence[Row]) -> dict[str, Any]:
         "date": date.today().isoformat(),
         "rows": list(rows),
     }
+
+
+def renewed(stored: Mapping[str, Any], rows: Sequence[Row], files: Sequence[str]) -> dict[str, Any]:
+    """The same after a run of some files: their rows in place of those they had, and what made these, by file."""
+    kept = [row for row in stored["rows"] if file_of(row) not in files]
+    stamp = {"version": version("dcone-cosim"), "date": date.today().isoformat()}
+    again = {**stored.get("again", {}), **dict.fromkeys(files, stamp)}
+    every = sorted([*kept, *rows], key=file_of)
+    return {**{key: value for key, value in stored.items() if key != "rows"}, "again": again, "rows": every}
+
+
+def file_of(row: Row) -> str:
+    return str(row["test"]).partition("::")[0]
 
 
 def write(stored: Mapping[str, Any]) -> None:
@@ -232,17 +246,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     parser = argparse.ArgumentParser(prog=COMMAND, description="Run the comparisons and write the validation page.")
     parser.add_argument("-n", default="auto", metavar="PROCESSES", help="as pytest's (default: one for each core)")
-    processes = parser.parse_args(arguments).n
+    parser.add_argument("tests", nargs="*", help="test files whose rows alone are made anew (default: all)")
+    given = parser.parse_args(arguments)
+    files = [Path(name).resolve().relative_to(ROOT).as_posix() for name in given.tests]
     missing = {peer.package for kind in PEERS.values() for peer in kind if find_spec(peer.package) is None}
     if missing:
         told = "their rows would be lost; pip install -e '.[test,peers]' brings them"
         parser.error(f"not installed: {', '.join(sorted(missing))}: {told}")
     with TemporaryDirectory() as folder:
         markers = "not bench and not release"
-        command = [sys.executable, "-m", "pytest", "-q", "-n", processes, "-m", markers, f"{OPTION}={folder}", "tests"]
+        command = [sys.executable, "-m", "pytest", "-q", "-n", given.n, "-m", markers, f"{OPTION}={folder}"]
+        command += files or ["tests"]
         done = subprocess.run(command, cwd=ROOT, check=False).returncode
         if done == 0:
-            write(result(gathered(Path(folder))))
+            rows = gathered(Path(folder))
+            stored = json.loads(RESULT.read_text(encoding="utf-8")) if files else {}
+            write(renewed(stored, rows, files) if files else result(rows))
         else:
             print("The run has failed: the page stays as it was.", file=sys.stderr)
     return done

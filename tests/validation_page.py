@@ -188,6 +188,15 @@ def listed(entries: Iterable[Open]) -> list[str]:
     ]
 
 
+def _again(stored: Mapping[str, Any]) -> str:
+    """Which rows were made after all the others, and when."""
+    again = stored.get("again", {})
+    if not again:
+        return ""
+    stamps = sorted({f"{stamp['date']}, version {stamp['version']}" for stamp in again.values()})
+    return f" Those of {len(again)} test files were made again on {'; '.join(stamps)}."
+
+
 def render(stored: Mapping[str, Any]) -> str:
     """The whole page."""
     rows = merged(stored["rows"])
@@ -195,7 +204,7 @@ def render(stored: Mapping[str, Any]) -> str:
     out = [
         INTRODUCTION,
         f"Written by `{COMMAND}` on {stored['date']}, version {tools['dcone-cosim']} (numba {tools['numba']}, numpy "
-        f"{tools['numpy']}): {len(rows)} rows from {len(stored['rows'])} comparisons.",
+        f"{tools['numpy']}): {len(rows)} rows from {len(stored['rows'])} comparisons." + _again(stored),
     ]
     for level in LEVELS:
         own = [row for row in rows if row["level"] == level]

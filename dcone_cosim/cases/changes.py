@@ -29,9 +29,10 @@ def changes_of(phase: PhaseScene, values: Mapping[str, float | Sequence[float]],
 
 
 def following(phase: PhaseScene, values: Mapping[str, float]) -> Iterator[str]:
-    """Terms that follow from values, such as for how many nodes there are outputs."""
+    """Terms that follow from values and are others with these, such as for how many nodes there are outputs."""
     main = phase.main
     for name, group in build.CATALOGUE[main.model].groups.items():
         if name in main.terms and group.follows is not None:
             term = group.follows(main.terms, {**main.values, **values})
-            yield f"{phase.name}.{group.table or name}.{group.selector}={term}"
+            if term != group.follows(main.terms, main.values):
+                yield f"{phase.name}.{group.table or name}.{group.selector}={term}"

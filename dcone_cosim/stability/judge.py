@@ -126,13 +126,13 @@ def size(criterion: Criterion, value: float | None = None) -> str:
 
 
 def agreement(
-    here: Sequence[Quantity], finer: Sequence[Quantity], jittered: Sequence[Quantity] | None, count: int
+    here: Sequence[Quantity], finer: Sequence[Quantity], jittered: Sequence[Quantity] | None, count: int = 0
 ) -> Criterion:
-    """By how much a finer run differs [1], in what an accuracy means; of a chaotic one in curves, as long as a twin
-    that began a micrometre beside it stays with it.
+    """By how much a finer run differs [1], in what an accuracy means; of a chaotic one as long as a twin that began a
+    micrometre beside it stays with it.
 
-    jittered   the same of that twin, None for a phase that is not chaotic
-    count      values of a curve
+    jittered   the same of that twin, None for a run that is not chaotic
+    count      values of a curve, where of a chaotic one only curves are compared; 0: all that its twin comes to too
     """
     others = {q.key: q for q in finer}
     twins = None if jittered is None else {q.key: q for q in jittered}
@@ -144,10 +144,10 @@ def agreement(
         mine, other = np.asarray(one.values, dtype=float), np.asarray(others[one.key].values, dtype=float)
         length = min(len(mine), len(other))
         if twins is not None:
-            if len(mine) != count or one.key not in twins:
+            if one.key not in twins or (count and len(mine) != count):
                 continue
             length = _together(mine, np.asarray(twins[one.key].values, dtype=float), one.scale)
-            if length < COVERED * count:
+            if length < COVERED * len(mine):
                 continue
         sizes = np.abs(other[:length]) if one.scale == 0.0 else np.full(length, one.scale)
         there = np.isfinite(mine[:length]) & np.isfinite(other[:length]) & (sizes > 0.0)

@@ -305,8 +305,12 @@ class _Maker:
             except InputError as error:
                 scatters = f"that is refused: {_told(error)}"
         jittered = None
-        if kind.chaotic and not same and main.fmu is None:
-            jittered = self._scene((*changes, *ensemble.jitter(made, 1)), without)
+        if not same and main.fmu is None:
+            try:
+                jittered = self._scene((*changes, *ensemble.jitter(made, 1)), without)
+            except InputError:
+                if kind.chaotic:
+                    raise
         how = (draft.asked, self._limit, instants)
         key = digest(key_of(made, self._fmus.of(made), 1), *how, same, scatters, self._quick)
         return Cell(key, made, changes, {}, 1, *how, finer, jittered, same, scatters, self._quick)

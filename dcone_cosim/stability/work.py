@@ -51,7 +51,7 @@ class Cell(Case):
     limit      CPU time that it may take [s]
     instants   at which curves are compared [s]
     finer      the same with a finer step or tolerance; with other macro steps for `same`
-    jittered   its twin that begins a micrometre beside it
+    jittered   its twin that begins a micrometre beside it, if there is one
     same       whether the other run must come to the same
     scatters   why a finer run cannot be asked to agree; "" where it can
     quick      whether it is left out, and not refused, if it would take longer
@@ -186,13 +186,7 @@ def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: floa
     if other.phase is None or other.phase.error is not None:
         yield unlike(f"that stops: {other.row.message}"), 0.0
         return
-    jittered, more = None, other.phase.cpu
-    if cell.jittered is not None:
-        twin = _run(cell.jittered)
-        if twin.phase is None or twin.phase.error is not None:
-            yield unlike(f"its twin stops: {twin.row.message}"), more
-            return
-        jittered, more = _quantities(cell, twin), more + twin.phase.cpu
+    more = other.phase.cpu
     if cell.asked == ORDER:
         assert other.result is not None
         kind, phase = kind_of(_name(cell)), cell.finer.phases[0]
@@ -202,8 +196,18 @@ def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: floa
     mine, others = _quantities(cell, here), _quantities(cell, other)
     if cell.same:
         yield sameness(mine, others), more
-    else:
-        yield agreement(mine, others, jittered, len(cell.instants)), more
+        return
+    chaotic = kind_of(_name(cell)).chaotic
+    found = agreement(mine, others, None)
+    if cell.jittered is None or (not chaotic and found.value <= found.stable):
+        yield found, more
+        return
+    twin = _run(cell.jittered)
+    if twin.phase is None or twin.phase.error is not None:
+        yield unlike(f"its twin stops: {twin.row.message}"), more
+        return
+    count = len(cell.instants) if chaotic else 0
+    yield agreement(mine, others, _quantities(cell, twin), count), more + twin.phase.cpu
 
 
 def _quantities(cell: Cell, ran: _Ran) -> list[Quantity]:

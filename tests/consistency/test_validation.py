@@ -206,6 +206,27 @@ def test_the_page_is_written_after_a_run_that_holds(
     assert "pip install -e '.[test,peers]'" in capsys.readouterr().err
 
 
+def test_rows_of_some_files_are_made_anew_and_the_others_stay() -> None:
+    """And the page says of how many, when, and by which version."""
+    rows = [{"test": f"tests/orbital/test_{name}.py::test_it", "found": 0.0} for name in ("a", "b", "c")]
+    whole = validation.result(rows)
+    files = ["tests/orbital/test_b.py", "tests/orbital/test_d.py"]
+    made = [{"test": f"{file}::test_it", "found": 1.0} for file in files]
+    found = validation.renewed(whole, made, files)
+    assert [(row["test"][19], row["found"]) for row in found["rows"]] == [
+        ("a", 0.0),
+        ("b", 1.0),
+        ("c", 0.0),
+        ("d", 1.0),
+    ]
+    assert found["date"] == whole["date"]
+    assert list(found["again"]) == files
+    twice = validation.renewed(found, [], ["tests/orbital/test_a.py"])
+    assert len(twice["again"]) == 3
+    assert "Those of 2 test files were made again on" in validation_page._again(found)
+    assert validation_page._again(whole) == ""
+
+
 def test_rows_of_several_processes_and_cases_become_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each process writes a file of its own; of a test's cases the one nearest to its tolerance is shown."""
     for worker, case, found in (("gw1", "a", [0.5001, 0.5]), ("gw0", "b", [0.5004, 0.5, 0.5]), ("gw1", "c", [0.5002])):

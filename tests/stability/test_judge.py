@@ -72,6 +72,22 @@ def test_a_chaotic_run_is_compared_while_its_twin_stays_with_it() -> None:
     assert math.isinf(agreement(curve(here), curve(finer), curve(early), 101).value)
 
 
+def test_a_tow_is_compared_in_what_its_twin_comes_to_as_well() -> None:
+    """Its first tugs until the twin's are others, its mean tension if the twin has the same; and nothing else."""
+
+    def tow(times: list[float], mean: float) -> list[Quantity]:
+        return [
+            Quantity("tug_times", "times of the first 5 tugs", times, "s"),
+            Quantity("mean_tension", "mean tension", [mean], "N"),
+        ]
+
+    here, finer = tow([10.0, 20.0, 30.0, 40.0, 50.0], 2.0), tow([10.0, 20.1, 30.0, 50.0, 90.0], 2.4)
+    assert agreement(here, finer, None).value == pytest.approx(4.0 / 9.0)
+    assert agreement(here, finer, tow([10.0, 20.0, 30.0, 47.0, 91.0], 1.8)).value == pytest.approx(0.1 / 20.1)
+    assert agreement(here, finer, tow([10.0, 20.0, 30.0, 47.0, 91.0], 2.0)).value == pytest.approx(1.0 / 6.0)
+    assert math.isinf(agreement(here, finer, tow([11.0, 12.0, 13.0, 14.0, 15.0], 1.8)).value)
+
+
 def test_a_finer_run_that_differs_much_is_red() -> None:
     here = 50.0 + np.linspace(0.0, 10.0, 101)
     for off, kind in ((0.5, ACCURATE), (3.0, STABLE), (6.0, FAILED)):
