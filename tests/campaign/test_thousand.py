@@ -11,20 +11,20 @@ from tests.campaign.evidence.thousand import STORED, Costs, simulated
 
 def test_nothing_to_do_but_cases() -> None:
     """Without costs all workers are busy to the end."""
-    found = simulated(Costs(0.0, 0.0, 0.0, 0.0), 50, 20_000, 1.6, 1e-9)
+    found = simulated(Costs(0.0, 0.0, 0.0, 0.0, 0.0), 50, 20_000, 1.6, 1e-9)
     assert found.efficiency == pytest.approx(1.0, abs=1e-6)
     assert found.wall == pytest.approx(20_000 / 50 * 1.6, rel=1e-6)
 
 
 def test_a_scheduler_that_is_too_slow_is_the_bound() -> None:
     """A task a second, whatever the workers could do."""
-    found = simulated(Costs(0.0, 0.0, 1.0, 0.0), 100, 500, 1.6, 1e-9)
+    found = simulated(Costs(0.0, 0.0, 1.0, 0.0, 0.0), 100, 500, 1.6, 1e-9)
     assert found.wall == pytest.approx(500.0, rel=0.01)
     assert found.scheduler == pytest.approx(1.0, rel=0.01)
 
 
 def test_a_client_that_is_too_slow_is_the_bound() -> None:
-    found = simulated(Costs(0.5, 0.0, 0.0, 0.0), 100, 1000, 1.6, 1e-9)
+    found = simulated(Costs(0.5, 0.0, 0.0, 0.0, 0.0), 100, 1000, 1.6, 1e-9)
     assert found.wall == pytest.approx(500.0, rel=0.02)
 
 

@@ -19,6 +19,7 @@ import math
 import tempfile
 import time
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,14 +29,14 @@ from dcone_cosim.campaign.cluster import Cluster, Persistent, _Dask
 from dcone_cosim.campaign.sampling import monte_carlo
 from dcone_cosim.campaign.shots import Shot
 from dcone_cosim.cases.rows import Row
-from dcone_cosim.cases.runner import AHEAD, LOOK, Bundles
+from dcone_cosim.cases.runner import AHEAD, LOOK, TASKS, Bundles
 from dcone_cosim.cases.store import Store
 from tests.benchmarks.test_campaign_cost import engine_of
 from tests.campaign import fakes
 
 STORED = Path(__file__).with_name("thousand.json")
 STUDY = {"kind": "a campaign", "scene": "", "varied": [], "content": "", "fmus": {}, "code": {}}
-NAME, CASES, THREADS, NAP = "table1-launch-errors", 6000, 100, 0.4
+NAME, CASES, THREADS, TOGETHER = "table1-launch-errors", 6000, 100, 7
 WORKERS, WANTED, DURATION, SPREAD = 1000, 1_000_000, 1.6, 0.1
 
 
@@ -46,12 +47,14 @@ class Costs:
     client     of a case: to make it and to keep its row
     store      of rows that come together, on the clock: they are on the disk
     task       of a task, client, scheduler and worker of dask together
+    inside     of each case of a task, the same
     again      of a case that is there already
     """
 
     client: float
     store: float
     task: float
+    inside: float
     again: float
 
 
@@ -74,20 +77,22 @@ class Simulated:
     segments: int
 
 
-def nap_row(key: str) -> Row:
-    return Row(key, "completed", 0, "", {"capture.outcome": "captured"}, {}, {"cpu": NAP})
+def nap_row(key: str, seconds: float = 0.0) -> Row:
+    return Row(key, "completed", 0, "", {"capture.outcome": "captured"}, {}, {"cpu": seconds})
 
 
-def nap(shot: Shot) -> Row:
+def nap(shot: Shot, seconds: float) -> Row:
     """A fake case that takes a while and no processor."""
-    time.sleep(NAP)
-    return nap_row(shot.key)
+    time.sleep(seconds)
+    return nap_row(shot.key, seconds)
 
 
 def measured() -> Costs:
     with tempfile.TemporaryDirectory() as place, Store(Path(place) / "out", STUDY) as store:
         first, again = _handed_out(store), _handed_out(store)
-    return Costs(first, _of_store(), _of_dask() - first, again)
+    alone, seven = (_of_dask(together) - first for together in (1, TOGETHER))
+    inside = max(0.0, (TOGETHER * seven - alone) / (TOGETHER - 1))
+    return Costs(first, _of_store(), max(0.0, alone - inside), inside, again)
 
 
 def _handed_out(store: Store) -> float:
@@ -111,12 +116,13 @@ def _of_store() -> float:
         return (time.perf_counter() - begun) / files
 
 
-def _of_dask() -> float:
-    """Time of the processor of a task of one case, everything inside this process [s]."""
+def _of_dask(together: int) -> float:
+    """Time of the processor of a case where so many go to a task, everything inside this process [s]."""
     import distributed
 
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    cases = 10 * THREADS
+    cases, seconds = 10 * THREADS * together, 1.01 * THREADS / (TASKS * together)
+    assert Bundles(AHEAD * THREADS, seconds).together == together
     with (
         distributed.LocalCluster(
             n_workers=1, threads_per_worker=THREADS, processes=False, dashboard_address=None, memory_limit=0
@@ -125,7 +131,8 @@ def _of_dask() -> float:
         tempfile.TemporaryDirectory() as place,
         Store(Path(place) / "out", STUDY) as store,
     ):
-        one = engine_of(NAME, store, nap, 1)
+        one = engine_of(NAME, store, partial(nap, seconds=seconds), 1)
+        one._cost = seconds
         one._cluster = Cluster(Persistent(_Dask(client)), THREADS, "")
         size = len(one.inputs.inputs)
         cpu = time.process_time()
@@ -150,8 +157,8 @@ def simulated(costs: Costs, workers: int, cases: int, duration: float, spread: f
         while given < cases and len(out) < AHEAD * workers:
             size = min(together, cases - given)
             now += size * costs.client
-            scheduler = max(scheduler, now) + costs.task
-            busy_scheduler += costs.task
+            cost = costs.task + size * costs.inside
+            scheduler, busy_scheduler = max(scheduler, now) + cost, busy_scheduler + cost
             task = float(np.exp(sigma * draw.standard_normal(size) - 0.5 * sigma**2).sum()) * duration
             end = max(heapq.heappop(free), scheduler) + task
             heapq.heappush(free, end)
