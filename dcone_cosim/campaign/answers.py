@@ -52,6 +52,7 @@ class Answers:
     success      share of the cases that give an answer; None where the cases are no sample
     bounds       the share, had every case without an answer failed, and had it succeeded
     outcomes     of the cases that give an answer
+    at_capture   the same, judged as the target was caught; empty where the campaign names no later instant
     unanswered   statuses of the others, and how many there are
     """
 
@@ -61,6 +62,7 @@ class Answers:
     good: int = 0
     bounds: tuple[float, float] = (math.nan, math.nan)
     outcomes: Mapping[str, Share] = field(default_factory=dict)
+    at_capture: Mapping[str, Share] = field(default_factory=dict)
     unanswered: Mapping[str, int] = field(default_factory=dict)
     figures: Mapping[str, Distribution] = field(default_factory=dict)
 
@@ -76,12 +78,16 @@ def answers(spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[flo
     verdicts = [succeeded(one.row, spec.success) for one in made]
     known = [verdict for verdict in verdicts if verdict is not None]
     good, lost = sum(known), len(made) - len(known)
-    words = Counter(outcome(one.row) for one in made if answered(one.row))
+    judged = spec.success.judged
+    words = Counter(outcome(one.row, judged) for one in made if answered(one.row))
     sample = spec.sampler in RANDOM
     count = sum(words.values())
     found = Answers(confidence, len(made), good=good)
     found.unanswered = dict(Counter(one.row.status for one in made if not answered(one.row)).most_common())
     found.outcomes = {word: intervals.of_share(spec, number, count) for word, number in words.most_common()}
+    if math.isfinite(judged.after):
+        then = Counter(outcome(one.row, judged.at_capture()) for one in made if answered(one.row))
+        found.at_capture = {word: intervals.of_share(spec, number, count) for word, number in then.most_common()}
     if known and sample:
         found.success = intervals.of_share(spec, good, len(known))
         found.bounds = (good / len(made), (good + lost) / len(made))

@@ -243,6 +243,8 @@ def _written(
     done = Done(spec.title, folder, made, content_of, said, notes)
     worth, bounded = worst(spec, made, folder), spec.sampler in HAVE
 
+    columns = table(plan.inputs, made, derived, spec.success.judged)
+
     def draw(draft: Path, about: Mapping[str, Any]) -> None:
         import pyarrow.parquet
 
@@ -252,9 +254,7 @@ def _written(
             spec.title, said, plan.inputs, told, spread, worth, pictures, plan.text, bounded, notes, about, draft
         )
 
-    write_report(
-        folder, [plan.base], table(plan.inputs, made, derived), content_of, draw, started, done.exit_code, command
-    )
+    write_report(folder, [plan.base], columns, content_of, draw, started, done.exit_code, command)
     return done
 
 

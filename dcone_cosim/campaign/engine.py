@@ -59,7 +59,7 @@ class Tally:
         self.pace.count(good is not None, before)
         self.good += good is True
         self.answered += good is not None
-        self.words[outcome(row)] += 1
+        self.words[outcome(row, self._spec.success.judged)] += 1
 
     def told(self) -> str:
         """ "412 of 1825, 1.3 per s, 18 min to go; 391 captured, 21 missed; 0.949 (0.923 to 0.966)"."""

@@ -21,7 +21,7 @@ from dcone_cosim.campaign.inputs import Inputs
 from dcone_cosim.campaign.outcomes import answered, outcome, settled
 from dcone_cosim.campaign.reading import parse
 from dcone_cosim.campaign.sampling import count_of, points
-from dcone_cosim.campaign.spec import ADAPTIVE, SUBSET, Spec
+from dcone_cosim.campaign.spec import ADAPTIVE, SUBSET, Judged, Spec
 from dcone_cosim.cases.store import STUDY
 from dcone_cosim.cases.table import Column, Entry, columns
 from dcone_cosim.errors import InputError
@@ -32,7 +32,7 @@ KIND = "a campaign"
 TABLE, SUMMARY, SCENE = "table.parquet", "summary.json", "scene.toml"
 
 
-def table(inputs: Inputs, made: Sequence[Made], derived: Mapping[str, Sequence[float]]) -> list[Column]:
+def table(inputs: Inputs, made: Sequence[Made], derived: Mapping[str, Sequence[float]], judged: Judged) -> list[Column]:
     """Columns of the table: case, values, outcome, status, figures, key."""
     found = [Column("case", [one.number for one in made])]
     for place, one in enumerate(inputs.inputs):
@@ -40,7 +40,7 @@ def table(inputs: Inputs, made: Sequence[Made], derived: Mapping[str, Sequence[f
             found.append(Column(one.name, [one.texts[int(case.values[place])] for case in made]))
         else:
             found.append(Column(one.name, [case.values[place] for case in made], one.unit))
-    found.append(Column("outcome", [outcome(one.row) if answered(one.row) else "no answer" for one in made]))
+    found.append(Column("outcome", [outcome(one.row, judged) if answered(one.row) else "no answer" for one in made]))
     taken = {column.name for column in found}
     rest = columns([Entry(one.row) for one in made])
     found += [Column(f"result.{c.name}", c.values, c.unit) if c.name in taken else c for c in rest[:-1]]

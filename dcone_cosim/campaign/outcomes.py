@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from dcone_cosim.campaign.spec import Spec, Success
+from dcone_cosim.campaign.spec import Judged, Spec, Success
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.contract import FLOWN, NEVER
 from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED, SUCCESS, InputError
@@ -13,21 +13,30 @@ from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import Mistake, SceneError
 from dcone_cosim.units import NO_UNIT, PURE, by_name, spoken
 
+AT_THE_END = Judged()
+ROUNDING = 1e-6
+"""By which an instant that is told may be early [s]."""
 LOST_AGAIN = "no:"
 """How `capture.lasted` begins of a target that came out again."""
-OUTCOME, LASTED = ".outcome", ".lasted"
+OUTCOME, LASTED, LOST_AFTER, FOLLOWED, APPROACH = ".outcome", ".lasted", ".lost_after", ".followed", ".approach"
 SHOTS = ("capture", "second_shot", "third_shot", "next_capture")
 """Phases that shoot, in their order: the last one that came says how a case came out."""
-TOLD_BY = tuple(f"{shot}{what}" for shot in SHOTS for what in (OUTCOME, LASTED))
+NEAR = (*SHOTS, "removal", "second_tow", "next_removal")
+"""Phases that tell how near the target came to the chaser."""
+TOLD_BY = (
+    *(f"{shot}{what}" for shot in SHOTS for what in (OUTCOME, LASTED, LOST_AFTER, FOLLOWED)),
+    *(f"{phase}{APPROACH}" for phase in NEAR),
+)
 """Figures that say how a case came out; they are always kept."""
 BROKE, OUT_AGAIN, DONE, NOT_HANDED_OVER = "broke", "out again", "completed", "not handed over"
+TOO_NEAR = "too near the chaser"
 FLYING, UNDECIDED = "flying", "undecided at the end"
 """What the FMU says of a net that is neither caught nor lost by the end of the phase, and what that is called."""
 CAUGHT = ("captured", "settled")
 """Outcomes of a capture that has come to its hand-over."""
 FAILED = ("missed", "slipped off", "not closed", "tether taut")
 """Outcomes of a capture that failed, as the FMU says; `tether taut`: the line stopped the net on its way."""
-WORDS = (CAUGHT[0], *FAILED, UNDECIDED, OUT_AGAIN, BROKE, NOT_HANDED_OVER, FLOWN, DONE)
+WORDS = (CAUGHT[0], *FAILED, UNDECIDED, OUT_AGAIN, TOO_NEAR, BROKE, NOT_HANDED_OVER, FLOWN, DONE)
 """Every outcome of a case that gives an answer."""
 
 
@@ -39,7 +48,7 @@ def possible(base: Scene) -> tuple[str, ...]:
     """
     capture = next((phase for phase in base.phases if phase.name == "capture"), None)
     if capture is None:
-        return DONE, BROKE
+        return DONE, TOO_NEAR, BROKE
     if capture.options.hand_over != NEVER:
         return tuple(word for word in WORDS if word not in (FLOWN, DONE))
     words = tuple(word for word in WORDS if word not in (FLOWN, DONE, NOT_HANDED_OVER, UNDECIDED))
@@ -59,7 +68,7 @@ def settled(spec: Spec, base: Scene) -> Spec:
     if success.figure:
         return spec
     if not success.said:
-        return replace(spec, success=Success(words[0], text=words[0]))
+        return replace(spec, success=Success(words[0], text=words[0], judged=success.judged))
     if success.outcome not in words:
         text = f"no case of {base.name} can come out so: expected one of {', '.join(words)}, or a figure with a bound"
         raise SceneError([Mistake(("success",), success.outcome, text)], spec.places)
@@ -71,12 +80,13 @@ def answered(row: Row) -> bool:
     return row.exit_code in (SUCCESS, CAPTURE_FAILED, HANDOFF_FAILED, OVERLOADED)
 
 
-def outcome(row: Row) -> str:
+def outcome(row: Row, judged: Judged = AT_THE_END) -> str:
     """The word for it: one of a capture's outcomes, `broke`, `out again`, `completed`, or the status of what gave no
     answer.
 
-    A line that bore more than it can has broken, whatever the run made of it. A target that was out of the net again by
-    the end of the phase was captured, and did not stay so.
+    A line that bore more than it can has broken, whatever the run made of it, and a target that came too near is told
+    before what else came of it. One that was out of the net again by the instant at which it is judged was captured,
+    and did not stay so; one that was not followed until then is undecided.
 
     Checked  tests/campaign/test_outcomes.py
     """
@@ -84,6 +94,8 @@ def outcome(row: Row) -> str:
         return row.status
     if row.exit_code == OVERLOADED:
         return BROKE
+    if any(_number(row, f"{phase}{APPROACH}", math.inf) < judged.too_near for phase in NEAR):
+        return TOO_NEAR
     if row.exit_code == HANDOFF_FAILED:
         return NOT_HANDED_OVER
     last = next((shot for shot in reversed(SHOTS) if isinstance(row.figures.get(f"{shot}{OUTCOME}"), str)), "")
@@ -93,8 +105,16 @@ def outcome(row: Row) -> str:
     if row.exit_code == CAPTURE_FAILED:
         return UNDECIDED if told == FLYING else told
     if str(row.figures.get(f"{last}{LASTED}", "")).startswith(LOST_AGAIN):
-        return OUT_AGAIN
+        return OUT_AGAIN if _number(row, f"{last}{LOST_AFTER}", 0.0) <= judged.after else CAUGHT[0]
+    followed = _number(row, f"{last}{FOLLOWED}", 0.0)
+    if told in CAUGHT and math.isfinite(judged.after) and followed < judged.after - ROUNDING:
+        return UNDECIDED
     return CAUGHT[0] if told in CAUGHT else told
+
+
+def _number(row: Row, name: str, otherwise: float) -> float:
+    value = row.figures.get(name, otherwise)
+    return otherwise if isinstance(value, str) else float(value)
 
 
 def succeeded(row: Row, success: Success) -> bool | None:
@@ -107,7 +127,7 @@ def succeeded(row: Row, success: Success) -> bool | None:
     if success.figure:
         value = margin(row, success)
         return None if math.isnan(value) else value > 0.0
-    return outcome(row) == success.outcome
+    return outcome(row, success.judged) == success.outcome
 
 
 def margin(row: Row, success: Success) -> float:

@@ -14,6 +14,7 @@ import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from dcone_cosim.campaign.spec import (
     SUBSET,
     Correlation,
     Dispersion,
+    Judged,
     Spec,
     Success,
     Until,
@@ -40,7 +42,7 @@ from dcone_cosim.units import by_name, named
 
 KEYS = (
     *("title", "scene", "seed", "sampler", "n", "until", "most", "jitter", "record", "success", "set"),
-    *("dispersion", "correlation", "indices", "factor_of_safety"),
+    *("dispersion", "correlation", "indices", "factor_of_safety", "too_near", "judged_after"),
 )
 OF_DISPERSION = ("key", "distribution", "values", "weights", "points", "together", "within")
 OF_CORRELATION = ("between", "coefficient")
@@ -83,7 +85,7 @@ class Reader:
             most=self._whole(("most",), document.get("most", 100_000), 2, MOST),
             jitter=self._truth(("jitter",), document.get("jitter", False)),
             record=self._texts(("record",), document.get("record", [])),
-            success=self._success(document.get("success")),
+            success=replace(self._success(document.get("success")), judged=self._judged()),
             dispersions=tuple(self._dispersions(document.get("dispersion", []))),
             correlations=tuple(self._correlations(document.get("correlation", []))),
             settings=tuple(self._settings(document.get("set", {}))),
@@ -151,6 +153,18 @@ class Reader:
         return Success(
             "", figure, bound, side == "above", f"{figure} {side} {given[side]}", unit, given[side], said=True
         )
+
+    def _judged(self) -> Judged:
+        """When an outcome is judged, and what is too near."""
+        found = {}
+        for key, field, unit, example in (("too_near", "too_near", "m", "4 m"), ("judged_after", "after", "s", "5 s")):
+            if key in self.document:
+                value, given = self._quantity((key,), self.document[key])
+                if by_name(given).dimension != by_name(unit).dimension or not value > 0.0:
+                    self._say((key,), self.document[key], f'expected such as "{example}"')
+                else:
+                    found[field] = value
+        return Judged(**found)
 
     def _settings(self, given: Any) -> Iterator[str]:
         """The table `set` as the settings of a command line."""

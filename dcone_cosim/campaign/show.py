@@ -42,8 +42,11 @@ def sentences(spec: Spec, found: Answers) -> Iterator[str]:
         yield f"{spec.success.text}: none of {found.cases} cases {what}: no probability follows"
     elif found.cases:
         yield f"{spec.success.text}: {found.good} of {found.cases} cases; they are no sample: no probability follows"
-    for word, one in found.outcomes.items():
-        yield f"{word}: {one.count} cases" + (f", {probability(one)}" if found.success is not None else "")
+    after = spec.success.judged.after
+    for outcomes, when in ((found.at_capture, "at capture"), (found.outcomes, f"{after:g} s after it")):
+        for word, one in outcomes.items():
+            said = f"{word}{f', {when}' if found.at_capture else ''}: {one.count} cases"
+            yield said + (f", {probability(one)}" if found.success is not None else "")
     if found.unanswered:
         told = ", ".join(f"{count} {status}" for status, count in found.unanswered.items())
         yield f"no answer from {sum(found.unanswered.values())} of {found.cases} cases: {told}"
@@ -112,6 +115,7 @@ def as_dict(spec: Spec, found: Answers) -> dict[str, Any]:
         "succeeded": found.good,
         "probability": None if found.success is None else _share(found.success),
         "outcomes": {word: _share(one) for word, one in found.outcomes.items()},
+        "outcomes_at_capture": {word: _share(one) for word, one in found.at_capture.items()},
         "no_answer": dict(found.unanswered),
         "figures": {name: _distribution(one) for name, one in found.figures.items()},
     }

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from dcone_cosim.scene.mistakes import Places
@@ -71,11 +72,27 @@ class Until:
 
 
 @dataclass(frozen=True)
+class Judged:
+    """By what a case is judged beside what its phases say.
+
+    too_near   a target that comes nearer to the chaser than this, from centre to centre, is too near [m]
+    after      how long after the capture the target has to be in the net still [s]; infinite: to the end of the phase
+    """
+
+    too_near: float = 0.0
+    after: float = math.inf
+
+    def at_capture(self) -> Judged:
+        return replace(self, after=0.0)
+
+
+@dataclass(frozen=True)
 class Success:
     """What counts as success: an outcome by its word, or a figure above or below a bound, SI.
 
     unit       that the bound was given in; "1" for a bare number
     given      the bound as the file has it
+    judged     when an outcome is judged, and what is too near
     said       whether the campaign's file says it
     margin     > 0 is success: the figure less the bound, or the bound less the figure
     """
@@ -88,6 +105,7 @@ class Success:
     unit: str = "1"
     given: object = None
     said: bool = field(default=False, compare=False)
+    judged: Judged = Judged()
 
     def margin(self, value: float) -> float:
         return value - self.bound if self.above else self.bound - value

@@ -40,7 +40,7 @@ def worst(spec: Spec, made: Sequence[Made], folder: Path) -> list[Worth]:
     why: dict[int, list[str]] = {}
     seen: dict[str, int] = {}
     for one in made:
-        word = outcome(one.row)
+        word = outcome(one.row, spec.success.judged)
         if succeeded(one.row, spec.success) is not True and seen.get(word, 0) < OF_EACH:
             seen[word] = seen.get(word, 0) + 1
             why.setdefault(one.number, []).append(word)

@@ -61,6 +61,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
             yield Finding(result.name, name, label, value, unit)
     yield from _of_hardest(last, result)
     yield from _of_catch(last, result)
+    yield from _of_approach(result)
     yield from closed_report.findings(result.name, last)
     parameters = run.parameters.get(result.name, {})
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
@@ -103,13 +104,24 @@ def _of_catch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Findin
     if "t_lost" not in last:
         return
     seen = result.end - result.start - last["t_capture"]
+    yield Finding(result.name, "followed", "followed after the capture for", max(0.0, seen), "s")
     if last["t_lost"] >= 0.0:
-        text = f"no: the target was out again {last['t_lost'] - last['t_capture']:.3g} s later"
+        after = last["t_lost"] - last["t_capture"]
+        yield Finding(result.name, "lost_after", "target out of the net again, after the capture", after, "s")
+        text = f"no: the target was out again {after:.3g} s later"
     elif seen > 1e-6:
         text = f"yes, for the {seen:.3g} s to the end of the phase"
     else:
         text = "not followed: the phase ends at the capture"
     yield Finding(result.name, "lasted", "did the catch last", text)
+
+
+def _of_approach(result: PhaseResult) -> Iterator[Finding]:
+    """How near the target came to the chaser, from centre to centre, at the instants of the table."""
+    recorder = result.recorder
+    if len(recorder) and {"chaser.position[1]", "target.position[1]"} <= set(recorder.names):
+        apart = np.linalg.norm(recorder.vector("target.position") - recorder.vector("chaser.position"), axis=1)
+        yield Finding(result.name, "approach", "least distance chaser to target", float(apart.min()), "m")
 
 
 def _vector(values: dict[str, float], name: str) -> Any:

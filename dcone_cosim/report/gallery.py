@@ -10,11 +10,12 @@ the page says so, as it says all that was changed.
 from __future__ import annotations
 
 import base64
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from dcone_cosim import placed
+from dcone_cosim import campaigns, placed
 from dcone_cosim.commands import run_and_write
 from dcone_cosim.drafts import check_folder
 from dcone_cosim.errors import DconeError
@@ -29,6 +30,8 @@ from dcone_cosim.run_reading import read_run
 from dcone_cosim.scratch import Scratch
 
 INDEX = "index.html"
+ANSWERS = Path(campaigns.__file__).with_name("answers.json")
+"""What the campaigns that come with the program came to, from their stored evidence."""
 DAY = 86400.0
 GROUPS = ("Shot, capture and tow", "Shot and capture", "Tows", "Runs that fail, or whose lines do not bear it")
 """Headings of the index, in order."""
@@ -81,7 +84,8 @@ def _index(out: Path, names: Sequence[str]) -> Path:
     with Scratch(out) as draft:
         groups = [(name, [card for card in cards if card["group"] == name]) for name in GROUPS]
         groups = [(name, found) for name, found in groups if found]
-        text = pages.render("gallery.html", title="Scenes of D-CoNe co-simulation", groups=groups)
+        answers = json.loads(ANSWERS.read_text(encoding="utf-8"))
+        text = pages.render("gallery.html", title="Scenes of D-CoNe co-simulation", groups=groups, answers=answers)
         (draft / INDEX).write_text(text, encoding="utf-8")
         return placed.put(draft / INDEX, out / INDEX)
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from dcone_cosim.campaign.outcomes import margin, outcome, settled, succeeded, unlike
-from dcone_cosim.campaign.spec import Success
+from dcone_cosim.campaign.spec import Judged, Success
 from dcone_cosim.cases.rows import Row, lost, refused
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
@@ -53,6 +53,44 @@ SEEN = "yes, for the 5 s to the end of the phase"
 )
 def test_words(one: Row, word: str, good: bool | None) -> None:
     assert (outcome(one), succeeded(one, Success())) == (word, good)
+
+
+LOST = {"capture__outcome": "slipped off", "capture__lasted": "no: again", "capture__lost_after": 3.0}
+KEPT = {"capture__outcome": "captured", "capture__lasted": SEEN, "capture__followed": 5.0}
+
+
+@pytest.mark.parametrize(
+    ("figures", "judged", "word"),
+    [
+        (LOST, Judged(), "out again"),
+        (LOST, Judged(after=0.0), "captured"),
+        (LOST, Judged(after=2.9), "captured"),
+        (LOST, Judged(after=3.0), "out again"),
+        (KEPT, Judged(after=5.0), "captured"),
+        (KEPT, Judged(after=6.0), "undecided at the end"),
+        (KEPT, Judged(after=6.0).at_capture(), "captured"),
+        (KEPT | {"capture__approach": 3.9}, Judged(too_near=4.0), "too near the chaser"),
+        (KEPT | {"capture__approach": 4.1}, Judged(too_near=4.0), "captured"),
+        (KEPT | {"capture__approach": 9.0, "removal__approach": 3.0}, Judged(too_near=4.0), "too near the chaser"),
+        ({"capture__outcome": "missed", "second_shot__outcome": "captured"}, Judged(), "captured"),
+        ({"capture__outcome": "missed", "second_shot__outcome": "slipped off"}, Judged(), "slipped off"),
+    ],
+)
+def test_when_it_is_judged_and_what_is_too_near(figures: dict[str, Any], judged: Judged, word: str) -> None:
+    """At capture and later, by the last shot that was made; nearness is told before what else came of it."""
+    assert outcome(row(**figures), judged) == word
+    assert succeeded(row(**figures), Success(judged=judged)) is (word == "captured")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [('too_near = "4 kg"', "too_near"), ("too_near = 4", "too_near"), ('judged_after = "-5 s"', "judged_after")],
+)
+def test_a_distance_or_a_time_that_is_none(text: str, said: str) -> None:
+    drawn = '[[dispersion]]\nkey = "removal.thrust.level"\ndistribution = "normal"\ndeviation = "5 %"\n'
+    with pytest.raises(SceneError) as error:
+        spec_of(f"{text}\n{drawn}")
+    assert said in str(error.value)
 
 
 def test_a_bound_in_another_unit_is_never_compared() -> None:

@@ -1,0 +1,1 @@
+"""What campaigns came to: `python -m tests.campaign.evidence`, and `.thousand`."""

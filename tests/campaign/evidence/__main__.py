@@ -1,0 +1,122 @@
+"""What the campaigns that come with the program came to, as evidence and as the table of their page.
+
+    python -m tests.campaign.evidence RUNS     take in the finished campaigns of a folder, then write the tables
+    python -m tests.campaign.evidence          write the tables again from what is stored
+
+Stored beside this file: NAME.json, with the stamp of what made it, and the picture of a map. The tables are that of
+dcone_cosim/campaign/README.md and dcone_cosim/campaigns/answers.json, which the gallery shows.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[2]
+PAGE = ROOT / "dcone_cosim" / "campaign" / "README.md"
+ANSWERS = ROOT / "dcone_cosim" / "campaigns" / "answers.json"
+BEGIN, END = "<!-- answers: python -m tests.campaign.evidence -->", "<!-- end of answers -->"
+MAP = "map.png"
+FIGURES = (".largest_tug_peak", ".first_tug_peak", "thread.tension_max", ".t_capture", "line.diameter_required")
+"""Figures of which the table tells median and 95th percentile, by the ends of their names."""
+OWN = "thousand"
+"""Evidence that is of no campaign."""
+HOUR = 3600.0
+
+
+def taken_in(folder: Path) -> dict[str, Any]:
+    """The evidence of a finished campaign."""
+    told = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    made = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
+    study = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    kept = ("campaign", "title", "scene", "sampler", "seed", "cases", "confidence", "success", "succeeded")
+    return {
+        **{name: told[name] for name in kept},
+        **{
+            name: told[name] for name in ("probability", "outcomes", "no_answer", "map", "rare", "said") if name in told
+        },
+        "figures": {name: one for name, one in told["figures"].items() if name.endswith(FIGURES)},
+        "cost": told["cost"],
+        "file": study["campaign"],
+        "stamp": {name: made[name] for name in ("scene_sha256", "code", "started", "finished", "packages", "machine")},
+        "fmus": study["fmus"],
+    }
+
+
+def stored() -> dict[str, dict[str, Any]]:
+    """Evidence of every campaign, by its name."""
+    files = sorted(path for path in HERE.glob("*.json") if path.stem != OWN)
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in files}
+
+
+def answer(one: Mapping[str, Any]) -> str:
+    """What a campaign came to, in a line."""
+    parts = [*_of_cases(one)]
+    for name, figure in one["figures"].items():
+        middle, high = (figure["percentiles"][percent]["value"] for percent in ("50", "95"))
+        unit = "" if figure["unit"] == "1" else f" {figure['unit']}"
+        parts.append(f"{name} {middle:.4g}{unit}, 95 % below {high:.4g}{unit}")
+    return "; ".join(parts)
+
+
+def _of_cases(one: Mapping[str, Any]) -> Iterator[str]:
+    if one["probability"] is not None:
+        share, (low, high) = one["probability"]["share"], one["probability"]["interval"]
+        bounds = "" if low is None else f" ({low:.3f} to {high:.3f})"
+        yield f"{one['success']} {share:.3f}{bounds}"
+        yield from (f"{word} {of['count']}" for word, of in one["outcomes"].items() if word != one["success"])
+    elif "rare" in one:
+        yield one["said"][0]
+    else:
+        yield ", ".join(f"{word} {of['count']}" for word, of in one["outcomes"].items())
+
+
+def rows() -> list[dict[str, str]]:
+    return [
+        {
+            "name": name,
+            "title": one["title"],
+            "cases": f"{one['cases']}",
+            "answer": answer(one),
+            "cost": f"{one['cost']['value'] / HOUR:.2g} CPU-h",
+        }
+        for name, one in stored().items()
+    ]
+
+
+def table() -> str:
+    """As the page has it."""
+    lines = ["| campaign | cases | came to | cost |", "| --- | --- | --- | --- |"]
+    lines += [
+        f"| `{row['name']}`: {row['title']} | {row['cases']} | {row['answer']} | {row['cost']} |" for row in rows()
+    ]
+    pictures = [f"![{path.stem}](../../tests/campaign/evidence/{path.name})" for path in sorted(HERE.glob("*.png"))]
+    return "\n".join([*lines, *([""] if pictures else []), *pictures])
+
+
+def with_table(page: str) -> str:
+    """The page with the table between its marks."""
+    before, _, rest = page.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return f"{before}{BEGIN}\n{table()}\n{END}{after}"
+
+
+def main() -> None:
+    for folder in sorted(Path(sys.argv[1]).iterdir()) if len(sys.argv) > 1 else ():
+        if (folder / "summary.json").is_file():
+            text = json.dumps(taken_in(folder), indent=1)
+            (HERE / f"{folder.name}.json").write_text(text + "\n", encoding="utf-8")
+            if (folder / MAP).is_file():
+                shutil.copyfile(folder / MAP, HERE / f"{folder.name}.png")
+            print(f"{folder.name}: taken in")
+    ANSWERS.write_text(json.dumps(rows(), indent=1) + "\n", encoding="utf-8")
+    PAGE.write_text(with_table(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
