@@ -13,12 +13,14 @@ Checked    tests/tethered_deorbit/test_integrator.py: slope of the error 8 and 7
 
 from __future__ import annotations
 
+import importlib.util
 import math
 from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
-from scipy.integrate._ivp import dop853_coefficients as tableau
 
 from fmu_src.integrators.control import next_step_8, shorter_step_8
 from fmu_src.integrators.nested import make_nested
@@ -32,6 +34,18 @@ ROWS = 16
 
 DENSE_ROWS = 7
 
+
+def _numbers_of_scipy() -> ModuleType:
+    """The module of scipy that has them, without those around it, whose import takes half a second."""
+    (folder,) = importlib.util.find_spec("scipy").submodule_search_locations  # type: ignore[union-attr, misc]
+    path = Path(folder) / "integrate" / "_ivp" / "dop853_coefficients.py"
+    found: Any = importlib.util.spec_from_file_location("dop853_coefficients", path)
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
+
+
+tableau = _numbers_of_scipy()
 # Frozen into the kernels as constants. A row of A per stage, the weights of the result as row 12 (A[12] is B).
 _A = np.ascontiguousarray(tableau.A).reshape(-1)
 _C = np.ascontiguousarray(tableau.C)
