@@ -109,7 +109,7 @@ class KeptLibrary(PartLibrary):
 
     made      what it is made from, None: it is not kept
     fields    that it uses, with their types
-    loose     whether it is part of a kernel that is not kept
+    loose     whether it is not to be kept, for what it is made of or calls
     """
 
     made: _Made | None = None
@@ -126,10 +126,10 @@ class KeptLibrary(PartLibrary):
         own = {function.name for function in self._final_module.functions if not function.is_declaration}
         called = []
         for library in dict.fromkeys(self._linking_libraries):
-            if isinstance(library, KeptLibrary) and library.made is not None:
+            if isinstance(library, KeptLibrary) and (library.made is not None or library.loose):
                 called.append(library)
+                self.loose |= library.loose
             elif library.name != "nrt":
-                self.loose |= getattr(library, "loose", False)
                 self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         for function in self._final_module.functions:
             if not function.is_declaration and function.name not in own:

@@ -201,14 +201,17 @@ def test_which_of_two_kernels_is_called_is_in_the_callers_key(compiler: Compiler
     assert compiler.run(FIELDS, 8.0) == 0.25
 
 
-def test_a_kernel_that_is_an_argument_is_part_of_who_is_given_it(compiler: Compiler) -> None:
-    """Neither is kept: what the one that is given it calls is not known before."""
-    compiler.text = compiler.text.replace("def tell(records, command):", "def tell(records, command, half):").replace(
-        "tell(records, command)", "tell(records, command, half)").replace(
-        "records[0].other = command", "records[0].other = int(2.0 * half(command))")  # fmt: skip
-    assert "tell" in compiler(FIELDS)
-    compiler.text = compiler.text.replace("0.5 * min(x, LIMIT)", "x")
-    assert set(compiler(FIELDS)) == {"tell", "half"}
+def test_a_kernel_that_is_an_argument_is_not_kept_and_nor_is_who_calls_it(compiler: Compiler) -> None:
+    """What the one that is given it calls is known to neither."""
+    compiler.text = compiler.text.replace(
+        "def tell(records, command):\n    records[0].other = command",
+        "def fill(records, value, rule):\n    records[0].other = int(2.0 * rule(value))\n\n\n"
+        "@kernel\ndef tell(records, command):\n    fill(records, command, half)",
+    )
+    assert {"tell", "fill"} <= set(compiler(FIELDS))
+    compiler.text = compiler.text.replace("0.5 * min(x, LIMIT)", "0.5 * x")
+    assert set(compiler(FIELDS)) == {"tell", "fill", "half"}
+    assert compiler.run(FIELDS, 8.0) == 8.25
 
 
 @kernel
