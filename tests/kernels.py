@@ -89,13 +89,13 @@ class Shared:
         return self._folder / f"{name}-{key[:32]}{suffix}"
 
     def ir(self, name: str, terms: tuple[tuple[str, str], ...]) -> Path:
-        """The IR of a model; that of an FMU which the user's cache has is as good."""
+        """The IR of a model; that of an FMU which the user's cache has is as good, and so are the kernels kept there."""
         interface = MODELS[name].interface(dict(terms))
 
         def make(path: Path) -> None:
             known = builds.kernels(cache_folder(), name, builds.fingerprint(interface))
             if known is None:
-                emit(interface.model, interface.terms, path, self._folder / builds.COMMON)
+                emit(interface.model, interface.terms, path, cache_folder() / builds.COMMON)
             else:
                 path.write_bytes(known)
 
