@@ -89,7 +89,7 @@ class Shared:
         return self._folder / f"{name}-{key[:32]}{suffix}"
 
     def ir(self, name: str, terms: tuple[tuple[str, str], ...]) -> Path:
-        """The IR of a model; that of an FMU which the user's cache has is as good, and so are the kernels kept there."""
+        """The IR of a model; an FMU in the user's cache has it as well, and kernels that are kept there are taken."""
         interface = MODELS[name].interface(dict(terms))
 
         def make(path: Path) -> None:

@@ -22,6 +22,7 @@ from orbital.kernel import kernel
 from orbital.keys import Keys, NoKeyError
 from tests import kernels
 
+pytestmark = pytest.mark.usefixtures("compiled")
 ROOT = Path(__file__).parents[2]
 MODULE = """
 import json

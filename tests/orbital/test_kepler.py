@@ -81,6 +81,10 @@ def test_what_is_no_orbit_is_refused(run):
     kept = np.full(3, 9.0)
     assert run(kepler.propagate)(kept, kept, r, np.array([0.0, math.nan, 0.0]), 10.0, EARTH_MU) == 1
     np.testing.assert_array_equal(kept, 9.0)
+
+
+def test_at_the_centre_there_is_no_orbit(compiled):
+    kept, v = np.full(3, 9.0), np.array([0.0, 7e3, 0.0])
     assert kepler.propagate(kept, kept, np.zeros(3), v, 10.0, EARTH_MU) == 1
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from orbital.kernel import entry, kernel, view
 
+pytestmark = pytest.mark.usefixtures("compiled")
 RECORD = np.dtype([("x", "f8"), ("n", "i8")])
 
 
