@@ -25,7 +25,6 @@ from dcone_cosim.scene.toml_lines import Path
 from dcone_cosim.scenes.alike import filled
 from dcone_cosim.scenes.components import (
     RESERVED,
-    ReadComponent,
     follow,
     of_fmu,
     of_model,
@@ -56,6 +55,7 @@ from dcone_cosim.scenes.keys import (
     table_in,
 )
 from dcone_cosim.scenes.lines import read_own, set_apart
+from dcone_cosim.scenes.read_component import ReadComponent
 from dcone_cosim.scenes.relations import about_steps, about_values, designed, laid, pairs, phases_to_run
 from orbital.materials import Material
 

@@ -1,4 +1,4 @@
-"""One component of a scene while it is being checked: what it is, which keys it has, and what the scene says of them.
+"""Reading a component of a scene: what it is, which keys it has, and what the scene says of them.
 
 A component is a model of ours, whose terms the scene names and whose keys follow from its rows, or an FMU file, whose
 keys follow from its model description. Both are read alike: `key` in `[capture.table]` is the variable `table.key`.
@@ -8,93 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 from dcone_cosim import build
-from dcone_cosim.scene.data import SHARED, LineScene, TableFile
+from dcone_cosim.scene.data import SHARED, LineScene
 from dcone_cosim.scene.expected import LARGEST_INTEGER, TEXT, Unexpected
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted, given_at
 from dcone_cosim.scenes.fmus import Offer
 from dcone_cosim.scenes.keys import COMPONENT_KEYS, Key, Slot, key_of, phase_keys, read_value
 from dcone_cosim.scenes.lines import keys_of, read_line
+from dcone_cosim.scenes.read_component import ReadComponent
 from dcone_cosim.scenes.tables import EXAMPLE, entries_of, table_of
 from dcone_cosim.units import by_name
 from orbital.materials import Material
 
 if TYPE_CHECKING:
-    from dcone_cosim.fmu.archive import Archive
-
-
-@dataclass
-class ReadComponent:
-    """A component with its keys.
-
-    path         of its table: ("capture",), or ("removal", "components", "controller")
-    model        of ours, which a scene may still describe when an FMU takes its place; None for any other FMU
-    terms        of our model that the scene names
-    fmu          the file, None for a model of ours
-    reserved     keys of its table that are no parameters
-    keys         by the name a scene gives them: "bullets.speed"
-    slots        every scalar variable, for connections
-    archive      of the FMU, closed again: its model description is read
-    given        where the value of each variable was given
-    following    groups whose term follows from the values
-    texts        that the scene gives to Strings, by variable
-    files        tables that our model reads, by name, which a scene gives as the path of a file or entry by entry
-    tables       those that it gives as files
-    sources      those of which parts make what their kernels read
-    lines        that it has, by the table of the scene that says what they are made of
-    """
-
-    path: Path
-    name: str
-    model: build.Model | None = None
-    terms: dict[str, str] = field(default_factory=dict)
-    fmu: File | None = None
-    reserved: frozenset[str] = frozenset()
-    keys: dict[str, Key] = field(default_factory=dict)
-    slots: dict[str, Slot] = field(default_factory=dict)
-    archive: Archive | None = None
-    given: dict[str, Path] = field(default_factory=dict)
-    following: list[str] = field(default_factory=list)
-    texts: dict[str, str] = field(default_factory=dict)
-    files: dict[str, build.Table] = field(default_factory=dict)
-    tables: dict[str, TableFile] = field(default_factory=dict)
-    sources: dict[str, Any] = field(default_factory=dict)
-    unnamed: set[str] = field(default_factory=set)
-    lines: dict[str, build.Line] = field(default_factory=dict)
-
-    @property
-    def groups(self) -> Mapping[str, build.Group]:
-        return self.model.groups if self.model is not None else {}
-
-    def selects(self, names: tuple[str, ...]) -> bool:
-        """Whether a key chooses a term of our model."""
-        return any(names == (group.table or name, group.selector) for name, group in self.groups.items())
-
-    def holds(self, table: str) -> bool:
-        """Whether a name is that of a table of keys."""
-        return table in self.lines or any(name.startswith(table + ".") for name in (*self.keys, *self.files))
-
-    def of_line(self, names: tuple[str, ...]) -> bool:
-        """Whether a key says what a line is made of."""
-        line = self.lines.get(names[0]) if len(names) == 2 else None
-        return line is not None and names[1] in keys_of(line, self.keys)
-
-    def defaults(self) -> dict[str, float]:
-        numbers = [key for key in self.keys.values() if key.expected.kind != TEXT]
-        return {n: s for key in numbers for n, s in zip(key.names, key.starts, strict=True)}
-
-    def known(self) -> dict[str, Any]:
-        """What its model may be asked with: those, and the numbers of its tables, as far as they could be read."""
-        return {**self.defaults(), **{name: table.numbers for name, table in self.tables.items()}}
-
-    def choices(self) -> dict[str, tuple[str, ...]]:
-        return {key.names[0]: key.expected.choices for key in self.keys.values() if key.expected.choices}
+    pass
 
 
 def of_model(

@@ -10,8 +10,8 @@ from dcone_cosim.coupling.options import Connection, Coupling
 from dcone_cosim.coupling.wiring import mismatch
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted
-from dcone_cosim.scenes.components import ReadComponent
 from dcone_cosim.scenes.keys import COUPLING_KEYS, phase_keys, read_table, table_in
+from dcone_cosim.scenes.read_component import ReadComponent
 
 ARROW = "->"
 FORM = '"INSTANCE.VARIABLE -> INSTANCE.VARIABLE"'
