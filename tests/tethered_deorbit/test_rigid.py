@@ -1,124 +1,31 @@
-"""Bodies that turn: against an integration of six degrees of freedom in scipy, closed forms and conservation laws."""
+"""Towed rigid bodies: against an integration of its own, closed forms, and what is conserved."""
 
-import itertools
 import math
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
-from fmu_src.instance import Instance, ModelFault
-from fmu_src.tethered_deorbit import events, model
-from fmu_src.tethered_deorbit.interface import BAD_ATTITUDE, BAD_INERTIA, HANDED_OVER, MODEL, START_STRETCHED
-from tests.plain import PlainInstance, plain
-from tests.tethered_deorbit.six_degrees import Body, Line, Tow
+from tests.tethered_deorbit.rigid_pairs import (
+    BOTH,
+    FIELD_FREE,
+    INERTIA,
+    MEAN_MOTION,
+    MODULUS,
+    ON_ORBIT,
+    RADIUS,
+    REDUCED,
+    REST,
+    STIFFNESS,
+    TUMBLING,
+    differences,
+    matrix,
+    momentum,
+    pair,
+    reference,
+    six,
+)
 from tests.validation import Validated, closed_form
-
-__all__ = ["plain"]
-
-uncompiled = pytest.mark.usefixtures("plain")
-FIELD_FREE = {"reel": "locked", "environment": "none", "target": "rigid"}
-BOTH = FIELD_FREE | {"chaser": "rigid"}
-ON_ORBIT = {"reel": "locked", "thrust": "along_track", "target": "rigid"}
-REST, DIAMETER, MODULUS = 12.0, 1e-3, 60e9
-STIFFNESS = MODULUS * math.pi * DIAMETER**2 / 4.0 / REST
-M_C, M_T = 2000.0, 1000.0
-REDUCED = M_C * M_T / (M_C + M_T)
-INERTIA = np.array([[5000.0, 120.0, -60.0], [120.0, 2400.0, 40.0], [-60.0, 40.0, 6000.0]])
-CHASER = np.array([[900.0, -30.0, 10.0], [-30.0, 1100.0, 0.0], [10.0, 0.0, 1300.0]])
-ARM = np.array([0.4, -1.8, 0.3])
-RADIUS = 7178137.0
-MEAN_MOTION = math.sqrt(3.986004418e14 / RADIUS**3)
-
-
-def six(matrix: np.ndarray) -> list[float]:
-    return [matrix[0, 0], matrix[1, 1], matrix[2, 2], matrix[0, 1], matrix[0, 2], matrix[1, 2]]
-
-
-def pair(terms: dict[str, str], arrays: dict[str, Any] | None = None, **parameters: float) -> Instance:
-    """A pair handed over, parameters by name with __ for a dot, arrays by field."""
-    given = {"start.condition": HANDED_OVER, "tether.damping_ratio": 0.0}
-    i = Instance(MODEL, terms, given | {name.replace("__", "."): value for name, value in parameters.items()})
-    i.array("start_relative_position")[:] = 0.5, 11.0, -0.4
-    if "thrust" in terms and "thrust__level" not in parameters:
-        i["thrust.level"] = 0.0
-    if terms.get("target") == "rigid":
-        i.array("target_inertia")[:] = six(INERTIA)
-        i.array("target_attachment")[:] = ARM
-    if terms.get("chaser") == "rigid":
-        i.array("chaser_inertia")[:] = six(CHASER)
-        i.array("chaser_attachment")[:] = 0.1, 1.1, -0.2
-    for field, value in (arrays or {}).items():
-        i.array(field)[:] = value
-    return i.initialise()
-
-
-def relative(i: Instance) -> tuple[np.ndarray, np.ndarray]:
-    place = i.array("target_position") - i.array("chaser_position")
-    return place, i.array("target_velocity") - i.array("chaser_velocity")
-
-
-def momentum(i: Instance) -> np.ndarray:
-    """Angular momentum about the joint centre of mass, spins included, inertial axes [N m s]."""
-    place, speed = relative(i)
-    spins = sum((i.array(f"{b}_spin") for b in ("target", "chaser") if i.interface.terms[b] == "rigid"), np.zeros(3))
-    return np.asarray(REDUCED * np.cross(place, speed) + spins)
-
-
-def matrix(i: Instance, body: str = "target") -> np.ndarray:
-    w, *xyz = i.array(f"{body}_attitude")
-    return np.asarray(Rotation.from_quat([*xyz, w]).as_matrix())
-
-
-TUMBLING = {"target_start_rate": (0.03, 0.06, -0.04), "start_relative_velocity": (0.01, 0.02, 0.0)}
-
-
-def reference(i: Instance, zeta: float, radius: float = 0.0, thrust: float = 0.0) -> tuple[Tow, np.ndarray]:
-    """The same pair for scipy, and its start: an orbit in the plane of axes 1 and 2, from axis 1."""
-
-    def bodies(role: str, mass: float) -> Body:
-        if i.interface.terms[role] == "point":
-            return Body(mass, np.eye(3), np.zeros(3))
-        a, b, c, d, e, f = i.array(f"{role}_inertia")
-        return Body(mass, np.array([[a, d, e], [d, b, f], [e, f, c]]), i.array(f"{role}_attachment").copy())
-
-    def along_track(r: np.ndarray, v: np.ndarray) -> np.ndarray:
-        along = np.cross(np.cross(r, v), r)
-        return np.asarray(thrust * along / np.linalg.norm(along))
-
-    line = Line(REST, STIFFNESS, 2.0 * zeta * math.sqrt(STIFFNESS * REDUCED))
-    tow = Tow(bodies("chaser", M_C), bodies("target", M_T), line, radius, along_track if thrust else None)
-    turning = MEAN_MOTION if radius else 0.0
-    start = np.zeros(36)
-    apart = i.array("start_relative_position")
-    parting = i.array("start_relative_velocity") + np.cross([0.0, 0.0, turning], apart)
-    for k, (body, share) in enumerate((("chaser", -M_T / (M_C + M_T)), ("target", M_C / (M_C + M_T)))):
-        start[6 * k : 6 * k + 3], start[6 * k + 3 : 6 * k + 6] = share * apart, share * parting
-        start[12 + 9 * k : 21 + 9 * k] = np.eye(3).ravel()
-        if i.interface.terms[body] == "rigid":
-            start[12 + 9 * k : 21 + 9 * k] = matrix(i, body).ravel()
-            start[30 + 3 * k : 33 + 3 * k] = i.array(f"{body}_rate")
-    return tow, start
-
-
-def differences(i: Instance, tow: Tow, after: np.ndarray) -> dict[str, float]:
-    """Largest differences: of tugs, relative to their size but for the time [s]; of places and rates, SI."""
-    count = int(i["tether.tug_count"])
-    assert count == len(tow.tugs)
-    found = np.array([[i[f"tug[{count - k}].{what}"] for what in ("time", "speed", "peak")] for k in range(count)])
-    wanted = np.array([[tug.time, tug.speed, tug.peak] for tug in tow.tugs])
-    off = np.abs(found - wanted)
-    place, rate = relative(i)
-    return {
-        "time": float(off[:, 0].max()),
-        "speed": float((off[:, 1] / wanted[:, 1]).max()),
-        "peak": float((off[:, 2] / wanted[:, 2]).max()),
-        "place": float(np.abs(place - (after[6:9] - after[0:3])).max()),
-        "velocity": float(np.abs(rate - (after[9:12] - after[3:6])).max()),
-        "attitude": float(np.abs(matrix(i) - after[21:30].reshape(3, 3)).max()),
-        "rate": float(np.abs(i.array("target_rate") - after[33:36]).max()),
-    }
 
 
 @pytest.mark.parametrize("body", ["target", pytest.param("both", marks=pytest.mark.evidence)])
@@ -148,9 +55,6 @@ def test_without_its_gradient_the_field_does_not_turn_a_body() -> None:
         seen[on] = float(np.linalg.norm(i.array("target_rate")))
     assert seen[False] == 0.0
     assert seen[True] > 1e-6
-
-
-# --------------------------------------------------------------------------------------------------------- closed forms
 
 
 def test_a_tug_through_the_centre_of_mass_is_that_of_a_point() -> None:
@@ -211,9 +115,6 @@ def test_small_librations_under_the_gradient(validated: Validated) -> None:
     crossing = quarter * 0.98 - angles[0] / slope
     formula = closed_form("2 pi/(n sqrt(3 (I1 - I2)/I3))")
     validated(formula, "pitch libration of a target: period", 4.0 * crossing, 4.0 * quarter, "s", rel=2e-4)
-
-
-# --------------------------------------------------------------------------------------------------------- conservation
 
 
 @pytest.mark.parametrize("terms", [FIELD_FREE, BOTH])
@@ -287,189 +188,3 @@ def test_undamped_energy_over_a_day(target: str) -> None:
         worst = max(worst, abs(i["energy.relative"] - energy))
     assert i["tether.tug_count"] > 50
     assert worst < 1e-9 * own
-
-
-# ----------------------------------------------------------------------------------------------------------------- cost
-
-
-def hanging(target: str) -> dict[str, Any]:
-    """A pair upright on its taut line; a target that turns has its attachment below it, spins about the line at 5 deg/s
-    and swings."""
-    arm = 0.0 if target == "point" else 1.0
-    values: dict[str, Any] = {
-        "start.condition": HANDED_OVER,
-        "start_relative_position": [REST + 1e-5 + arm, 0.0, 0.0],
-        "thrust.level": -0.01,
-    }
-    if target != "point":
-        values |= {
-            "target_inertia": [6666.7, 2666.7, 6666.7, 0.0, 0.0, 0.0],
-            "target_attachment": [0.0, -arm, 0.0],
-            "target_start_attitude": [math.sqrt(0.5), 0.0, 0.0, -math.sqrt(0.5)],
-            "target_start_rate": [0.0, math.radians(5.0), math.radians(0.1)],
-        }
-    if target == "box":
-        values["target_size"] = [4.0, 2.0 * arm, 4.0]
-    return values
-
-
-@pytest.mark.parametrize("target", ["rigid", "box"])
-def test_a_tumbling_target_takes_the_steps_of_a_point(target: str) -> None:
-    """Its attachment goes round, and the steps do not have to follow it: in plain coordinates they were 2.5 times as
-    many."""
-    counts = []
-    for kind in ("point", target):
-        i = Instance(MODEL, ON_ORBIT | {"target": kind})
-        for name, value in hanging(kind).items():
-            if isinstance(value, list):
-                i.array(name)[:] = value
-            else:
-                i[name] = value
-        i.initialise()
-        i.step(250.0)
-        assert (i["tether.taut"], i["tether.tug_count"]) == (1, 1)
-        counts.append(i["solver.steps"] + i["solver.rejected"])
-    assert counts[1] < 1.3 * counts[0]
-
-
-@uncompiled
-def test_the_slope_of_the_tension_is_that_of_its_course(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What says where a step is to be searched for a change: over each step, against the difference of its ends."""
-    ends: list[tuple[float, float, float, float]] = []
-
-    def watched(*arguments: Any) -> events.Events:
-        made = make_events(*arguments)
-
-        def signals(record: Any, state: Any, rate: Any, elapsed: float) -> Any:
-            found = made.signals(record, state, rate, elapsed)
-            ends.append((record[0].state_begin, elapsed, found[events.TENSION], found[events.TENSION_SLOPE]))
-            return found
-
-        return made._replace(signals=signals)
-
-    make_events = events.make_events
-    monkeypatch.setattr(model, "make_events", watched)
-    i = PlainInstance(MODEL, ON_ORBIT, hanging("rigid") | {"tether.damping_ratio": 1.0})
-    i.step(60.0)
-    late = [(a, b) for a, b in itertools.pairwise(ends) if a[0] == b[0] > 20.0 and a[1] == 0.0 < b[1]]
-    changes = np.array([b[2] - a[2] for a, b in late])
-    by_slope = np.array([0.5 * b[1] * (a[3] + b[3]) for a, b in late])
-    assert len(late) > 20
-    assert by_slope == pytest.approx(changes, abs=1e-2 * float(np.abs(changes).max()))
-
-
-# ------------------------------------------------------------------------------------------------------ starts, outputs
-
-
-def test_what_a_rate_is_relative_to() -> None:
-    """Inertial space; the orbital frame, n about axis 3; the line of centres as it turns."""
-    attitude = Rotation.from_euler("xyz", (0.3, -0.5, 0.7))
-    x, y, z, w = attitude.as_quat()
-    place, speed = np.array([3.0, 9.0, 2.0]), np.array([0.02, -0.01, 0.03])
-    frame = np.array([0.0, 0.0, MEAN_MOTION])
-    inertial = speed + np.cross(frame, place)
-    expected = {0: np.zeros(3), 1: frame, 2: np.cross(place, inertial) / (place @ place)}
-    for choice, turning in expected.items():
-        arrays = {
-            "target_start_attitude": (w, x, y, z),
-            "target_start_rate": (0.01, 0.02, 0.03),
-            "start_relative_position": place,
-            "start_relative_velocity": speed,
-        }
-        i = pair(ON_ORBIT, arrays, target__rate_frame=choice, orbit__inclination=0.0)
-        wanted = np.array([0.01, 0.02, 0.03]) + attitude.inv().apply(turning)
-        assert i.array("target_rate") == pytest.approx(wanted, abs=1e-13)
-        assert matrix(i) == pytest.approx(attitude.as_matrix(), abs=1e-13)
-        assert i.array("target_spin") == pytest.approx(attitude.apply(INERTIA @ wanted), rel=1e-12)
-        assert i["target.spin_energy"] == pytest.approx(0.5 * wanted @ INERTIA @ wanted, rel=1e-12)
-
-
-def test_length_is_between_the_attachments() -> None:
-    i = pair(BOTH, TUMBLING)
-    i.step(5.0)
-    place, _ = relative(i)
-    vector = place + matrix(i) @ ARM - matrix(i, "chaser") @ np.array([0.1, 1.1, -0.2])
-    assert i["tether.length"] == pytest.approx(float(np.linalg.norm(vector)), rel=1e-12)
-    assert i["separation"] == pytest.approx(float(np.linalg.norm(place)), rel=1e-12)
-
-
-def test_macro_steps_change_nothing() -> None:
-    """The same bits for steps of 0.7 and of 70 s, through tugs, in which axes turn and attitudes are set to length."""
-    ends = []
-    for step, count in ((0.7, 300), (70.0, 3)):
-        i = pair(ON_ORBIT, TUMBLING, thrust__level=-2.0)
-        for _ in range(count):
-            i.step(step)
-        ends.append([i[f"tug[{k}].{what}"] for k in range(1, 5) for what in ("time", "peak")])
-        ends[-1] += i.array("target_attitude").tolist()
-    assert ends[0][:8] == ends[1][:8]
-    assert ends[0] == pytest.approx(ends[1], rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    "terms", [ON_ORBIT, pytest.param(ON_ORBIT | {"chaser": "rigid"}, marks=pytest.mark.evidence), BOTH]
-)
-def test_rates_of_outputs(terms: dict[str, str]) -> None:
-    """Against differences of fourth order, slack and taut."""
-    for apart in (9.0, 15.0):
-        arrays = TUMBLING | {"start_relative_position": (2.0, apart, 1.0)}
-        i = pair(terms, arrays, tether__youngs_modulus=6e6)
-        i.step(0.5)
-        names = [n for n, _, v, _ in i.interface.scalars() if v.causality == "output" and v.rate]
-        seen, step = [], 0.02
-        for k in range(5):
-            i.step(step)
-            seen.append({name: i[name] for name in names})
-            if k == 2:
-                i.differentiate()
-                rates = {name: i.rate(name) for name in names}
-        assert bool(i["tether.taut"]) == (apart > 12.0)
-        assert {"target.attitude[1]", "target.spin[2]", "target.spin_energy", "separation"} <= set(names)
-        for name in names:
-            if name.startswith(("center", "altitude", "energy.orbital")) or name.endswith(("radius", "tion[1]")):
-                continue
-            v = [s[name] for s in seen]
-            difference = (v[0] - 8.0 * v[1] + 8.0 * v[3] - v[4]) / (12.0 * step)
-            noise = 3e-15 * max(abs(x) for x in v) / step
-            assert rates[name] == pytest.approx(difference, rel=2e-6, abs=1e-9 + noise), name
-
-
-@pytest.mark.parametrize(
-    ("arrays", "code"),
-    [
-        ({"target_inertia": (1.0, 1.0, 3.0, 0.0, 0.0, 0.0)}, BAD_INERTIA),
-        ({"target_inertia": (1.0, 1.0, 1.0, 2.0, 0.0, 0.0)}, BAD_INERTIA),
-        ({"target_inertia": (math.nan, 1.0, 1.0, 0.0, 0.0, 0.0)}, BAD_INERTIA),
-        ({"target_start_attitude": (1.0, 1.0, 0.0, 0.0)}, BAD_ATTITUDE),
-    ],
-)
-def test_what_no_body_has_is_refused(arrays: dict[str, Any], code: int) -> None:
-    with pytest.raises(ModelFault, match=next(f.text for f in MODEL.faults if f.code == code)[:20]):
-        pair(FIELD_FREE, arrays)
-
-
-def test_a_start_is_stretched_between_the_attachments() -> None:
-    """12 m apart with the attachments 1.8 m inside, the line is slack; pointing outwards it would be stretched."""
-    values = {"start.condition": 2, "start.separation": 12.0, "tether.rest_length": 11.0}
-    for y, refused in ((-1.8, False), (1.8, True)):
-        i = Instance(MODEL, FIELD_FREE, values)
-        i.array("target_attachment")[:] = 0.0, y, 0.0
-        if refused:
-            with pytest.raises(ModelFault, match=next(f.text for f in MODEL.faults if f.code == START_STRETCHED)[:20]):
-                i.initialise()
-        else:
-            i.initialise()
-            assert i["tether.length"] == pytest.approx(10.2, rel=1e-14)
-
-
-@pytest.mark.evidence
-def test_a_linear_reel_feeds_forward_the_tide_on_the_centres() -> None:
-    """At its commanded length, aligned and at rest, the line has 3 n^2 m_r (l_c + a), a the length of the arm."""
-    arm = 1.5
-    values = {"start.condition": HANDED_OVER, "reel.length": 11.0, "thrust.level": 0.0}
-    i = Instance(MODEL, {"reel": "linear", "thrust": "along_track", "target": "rigid"}, values)
-    i.array("target_attachment")[:] = -arm, 0.0, 0.0
-    i.array("start_relative_position")[:] = 11.0 + arm, 0.0, 0.0
-    i.initialise()
-    assert i["tether.length"] == pytest.approx(11.0, rel=1e-12)
-    assert i["tether.tension"] == pytest.approx(3.0 * MEAN_MOTION**2 * REDUCED * (11.0 + arm), rel=1e-9)

@@ -126,8 +126,8 @@ ELSEWHERE = {
     TOO_MANY_EVENTS: "test_uncompiled.py",
     STEP_NOT_MET: "test_steps_too_short_for_the_time",
     NO_ORBIT: "test_field_free.py",
-    BAD_INERTIA: "test_rigid.py",
-    BAD_ATTITUDE: "test_rigid.py",
+    BAD_INERTIA: "test_rigid_outputs.py",
+    BAD_ATTITUDE: "test_rigid_outputs.py",
     TOO_MANY_TURNS: "test_wrapping.py",
     BODIES_MET: "test_wrapping.py",
     **dict.fromkeys(

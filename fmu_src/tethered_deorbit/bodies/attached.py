@@ -217,7 +217,7 @@ def make_attached(
     ) -> tuple[float, float, float]:
         """Second derivative of the length, and rates of the separation [m/s^2], [m/s], [m/s^2]; after `stand`.
 
-        Checked  tests/tethered_deorbit/test_rigid.py, against differences
+        Checked  tests/tethered_deorbit/test_rigid_outputs.py, against differences
         """
         r = record[0]
         vector, velocity, acceleration = r.state_line[0], r.state_line[1], r.state_line[2]
@@ -330,7 +330,7 @@ def make_attached(
     def differentiate(record: Any, state: Array, rate: Array, turning_rate: float, change: float) -> float:
         """Rates of their outputs; power [W].
 
-        Checked  tests/tethered_deorbit/test_rigid.py, against differences
+        Checked  tests/tethered_deorbit/test_rigid_outputs.py, against differences
         """
         target.show_way(record, state, record[0].state_line[0], record[0].state_line[1])
         power = target.differentiate(record, state, rate, turning_rate, change)

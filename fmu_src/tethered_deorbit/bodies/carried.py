@@ -63,7 +63,7 @@ def make_carried(role: str, first: int, sign: float, leaving: str) -> Carried:
     def rest(record: Any) -> None:
         """A step of no length.
 
-        Checked  tests/tethered_deorbit/test_rigid.py: macro steps change nothing
+        Checked  tests/tethered_deorbit/test_rigid_outputs.py: macro steps change nothing
         """
         r = record[0]
         for i in range(3):

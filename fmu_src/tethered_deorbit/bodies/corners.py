@@ -17,7 +17,7 @@ APART = 0.02
 def make_corners(path: Path, surface: Surface) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The kernels `run_at_corner(record) -> (first, last)` and `slip(record)` for the way round a body.
 
-    Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+    Checked  tests/tethered_deorbit/test_way.py: a line slips off a corner
     """
     edges, capacity = surface.edges, surface.ways
     tighten, leave, sound, follow, keep = path.tighten, path.leave, path.sound, path.follow, path.keep
@@ -26,7 +26,7 @@ def make_corners(path: Path, surface: Surface) -> tuple[Callable[..., Any], Call
     def run_at_corner(record: Any) -> tuple[int, int]:
         """First and last place in the way of the edges that it meets at one corner to which it has slid, or (-1, -1).
 
-        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        Checked  tests/tethered_deorbit/test_way.py: a line slips off a corner
         """
         r = record[0]
         near = TOGETHER * r.state_extent
@@ -42,7 +42,7 @@ def make_corners(path: Path, surface: Surface) -> tuple[Callable[..., Any], Call
     def relax(record: Any, count: int) -> float:
         """Length [m] of the way over as many edges, or fewer: those on which it presses.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        Checked  tests/tethered_deorbit/test_way.py: a line slips off a corner
         """
         r = record[0]
         while True:
@@ -59,7 +59,7 @@ def make_corners(path: Path, surface: Surface) -> tuple[Callable[..., Any], Call
     def round_corner(record: Any, first: int, last: int) -> int:
         """How many edges lead round a corner on the other side than a run of the way's edges; fills `corner`.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        Checked  tests/tethered_deorbit/test_way.py: a line slips off a corner
         """
         r = record[0]
         edge, corner = r.path_edges[first], r.path_room[0]
@@ -91,7 +91,7 @@ def make_corners(path: Path, surface: Surface) -> tuple[Callable[..., Any], Call
         The edges that it meets there give place to none, to one of the others of that corner, or to all of them, over
         which it comes round on the other side: whatever makes it shortest.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+        Checked  tests/tethered_deorbit/test_way.py: a line slips off a corner
         """
         r = record[0]
         keep(record)

@@ -38,7 +38,7 @@ def make_leading(
 
     keep(record)     the way last followed is where the next is sought from
 
-    Checked  tests/tethered_deorbit/test_wrapping.py
+    Checked  tests/tethered_deorbit/test_way.py
     """
     faces, edges, capacity = surface.faces, surface.edges, surface.ways
     passes, between, met = polyhedron.passes, polyhedron.between, polyhedron.met
@@ -55,7 +55,7 @@ def make_leading(
 
         Returns infinity where there is no such way.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py: an attachment behind the body
+        Checked  tests/tethered_deorbit/test_way.py: an attachment behind the body
         """
         r = record[0]
         last, length, found, came = r.path_points[place], 0.0, 0, NONE
@@ -104,7 +104,7 @@ def make_leading(
         """Number of edges once a stretch that passes through the body is led round it; -1 if none does, or there is no
         way, -2 if there is no room for it.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py
+        Checked  tests/tethered_deorbit/test_way.py
         """
         r = record[0]
         points, ways = r.path_points, r.path_ways
@@ -163,7 +163,7 @@ def make_leading(
     def settle(record: Any) -> None:
         """The shortest way to the far end by the edges that hold, from those that are there.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py
+        Checked  tests/tethered_deorbit/test_way.py
         """
         r = record[0]
         count = r.path_count
@@ -192,7 +192,7 @@ def make_leading(
     def start(record: Any) -> None:
         """The shortest way, of those that set out in `DIRECTIONS` round the straight line.
 
-        Checked  tests/tethered_deorbit/test_wrapping.py: against a search over a graph
+        Checked  tests/tethered_deorbit/test_way.py: against a search over a graph
         """
         r = record[0]
         if met(record, r.path_far):

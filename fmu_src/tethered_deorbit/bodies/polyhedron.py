@@ -116,7 +116,7 @@ def crosswise(out: Array, way: Array) -> None:
 def at_corner(record: Any, edge: int, corner: Array) -> float:
     """Where along an edge [m] a corner lies, or -1.
 
-    Checked  tests/tethered_deorbit/test_wrapping.py: a line slips off a corner
+    Checked  tests/tethered_deorbit/test_way.py: a line slips off a corner
     """
     r = record[0]
     row, near = r.state_edges[edge], TOGETHER * r.state_extent

@@ -78,7 +78,7 @@ def make_shown(role: str, first: int) -> Shown:
         rate            of the state, along inertial axes
         change          of the frame's rate                      [rad/s^2]
 
-        Checked  tests/tethered_deorbit/test_rigid.py, against differences
+        Checked  tests/tethered_deorbit/test_rigid_outputs.py, against differences
         """
         r = record[0]
         n = rate_of_frame

@@ -115,7 +115,7 @@ def make_stepping(
     def rest(record: Any) -> None:
         """A step of no length.
 
-        Checked  tests/tethered_deorbit/test_rigid.py: macro steps change nothing
+        Checked  tests/tethered_deorbit/test_rigid_outputs.py: macro steps change nothing
         """
         record[0].state_carried = 0
         target.carried.rest(record)

@@ -12,7 +12,7 @@ that is p in place of sqrt(p^2 + e^2); over several it is added to first order,
 
 Valid    edges that have faces in common, one with the next; a way that meets none of them at a corner or near one
 Source   the plane development of a polyhedron, and reflection
-Checked  tests/tethered_deorbit/test_wrapping.py, against `path`
+Checked  tests/tethered_deorbit/test_way.py, against `path`
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ ASIDE = 1e-6
 def beside(record: Any, edge: int, point: Array, across: Array) -> tuple[float, float]:
     """A point along an edge [m] and its distance from it [m]; `across` becomes the way from the edge to it [m].
 
-    Checked  tests/tethered_deorbit/test_wrapping.py
+    Checked  tests/tethered_deorbit/test_way.py
     """
     row = record[0].state_edges[edge]
     along = 0.0
@@ -54,7 +54,7 @@ def unfold(record: Any) -> None:
     """The attachment and all edges held but the last in the plane of the last, and between which points of that they
     let the way pass: what `follow_unfolded` needs, once for these edges.
 
-    Checked  tests/tethered_deorbit/test_wrapping.py
+    Checked  tests/tethered_deorbit/test_way.py
     """
     r = record[0]
     count, small = r.held_count, ASIDE * r.state_extent
@@ -119,7 +119,7 @@ def unfold(record: Any) -> None:
 def straight(record: Any) -> None:
     """The way to `path.far` over no edge.
 
-    Checked  tests/tethered_deorbit/test_wrapping.py
+    Checked  tests/tethered_deorbit/test_way.py
     """
     r = record[0]
     begin, far, way = r.target_attachment, r.path_far, r.path_ways[0]
@@ -145,7 +145,7 @@ def follow_unfolded(record: Any, whole: bool) -> bool:
     whole    fill all that is asked of a way, over several edges but for its points on those before the last; else only
              where it leaves the body, and its length there
 
-    Checked  tests/tethered_deorbit/test_wrapping.py, against `path`
+    Checked  tests/tethered_deorbit/test_way.py, against `path`
     """
     r = record[0]
     count = r.held_count
