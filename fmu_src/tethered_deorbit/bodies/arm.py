@@ -103,7 +103,7 @@ def make_arm(role: str, first: int, sign: float, wrapping: Wrapping) -> Arm:
         vector      n       along the line                       (3,)
 
         Source   impulse on a free rigid body
-        Checked  tests/tethered_deorbit/test_rigid.py: what the line's vibration does across it
+        Checked  tests/tethered_deorbit/test_across.py
         """
         r = record[0]
         lever, turned_by = r[arms][2], r[arms][3]

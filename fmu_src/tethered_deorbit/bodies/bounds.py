@@ -113,7 +113,7 @@ def make_bounds(target: Rigid, chaser: Rigid, straight: bool, followed: float, b
 
         Valid    after `derivative` of this state
         Source   impulse on a free rigid body
-        Checked  tests/tethered_deorbit/test_rigid.py: what a line's vibration does across it
+        Checked  tests/tethered_deorbit/test_across.py
         """
         r = record[0]
         share = drowned(record)
