@@ -86,7 +86,7 @@ def make_longest_taut_step(reach: Callable[..., Any], further: float) -> Callabl
         damping = abs(r.state_damping) / (2.0 * mass * frequency)
         allowed: float = reach(damping)
         if not allowed > reach(0.0):
-            return allowed / float(r.state_frequency)
-        return allowed / frequency * (1.0 + (further - 1.0) * min(1.0, damping / WELL_DAMPED))
+            return float(allowed / r.state_frequency)
+        return float(allowed / frequency * (1.0 + (further - 1.0) * min(1.0, damping / WELL_DAMPED)))
 
     return longest_taut_step
