@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from dcone_cosim.appendage import Hinged
 from dcone_cosim.handoff import Body, Handoff, HeldTurning, Values, Vector, held_bodies, spin_energy
 
 CLOSURE = 1e-12
@@ -77,10 +78,13 @@ class LedgerRow:
         }
 
 
-def ledger(handed: Handoff, removal: Values, turning: HeldTurning | None = None) -> list[LedgerRow]:
+def ledger(
+    handed: Handoff, removal: Values, turning: HeldTurning | None = None, moving: Hinged | None = None
+) -> list[LedgerRow]:
     """Every conserved quantity, before from the capture, after from what the removal was read back to hold.
 
     turning      of its target, None for a point
+    moving       of an appendage that is held fast, as the scene says, orbital axes
     """
     before = [handed.chaser, handed.target, handed.catch]
     chaser, target = held_bodies(removal)
@@ -88,10 +92,10 @@ def ledger(handed: Handoff, removal: Values, turning: HeldTurning | None = None)
         target = replace(target, spin=turning.spin, inertia=turning.inertia)
     after = [chaser, target]
     rows = _sum_rows(before, after)
-    rows += _angular_rows(before, after, handed.joint, handed.turning)
+    rows += _angular_rows(before, after, handed.joint, handed.turning, moving)
     if turning is not None:
         rows += _inertia_rows(handed.joint, target)
-    rows.append(_energy_row(handed, after))
+    rows.append(_energy_row(handed, after, moving))
     return rows
 
 
@@ -136,10 +140,12 @@ def _orbital_parts(bodies: list[Body], turning: Vector) -> list[Vector]:
     return parts
 
 
-def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: Vector) -> list[LedgerRow]:
+def _angular_rows(
+    before: list[Body], after: list[Body], joint: Body, turning: Vector, moving: Hinged | None
+) -> list[LedgerRow]:
     orbital, kept = _orbital_parts(before, turning), _orbital_parts(after, turning)
     moved = sum(_orbital_parts(before[1:], turning), np.zeros(3))
-    spins = [b.spin for b in before]
+    spins = [b.spin for b in before] + ([] if moving is None else [moving.momentum])
     size = sum(float(np.linalg.norm(p)) for p in orbital)
     size_spin = sum(float(np.linalg.norm(p)) for p in (*spins, moved))
     carried = after[1].inertia.any()
@@ -157,6 +163,10 @@ def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: V
                 size,
             )
         )
+    for axis, label in enumerate(AXES if moving else ()):
+        was = float(moving.momentum[axis]) if moving else 0.0
+        name = f"angular momentum, relative part of the appendage, {label}"
+        rows.append(LedgerRow(name, "N m s", was, 0.0, was, "became spin when the appendage was held fast", size_spin))
     for axis, label in enumerate(AXES):
         rows.append(
             LedgerRow(
@@ -172,7 +182,7 @@ def _angular_rows(before: list[Body], after: list[Body], joint: Body, turning: V
     return rows
 
 
-def _energy_row(handed: Handoff, after: list[Body]) -> LedgerRow:
+def _energy_row(handed: Handoff, after: list[Body], moving: Hinged | None) -> LedgerRow:
     turning = handed.turning
 
     def of_motion(body: Body) -> float:
@@ -181,6 +191,10 @@ def _energy_row(handed: Handoff, after: list[Body]) -> LedgerRow:
 
     before = [of_motion(b) for b in (handed.chaser, handed.target, handed.catch)]
     before += [spin_energy(handed.target), handed.catch_energy]
+    joint = handed.joint
+    frozen = 0.0 if moving is None else moving.lost(joint.inertia)
+    if moving is not None:
+        before.append(moving.energy(joint.spin, joint.inertia))
     held = spin_energy(after[1])
     spun = spin_energy(handed.joint)
     dropped = 0.0 if after[1].inertia.any() else spun
@@ -194,8 +208,9 @@ def _energy_row(handed: Handoff, after: list[Body]) -> LedgerRow:
         "J",
         math.fsum(before),
         math.fsum([*(of_motion(b) for b in after), held]),
-        lost + dropped,
+        lost + dropped + frozen,
         f"{lost:.6g} J lost where net and target become one body"
-        + (f", {dropped:.6g} J dropped with the spin" if dropped else ""),
+        + (f", {dropped:.6g} J dropped with the spin" if dropped else "")
+        + (f", {frozen:.6g} J lost as the appendage was held fast" if moving else ""),
         math.fsum(abs(e) for e in before),
     )

@@ -27,6 +27,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dcone_cosim import build
+from dcone_cosim.appendage import hinged
 from dcone_cosim.handoff import Handoff, HeldTurning, Vector, rotation_matrix
 from dcone_cosim.line import Line
 from dcone_cosim.scene.data import ComponentScene, PhaseScene
@@ -186,12 +187,15 @@ def turning_parameters(
 
 
 def held_turning(removal: Mapping[str, float]) -> HeldTurning | None:
-    """None for a point."""
+    """None for a point. The spin of one with an appendage is that with the appendage held fast."""
     if not carries_spin(removal):
         return None
     turned = rotation_matrix(np.array([removal[name] for name in ATTITUDE]))
     i11, i22, i33, i12, i13, i23 = (removal[name] for name in INERTIA)
     inertia = np.array([[i11, i12, i13], [i12, i22, i23], [i13, i23, i33]])
     spin = inertia @ np.array([removal[name] for name in RATE])
+    moving = hinged(removal)
+    if moving is not None:
+        spin += moving.momentum
     attachment = np.array([removal[name] for name in PLACE])
     return HeldTurning(turned @ spin, turned @ inertia @ turned.T, turned @ attachment)

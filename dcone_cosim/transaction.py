@@ -11,11 +11,20 @@ from typing import Any
 
 import numpy as np
 
+from dcone_cosim.appendage import APPENDAGE, Hinged, asked, hinged
 from dcone_cosim.contract import HANDED_OVER
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import REMOVAL_SETS, Handoff, SpinSpeeds, held_bodies, spin_energy, spin_speeds
+from dcone_cosim.handoff import (
+    REMOVAL_SETS,
+    Handoff,
+    SpinSpeeds,
+    held_bodies,
+    rotation_matrix,
+    spin_energy,
+    spin_speeds,
+)
 from dcone_cosim.ledger import LedgerRow, ledger
 from dcone_cosim.level import (
     GROUP,
@@ -23,7 +32,6 @@ from dcone_cosim.level import (
     RATE_FRAME,
     TURNING_SETS,
     PointBound,
-    body_rate,
     carrier,
     carries_spin,
     held_turning,
@@ -105,6 +113,7 @@ class HandoffRecord:
         if carries_spin(component.variables):
             inertial = self.phase.choice(RATE_FRAME, "inertial") if RATE_FRAME in self.phase.main.choices else 0.0
             self.turning = turning_parameters(self.handed, self.shape, component.variables, inertial)
+            self.turning |= self.asked_appendage
         else:
             self.line_parameters = line_parameters(self.line, component.variables)
         since = self.earlier + self.time
@@ -114,6 +123,18 @@ class HandoffRecord:
         if epoch is not None and "orbit.epoch" in component.variables:
             begun["orbit.epoch"] = epoch + since
         return self.handed.parameters | begun | self.line_parameters | self.turning
+
+    @property
+    def asked_appendage(self) -> dict[str, float]:
+        """Parameters of the target's appendage, from the centre of mass of target and net; empty where it has none."""
+        shift = self.handed.target.position - self.handed.joint.position
+        return asked(self.phase.setting, rotation_matrix(self.handed.attitude).T @ shift)
+
+    @property
+    def appendage(self) -> Hinged | None:
+        """The motion of its appendage that the target loses, orbital axes; None where it has none."""
+        moving = hinged(self.handed.parameters | self.asked_appendage)
+        return None if moving is None else moving.along(rotation_matrix(self.handed.attitude))
 
     @property
     def turns(self) -> bool:
@@ -236,7 +257,7 @@ def close_ledger(record: HandoffRecord, component: Steppable) -> None:
     missing = [name for name in REMOVAL_SETS if name not in component.variables]
     if missing:
         raise HandoffError(f"hand-off violated: the removal FMU lacks {', '.join(missing)}")
-    there = [name for name in (*LINE_HELD, *TURNING_SETS) if name in component.variables]
+    there = [name for name in (*LINE_HELD, *TURNING_SETS, *APPENDAGE) if name in component.variables]
     held = component.get([*REMOVAL_SETS, *there])
     chaser, target = held_bodies(held)
     turning = held_turning(held)
@@ -245,7 +266,7 @@ def close_ledger(record: HandoffRecord, component: Steppable) -> None:
         of_line = line_rows(record.line, record.line_parameters, held, float(np.linalg.norm(apart)))
     else:
         of_line = attached_rows(record.line, held, turning.attachment, apart)
-    record.rows = ledger(record.handed, held, turning) + of_line
+    record.rows = ledger(record.handed, held, turning, record.appendage) + of_line
     record.checks = _cross_check(record, component)
     broken = [
         f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}, "
@@ -278,8 +299,16 @@ def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:
         length = abs(distance - attachment)
         expected.append(("size of tether.length", ("tether.length",), length, CROSS_CHECK * distance, "m"))
     if record.turning:
-        spin, span = float(np.linalg.norm(joint.spin)), record.line.reach
-        turns = float(np.linalg.norm(body_rate(handed)))
+        moving, spun = record.appendage, joint.spin
+        if moving is not None:
+            spun = spun + moving.momentum
+            own, lost = float(np.linalg.norm(moving.momentum)), moving.lost(joint.inertia)
+            expected += [
+                ("size of appendage.momentum", _elements("appendage.momentum"), own, CROSS_CHECK * own, "N m s"),
+                ("appendage.energy", ("appendage.energy",), lost, CROSS_CHECK * moving.own_energy, "J"),
+            ]
+        spin, span = float(np.linalg.norm(spun)), record.line.reach
+        turns = float(np.linalg.norm(np.linalg.solve(joint.inertia, spun)))
         expected += [
             ("size of target.spin", _elements("target.spin"), spin, CROSS_CHECK * spin, "N m s"),
             ("size of target.rate", _elements("target.rate"), turns, CROSS_CHECK * turns, "rad/s"),
@@ -350,6 +379,14 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
         yield Finding("hand-off", "ledger_closure", "ledger closes to, relative to what enters it", worst.closure)
         book = next(row for row in record.rows if row.quantity == "kinetic energy")
         lost = book.accounted - (0.0 if record.turns else spin_energy(handed.joint))
+        if (moving := record.appendage) is not None:
+            frozen = moving.lost(handed.joint.inertia)
+            lost -= frozen
+            size = float(np.linalg.norm(moving.momentum))
+            yield Finding(
+                "hand-off", "appendage_momentum", "spin that its appendage, held fast, gives it", size, "N m s"
+            )
+            yield Finding("hand-off", "appendage_energy", "energy lost as it is held fast", frozen, "J")
         yield Finding("hand-off", "energy_lost", "energy lost as the net joins", lost, "J")
 
 

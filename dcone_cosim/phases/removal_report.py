@@ -74,6 +74,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     last = recorder.last()
     if last.get("break.broken"):
         yield Finding(phase, "broke_at", "the tether broke, and both ends fly on, at", last["break.time"], "s")
+    if phase not in run.handovers:
+        yield from _of_appendage(phase, last)
     for name, label, unit, shown_in in (
         ("separation", "distance at the end", "m", ""),
         ("altitude", "altitude at the end", "m", "km"),
@@ -91,6 +93,16 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         yield from _of_modes(phase, last)
     elif "level.settled" in last:
         yield from _of_level(phase, result, last)
+
+
+def _of_appendage(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
+    """What the target's appendage, held fast at the begin, has done; after a hand-over that says so."""
+    if "appendage.energy" in last:
+        momentum = math.hypot(*(last[f"appendage.momentum[{i}]"] for i in (1, 2, 3)))
+        yield Finding(
+            phase, "appendage_momentum", "spin that the appendage, held fast, gave the target", momentum, "N m s"
+        )
+        yield Finding(phase, "appendage_energy", "energy lost as it was held fast", last["appendage.energy"], "J")
 
 
 def _of_level(phase: str, result: PhaseResult, last: Mapping[str, float]) -> Iterator[Finding]:

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from fmu_src.interface import Variable
-from fmu_src.rows import choice, output, parameter, rate, state, vector
+from fmu_src.interface import Group, Term, Variable
+from fmu_src.rows import choice, output, parameter, positive, rate, state, vector
 from fmu_src.tethered_deorbit.layout import state_layout
 
 LARGEST = state_layout(2, wheels=True, spends=True, moved=2, gathered=2).size
@@ -80,3 +80,32 @@ THRUSTER = (
     state("state.push[#][#]", "1", "room for a force and its torque", shape=(2, 3)),
 )  # fmt: skip
 """Of a chaser that turns."""
+
+APPENDAGE = Group(
+    {
+        "frozen": Term(
+            "a hinged appendage of the target, which turned about its hinge and is held fast as the tow begins",
+            (
+                positive("appendage.mass", "kg", "part of the target's mass", 20.0, 1e6),
+                parameter("appendage.inertia[#]", "kg.m2", "about its own centre of mass, body axes of the target, "
+                          "as of target.inertia, which has it in it",
+                          (10.0, 10.0, 10.0, 0.0, 0.0, 0.0), -1e12, 1e12, shape=(6,)),
+                parameter("appendage.center[#]", "m", "its centre of mass where it is held, from that of the target, "
+                          "body axes", (2.0, 0.0, 0.0), -1e4, 1e4, shape=(3,)),
+                parameter("appendage.hinge[#]", "m", "a point of the hinge's axis, likewise", (1.0, 0.0, 0.0), -1e4,
+                          1e4, shape=(3,)),
+                parameter("appendage.axis[#]", "1", "direction of the hinge, body axes, of any length",
+                          (0.0, 0.0, 1.0), -1e4, 1e4, shape=(3,)),
+                parameter("appendage.rate", "rad/s", "at which it turned about the hinge relative to the rest of the "
+                          "target, as it was held", 0.0, -100.0, 100.0, display_unit="deg/s"),
+                vector("appendage.momentum", "N.m.s", "angular momentum of its motion relative to the rest, about the "
+                       "target's centre of mass, body axes: it has become spin of the whole", nominal=10.0),
+                output("appendage.energy", "J", "kinetic energy that was lost as the hinge stopped it", 1.0),
+                state("state.appendage[#][#]", "1", "room for vectors", shape=(4, 3)),
+                state("state.appendage_inertia[#][#]", "kg.m2", "matrix of its inertia", shape=(3, 3)),
+            ),
+        ),
+    },
+    optional=True,
+    follows=lambda terms, values: "frozen",
+)  # fmt: skip

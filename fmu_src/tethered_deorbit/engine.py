@@ -36,7 +36,7 @@ class Engine(NamedTuple):
     limited(record, force) -> force   what it gives of what is asked [N]
     weigh(record, state)              masses, shares and reduced mass of the pair in a state
     lose(record, state, rate, sign)   what the loss of mass does to the rate of the centre of mass; -1 undoes it
-    shed(record, rate) -> M'          how fast the pair's mass changes [kg/s]
+    shed(record, rate) -> M'          how fast the pair's mass changes [kg/s]; tells the rate of its centre of mass
     lighten(record, state, rate, n) -> power   what the loss of inertia adds to the rates of the chaser's spin, and to
                                       that of the energy of its turning in a frame of rate n [W]
     publish(record, force, change)    its outputs, for the force in use [N] and its rate [N/s]
@@ -184,10 +184,12 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
 
     @kernel
     def shed(record: Any, rate: Array) -> float:
-        """Rate of the pair's mass [kg/s].
+        """Rate of the pair's mass [kg/s]; that of its centre becomes the one told of `center.position`, R' [m/s].
 
         Checked  tests/tethered_deorbit/test_engine.py: rates of what masses move
         """
+        for i in range(3):
+            record[0].rate_center_position[i] = rate[i]
         return float(-rate[spent])
 
     @kernel

@@ -24,7 +24,7 @@ from fmu_src.rows import (
     vector,
 )
 from fmu_src.tethered_deorbit import stress
-from fmu_src.tethered_deorbit.body_rows import ATTACHED, POINT_TARGET, THRUSTER, rigid_body
+from fmu_src.tethered_deorbit.body_rows import APPENDAGE, ATTACHED, POINT_TARGET, THRUSTER, rigid_body
 from fmu_src.tethered_deorbit.node_rows import NODES
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, RELEASE, SCHEMES
 from fmu_src.tethered_deorbit.orbit_rows import AIR, ELECTRODYNAMIC, OBLATENESS, POWER, SHADOW, SUNLIGHT, THIRD_BODIES
@@ -390,6 +390,7 @@ MODEL = Model(
         "electrodynamic": ELECTRODYNAMIC,
         "target": TARGETS,
         "chaser": CHASERS,
+        "appendage": APPENDAGE,
         "aocs": AOCS,
         "ends": ENDS,
         "break": BREAKING,

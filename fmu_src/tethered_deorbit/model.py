@@ -10,6 +10,7 @@ from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, S
 from fmu_src.limits import make_limits
 from fmu_src.tethered_deorbit.acting import IDLE, together
 from fmu_src.tethered_deorbit.aocs import make_aocs
+from fmu_src.tethered_deorbit.appendage import make_appendage
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
 from fmu_src.tethered_deorbit.breaking import breakable
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
@@ -61,6 +62,7 @@ IMPLEMENTED = {
     "engine": ("electric", "chemical"),
     "plume": ("beam",),
     "aocs": ("wheels",),
+    "appendage": ("frozen",),
     "ends": ("watched",),
     "break": ("breaks",),
     "release": ("time", "altitude", "perigee"),
@@ -118,7 +120,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     acts, turns = acting is not IDLE, reel.turn is not nothing
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
-    start_state = make_start(environment, bodies, interface)
+    start_state, freeze = make_start(environment, bodies, interface), make_appendage(terms, interface)
     publish = make_publish(reel, environment, perturbing, bodies, layout)
     differentiate = make_differentiate(inertial, reel, thrust, environment, perturbing, bodies)
     size, spent, work_size = layout.size, layout.spent, places.total
@@ -170,7 +172,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         code = start_state(record, end, reel.start_limit(record))
         if code != 0:
             return fail(record, code, 0.0)
-        code = aocs.begin(record, end)
+        code = freeze(record, end)
+        if code == 0:
+            code = aocs.begin(record, end)
         if code != 0:
             return fail(record, code, 0.0)
         for i in range(spent, size):

@@ -172,6 +172,9 @@ _ENGINE = (
                   "which it leaves where it is: by so much the inertia of a chaser that turns falls", 0.0, 1e3),
     output("engine.propellant_left", "kg", "in the tank", 10.0, "rate.propellant_left"),
     *_FORCE,
+    vector("center.position", "m", "centre of mass of the pair, inertial; mass that leaves it at the chaser moves it "
+           "besides center.velocity", nominal=7e6, rate="rate.center_position[#]"),
+    rate("center_position", "m/s", (3,)),
     rate("propellant_left", "kg/s"),
     state("state.chaser_mass", "kg", "with what is left in the tank"),
     state("state.empty", "1", "the tank is empty", kind="Integer"),

@@ -35,6 +35,8 @@ def refusals(terms: Mapping[str, str], values: Mapping[str, float], handed_over:
 def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
     if "aocs" in terms and terms.get("chaser") == "point":
         yield "aocs.frequency", f"{values['aocs.frequency']:g} rad/s", "needs a chaser that turns, chaser.body = rigid"
+    if "appendage" in terms:
+        yield from _of_appendage(terms, values)
     if "engine" in terms and values["engine.propellant"] >= values["chaser.mass"]:
         text = f"must be less than chaser.mass, {values['chaser.mass']:g} kg, of which it is a part"
         yield "engine.propellant", f"{values['engine.propellant']:g} kg", text
@@ -65,6 +67,17 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
                 text += ", central gravity and thrust along_track"
             yield "level.detail", terms["level"], text
     yield from of_reel(values, terms)
+
+
+def _of_appendage(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
+    given = f"{values['appendage.mass']:g} kg"
+    if terms.get("target") == "point":
+        yield "appendage.mass", given, "needs a target that turns, target.body = rigid, box, cylinder or hull"
+    elif values["appendage.mass"] >= values["target.mass"]:
+        text = f"must be less than target.mass, {values['target.mass']:g} kg, of which it is a part"
+        yield "appendage.mass", given, text
+    if not any(values[f"appendage.axis[{i}]"] for i in (1, 2, 3)):
+        yield "appendage.axis", "0, 0, 0", "must have a direction"
 
 
 def _of_tank(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:

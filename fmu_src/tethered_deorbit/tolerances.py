@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.bodies import Bodies
+from fmu_src.tethered_deorbit.bodies.bounds import WELL_DAMPED
 from fmu_src.tethered_deorbit.level import Held
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot, norm
@@ -24,7 +25,7 @@ def make_squared_error(bodies: Bodies, held: Held) -> Callable[..., Any]:
 
             sum of (e_R/tol_o)^2, (e_V/(tol_o n))^2, (e_rho/tol_s)^2, (e_rho'/(tol_s n))^2,
             and while taut, unless it is held, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2,
-            that of e_rho' across it by the pace p of the bodies, (e'_x/(tol_s p))^2,
+            that of what the bodies count of e_rho' across it by their pace p, (e'_x/(tol_s p))^2,
             and what the bodies add for their attitudes
 
         Each tolerance is at least a few units in the last place of what it bounds.
@@ -49,8 +50,8 @@ def make_squared_error(bodies: Bodies, held: Held) -> Callable[..., Any]:
             taut = r.state_taut_tolerance + ROUNDING * length
             taut_rate = taut * r.state_frequency
             along, along_rate = dot(error[6:9], state[6:9]) / length, dot(error[9:12], state[6:9]) / length
-            across = dot(error[9:12], error[9:12]) - along_rate * along_rate
             square += along * along / (taut * taut) + along_rate * along_rate / (taut_rate * taut_rate)
+            across = bodies.square_across(record, state, error, along_rate)
             apart_rate = r.solver_tolerance_separation * bodies.pace(record, state) + ROUNDING * norm(state[9:12])
             square += max(0.0, across) / (apart_rate * apart_rate)
         else:
@@ -60,14 +61,17 @@ def make_squared_error(bodies: Bodies, held: Held) -> Callable[..., Any]:
     return squared_error
 
 
-def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
-    """The kernel that says how long a step of a taut line may be, of a scheme with this `AdaptiveScheme.reach`."""
+def make_longest_taut_step(reach: Callable[..., Any], further: float) -> Callable[..., Any]:
+    """The kernel that says how long a step of a taut line may be, of a scheme with this `AdaptiveScheme.reach`, and of
+    bodies with this `Bodies.further`."""
 
     @kernel
     def longest_taut_step(record: Any, mass: float) -> float:
         """Longest step [s] of a taut line: as far as the scheme reaches over its vibration.
 
-            h omega <= reach(zeta),   zeta = c / (2 m omega),   omega = omega_most sqrt(m_least/m)
+            h omega <= f reach(zeta),   zeta = c / (2 m omega),   omega = omega_most sqrt(m_least/m)
+
+        f grows from 1 to `further` as zeta does to `WELL_DAMPED`.
 
         Where no damping lets the scheme reach farther, what is lost is not drowned by it: there omega is omega_most.
 
@@ -81,7 +85,8 @@ def make_longest_taut_step(reach: Callable[..., Any]) -> Callable[..., Any]:
         frequency = r.state_frequency * math.sqrt(r.state_effective_mass / mass)
         damping = abs(r.state_damping) / (2.0 * mass * frequency)
         allowed: float = reach(damping)
-        longest: float = allowed / (frequency if allowed > reach(0.0) else r.state_frequency)
-        return longest
+        if not allowed > reach(0.0):
+            return float(allowed / r.state_frequency)
+        return float(allowed / frequency * (1.0 + (further - 1.0) * min(1.0, damping / WELL_DAMPED)))
 
     return longest_taut_step

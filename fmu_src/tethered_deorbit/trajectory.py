@@ -71,7 +71,7 @@ def make_trajectory(
     low, high, stages, last = places.low, places.high, places.stages, places.last
     dense_begin, work_end, impulse = places.dense, places.total, places.impulse
 
-    longest_taut_step = make_longest_taut_step(scheme.reach)
+    longest_taut_step = make_longest_taut_step(scheme.reach, bodies.further)
     acts = acting is not IDLE
     moving, seen, last_seen = places.moving, bodies.seen, bodies.last_seen
 

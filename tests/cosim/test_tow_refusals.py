@@ -23,6 +23,16 @@ RIGID = '[removal.chaser]\nbody = "rigid"\nmass = "2000 kg"'
             ('[removal.chaser]\nmass = "2000 kg"', RIGID),
         ),
         (
+            '[removal.appendage]\nmass = "20 kg"',
+            ["removal.appendage.mass", "20 kg", "target.body = rigid"],
+            ("[removal.target]", '[removal.target]\nbody = "rigid"'),
+        ),
+        (
+            '[removal.appendage]\nmass = "2000 kg"\n',
+            ["removal.appendage.mass", "2000 kg", "target.body = rigid"],
+            ("[removal.appendage]\nmass = \"2000 kg\"", ""),
+        ),
+        (
             '[removal.engine]\nkind = "chemical"\npropellant = "2000 kg"',
             ["removal.engine.propellant", "2000 kg", "less than chaser.mass"],
             ('propellant = "2000 kg"', 'propellant = "1999 kg"'),

@@ -202,12 +202,16 @@ def test_rates_of_what_masses_move(turns: bool) -> None:
     names += ["chaser.spin_energy", "chaser.spin[1]", "chaser.spin[3]"] if turns else []
     h = 2e-3
     i.step(20.0 - h)
-    before = [i[name] for name in names]
+    before, place = [i[name] for name in names], i.array("center_position").copy()
     i.step(h)
     i.differentiate()
     slopes = [i.rate(name) for name in names]
     values = [i[name] for name in names]
+    told = [i.rate(f"center.position[{k}]") for k in (1, 2, 3)]
+    aside = max(abs(rate - speed) for rate, speed in zip(told, i.array("center_velocity"), strict=True))
+    assert aside > 0.05  # m/s: what leaves the pair leaves it at one end
     i.step(h)
+    assert (i.array("center_position") - place) / (2.0 * h) == pytest.approx(told, rel=0.0, abs=1e-5)
     for name, first, value, slope in zip(names, before, values, slopes, strict=True):
         noise = 1e-14 * abs(value) / h
         assert (i[name] - first) / (2.0 * h) == pytest.approx(slope, rel=1e-6, abs=noise + 1e-9), name

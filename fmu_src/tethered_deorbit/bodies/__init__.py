@@ -40,6 +40,8 @@ class Bodies(NamedTuple):
     enter_rate(record, state, seen, rate)       the rate in the coordinates of the step, from that as it is
     squared_error(record, state, error) -> e^2  of the attitudes, in units of the tolerances
     pace(record, state) -> n                    by which the tolerance of velocities across a taut line follows [rad/s]
+    square_across(record, state, error, along) -> e^2   square of the error of the velocity across it that counts
+                                                [m2/s2]; `along` is the part along the line [m/s]
     moved_mass(record, state) -> m              that the line has to move where it is [kg]; after `seen`
     mass_now(record, state) -> m                the same, with what the tank has lost [kg]
     longest(record, state) -> h                 longest step [s] that these coordinates bear, and over which the way of
@@ -48,6 +50,8 @@ class Bodies(NamedTuple):
     energy(record, state, turning) -> E         of the attitudes [J], constant in a frame that turns evenly [rad/s] but
                                                 for what the line does
     differentiate(record, state, rate, turning, change) -> E'   rates of their outputs; power [W]
+
+    further       by how much farther than of points a step of a damped line may reach over its vibration
 
     Of a line that goes straight to its attachments nothing of what follows is asked:
 
@@ -81,11 +85,13 @@ class Bodies(NamedTuple):
     longest: Callable[..., Any]
     squared_error: Callable[..., Any]
     pace: Callable[..., Any]
+    square_across: Callable[..., Any]
     moved_mass: Callable[..., Any]
     mass_now: Callable[..., Any]
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]
+    further: float = 1.0
     hold: Callable[..., Any] = nothing
     trouble: Callable[..., Any] = no_fault
     holds: Callable[..., Any] = always

@@ -22,6 +22,7 @@ class Arm(NamedTuple):
     set_pivot: Callable[..., Any]
     show_way: Callable[..., Any]
     ease: Callable[..., Any]
+    give: Callable[..., Any]
     pull: Callable[..., Any]
 
 
@@ -94,6 +95,26 @@ def make_arm(role: str, first: int, sign: float, wrapping: Wrapping) -> Arm:
         return dot(lever, turned_by) / dot(vector, vector)
 
     @kernel
+    def give(record: Any, vector: Array, out: Array) -> None:
+        """Add how the attachment gives way to a pull along a vector [1/kg], by the body's turning; after `reach`.
+
+            A ((I^-1 (a x n)) x a)
+
+        vector      n       along the line                       (3,)
+
+        Source   impulse on a free rigid body
+        Checked  tests/tethered_deorbit/test_across.py
+        """
+        r = record[0]
+        lever, turned_by = r[arms][2], r[arms][3]
+        transposed_matrix_vector(lever, r[turned], vector)
+        cross(lever, r[leaving], lever)
+        matrix_vector(turned_by, r[inverse], lever)
+        cross(lever, turned_by, r[leaving])
+        matrix_vector(turned_by, r[turned], lever)
+        add_scaled(out, out, 1.0, turned_by)
+
+    @kernel
     def pull(record: Any, state: Array, rate: Array, x: float, y: float, z: float) -> None:
         """Add what a force at the attachment does to the body rate [rad/s^2]; `turned` must be that of the state.
 
@@ -163,4 +184,4 @@ def make_arm(role: str, first: int, sign: float, wrapping: Wrapping) -> Arm:
         parts(record, state, vector, velocity)
         show_rates(record, r[arms][2], r[arms][3])
 
-    return Arm(reach, reach_acceleration, relief, set_pivot, show_way, ease, pull)
+    return Arm(reach, reach_acceleration, relief, set_pivot, show_way, ease, give, pull)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from fmu_src.tethered_deorbit.bodies.rigid import Rigid
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR
 from orbital.kernel import kernel
-from orbital.vectors import Array, norm
+from orbital.vectors import Array, dot, norm, unit
 
 WIDEST = 1.0
 """By how much a body may turn in a step [rad]."""
@@ -29,6 +29,7 @@ class Bounds(NamedTuple):
     longest: Callable[..., Any]
     squared_error: Callable[..., Any]
     pace: Callable[..., Any]
+    square_across: Callable[..., Any]
     moved_mass: Callable[..., Any]
 
 
@@ -78,6 +79,16 @@ def make_bounds(target: Rigid, chaser: Rigid, straight: bool, followed: float, b
         return float(target.squared_error(record, state, error) + chaser.squared_error(record, state, error))
 
     @kernel
+    def drowned(record: Any) -> float:
+        """How far what is lost of a vibration drowns in what its dashpot takes, 0 to 1 [-].
+
+        Checked  tests/tethered_deorbit/test_rigid.py: the steps of a target that tumbles
+        """
+        r = record[0]
+        damping = abs(r.state_damping) / (2.0 * r.state_effective_mass * r.state_frequency)
+        return float(min(1.0, damping / WELL_DAMPED))
+
+    @kernel
     def pace(record: Any, state: Array) -> float:
         """The environment's pace, or a share of the rate of the body that turns fastest, up to the line's [rad/s]: what
         moves across the line goes round with it.
@@ -85,9 +96,40 @@ def make_bounds(target: Rigid, chaser: Rigid, straight: bool, followed: float, b
         Checked  tests/tethered_deorbit/test_rigid.py: three tugs, and the steps of a target that tumbles
         """
         r = record[0]
-        damping = abs(r.state_damping) / (2.0 * r.state_effective_mass * r.state_frequency)
-        share = undamped + (damped - undamped) * min(1.0, damping / WELL_DAMPED)
+        share = undamped + (damped - undamped) * drowned(record)
         return float(max(r.state_pace, min(r.state_frequency, share * fastest(state))))
+
+    @kernel
+    def square_across(record: Any, state: Array, error: Array, along: float) -> float:
+        """Square of the error of the velocity across a taut line [m2/s2], without what is the line's own vibration.
+
+            e'_x = e' - e'_n (n + s (M n/(n.M n) - n)),   M n = n/m_r + A ((I^-1 (a x n)) x a) of either body,
+            s = zeta/0.05, at most 1
+
+        A line made fast beside the centre of mass moves its end aside as it vibrates, by M n. That part of an error is
+        judged by the stretch's tolerance, and dies with the vibration.
+
+        along         e'_n   part of the error along the line    [m/s]
+
+        Valid    after `derivative` of this state
+        Source   impulse on a free rigid body
+        Checked  tests/tethered_deorbit/test_across.py
+        """
+        r = record[0]
+        share = drowned(record)
+        if share == 0.0:
+            return dot(error[9:12], error[9:12]) - along * along
+        way, gives = r.state_line[2], r.state_line[3]
+        unit(way, state[6:9])
+        for i in range(3):
+            gives[i] = way[i] / r.state_reduced_mass
+        target.give(record, way, gives)
+        chaser.give(record, way, gives)
+        eased, square = dot(gives, way), 0.0
+        for i in range(3):
+            aside = error[9 + i] - along * (way[i] + share * (gives[i] / eased - way[i]))
+            square += aside * aside
+        return square
 
     @kernel
     def moved_mass(record: Any, state: Array) -> float:
@@ -104,4 +146,4 @@ def make_bounds(target: Rigid, chaser: Rigid, straight: bool, followed: float, b
             return float(r.state_effective_mass)
         return float(1.0 / (1.0 / r.state_reduced_mass + target.ease(record, vector) + chaser.ease(record, vector)))
 
-    return Bounds(longest, squared_error, pace, moved_mass)
+    return Bounds(longest, squared_error, pace, square_across, moved_mass)

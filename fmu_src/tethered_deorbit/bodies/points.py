@@ -14,7 +14,7 @@ from fmu_src.tethered_deorbit.idle import no_end, nothing, zero
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, HANDED_OVER, START_STRETCHED
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, distance_rate, turning_share
 from orbital.kernel import kernel, view
-from orbital.vectors import Array, norm
+from orbital.vectors import Array, dot, norm
 
 
 @kernel
@@ -37,6 +37,15 @@ def pace(record: Any, state: Array) -> float:
     """
     own: float = record[0].state_pace
     return own
+
+
+@kernel
+def square_across(record: Any, state: Array, error: Array, along: float) -> float:
+    """Square of the error of the velocity across the line [m2/s2]: see `Bodies`.
+
+    Checked  tests/tethered_deorbit/test_integrator.py
+    """
+    return dot(error[9:12], error[9:12]) - along * along
 
 
 @kernel
@@ -200,6 +209,7 @@ def make_points(interface: Interface) -> Bodies:
         longest=no_end,
         squared_error=zero,
         pace=pace,
+        square_across=square_across,
         moved_mass=moved_mass,
         mass_now=mass_now,
         publish=nothing,

@@ -58,6 +58,7 @@ class Rigid(NamedTuple):
     show_way(record, state, vector, velocity)   rates of what is shown of its way; after `reach`
     ease(record, vector) -> 1/m                 what its turning adds to the inverse of the mass that a line along this
                                                 vector has to move [1/kg]; after `reach`
+    give(record, vector, out)                   add how its attachment gives way to a pull [1/kg]; after `reach`
     pull(record, state, rate, x, y, z)          add the torque of the line, a force [N] on the chaser; after `reach`
     add_turning, turn_back, squared_error, energy   as of `Bodies`
     carried                                     coordinates of a step
@@ -76,6 +77,7 @@ class Rigid(NamedTuple):
     set_pivot: Callable[..., Any]
     show_way: Callable[..., Any]
     ease: Callable[..., Any]
+    give: Callable[..., Any]
     pull: Callable[..., Any]
     add_turning: Callable[..., Any]
     turn_back: Callable[..., Any]
@@ -302,6 +304,7 @@ def make_rigid(
         set_pivot=arm.set_pivot,
         show_way=arm.show_way,
         ease=arm.ease,
+        give=arm.give,
         pull=arm.pull,
         add_turning=add_turning,
         turn_back=turn_back,

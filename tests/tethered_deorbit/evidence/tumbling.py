@@ -2,16 +2,21 @@
 
     python -m tests.tethered_deorbit.evidence.tumbling
 
-prints a row for each scheme and choice of tolerances, in some minutes, most of them `radau`'s.
+makes `tumbling.json` again: a row for each scheme and choice of tolerances, in some minutes, most of them `radau`'s.
 """
 
 from __future__ import annotations
 
+import json
 import math
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 from tests.tethered_deorbit.evidence.schemes import run, tolerances
 
+RESULT = Path(__file__).with_name("tumbling.json")
+COMMAND = "python -m tests.tethered_deorbit.evidence.tumbling"
 OWN = 0.155
 """Energy of the relative motion of Table 2's pair, to which the pair's speed here is set [J]."""
 SPEED = math.sqrt(2.0 * OWN / (2000.0 * 1000.0 / 3000.0) / 0.98)
@@ -29,18 +34,33 @@ TUMBLING: dict[str, Any] = {
 CASES = (("dop853", 1.0), ("dop853", 0.1), ("dop853", 0.01), ("gauss", 1.0), ("radau", 1.0))
 
 
+def row(target: str, scheme: str, factor: float) -> dict[str, Any]:
+    """What a day of tugs takes off a target of this kind, with all tolerances by a factor [J]."""
+    given = START if target == "point" else START | TUMBLING
+    terms, values = {"environment": "none", "target": target}, given | tolerances(factor)
+    begin = run(scheme, terms, values, 0.0, 60.0)["energy.relative"]
+    i = run(scheme, terms, values, 86400.0, 60.0)
+    change = i["energy.relative"] - begin
+    return {
+        "target": target,
+        "scheme": scheme,
+        "tolerances": factor,
+        "change_J": float(f"{change:.2e}"),
+        "of_all": float(f"{change / begin:.2e}"),
+        "of_relative_motion": float(f"{change / OWN:.2e}"),
+        "tugs": int(i["tether.tug_count"]),
+        "steps": int(i["solver.steps"]),
+    }
+
+
 def main() -> None:
-    for target, given in (("point", START), ("rigid", START | TUMBLING)):
+    rows = []
+    for target in ("point", "rigid"):
         for scheme, factor in CASES:
-            terms, values = {"environment": "none", "target": target}, given | tolerances(factor)
-            begin = run(scheme, terms, values, 0.0, 60.0)["energy.relative"]
-            i = run(scheme, terms, values, 86400.0, 60.0)
-            change = i["energy.relative"] - begin
-            print(
-                f"{target} {scheme} x {factor:g}: {change:.1e} J of {begin:.4g} J, {change / OWN:.1e} of {OWN} J; "
-                f"{i['tether.tug_count']} tugs, {i['solver.steps']} steps",
-                flush=True,
-            )
+            rows.append(row(target, scheme, factor))
+            print(rows[-1], flush=True)
+    stamp = {"command": COMMAND, "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")}}
+    RESULT.write_text(json.dumps(stamp | {"rows": rows}, indent=1) + "\n")
 
 
 if __name__ == "__main__":
