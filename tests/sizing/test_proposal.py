@@ -64,6 +64,23 @@ def test_the_least_line_in_stock_that_bears_the_tug(monkeypatch: pytest.MonkeyPa
         assert strength * math.pi * found.diameter**2 / 4.0 / found.peak == pytest.approx(bears(found.diameter))
 
 
+def test_the_factor_of_safety_that_is_asked_for(tmp_path: Path) -> None:
+    """It decides the tether, and the scene is sized with it; by hand the section goes with its square."""
+    plain, safer = (propose(read("8000 kg, 25 x 10 x 5 m"), factor) for factor in (2.0, 40.0))
+    assert safer.diameter > 2.0 * plain.diameter
+    strength, modulus = 0.41 * 2.92e9, 0.35 * 70.5e9
+    caught = 8000.0 + safer.net + 4.0 * safer.bullet
+    area = (40.0 * 2.5 * safer.tug / strength) ** 2 * modulus * (2000.0 * caught / (2000.0 + caught)) / safer.line
+    needed = math.sqrt(4.0 * area / math.pi)
+    assert needed <= safer.diameter
+    assert all(size < needed for size in STOCK if size < safer.diameter)
+    commands.of_debris("8000 kg, 25 x 10 x 5 m", tmp_path / "safe.toml", 40.0)
+    assert load(str(tmp_path / "safe.toml")).sizing["factor_of_safety"] == 40.0
+    assert "--fos 40" in (tmp_path / "safe.toml").read_text()
+    with pytest.raises(InputError, match=r"--fos 0\.5: expected a factor of safety from 1 to 100"):
+        commands.of_debris("1 t, 4 m", None, 0.5)
+
+
 def test_where_it_is_written(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"ends in .toml"):
         commands.of_debris("1 t, 4 m", tmp_path / "folder")
