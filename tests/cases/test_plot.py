@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from dcone_cosim.cases.case import Value
@@ -22,7 +24,7 @@ def drawn(given: list[str], si: list[float], unit: str = "m") -> tuple[str, list
     figure.canvas.draw()
     (axes,) = figure.axes
     ticks = [tick.get_window_extent() for tick in axes.get_xticklabels() if tick.get_text()]
-    apart = all(one.x1 < other.x0 for one, other in zip(ticks, ticks[1:], strict=False))
+    apart = all(one.x1 < other.x0 for one, other in pairwise(ticks))
     inside = axes.yaxis.label.get_window_extent().x0 > 0.0
     return axes.get_xlabel(), axes.lines[0].get_xdata().tolist(), apart and inside
 
