@@ -239,9 +239,16 @@ def size(
 
     if [scene is not None, debris is not None, paper].count(True) != 1:
         raise InputError("dcone size: expected one of a SCENE, --debris or --paper")
+    of_a_scene = {"--set": settings, "--range": ranges, "--material": material, "--samples": samples, "--phase": phase}
+    idle = [option for option, told in of_a_scene.items() if told is not None and told != []]
+    idle += ["--quick"] if debris is not None and quick else []
+    idle += ["--fos"] if paper and fos is not None else []
+    if scene is None and idle:
+        instead = "--debris" if debris is not None else "--paper"
+        raise InputError(f"dcone size {instead}: {', '.join(idle)} would change nothing of it")
     with at_work() as progress:
         if debris is not None:
-            done = commands.of_debris(debris, out)
+            done = commands.of_debris(debris, out, fos)
         elif paper:
             done = commands.of_paper(out, progress, quick, jobs, isolate)
         else:

@@ -13,6 +13,8 @@ from dcone_cosim.cases.chief import chief
 from dcone_cosim.cases.show import short
 from dcone_cosim.cases.table import Column, Entry
 from dcone_cosim.plots import style
+from dcone_cosim.scene.expected import number_and_unit
+from dcone_cosim.units import named, spoken
 
 MOST = 6
 """Figures drawn."""
@@ -20,6 +22,8 @@ MOST_LINES = 10
 """Values of the second key that are told apart by colour."""
 COLUMNS = 3
 """Of the legend."""
+TICKS = 5
+"""Of an axis at most: numbers of many digits must not run into each other."""
 DECADES = 100.0
 """Ratio of largest to smallest value from which an axis is logarithmic."""
 
@@ -47,7 +51,7 @@ def draw(entries: Sequence[Entry], columns: Sequence[Column], title: str, path: 
 def _figure(
     entries: Sequence[Entry], shown: Sequence[Column], across: str, second: str | None, by_name: Mapping[str, Column]
 ) -> Any:
-    places, names = _places(entries, across, by_name)
+    places, names, unit = _places(entries, across, by_name)
     width = 2 if len(shown) > 1 else 1
     height = math.ceil(len(shown) / width)
     lines = min(len({entry.varied[second].given for entry in entries}), MOST_LINES) if second else 0
@@ -56,8 +60,8 @@ def _figure(
     size = (4.6 * width, 2.3 * height + top + 0.55)
     figure = style.new_figure(*size)
     grid = figure.subplots(height, width, squeeze=False, sharex=True)
-    figure.subplots_adjust(left=0.8 / size[0], right=1.0 - 0.15 / size[0])
-    figure.subplots_adjust(bottom=0.5 / size[1], top=1.0 - top / size[1], wspace=0.28, hspace=0.12)
+    figure.subplots_adjust(left=1.05 / size[0], right=1.0 - 0.2 / size[0])
+    figure.subplots_adjust(bottom=0.5 / size[1], top=1.0 - top / size[1], wspace=0.36, hspace=0.12)
     for axes, column in zip(grid.flat, shown, strict=False):
         _curves(axes, entries, places, second, column)
         _failures(axes, entries, places)
@@ -65,12 +69,12 @@ def _figure(
         if names:
             axes.set_xticks(range(len(names)), names, parse_math=False)
         else:
-            axes.ticklabel_format(axis="y", useOffset=False)
+            axes.ticklabel_format(useOffset=False)
+            axes.locator_params(nbins=TICKS)
             _spread_decades(axes, places)
     for axes in list(grid.flat)[len(shown) :]:
         axes.set_visible(False)
     for axes in list(grid.flat)[max(0, len(shown) - width) : len(shown)]:
-        unit = by_name[across].unit if across in by_name else "1"
         axes.set_xlabel(_labelled(across, unit), fontsize=8, parse_math=False)
         axes.tick_params(labelbottom=True)
     style.legend(grid[0, 0], columns=COLUMNS)
@@ -94,12 +98,18 @@ def _labelled(name: str, unit: str) -> str:
     return name if unit == "1" else f"{name} [{unit}]"
 
 
-def _places(entries: Sequence[Entry], key: str, by_name: Mapping[str, Column]) -> tuple[list[float], list[str]]:
-    """Where each case stands on the axis; names of the places if the key's values are no numbers."""
-    if key in by_name:
-        return by_name[key].numbers(), []
-    names = list(dict.fromkeys(entry.varied[key].given for entry in entries))
-    return [float(names.index(entry.varied[key].given)) for entry in entries], names
+def _places(entries: Sequence[Entry], key: str, by_name: Mapping[str, Column]) -> tuple[list[float], list[str], str]:
+    """Where each case stands on the axis; names of the places if the key's values are no numbers; their unit, the one
+    in which all of them are given, if there is one."""
+    if key not in by_name:
+        names = list(dict.fromkeys(entry.varied[key].given for entry in entries))
+        return [float(names.index(entry.varied[key].given)) for entry in entries], names, "1"
+    numbers = by_name[key].numbers()
+    units = {(number_and_unit(entry.varied[key].given) or (0.0, ""))[1] for entry in entries}
+    own = named(units.pop()) if len(units) == 1 and "" not in units else None
+    if own is None:
+        return numbers, [], by_name[key].unit
+    return [own.from_si(number) for number in numbers], [], spoken(own.name)
 
 
 def _curves(axes: Any, entries: Sequence[Entry], places: Sequence[float], second: str | None, column: Column) -> None:

@@ -15,7 +15,7 @@ import ctypes
 import itertools
 import math
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any
@@ -91,7 +91,6 @@ class Component:
             )
             self._watch("being loaded")
             self._fmu.instantiate(callbacks=self._messages.callbacks(), loggingOn=True)
-            self._do_step = self.function("fmi2DoStep")
         except Exception as error:
             os.chdir(place)  # fmpy stays in the binary's folder when that does not load
             raise self._not_instantiated(error) from None
@@ -120,12 +119,6 @@ class Component:
     def reference(self, name: str) -> VariableInfo:
         """The variable of that name; an unknown one is an error that names the nearest."""
         return self.archive.variable(name, self.name)
-
-    def function(self, name: str) -> Callable[..., int]:
-        """One of FMI's as the binary has it, which returns its status: for calls that are made in every step, where
-        fmpy's own way costs as much as they do."""
-        found: Callable[..., int] = getattr(self._fmu.dll, name)
-        return found
 
     def set(self, values: Mapping[str, float]) -> None:
         """Set variables by name, all Reals in one call, then Integers, then Booleans.
@@ -200,9 +193,9 @@ class Component:
         self._alive()
         no_return = self._steps <= min(self._steps_of.values(), default=self._steps)
         try:
-            status = self._do_step(self._fmu.component, time, size, int(no_return))
-            if status > fmi2.fmi2Warning:
-                raise self._refused(fmpy.fmi1.FMICallException("fmi2DoStep", status), time, size)
+            self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2True if no_return else fmi2.fmi2False)
+        except fmpy.fmi1.FMICallException as error:
+            raise self._refused(error, time, size) from None
         finally:
             self._watch("fmi2DoStep")
         if self._messages.late:
@@ -382,7 +375,7 @@ class Reader:
         self._to_si: tuple[Row, Row] | None = None
         if not all(info.own.is_si for info in reals):
             self._to_si = np.array([info.own.factor for info in reals]), np.array([info.own.offset for info in reals])
-        self._blocks: list[tuple[str, Callable[..., int], Any, int, Any, tuple[Row, npt.NDArray[np.int32]] | None]] = []
+        self._blocks: list[tuple[Any, Any, int, Any, tuple[Row, npt.NDArray[np.int32]] | None]] = []
         begin = 0
         for kind, group in itertools.groupby(self._infos, key=lambda info: info.kind):
             references = [info.reference for info in group]
@@ -393,9 +386,8 @@ class Reader:
             else:
                 buffer = (ctypes.c_int * count)()
                 into = part, np.frombuffer(buffer, dtype=np.int32)
-            get = f"fmi2Get{kind}"
-            asked = (ctypes.c_uint * count)(*references)
-            self._blocks.append((get, component.function(get), asked, count, buffer, into))
+            getter = getattr(component._fmu, f"fmi2Get{kind}")
+            self._blocks.append((getter, (ctypes.c_uint * count)(*references), count, buffer, into))
             begin += count
         self._calls = " or ".join(f"fmi2Get{kind}" for kind in dict.fromkeys(info.kind for info in self._infos))
 
@@ -404,13 +396,13 @@ class Reader:
         component._alive()
         instance = component._fmu.component
         try:
-            for name, getter, references, count, buffer, into in self._blocks:
-                status = getter(instance, references, count, buffer)
-                if status > fmi2.fmi2Warning:
-                    raise component._error(fmpy.fmi1.FMICallException(name, status))
+            for getter, references, count, buffer, into in self._blocks:
+                getter(instance, references, count, buffer)
                 if into is not None:
                     part, view = into
                     part[:] = view
+        except fmpy.fmi1.FMICallException as error:
+            raise component._error(error) from None
         finally:
             component._watch(self._calls)
         reals = self._reals

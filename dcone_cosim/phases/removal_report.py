@@ -73,7 +73,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     yield from _of_tension(phase, result)
     last = recorder.last()
     if last.get("break.broken"):
-        yield Finding(phase, "broke_at", "the tether broke, and both ends fly on, at", last["break.time"], "s")
+        then = "" if result.ended_by else ", and both ends fly on,"
+        yield Finding(phase, "broke_at", f"the tether broke{then} at", last["break.time"], "s")
     if phase not in run.handovers:
         yield from _of_appendage(phase, last)
     for name, label, unit, shown_in in (

@@ -100,6 +100,13 @@ def logarithmic(axes: Any) -> None:
     axes.yaxis.set_minor_formatter("")
 
 
+def plain_ticks(low: float, high: float) -> list[float]:
+    """1, 2 and 5 of each decade between two limits: ticks of a logarithmic axis of a decade or two."""
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    ticks = [round(step * 10.0**decade, 12) for decade in decades for step in (1.0, 2.0, 5.0)]
+    return [tick for tick in ticks if low <= tick <= high]
+
+
 def save(figure: Any, path: Path) -> None:
     figure.savefig(path, dpi=DPI, pil_kwargs={"compress_level": 1})
 

@@ -185,7 +185,8 @@ def _sizing(document: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]
     table = table_in(document, (SIZING,), mistakes)
     found: dict[str, Any] = read_table(table, SIZING_KEYS, (SIZING,), mistakes, (RANGES,))
     sizes, values = (found.get(key, []) for key in ("flux_sizes", "flux_values"))
-    if len(sizes) != len(values) or len(sizes) == 1 or sorted(set(sizes)) != sizes:
+    given = "flux_sizes" in found or "flux_values" in found
+    if given and (len(sizes) != len(values) or len(sizes) < 2 or sorted(set(sizes)) != sizes):
         text = "expected two or more sizes, the least first, and as many flux_values"
         mistakes.append(Mistake((SIZING, "flux_sizes"), table.get("flux_sizes"), text))
     for key, ends in table_in(table, (SIZING, RANGES), mistakes).items():

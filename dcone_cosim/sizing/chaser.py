@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from dcone_cosim.sizing.ground import Found, Ground, reduced, steady, stiffness
+from dcone_cosim.sizing.ground import Found, Ground, reduced, stiffness
 from dcone_cosim.sizing.options import Options
 from orbital import disposal
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
@@ -62,8 +62,11 @@ def _extremes(runs: Sequence[Found], name: str) -> list[float]:
     return [value for least, _, most in found for value in (least, most)]
 
 
-def of_attitude(ground: Ground, run: Found, options: Options) -> Iterator[Asked]:
-    """Torque of the line's pull beside the chaser's centre of mass, against what its attitude control has."""
+def of_attitude(ground: Ground, run: Found, still: float, options: Options) -> Iterator[Asked]:
+    """Torque of the line's pull beside the chaser's centre of mass, against what its attitude control has.
+
+    still    tension without tugs [N]
+    """
     values = ground.values
     own = [values.get(f"chaser.attachment[{i}]", 0.0) for i in (1, 2, 3)]
     rigid = any(own)
@@ -71,11 +74,9 @@ def of_attitude(ground: Ground, run: Found, options: Options) -> Iterator[Asked]
     whose = "the scene's attachment, across the line of sight" if rigid else "[sizing] offset"
     torque = values.get("aocs.torque_limit", options.torque)
     held = "the scene's aocs.torque_limit" if "aocs.torque_limit" in values else "[sizing] torque"
-    still = run.figure("tension_largest") or steady(values)
-    mean = run.figure("tension_mean") or steady(values)
     yield Asked("offset of the pull", offset, "m", whose)
     yield Asked("authority", torque, "N.m", held)
-    yield Asked("steady torque", still * offset, "N.m", "largest tension of the last orbit times the offset")
+    yield Asked("steady torque", still * offset, "N.m", "sustained tension, without tugs, times the offset")
     yield Asked(
         "share of the authority", still * offset / torque, "1", "steady torque over authority: below 1 it holds"
     )
@@ -101,7 +102,11 @@ def of_attitude(ground: Ground, run: Found, options: Options) -> Iterator[Asked]
     if "orbit.altitude" in values:
         axis = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]
         period = 2.0 * math.pi * math.sqrt(axis**3 / EARTH_MU)
-        text = "mean tension of the last orbit times offset and period, were it all to one side"
+        mean, window = run.figure("tension_mean"), run.figure("tension_window")
+        whose = "mean tension of the last orbit"
+        if mean is None or window is None or window < period:
+            mean, whose = still, "sustained tension"  # the run is too short for a mean over an orbit
+        text = f"{whose} times offset and period, were it all to one side"
         yield Asked("momentum per orbit", mean * offset * period, "N.m.s", text)
     if "aocs.deviation" in run.loads["extremes"]:
         most = run.loads["extremes"]["aocs.deviation"][2]

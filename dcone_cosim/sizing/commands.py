@@ -39,8 +39,8 @@ from dcone_cosim.sizing import bullets, closed_net, page, paper, plot, report, s
 from dcone_cosim.sizing.debris import read
 from dcone_cosim.sizing.ground import Ground
 from dcone_cosim.sizing.headline import headline
-from dcone_cosim.sizing.options import Options, options_of
-from dcone_cosim.sizing.proposal import propose, scene_text
+from dcone_cosim.sizing.options import Options, factor_of, options_of
+from dcone_cosim.sizing.proposal import SAFETY, propose, scene_text
 from dcone_cosim.sizing.result import Sizing
 from dcone_cosim.sizing.section import Section, long_table
 from dcone_cosim.sizing.study import study
@@ -239,9 +239,9 @@ def _flights(rows: Rows, progress: Progress, jobs: int | None) -> list[bullets.O
         return bullets.flights(Runner(rows, workers, 2 * count), progress)
 
 
-def of_debris(text: str, out: Path | None) -> Sizing:
+def of_debris(text: str, out: Path | None, factor_of_safety: float | None = None) -> Sizing:
     """What is proposed for a debris; the scene that tests it is written to a file where one is named."""
-    proposal = propose(read(text))
+    proposal = propose(read(text), SAFETY if factor_of_safety is None else factor_of(factor_of_safety))
     heads = (section.text("what", "what"), section.Head("value", "value", section.ROW), section.text("unit", "unit"),
              section.text("reason", "from"))  # fmt: skip
     rows = [

@@ -83,9 +83,7 @@ def options_of(
     told = dict(scene.sizing)
     chosen = QUICK if quick else FULL
     if factor_of_safety is not None:
-        if not 1.0 <= factor_of_safety <= 100.0:
-            raise InputError(f"--fos {factor_of_safety:g}: expected a factor of safety from 1 to 100")
-        told["factor_of_safety"] = factor_of_safety
+        told["factor_of_safety"] = factor_of(factor_of_safety)
     if samples is not None:
         if not 0 <= samples <= MOST_SAMPLES:
             raise InputError(f"--samples {samples}: expected 0 to {MOST_SAMPLES}")
@@ -98,6 +96,13 @@ def options_of(
     if flux:
         told["flux"] = replace(chosen.flux, source="the scene, [sizing]", off=1.0, **flux)
     return replace(chosen, **told, told=frozenset(name for name, value in told.items() if value))
+
+
+def factor_of(told: float) -> float:
+    """A factor of safety that the command line tells, or `InputError`."""
+    if not 1.0 <= told <= 100.0:
+        raise InputError(f"--fos {told:g}: expected a factor of safety from 1 to 100")
+    return told
 
 
 def of_name(name: str) -> Material:

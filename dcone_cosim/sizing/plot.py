@@ -98,6 +98,9 @@ def _required(study: Study, figure: Any) -> None:
     axes.axvline(1e3 * study.ground.values["tether.diameter"], color=style.MUTED, ls=":", label="the scene's line")
     axes.set_xlabel("diameter [mm]")
     axes.set_xscale("log")
+    ticks = style.plain_ticks(*axes.get_xlim())
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xticks([], minor=True)
     axes.tick_params(axis="y", labelsize=7)
     style.legend(axes, 4)
 
@@ -135,7 +138,7 @@ def _region(study: Study, figure: Any) -> None:
             x, y = rates.index(point.rate), offsets.index(point.offset)
             axes.add_patch(_box(x, y, colour))
             told = f"{point.peak:.3g} N" if math.isfinite(point.peak) else "no result"
-            wraps = f"\n{point.wrapped:.2g} m on it" if point.wrapped > 0.0 else ""
+            wraps = f"\n{point.wrapped:.2g} m lie on it" if point.wrapped > 0.0 else ""
             axes.text(x, y, told + wraps, ha="center", va="center", fontsize=7.5)
         axes.set_xlim(-0.5, len(rates) - 0.5)
         axes.set_ylim(-0.5, len(offsets) - 0.5)
@@ -145,7 +148,8 @@ def _region(study: Study, figure: Any) -> None:
         axes.set_title(f"thrust {thrust:g} N", loc="left", fontsize=9)
         axes.grid(False)
     panels[0].set_ylabel("offset of the line [m]")
-    style.head(figure, "Admissible (green): peak within strength over factor of safety, the line less than half round")
+    told = "Peak tension, and line that comes to lie on the debris; admissible (green): "
+    style.head(figure, f"{told}within strength over factor of safety, and with the line less than half round it")
 
 
 def _box(x: float, y: float, colour: str) -> Any:

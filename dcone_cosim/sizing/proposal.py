@@ -57,6 +57,7 @@ class Proposal:
     speed, angle      of the bullets [m/s], [rad];  distance   from muzzle to the debris's centre [m]
     line, diameter    length and diameter of the tether [m]
     tug               at which it comes taut, by its estimate [m/s];  peak   of that tug's tension [N]
+    safety            factor of safety on that tension [1]
     """
 
     debris: Debris
@@ -70,6 +71,7 @@ class Proposal:
     diameter: float
     tug: float
     peak: float
+    safety: float
     side_why: str
 
     @property
@@ -96,7 +98,7 @@ class Proposal:
             if self.mesh == budget.MESH
             else f"0.5 m x length / {KNOWN:g} m: similar to Table 3"
         )
-        need = f"FoS {SAFETY:g} on a tug of {LATER:g} x the first's speed, Kevlar 29 braid, at the fixed point; "
+        need = f"FoS {self.safety:g} on a tug of {LATER:g} x the first's speed, Kevlar 29 braid, at the fixed point; "
         return [
             Figure("net.side", "net, side", self.side, "m", "", f"{self.side_why}; {whole}"),
             Figure("net.mesh", "net, mesh", self.mesh, "m", "", mesh),
@@ -119,8 +121,8 @@ class Proposal:
         ]
 
 
-def propose(debris: Debris) -> Proposal:
-    """Net, bullets, tether and shot for a debris."""
+def propose(debris: Debris, safety: float = SAFETY) -> Proposal:
+    """Net, bullets, tether and shot for a debris; the tether with a factor of safety on the highest tension."""
     wanted, why = budget.side_of(debris.length), f"{budget.SIDE_OVER_LENGTH:g} x length, Table 3"
     mesh = round(budget.MESH * max(1.0, debris.length / KNOWN), 2)
     side = round(mesh * math.ceil(wanted / mesh - 1e-9), 2)
@@ -133,11 +135,11 @@ def propose(debris: Debris) -> Proposal:
     reduced = CHASER * caught / (CHASER + caught)
     tug = momentum / CHASER + momentum / caught
     assert LINE.strength is not None
-    section = tethers.snap_section(LATER * tug, reduced, line, LINE.youngs_modulus, LINE.strength, SAFETY)
+    section = tethers.snap_section(LATER * tug, reduced, line, LINE.youngs_modulus, LINE.strength, safety)
     needed = tethers.diameter_of(section)
     diameter = next((size for size in STOCK if size >= needed), 1e-3 * math.ceil(1e3 * needed))
     peak = LATER * tug * math.sqrt(LINE.axial_stiffness(diameter) / line * reduced)
-    return Proposal(debris, side, mesh, net, bullet, speed, side, line, diameter, tug, peak, why)
+    return Proposal(debris, side, mesh, net, bullet, speed, side, line, diameter, tug, peak, safety, why)
 
 
 def scene_text(proposal: Proposal) -> str:
@@ -146,8 +148,9 @@ def scene_text(proposal: Proposal) -> str:
     depth, width = p.debris.size[2], p.debris.size[1]
     scale, force = p.side / SIDE, (p.bullet / 1.27) * (p.speed / SPEED) ** 2 / (p.side / SIDE)
     drop = 0.006 * p.pace
-    return f'''# Proposed by `dcone size --debris "{p.debris.text}"`: the scene `mission` for this debris. Its own
-# sizing: `dcone size` with this file. Change what you know better.
+    factor = "" if p.safety == SAFETY else f" --fos {p.safety:g}"
+    return f'''# Proposed by `dcone size --debris "{p.debris.text}"{factor}`: the scene `mission` for this debris.
+# Its own sizing: `dcone size` with this file. Change what you know better.
 title = "Proposal: {p.debris.text} of debris is netted, handed over and towed"
 phases = ["capture", "removal"]
 
@@ -230,6 +233,9 @@ damping_ratio = 0.05
 direction = "along_track"
 level = "-0.01 N"
 specific_impulse = "3000 s" # an ion engine
+
+[sizing]
+factor_of_safety = {p.safety:g}
 '''
 
 

@@ -315,6 +315,11 @@ def _net(study: Study) -> Section:
             f"without: the tug "
             f"asks {more} what the net's own motion does"
         ]
+        before = max(one.drawn for one in (*pulled, *calm))
+        if before > with_it:
+            section.said.append(
+                f"the most that they bear, {before:.3g} N, comes before, while the net is drawn together"
+            )
         off = [one for one in pulled if one.outcome not in ("captured", "settled")]
         section.said.append(
             f"in {len(off)} of {len(pulled)} runs the net slips off under the tug"

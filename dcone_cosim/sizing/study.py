@@ -183,7 +183,7 @@ def study(
         sensitivity.slopes(ground, ranges, options.steps),
         region.region(ground, breaking, options.factor_of_safety, options.quick),
         [],
-        list(chaser.of_attitude(ground, nominal, options)),
+        list(chaser.of_attitude(ground, nominal, still, options)),
         chaser.ways(ground),
         [],
         captures,

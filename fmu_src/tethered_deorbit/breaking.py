@@ -55,7 +55,7 @@ def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) ->
 
     @kernel
     def act(record: Any, state: Array, time: float, by_state: bool) -> int:
-        """Break; BROKE if the run ends with it.
+        """Break; BROKE if the run ends with it, with outputs of a line that still pulls.
 
         Checked  tests/tethered_deorbit/test_ends.py
         """
@@ -67,11 +67,11 @@ def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) ->
         _, length, speed = line(record, state)
         if not reel.tension(record, length, speed, 0.0) >= REACHED * r.break_strength:
             return 0
+        r.break_broken = 1
+        r.break_time = time
         if not r.break_flies_on:
             return blame(record, BROKE, 0, r.break_strength)
         r.state_broken = 1
-        r.break_broken = 1
-        r.break_time = time
         return 0
 
     @kernel

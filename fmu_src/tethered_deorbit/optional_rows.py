@@ -60,7 +60,7 @@ BREAKING = Group(
             "the line breaks where its tension exceeds its strength",
             (
                 positive("break.strength", "N", "tension at which the line breaks", 1000.0, 1e12),
-                Variable("break.flies_on", "1", "parameter", "both ends fly on; else the run ends there", False,
+                Variable("break.flies_on", "1", "parameter", "both ends fly on; else the run ends there", True,
                          kind="Boolean"),
                 flag("break.broken", "the line is broken"),
                 peak("break.time", "s", "when it broke, since the start of this instance; zero unless broken"),

@@ -45,6 +45,20 @@ def test_a_factor_that_is_off_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     assert abs(net.difference) > 0.01
 
 
+def test_a_difference_is_over_the_papers_figure() -> None:
+    assert budget.Line("", "", 1.2, 1.0, budget.DERIVED, "").difference == pytest.approx(0.2)
+
+
+def test_the_mesh_that_table_4s_net_allows() -> None:
+    """Both ways: a net of that mesh weighs 6.67 kg, with the margin and without, for each configuration of Fig. 9."""
+    sides = {"36 x 36 m": (36.0, 36.0), "30 x 26 m": (30.0, 26.0), "18 x 18 m": (18.0, 18.0)}
+    assert [(one.name, one.along, one.across) for one in budget.allowed()] == [(n, *s) for n, s in sides.items()]
+    for one in budget.allowed():
+        for mesh, margin in ((one.margined, 1.2), (one.bare, 1.0)):
+            threads = one.along * (one.across / mesh + 1.0) + one.across * (one.along / mesh + 1.0)
+            assert margin * 1440.0 * 3.141592653589793 * 1e-6 / 4.0 * threads == pytest.approx(6.67, rel=1e-9)
+
+
 def test_the_shooting_mechanism_is_a_fit_of_two_parameters() -> None:
     """By the normal equations of a straight line through the paper's three points."""
     x, y = [1.8, 5.08, 40.0], [12.83, 13.09, 16.58]

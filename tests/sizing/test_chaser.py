@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from dcone_cosim.sizing.chaser import ways
+from dcone_cosim.cases.rows import Row
+from dcone_cosim.sizing.chaser import of_attitude, ways
+from dcone_cosim.sizing.ground import Found
+from dcone_cosim.sizing.options import Options
 from dcone_cosim.sizing.result import Sizing
+
+NOTHING: dict[str, Any] = {"extremes": {}}
 
 
 def test_reel(done: Sizing) -> None:
@@ -42,6 +48,26 @@ def test_attitude(done: Sizing) -> None:
     assert found["momentum it leaves"] == pytest.approx(0.1 * given, rel=2e-3)
     assert found["torque of the hardest tug"] == pytest.approx(0.1 * tug[1])
     assert found["time to take that up"] == pytest.approx(found["momentum it leaves"] / 0.2)
+
+
+@pytest.mark.parametrize("orbits", [0.5, 1.01])
+def test_what_is_steady_has_no_tug_in_it(orbits: float) -> None:
+    """A run that ends with a tug of 30 N and keeps 0.03 N: by hand, 0.2 m aside, over an orbit of 7178.137 km."""
+    period = 2.0 * math.pi * math.sqrt(7178137.0**3 / 3.986004418e14)
+    figures = {"removal.tension_mean": 0.02, "removal.tension_largest": 30.0, "removal.tension_window": orbits * period}
+    run = Found(30.0, [(10.0, 30.0, 0.02)], Row("key", "completed", figures=figures, samples={"removal": NOTHING}))
+    values = {
+        "orbit.altitude": 800e3, "chaser.mass": 2000.0, "target.mass": 1000.0, "tether.rest_length": 12.0,
+        "tether.damping_ratio": 0.05, "tether.diameter": 1e-3, "tether.youngs_modulus": 60e9,
+    }  # fmt: skip
+    ground: Any = SimpleNamespace(values=values)
+    found = {one.what: one.value for one in of_attitude(ground, run, 0.03, Options(offset=0.2, torque=0.5))}
+    assert found["steady torque"] == pytest.approx(0.006)
+    assert found["share of the authority"] == pytest.approx(0.012)
+    assert found["torque of the hardest tug"] == pytest.approx(6.0)
+    assert found["share of the authority, in it"] == pytest.approx(12.0)
+    mean = 0.03 if orbits < 1.0 else 0.02
+    assert found["momentum per orbit"] == pytest.approx(mean * 0.2 * period)
 
 
 def test_a_plume_that_the_scene_names_is_taken_off() -> None:

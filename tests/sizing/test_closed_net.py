@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.contract import OUTCOMES
+from dcone_cosim.progress import Progress
 from dcone_cosim.sizing import closed_net
 from dcone_cosim.sizing.closed_net import Pull, borne
 from tests.cosim.conftest import scene_of
@@ -21,7 +24,9 @@ CAUGHT = 0.2
 class Net:
     """A net that is caught after a while, and of which a thread bears twice what pulls at it."""
 
-    def __init__(self) -> None:
+    def __init__(self, turns: float = 0.0) -> None:
+        """turns: rate of the target, and of the net about it [rad/s]"""
+        self.turns = turns
         self.time = self.pull = self.peak = self.impulse = 0.0
         self.pulls: list[tuple[float, float, float]] = []
 
@@ -53,6 +58,10 @@ class Net:
         known["catch.position[1]"] = 2.0 + 0.1 * self.time
         known["target.position[2]"] = 1.0
         known["target.attitude[1]"] = known["target.attitude[4]"] = math.sqrt(0.5)
+        if self.turns:
+            angle = self.turns * self.time
+            known["catch.position[1]"], known["catch.position[2]"] = 2.0 * math.cos(angle), 1.0 + 2.0 * math.sin(angle)
+            known["target.attitude[1]"], known["target.attitude[4]"] = math.cos(0.5 * angle), math.sin(0.5 * angle)
         return {name: known[name] for name in names}
 
 
@@ -74,6 +83,30 @@ def test_the_pulse_is_a_half_wave_of_the_tugs_height() -> None:
     assert found["slip"] == pytest.approx(0.1 * (1.3 + closed_net.AFTER), rel=0.03)
     early = [pull for time, _, pull in net.pulls if time < CAUGHT]
     assert not np.any(early), "nothing pulls while the net flies"
+
+
+def test_a_net_that_turns_with_the_target_does_not_slide() -> None:
+    net: Any = Net(turns=0.3)
+    found = closed_net._pulled(Pull("key", scene_of("capture"), tug=40.0, light=0.8, lasts=1.3), net)
+    assert found["slip"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_pulse_does_not_fall_below_the_light_pull() -> None:
+    _, net = pulled(40.0)
+    begin = next(time for time, _, pull in net.pulls if pull > 1.0)
+    late = [pull for time, _, pull in net.pulls if time > begin]
+    assert min(late) == 0.8
+
+
+def test_each_start_is_run_with_the_pulse_and_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The light pull is a fiftieth of the tug in both; a scene without a capture has none."""
+    monkeypatch.setattr(closed_net, "Fmus", lambda progress: SimpleNamespace(of=lambda scene: {}))
+    found = closed_net.cases(Alone("mission", (), None), 40.0, 1.3, 2, Progress())
+    assert [(one.seed, one.tug, one.light, one.lasts) for one in found] == [
+        (seed, tug, 0.8, 1.3) for seed in (0, 1) for tug in (0.0, 40.0)
+    ]
+    assert len({one.key for one in found}) == 4
+    assert closed_net.cases(Alone("table2-deorbit", (), None), 40.0, 1.3, 2, Progress()) == []
 
 
 def test_without_the_pulse_the_light_pull_goes_on() -> None:

@@ -133,6 +133,8 @@ flux_values = ["3e-2 /(m2 yr)", "1e-4 /(m2 yr)"]
         ('flux_sizes = ["1 mm", "0.1 mm"]', "the least first"),
         ('least_breaking_load = "5 m"', "is a length"),
         ('breaking = "5 N"', "unknown key"),
+        ("flux_sizes = []\nflux_values = []", "two or more sizes"),
+        ('flux_sizes = ["1 mm"]\nflux_values = ["1 /(m2 yr)"]', "two or more sizes"),
     ):
         (tmp_path / "wrong.toml").write_text(load("table2-deorbit").text + f"\n[sizing]\n{wrong}\n")
         with pytest.raises(InputError, match=said):
@@ -144,3 +146,15 @@ def test_one_of_three(dcone) -> None:
         code, _, said = dcone("size", *arguments)
         assert code == 2
         assert "expected one of a SCENE, --debris or --paper" in said
+
+
+def test_options_that_change_nothing_are_refused(dcone) -> None:
+    """Rather than taken without a word."""
+    for arguments, idle in (
+        (("--debris", "1 t, 4 m", "--samples", "3", "--quick"), "--samples, --quick"),
+        (("--debris", "1 t, 4 m", "--set", "removal.duration=1 h"), "--set"),
+        (("--paper", "--fos", "3", "--material", "Technora"), "--material, --fos"),
+    ):
+        code, _, said = dcone("size", *arguments)
+        assert code == 2
+        assert f"{idle} would change nothing of it" in said

@@ -47,6 +47,10 @@ def test_default_flux() -> None:
     assert Flux().of(1e-3) == pytest.approx(1.05e-5 / YEAR * 10.0**2.5)
 
 
+def test_a_year_is_julian() -> None:
+    assert YEAR == 31_557_600.0
+
+
 def test_a_table_that_is_a_power_law_says_the_same() -> None:
     law = Flux()
     sizes = [1e-4, 1e-3, 1e-2]

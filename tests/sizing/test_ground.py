@@ -34,8 +34,17 @@ def test_preload(ground: Ground) -> None:
     weight = 2000.0 / 3.0 * 12.0 * N**2
     assert preload(ground.values, 0.0, 0.0) == pytest.approx(3.0 * weight, rel=1e-6)
     assert preload(ground.values, math.pi / 2, 0.0) == pytest.approx(0.01 / 3.0, rel=1e-6)
+    aslant = 0.75 * weight + 0.01 / 3.0 * math.sin(math.radians(60.0))
+    assert preload(ground.values, math.radians(60.0), 0.0) == pytest.approx(aslant, rel=1e-6), "3 n^2 cos^2"
     assert preload(ground.values, 0.0, N) == pytest.approx(6.0 * weight, rel=1e-6)
     assert preload(ground.values, 0.0, -2.0 * N) == pytest.approx(3.0 * weight, rel=1e-6)
+
+
+def test_a_line_that_ends_before_the_debris_centre(ground: Ground) -> None:
+    """Two metres from it: the pair is 14 m long, and the tide pulls as much more."""
+    longer = {**ground.values, "target.attachment_distance": 2.0}
+    assert steady(longer) == pytest.approx(14.0 / 12.0 * steady(ground.values), rel=1e-12)
+    assert preload(longer, 0.0, 0.0) == pytest.approx(14.0 / 12.0 * preload(ground.values, 0.0, 0.0), rel=1e-12)
 
 
 def test_no_start_is_stretched(ground: Ground) -> None:

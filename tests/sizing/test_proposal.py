@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.sizing import commands, proposal
-from dcone_cosim.sizing.debris import read
+from dcone_cosim.sizing.debris import Debris, read
 from dcone_cosim.sizing.proposal import STOCK, propose, scene_text
 
 
@@ -62,6 +63,54 @@ def test_the_least_line_in_stock_that_bears_the_tug(monkeypatch: pytest.MonkeyPa
 
         assert bears(found.diameter) >= 2.0 > bears(thin[thin.index(found.diameter) - 1])
         assert strength * math.pi * found.diameter**2 / 4.0 / found.peak == pytest.approx(bears(found.diameter))
+
+
+def test_the_factor_of_safety_that_is_asked_for(tmp_path: Path) -> None:
+    """It decides the tether, and the scene is sized with it; by hand the section goes with its square."""
+    plain, safer = (propose(read("8000 kg, 25 x 10 x 5 m"), factor) for factor in (2.0, 40.0))
+    assert safer.diameter > 2.0 * plain.diameter
+    strength, modulus = 0.41 * 2.92e9, 0.35 * 70.5e9
+    caught = 8000.0 + safer.net + 4.0 * safer.bullet
+    area = (40.0 * 2.5 * safer.tug / strength) ** 2 * modulus * (2000.0 * caught / (2000.0 + caught)) / safer.line
+    needed = math.sqrt(4.0 * area / math.pi)
+    assert needed <= safer.diameter
+    assert all(size < needed for size in STOCK if size < safer.diameter)
+    commands.of_debris("8000 kg, 25 x 10 x 5 m", tmp_path / "safe.toml", 40.0)
+    assert load(str(tmp_path / "safe.toml")).sizing["factor_of_safety"] == 40.0
+    assert "--fos 40" in (tmp_path / "safe.toml").read_text()
+    with pytest.raises(InputError, match=r"--fos 0\.5: expected a factor of safety from 1 to 100"):
+        commands.of_debris("1 t, 4 m", None, 0.5)
+
+
+def test_the_scene_is_mission_made_larger(tmp_path: Path) -> None:
+    """Lengths as the side, times as side over speed, forces as m v^2/a, the vertex as the net."""
+    path = tmp_path / "mine.toml"
+    commands.of_debris("8000 kg, 25 x 10 x 5 m", path)
+    own, small = (load(name).phases for name in (str(path), "mission"))
+
+    def grows(key: str) -> float:
+        one, other = (phases[0].setting(key) for phases in (own, small))
+        assert one is not None
+        assert other is not None
+        return one / other
+
+    larger = grows("net.side")
+    assert larger > 6.0
+    assert grows("net.mesh") == pytest.approx(25.0 / 3.9, rel=2e-3)
+    assert grows("tether.length") == pytest.approx(larger, rel=1e-3)
+    assert grows("closing.time") == pytest.approx(larger, rel=5e-3)
+    assert grows("closing.stall_force") == pytest.approx(grows("bullets.mass") / larger, rel=5e-3)
+    assert grows("vertex.mass") == pytest.approx(grows("net.mass"), rel=5e-3)
+
+
+@pytest.mark.parametrize(("size", "rings"), [((3.9, 2.5, 2.5), 1), ((3.9, 1.0, 0.6), 3), ((3.9, 3.9, 3.9), 1)])
+def test_no_more_rings_than_are_needed(size: tuple[float, float, float], rings: int) -> None:
+    """12.5 m of mouth and 0.25 m of lock between two bullets: loops of 6.4 m round 10 m, of 3.2 m round 3.2 m."""
+    found = replace(propose(read("1000 kg, 3.9 m")), debris=Debris(1000.0, size, True))
+    girth = 2.0 * (size[1] + size[2])
+    assert found.rings == rings
+    assert 12.75 / (rings + 1) <= girth
+    assert rings == 1 or 12.75 / rings > girth
 
 
 def test_where_it_is_written(tmp_path: Path) -> None:

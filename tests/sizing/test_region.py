@@ -11,7 +11,7 @@ from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.progress import Progress
 from dcone_cosim.sizing.ground import Found, Ground
-from dcone_cosim.sizing.region import _turning, _verdict, region
+from dcone_cosim.sizing.region import _half_round, _turning, _verdict, region
 from dcone_cosim.sizing.result import Sizing
 from dcone_cosim.sizing.work import Load
 
@@ -37,6 +37,33 @@ def test_the_strength_counts_over_the_factor_of_safety(monkeypatch: pytest.Monke
     assert {point.verdict for point in found.points} == {"admissible"}
     assert len(found.points) == 40
     assert found.body == "the scene's box"
+    half = 0.5 * ground.values["target.size[1]"]
+    assert {point.offset for point in found.points} == {0.0, 0.25 * half, 0.5 * half, half}
+
+
+def test_no_start_of_the_grid_is_stretched(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line that is made fast aside reaches less far along: the pair begins nearer, by the way that it is aside."""
+    begun: list[Load] = []
+
+    def keeps(self: Ground, cases: Sequence[Load], what: str) -> list[Found]:
+        begun.extend(cases)
+        row = Row("key", "completed", samples={"removal": {"extremes": {}}})
+        return [Found(1.0, (), row) for _ in cases]
+
+    monkeypatch.setattr(Ground, "run", keeps)
+    region(Ground(Alone("table2-deorbit", (), None), Progress()), 100.0, 2.0, quick=True)
+    found = {}
+    for case in begun:
+        values = case.scene.phases[0].main.parameters
+        found[values["target.attachment[1]"]] = values["start.separation"]
+    assert found == {0.0: 14.0, 1.0: pytest.approx(14.0 - (math.hypot(12.0, 1.0) - 12.0) - 1e-3)}
+
+
+def test_half_of_the_way_round() -> None:
+    """Across the axis about which it turns: a box's width and depth; two radii and the length of a cylinder."""
+    assert _half_round({"target.size[1]": 2.0, "target.size[2]": 5.0, "target.size[3]": 9.0}) == 7.0
+    assert _half_round({"target.cylinder_radius": 1.5, "target.cylinder_length": 4.0}) == 7.0
+    assert _half_round({}) == 12.0
 
 
 @pytest.mark.parametrize(("leading", "side"), [("target", -4.0), ("chaser", 4.0)])

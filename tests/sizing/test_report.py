@@ -12,6 +12,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.sizing import required
 from dcone_cosim.sizing.result import Sizing
+from dcone_cosim.sizing.section import Head
 from dcone_cosim.sizing.work import loads_of
 from orbital.materials import MATERIALS
 from tests.sizing.conftest import SAFETY, SHORT
@@ -19,6 +20,14 @@ from tests.sizing.conftest import SAFETY, SHORT
 STRENGTH = 2.92e9 * math.pi * 1e-6 / 4.0
 """Load at which the scene's 1 mm of Kevlar 29 breaks [N]."""
 UNDAMPED = "as it is, without damping"
+
+
+def test_a_cell_is_in_the_unit_of_its_head() -> None:
+    heads = (Head("d", "d", "m", "mm"), Head("s", "s", "1", "%"), Head("t", "t", "s", "day"), Head("n", "n"))
+    assert [head.shown(value) for head, value in zip(heads, (1.5e-3, 0.25, 43200.0, 7), strict=True)] == [
+        "1.5", "25", "0.5", "7",
+    ]  # fmt: skip
+    assert [head.title for head in heads] == ["d [mm]", "s [%]", "t [day]", "n"]
 
 
 def test_margins_are_over_the_factor_of_safety(done: Sizing) -> None:

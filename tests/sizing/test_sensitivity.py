@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from dcone_cosim.sizing.result import Sizing
-from dcone_cosim.sizing.sensitivity import slope
+from dcone_cosim.sizing.sensitivity import moved, slope
+from dcone_cosim.sizing.uncertain import Uncertain
 
 
 def test_a_power_law_has_its_power_and_no_error() -> None:
@@ -26,6 +29,17 @@ def test_the_error_tells_the_scatter() -> None:
     off = np.array([one - 0.5 for one, _ in found])
     assert float(np.mean(off)) == pytest.approx(0.0, abs=0.1)
     assert float(np.sqrt(np.mean([error**2 for _, error in found]))) == pytest.approx(float(np.std(off)), rel=0.1)
+
+
+def test_values_are_moved_both_ways() -> None:
+    """By two hundredths, about the scene's own; a choice is not, nor what is zero."""
+    ground: Any = SimpleNamespace(values={"x": 5.0, "y": 0.0})
+    numbers = [Uncertain(name, name, ({name: 0.0}, {name: 1.0}), ("", ""), "") for name in ("x", "y")]
+    choice = Uncertain("c", "c", ({"x": 0.0}, {"x": 1.0}), ("", ""), "", smooth=False)
+    found = moved(ground, [*numbers, choice], 3)
+    assert list(found) == ["x"]
+    assert [share for share, _ in found["x"]] == pytest.approx([0.98, 1.0, 1.02])
+    assert [values["x"] for _, values in found["x"]] == pytest.approx([4.9, 5.0, 5.1])
 
 
 def test_no_peak_no_slope() -> None:

@@ -24,6 +24,12 @@ def test_a_tug_that_lasts_over_macro_steps_counts_once() -> None:
     assert turning_points(hidden)[:3] == [0.0, 9.0, 8.0], "a peak that no row tells is there all the same"
 
 
+def test_a_row_belongs_to_the_tug_that_it_ends_after() -> None:
+    """One that ends as a tug begins tells of the time before it."""
+    loads = {"tugs": [(1.0, 5.0, 0.1), (4.0, 3.0, 0.1)], "taut": [(4.0, 2.0, 5.0)]}
+    assert turning_points(loads) == [0.0, 2.0, 5.0, 0.0, 3.0, 0.0]
+
+
 def test_rainflow_of_the_standard() -> None:
     """The example of ASTM E1049-85, figure 6: ranges 3, 4, 4, 6, 8, 8, 9, of which one, the 4 in between, is whole."""
     found = cycles([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])

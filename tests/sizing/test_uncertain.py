@@ -38,6 +38,26 @@ def test_of_table_2() -> None:
     assert found["line stiffness E"].ends[0] == pytest.approx({"tether.youngs_modulus": 48e9})
     assert found["separation at the start"].ends[1]["start.separation"] < 12.0, "no start is stretched"
     assert {"start", "who leads"} <= set(found)
+    ends = {label: [next(iter(end.values())) for end in one.ends] for label, one in found.items()}
+    for label, low, high in (
+        ("thrust", -0.009, -0.011), ("line length", 11.76, 12.24), ("line diameter", 0.95e-3, 1.05e-3),
+        ("line damping", 0.025, 0.1), ("chaser mass", 1900.0, 2100.0), ("debris mass", 900.0, 1100.0),
+        ("separation at the start", 9.0, 11.0),
+    ):  # fmt: skip
+        assert ends[label] == pytest.approx([low, high]), label
+    near = Ground(Alone("table2-deorbit", ("removal.start.separation=11.5 m",), None), Progress())
+    far = next(one for one in uncertain(near, {}) if one.key == "start.separation")
+    assert far.ends[1]["start.separation"] == pytest.approx(11.988), "as far as the line reaches, nearly"
     told = uncertain(ground, {"removal.tether.diameter": ["0.5 mm", "2 mm"]})
     (own,) = (one for one in told if "tether.diameter" in one.ends[0])
     assert own.ends == ({"tether.diameter": 0.5e-3}, {"tether.diameter": 2e-3})
+
+
+def test_a_spin_goes_from_none_to_twice() -> None:
+    """All of its components together, each by the same share of the scene's."""
+    ground = Ground(Alone("tumbling-target", (), None), Progress())
+    (spin,) = (one for one in uncertain(ground, {}) if one.label == "debris spin")
+    rates = {name: ground.values[name] for name in spin.ends[0]}
+    assert any(rates.values())
+    assert spin.ends == (dict.fromkeys(rates, 0.0), {name: 2.0 * rate for name, rate in rates.items()})
+    assert spin.at(0.5) == pytest.approx(rates)

@@ -94,10 +94,12 @@ def test_nothing_is_left_of_a_break_in_a_new_run() -> None:
 
 
 def test_a_break_ends_the_run_unless_both_fly_on() -> None:
-    i = snapping(0.5)
+    assert snapping(0.5)["break.flies_on"], "which they do where nothing else is said"
+    i = snapping(0.5, **{"break.flies_on": False})
     with ends_by(BROKE):
         i.step(5.0)
     assert i.record[0].fault_time == pytest.approx(1.0 + math.asin(0.5) / OMEGA, abs=1e-8)
+    assert (i["break.broken"], i["break.time"]) == (1, i.record[0].fault_time)
     # and its outputs are those of that instant
     assert i["tether.tension"] == pytest.approx(0.5 * SNAP, rel=1e-6)
     assert i["tether.tension_peak"] == pytest.approx(0.5 * SNAP, rel=1e-6)
