@@ -42,8 +42,9 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
     yield from _orbit(evidence)
     yield from _conducts(evidence)
     if evidence.terms.get("reel") == "locked":
-        yield from _longer(evidence)
-        yield from _snaps(evidence)
+        if "lumped" not in evidence.terms:  # a line with mass, toe or compliance has no such closed forms
+            yield from _longer(evidence)
+            yield from _snaps(evidence)
         yield from _jacobi(evidence)
     elif evidence.has("reel.paid_out", "tether.length", "tether.tension_peak"):
         yield from _longer_than_wound(evidence)
@@ -275,7 +276,8 @@ def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
         J = E + m_r F/m_c s,   E the Jacobi integral, F the thrust, s from chaser to target along-track, or along the
                                line where the thrust is
 
-    In units of the energy that the tide gives a line of that length, 3/2 n^2 m_r l^2; while thrust changes n little.
+    With the heat that a line of nodes tells it stays whatever damps. In units of the energy that the tide gives a line
+    of that length, 3/2 n^2 m_r l^2; while thrust changes n little.
     Source   work of F on the relative motion, whose acceleration by it is -F/m_c
     """
     columns, values = evidence.columns, evidence.values
@@ -294,8 +296,9 @@ def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
     rate = EARTH_MU / (EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]) ** 3
     size = 1.5 * rate * reduced * float(columns["separation"].max()) ** 2
     along = columns["separation"] if evidence.terms.get("thrust") == "tether" else columns["relative.position[2]"]
-    energy = (columns["energy.relative"] + reduced / chaser * force(evidence) * along) / size
+    heat = columns["lumped.heat"] if "lumped" in evidence.terms else 0.0
+    energy = (columns["energy.relative"] + heat + reduced / chaser * force(evidence) * along) / size
     yield Criterion("jacobi", "integral of the relative motion above what it was", rise(energy), "1", ACCURATE, STABLE)
-    if values["tether.damping_ratio"] == 0.0:
+    if values["tether.damping_ratio"] == 0.0 or "lumped" in evidence.terms:
         label = "integral of the relative motion below what it was"
         yield Criterion("jacobi_falls", label, rise(-energy), "1", ACCURATE, STABLE)

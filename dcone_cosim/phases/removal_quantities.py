@@ -9,7 +9,17 @@ import numpy as np
 from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import PhaseResult
 
-NAMES = ("tug_times", "tug_peaks", "largest_tug", "mean_tension", "semi_major_axis", "radius", "separation", "paid_out")
+NAMES = (
+    "tug_times",
+    "tug_peaks",
+    "largest_tug",
+    "largest_along",
+    "mean_tension",
+    "semi_major_axis",
+    "radius",
+    "separation",
+    "paid_out",
+)
 TUGS = 5
 """Tugs from the first on that are compared."""
 LEAST = 1.0
@@ -30,6 +40,9 @@ def quantities(result: PhaseResult, instants: Sequence[float]) -> Iterator[Quant
             yield Quantity("tug_peaks", f"peaks of the first {TUGS} tugs", [peak for _, peak, _ in first], "N")
             largest = max(peak for _, peak, _ in rows)
             yield Quantity("largest_tug", "largest tug", [largest], "N", meant=False)
+    if "lumped.peak_tension" in recorder:
+        along = float(np.max(recorder["lumped.peak_tension"]))
+        yield Quantity("largest_along", "largest tension along the line", [along], "N", meant=False)
     if "tether.impulse" in recorder:
         impulse = recorder["tether.impulse"]
         mean = float((impulse[-1] - impulse[0]) / (recorder["time"][-1] - recorder["time"][0]))

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
 from fmu_src.tethered_deorbit.asked import LINEAR_LAWS
+from fmu_src.tethered_deorbit.nodes.cost import cost
 from fmu_src.tethered_deorbit.reel_rows import FOLLOWING_LAWS
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
@@ -20,6 +21,9 @@ QUARTER = 0.25 * math.pi
 STABLE_SAMPLE = 2.0
 """Longest sample of a control of the tension, in radians of the line's vibration: see `winding.RESPONSE`."""
 
+MANY_STEPS = 1e7
+"""Of an hour, from which on it is told what they cost."""
+
 Values = Mapping[str, float]
 
 
@@ -32,6 +36,14 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
     if "orbit.epoch" in values and "orbit.epoch" not in given:
         yield Caution("orbit.epoch", "not given; Sun, Moon and the Earth's turning are those from 2026-01-01 00:00 UTC")
     yield from _unstable(values, terms)
+    if "lumped" in terms:
+        told = cost(values)
+        if told.steps > MANY_STEPS:
+            yield Caution(
+                "lumped.nodes",
+                f"an hour of this line, taut, takes {told.steps:.2g} steps and about {told.seconds / 60.0:.2g} min of "
+                "processor time; fewer or heavier nodes, or lumped.damped_as = node, take fewer",
+            )
     yield from heavily_damped("tether.damping_ratio", values.get("tether.damping_ratio"), "the line's going taut")
     if "thrust" not in terms:
         return

@@ -49,7 +49,7 @@ def make_equations(
         environment.add_gravity(record, state, rate)
         perturbing.add(record, state, rate, since, elapsed)
         bodies.move(record, state, rate)
-        thrust.add(record, state, rate, since)
+        thrust.add(record, state, rate, since, elapsed)
         aocs.add(record, state, rate, elapsed)
         rate[impulse] = 0.0
         reel.see(record, state)

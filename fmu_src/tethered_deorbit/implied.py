@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from fmu_src.implied import Implied, formula
 from fmu_src.tethered_deorbit.asked import LINEAR_LAWS
+from fmu_src.tethered_deorbit.nodes.cost import cost
 from orbital import oscillators, references
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.plain import mean_motion
@@ -40,6 +41,12 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
     if stiffness > 0.0:
         period = 2.0 * math.pi / natural_frequency(stiffness, reduced)
         yield Implied("line.period", "period of the pair on the taut line, undamped", period, "s")
+    if "lumped" in terms:
+        told = cost(values)
+        yield Implied("lumped.mass", "mass of the line's nodes", told.mass, "kg")
+        yield Implied("lumped.fastest", "fastest motion of the line's nodes, a bound", told.fastest, "rad/s")
+        yield Implied("lumped.steps", "steps of an hour while the line is taut", told.steps, "1")
+        yield Implied("lumped.cpu", "processor time of these, about", told.seconds, "s")
     if "orbit.altitude" not in values:
         return
     rate = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)

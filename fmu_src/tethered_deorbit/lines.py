@@ -9,7 +9,7 @@ LINES = (
         "line",
         "the tether",
         "tether",
-        ("tether.tension_peak", "tether.tension"),
+        ("lumped.peak_tension", "tether.tension_peak", "tether.tension"),
         follows={
             "tether.youngs_modulus": "youngs_modulus",
             "tether.damping_ratio": "damping_ratio",

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from fmu_src.interface import Group, Term, Variable
 from fmu_src.rows import at_least_zero, choice, output, peak, positive, rate, state
+from fmu_src.tethered_deorbit import stress
 
 CAPACITY = 32
 """Nodes that there is room for. Room costs: some two per cent of a node that is used for each that is not."""
@@ -90,6 +91,7 @@ NODES = Group(
                 state("state.node_motion[#][#]", "1", "room for places and velocities", shape=(5, 6)),
             ),
             excludes=NOT_WITH,
+            extremes=stress.NODES,
         ),
     },
     optional=True,

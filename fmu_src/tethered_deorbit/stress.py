@@ -249,3 +249,28 @@ EXTREMES = (
     ),
 )  # fmt: skip
 """Of every pair."""
+
+AS_PAIR, AS_NODE = range(2)
+"""Numbers of what the damping ratio of a line of nodes is a share of, see `node_rows.DAMPED_AS`."""
+
+NODES = (
+    *(
+        Extreme(f"a line of {count} nodes", "from one to as many as there is room for", "jacobi",
+                {"lumped.nodes": count}, duration=60.0, macro_step=1.0, chief=count == 32)
+        for count in (1, 32)
+    ),
+    *(
+        Extreme(f"a line of {density:g} kg/m3", "from a balloon's skin to depleted uranium", "jacobi",
+                {"lumped.density": density}, duration=20.0, macro_step=1.0)
+        for density in (10.0, 19e3)
+    ),
+    Extreme("nodes damped ten times critically", "a dashpot faster than its spring", "jacobi",
+            {"tether.damping_ratio": 10.0, "lumped.damped_as": AS_NODE}, duration=20.0, macro_step=1.0),
+    Extreme("nodes with the dashpot of the pair", "the stiffest line there is", "jacobi",
+            {"lumped.damped_as": AS_PAIR, "tether.damping_ratio": 0.05}, duration=2.0, macro_step=0.1),
+    Extreme("a toe of a tenth", "a line that is soft at first", "jacobi", {"lumped.toe_strain": 0.1}, duration=60.0,
+            macro_step=1.0),
+    Extreme("a net that gives way", "a metre per newton in series", "jacobi", {"lumped.end_compliance": 1.0},
+            duration=60.0, macro_step=1.0),
+)  # fmt: skip
+"""Of a line of nodes."""

@@ -15,6 +15,7 @@ from fmu_src.tethered_deorbit.idle import no_fault, nothing, zero
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, StateLayout
 from fmu_src.tethered_deorbit.plume import make_plume
+from fmu_src.tethered_deorbit.turning import turn_vectors_back
 from orbital.constants import STANDARD_GRAVITY
 from orbital.kernel import kernel
 from orbital.rotations import rotate_inverse
@@ -31,7 +32,8 @@ class Thrust(NamedTuple):
     """Kernels of one direction; as it stands, those of an FMU without a thruster, of which nothing is compiled.
 
     reset(record)                     nothing used yet
-    add(record, state, rate, since)   add the thrust to the rate of the state, `since` [s] after its force was set
+    add(record, state, rate, since, elapsed)   add the thrust to the rate of the state, `since` [s] after its force was
+                                      set, and `elapsed` after the begin of the step, for which axes have turned
     weigh(record, state)              masses of the pair in a state
     lose(record, state, rate, sign)   what their loss does to the rate of the centre of mass, with a sign
     shed(record, rate) -> M'          how fast the pair's mass changes, from the rate of the state [kg/s]
@@ -115,6 +117,7 @@ def make_thrust(
     if "thrust" not in terms:
         return Thrust()
     direction = {"along_track": along_track, "velocity": _along_velocity, "tether": along_line}[terms["thrust"]]
+    at_rest = terms["environment"] == "none" and terms["thrust"] == "along_track"  # an axis, which no state turns with
     burn = make_burn(terms, place, interface)
     engine = make_engine(terms, layout, interface)
     plume = make_plume(terms, interface)
@@ -160,13 +163,14 @@ def make_thrust(
         return given * share, given * change + (rate * share if given == force else 0.0)
 
     @kernel
-    def add(record: Any, state: Array, rate: Array, since: float) -> None:
+    def add(record: Any, state: Array, rate: Array, since: float, elapsed: float) -> None:
         """Add the thrust along its direction to the rates of centre of mass and relative vector [m/s^2].
 
             V' += F u/M,   rho'' -= F u/m_c,   u a unit vector
 
         state, rate   of `layout`
         since         since the force was set                    [s]
+        elapsed       for which the axes have turned             [s]
 
         Valid    any; without a direction there is no thrust
         Source   Newton's second law
@@ -175,6 +179,11 @@ def make_thrust(
         r = record[0]
         force, _ = force_at(record, since)
         x, y, z = direction(record, state)
+        if at_rest:
+            axis = r.state_vector[3]
+            axis[0], axis[1], axis[2] = x, y, z
+            turn_vectors_back(record, -elapsed, axis, 3)
+            x, y, z = axis[0], axis[1], axis[2]
         length = math.sqrt(x * x + y * y + z * z)
         if length > 0.0:
             on_center = force / (r.state_total_mass * length)

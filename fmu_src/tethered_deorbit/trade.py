@@ -47,6 +47,8 @@ def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
     found: dict[str, str] = {}
     if DISTURBED & terms.keys():
         found |= dict.fromkeys(("orbit", "jacobi", "jacobi_falls"), ALWAYS)
+    if "lumped" in terms:
+        found |= dict.fromkeys(("longer", "snap"), "jacobi")
     if "release" in terms:
         found |= dict.fromkeys(("longer", "orbit", "jacobi", "jacobi_falls"), ALWAYS)
     return found

@@ -75,3 +75,12 @@ def kernels() -> Noded:
     bodies = make_bodies(interface.terms, environment.place, environment.gradient, where.size, interface)
     reel = make_reel("locked", interface, Sights(where.reel, -1, bodies.line, environment.frame))
     return make_nodes(reel, bodies, environment, where, interface)
+
+
+def put_nodes(i: PlainInstance, places: Floats) -> None:
+    """Nodes elsewhere at the start, at rest relative to the target; places from there (N, 3) [m]."""
+    where, size = layout(), layout().size
+    for row in range(3):
+        state = i.work[row * size : (row + 1) * size]
+        nodes = state[where.reel : where.reel + WIDTH * len(places)].reshape(-1, WIDTH)
+        nodes[:, :3], nodes[:, 3:] = places, 0.0

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.tethered_deorbit.interface import EQUAL_VELOCITY, HANDED_OVER, MODEL, SAME_ORBIT, VBAR
 from orbital.oscillators import dashpot, line_stiffness, natural_frequency, reduced_mass
 from tests.plain import PlainInstance, plain
-from tests.validation import Validated, closed_form
+from tests.validation import Validated, closed_form, other_code
 
 __all__ = ["plain"]
 
@@ -306,3 +307,26 @@ def test_compiled(request: pytest.FixtureRequest) -> None:
     compiled = tow(Instance)
     request.getfixturevalue("plain")
     assert compiled == pytest.approx(tow(PlainInstance), rel=1e-11)
+
+
+@uncompiled
+def test_a_thrust_along_an_axis_stays_there_while_the_line_turns(validated: Validated) -> None:
+    """A light target swings on the line of a heavy chaser that speeds up along axis 2: an elastic pendulum."""
+    gravity, mass, length, axial = 0.1, 1.0, 12.0, 20.0
+    stiffness = axial / length
+    values = {"chaser.mass": 1e5, "target.mass": mass, "thrust.level": 1e5 * gravity, "tether.damping_ratio": 0.0}
+    values |= {"tether.youngs_modulus": axial / (0.25e-6 * math.pi), "start.condition": HANDED_OVER}
+    start = (1.2 * length * math.sin(0.5), -1.2 * length * math.cos(0.5), 0.0)
+    i = free("dop853", values | {"start_relative_position": start}, thrust="along_track")
+
+    def swing(_: float, s: Any) -> Any:
+        distance = math.hypot(s[0], s[1])
+        pull = max(0.0, stiffness * (distance - length)) / distance * (1.0 / mass + 1e-5)
+        return s[2], s[3], -pull * s[0], -gravity - pull * s[1]
+
+    i.step(15.0)
+    assert i["tether.tug_count"] > 0
+    peer = solve_ivp(swing, (0.0, 15.0), (*start[:2], 0.0, 0.0), "DOP853", rtol=1e-12, atol=1e-12).y[:2, -1]
+    found = [i["relative.position[1]"], i["relative.position[2]"]]
+    what = "elastic pendulum in a thrust along an axis: place after 15 s"
+    validated(other_code("scipy's DOP853"), what, found, peer, "m", abs=1e-7)

@@ -11,6 +11,7 @@ from fmu_src.tethered_deorbit.interface import MODEL
 from fmu_src.tethered_deorbit.model import make_entry
 from fmu_src.tethered_deorbit.node_rows import AS_NODE, AS_PAIR, NOT_WITH, WIDTH
 from fmu_src.tethered_deorbit.nodes import pieces
+from fmu_src.tethered_deorbit.nodes.cost import NAMES, cost
 from tests.plain import PlainInstance, plain
 from tests.tethered_deorbit import lumped as pair
 from tests.tethered_deorbit.lumped import Floats, apart, lumped
@@ -257,3 +258,14 @@ def test_terms_that_carry_no_nodes_are_refused(group: str, term: str) -> None:
     changed: dict[str, Any] = pair.TERMS | {group: term}
     with pytest.raises(ValueError, match=f"nodes go with {group} = .*, not '{term}'"):
         make_entry(changed)
+
+
+def test_the_cost_is_told_beforehand() -> None:
+    """The same fastest motion as the model's, by its own formulas; steps of an hour by the reach of the scheme."""
+    values = {"tether.damping_ratio": 0.3, "lumped.damped_as": AS_NODE}
+    i = lumped(5, HEAVY, values | apart(11.0, 0.0, 0.0, 0.0))
+    told = cost({name: i[name] for name in (*NAMES, "reel.length_offset")})
+    r = i.record[0]
+    assert told.fastest == pytest.approx(r.state_nodes_fastest)
+    assert told.steps == pytest.approx(3600.0 / r.state_nodes_reach)
+    assert told.mass == pytest.approx(i["lumped.mass"])

@@ -99,7 +99,7 @@ def test_thrust_directions(direction: str) -> None:
     environment = make_environment("central", interface)
     make_thrust(
         interface.terms, environment.place, environment.along_track, points.along, state_layout(0), interface
-    ).add(masses(), STATE, rate, 0.0)
+    ).add(masses(), STATE, rate, 0.0, 0.0)
     assert rate[3:6] == pytest.approx(force / 3000.0, rel=1e-12)
     assert rate[9:] == pytest.approx(-force / 2000.0, rel=1e-12)
     assert not rate[:3].any()

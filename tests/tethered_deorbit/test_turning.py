@@ -109,7 +109,7 @@ def test_laws_look_the_same_from_any_axes(direction: str) -> None:
     ).add
 
     def add(record: Any, state: Any, rate: Any) -> None:
-        push(record, state, rate, 0.0)
+        push(record, state, rate, 0.0, 0.0)
 
     def difference(*laws: Callable[..., Any]) -> Any:
         here, there = np.zeros(12), np.zeros(12)

@@ -79,7 +79,7 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
             if not length < rest:
                 soonest = 0.0
             speed = norm(r.state_node_room[1])
-            if rest - length < soonest * speed:
+            if speed > 0.0 and rest - length < soonest * speed:
                 soonest = (rest - length) / speed
         return float(max(r.state_nodes_reach, NEARING * soonest))
 
