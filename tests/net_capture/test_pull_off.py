@@ -80,6 +80,15 @@ def test_a_load_beyond_what_threads_bear_is_told_by_their_tension(shoot):
     assert net["pull_off.hardest[1].tension"] > 500.0
 
 
+@pytest.mark.parametrize(("at", "stands", "inside"), [(20.0, "held", 1.0), (3.0, "slipped_off", 0.0)])
+def test_a_load_may_come_at_a_time(shoot, at, stands, inside):
+    """On a net that is closed; and on one that flies, where nothing of a target has ever been inside."""
+    *_, net = pulled(shoot, {"pull_off.after": 2, "pull_off.time": at, "pull_off.delay": 0.0})
+    assert STANDS[net["pull_off.stands"]] == stands
+    assert net["pull_off.inside[2]"] == pytest.approx(inside, abs=0.1)
+    assert net["pull_off.t_start"] == pytest.approx(at, abs=0.011)
+
+
 def test_the_load_rises_stays_and_falls():
     class Record:
         pull_off_t_start, pull_off_force, pull_off_ramp, pull_off_duration = 10.0, 8.0, 2.0, 3.0
