@@ -32,11 +32,11 @@ import numpy as np
 
 from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
-from fmu_src.net_capture.contact.capstan import WITH_FRICTION, make_capstan
-from fmu_src.net_capture.contact.capstan import rows as friction_rows
+from fmu_src.net_capture.capstan import WITH_FRICTION, make_capstan
+from fmu_src.net_capture.capstan import rows as friction_rows
 from fmu_src.net_capture.contact.edges import make_way
-from fmu_src.net_capture.contact.near import BENT, CLEAR, FINE, FREE, KEPT, PASSED, WAY, make_near
 from fmu_src.net_capture.contact.section import FACES, MOST
+from fmu_src.net_capture.near import BENT, CLEAR, FINE, FREE, KEPT, PASSED, WAY, make_near
 from fmu_src.net_capture.planes import (
     DAMPING,
     FIRST,
