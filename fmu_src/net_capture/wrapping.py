@@ -377,11 +377,28 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
         yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')
 
 
+EXTREMES = (
+    Extreme(
+        "threads wound on at 60 deg/s",
+        "edges turn under the net faster than it closes: each bend wanders from edge to edge",
+        "through",
+        {"target.start_rate": (0.0, 0.0, math.radians(60.0))},
+        chief=True,
+    ),
+    Extreme(
+        "threads flung round edges at 10 m/s",
+        "they meet the edges as fast as they stretch",
+        "through",
+        {"bullets.speed": 10.0},
+    ),
+)
+
 PART = Term(
     "threads between nodes bend round the edges of the target, without friction",
     ROWS,
     needs=("target", "contact"),
     excludes=("break",),
+    extremes=EXTREMES,
     make=make,
     refuses=refuses,
 )
@@ -391,21 +408,7 @@ FRICTION = Term(
     (*ROWS, *friction_rows()),
     needs=("target", "contact"),
     excludes=("break",),
-    extremes=(
-        Extreme(
-            "threads wound on at 60 deg/s",
-            "edges turn under the net faster than it closes: each bend wanders from edge to edge",
-            "through",
-            {"target.start_rate": (0.0, 0.0, math.radians(60.0))},
-            chief=True,
-        ),
-        Extreme(
-            "threads flung round edges at 10 m/s",
-            "they meet the edges as fast as they stretch",
-            "through",
-            {"bullets.speed": 10.0},
-        ),
-    ),
+    extremes=EXTREMES,
     make=make,
     refuses=refuses,
 )

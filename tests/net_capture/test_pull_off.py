@@ -83,7 +83,8 @@ def test_a_load_beyond_what_threads_bear_is_told_by_their_tension(shoot):
 @pytest.mark.parametrize(("at", "stands", "inside"), [(20.0, "held", 1.0), (3.0, "slipped_off", 0.0)])
 def test_a_load_may_come_at_a_time(shoot, at, stands, inside):
     """On a net that is closed; and on one that flies, where nothing of a target has ever been inside."""
-    *_, net = pulled(shoot, {"pull_off.after": 2, "pull_off.time": at, "pull_off.delay": 0.0})
+    net = shoot(CAUGHT | PULL | {"pull_off.after": 2, "pull_off.time": at, "pull_off.delay": 0.0}, HOLDING)
+    net.step(at + 3.0)
     assert STANDS[net["pull_off.stands"]] == stands
     assert net["pull_off.inside[2]"] == pytest.approx(inside, abs=0.1)
     assert net["pull_off.t_start"] == pytest.approx(at, abs=0.011)
