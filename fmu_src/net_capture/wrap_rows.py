@@ -1,7 +1,10 @@
-"""What an FMU tells of threads that bend, and what their kernels scribble on."""
+"""What an FMU tells of threads that bend, what their kernels scribble on, and the ends of their range."""
 
 from __future__ import annotations
 
+import math
+
+from fmu_src.extremes import Extreme
 from fmu_src.net_capture.contact.section import FACES, MOST
 from fmu_src.rows import count, output, peak, state
 
@@ -49,3 +52,20 @@ ROWS = (
     ),
 )
 """Rows of threads that bend, with friction or without."""
+
+EXTREMES = (
+    Extreme(
+        "threads wound on at 60 deg/s",
+        "edges turn under the net faster than it closes: each bend wanders from edge to edge",
+        "through",
+        {"target.start_rate": (0.0, 0.0, math.radians(60.0))},
+        chief=True,
+    ),
+    Extreme(
+        "threads flung round edges at 10 m/s",
+        "they meet the edges as fast as they stretch",
+        "through",
+        {"bullets.speed": 10.0},
+    ),
+)
+"""Of threads that bend."""

@@ -30,7 +30,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.capstan import WITH_FRICTION, make_capstan
 from fmu_src.net_capture.capstan import rows as friction_rows
@@ -52,7 +51,7 @@ from fmu_src.net_capture.planes import (
     X,
 )
 from fmu_src.net_capture.refusal import Refusal, Scene
-from fmu_src.net_capture.wrap_rows import ROWS
+from fmu_src.net_capture.wrap_rows import EXTREMES, ROWS
 from orbital.kernel import kernel
 from orbital.rotations import rotate, rotate_inverse
 from orbital.vectors import cross
@@ -376,22 +375,6 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     if precision != "double":
         yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')
 
-
-EXTREMES = (
-    Extreme(
-        "threads wound on at 60 deg/s",
-        "edges turn under the net faster than it closes: each bend wanders from edge to edge",
-        "through",
-        {"target.start_rate": (0.0, 0.0, math.radians(60.0))},
-        chief=True,
-    ),
-    Extreme(
-        "threads flung round edges at 10 m/s",
-        "they meet the edges as fast as they stretch",
-        "through",
-        {"bullets.speed": 10.0},
-    ),
-)
 
 PART = Term(
     "threads between nodes bend round the edges of the target, without friction",
