@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import pairwise
 
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
 from fmu_src.net_capture.implied import open_loop, substeps
 from fmu_src.net_capture.interface import GROUPS, TARGETS
 from fmu_src.net_capture.pull_off import PULLED, WAITING
 from fmu_src.net_capture.schemes import Needs
+from fmu_src.net_capture.shapes import Point
+from fmu_src.net_capture.wrapping import CONVEX
 
 Values = Mapping[str, float]
 
+FLAT = {"square": ("net.side", "net.side"), "rectangle": ("net.width", "net.height")}
+"""Sides of the nets whose area is their product."""
 LEFT_OVER = 0.01
 """Share of the energy that came in which the scheme may gain or lose without a word."""
 
@@ -25,6 +30,7 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
     yield from heavily_damped("closing.damping_ratio", values.get("closing.damping_ratio"), "the cord's going taut")
     if "closing" in terms and "target" in terms:
         yield from _open_loops(values, terms)
+        yield from _small_nets(values, terms)
     if values.get("solver.step_ratio", 0.0) > 0.0:
         yield from _long_steps(values, terms)
 
@@ -40,6 +46,40 @@ def _open_loops(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
             f"with {rings:.0f} the closed mouth keeps loops of {loop:.3g} m, and {girth:.3g} m let this "
             f"target pass: a capture may come to nothing within a minute; {needed} would hold it",
         )
+
+
+def _small_nets(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
+    """A flat net smaller than the target's surface: it counts as captured once its mouth is no longer than the girth P,
+    and such a mouth leaves at most P^2 / 4 pi of that surface bare.
+
+    Checked  tests/net_capture/test_small_nets.py
+    """
+    if terms["net"] not in FLAT or terms["target"] not in CONVEX:
+        return
+    shape = TARGETS[terms["target"]].checks
+    net, whole = math.prod(values[name] for name in FLAT[terms["net"]]), surface_area(*shape.surface(values))
+    girth = shape.girth(values)
+    if net < whole:
+        yield Caution(
+            FLAT[terms["net"]][0],
+            f"{net:.4g} m2 of net are to close round {whole:.4g} m2 of target: a mouth of its girth, {girth:.3g} m, "
+            f"leaves at most {girth**2 / (4.0 * math.pi):.3g} m2 of that bare, so it can hardly count as captured",
+        )
+
+
+def surface_area(corners: Sequence[Point], faces: Sequence[Sequence[int]]) -> float:
+    """Area of plane faces told by the numbers of their corners [m2].
+
+    Checked  tests/net_capture/test_small_nets.py
+    """
+    total = 0.0
+    for face in faces:
+        first, *others = (corners[number] for number in face)
+        for one, other in pairwise(others):
+            a, b = ([q - p for p, q in zip(first, corner, strict=True)] for corner in (one, other))
+            normal = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+            total += 0.5 * math.hypot(*normal)
+    return total
 
 
 def _long_steps(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:

@@ -44,7 +44,7 @@ class Composition:
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
     gravity, net, rigging, graph, peaks, folding, target, force_map, contact, jam, closing, tether, air, wrap, spin,
-    ejection, volume, index, pull_off, hardest, snug, pulls, pace, breaking, scheme
+    ejection, volume, index, pull_off, hardest, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -79,7 +79,7 @@ class Composition:
         self.closing, self.tether = self._make("closing"), self._make("tether")
         self.volume, self.air = self._make("volume"), self._make("air")
         self.index, self.pull_off = self._make("quality"), self._make("pull_off")
-        self.hardest, self.snug = self._make("tensions"), self._make("snug")
+        self.hardest = self._make("tensions")
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
         self.wrap = self._make("wrap")

@@ -1,10 +1,10 @@
 """How a shot stands: captured, settled, or one of the ways to fail.
 
-`captured` has to last: once the cord still out is shorter than the target's smallest girth (where the scene says so,
-than its outline, see `snug.py`), the target counts as caught when net and mouth have gone round most of it for a while
-(see `enclosure`), so that the mouth has passed its middle and would have to pass it again. While it stands in the mouth
-nothing is decided; the shot has failed when nothing is inside any more, and a capture is taken back when less than half
-is. Both must last for a while: the cap over a slack mouth is a guess, and may cut through the target for a moment.
+`captured` has to last: once the cord still out is shorter than the target's smallest girth, the target counts as caught
+when net and mouth have gone round most of it for a while (see `enclosure`), so that the mouth has passed its middle and
+would have to pass it again. While it stands in the mouth nothing is decided; the shot has failed when nothing is inside
+any more, and a capture is taken back when less than half is. Both must last for a while: the cap over a slack mouth is
+a guess, and may cut through the target for a moment.
 """
 
 from __future__ import annotations
@@ -42,15 +42,6 @@ def start_enclosure(p):
     p.t_lost = -1.0
 
 
-@kernel
-def girth(p):
-    """The shortest closed cord that can be passed over the target [m].
-
-    Checked  tests/net_capture/test_outcome.py
-    """
-    return p.girth
-
-
 def make_judge(composition: Any, quality: Any) -> Any:
     """Kernel `judge(p, work, time)` of the model with the composition's parts, of the nodes as shown."""
     has_target = composition.target is not None
@@ -60,7 +51,6 @@ def make_judge(composition: Any, quality: Any) -> Any:
     has_settling = "settling" in composition.terms
     share_inside = make_share(composition) if has_target and has_closing else None
     towards_chaser = composition.tether.reach if has_tether else None
-    least = composition.snug if composition.snug is not None else girth
     beyond, measure_net, looks = quality.beyond, quality.measure_net, composition.clock.looks
 
     @kernel
@@ -71,7 +61,7 @@ def make_judge(composition: Any, quality: Any) -> Any:
         """
         if has_target:
             if has_closing:
-                if p.closing_t_start >= 0.0 and p.mouth_cord_length < least(p):
+                if p.closing_t_start >= 0.0 and p.mouth_cord_length < p.girth:
                     look_inside(p, work, time, 0.0)
                     if p.enclosure_share < CAUGHT:
                         p.enclosure_since = time
@@ -119,7 +109,7 @@ def make_judge(composition: Any, quality: Any) -> Any:
         p.t_capture = time
         p.enclosure_at_capture = p.enclosure_share
         p.enclosure_least = p.enclosure_share
-        p.mouth_margin_at_capture = least(p) - p.mouth_cord_length
+        p.mouth_margin_at_capture = p.girth - p.mouth_cord_length
         if has_settling:
             p.calm_since = time
 

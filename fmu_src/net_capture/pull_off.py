@@ -6,7 +6,9 @@ work are booked.
 
     F(t) = F0 min(t / ramp, 1, (2 ramp + duration - t) / ramp)    for 0 < t < 2 ramp + duration
 
-Held: the target is still captured when the load is gone. Told is also how far the net has moved about the target, in
+Held: the target is still captured when the load is gone. Where the net can not be drawn together behind its target, and
+grips it or lies over it like a lid, the load may come at a time instead; then it has held if more than half of what
+was inside the net of the target is there still in the end. Told is also how far the net has moved about the target, in
 the target's own axes, and which threads bore most at the end of the whole load.
 
 Source   ours
@@ -22,6 +24,7 @@ from typing import Any, NamedTuple
 from fmu_src.extremes import Extreme, times
 from fmu_src.interface import Term, Variable
 from fmu_src.net_capture.bearing import MOST, make_bearing
+from fmu_src.net_capture.enclosure import make_share
 from fmu_src.net_capture.planes import FX, SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import at_least_zero, choice, count, output, peak, positive, state, vector
@@ -29,8 +32,10 @@ from orbital.kernel import kernel
 from orbital.rotations import rotate_inverse
 from orbital.vectors import dot
 
-AFTER = ("captured", "settled")
-AFTER_SETTLED = 1
+AFTER = ("captured", "settled", "time")
+AFTER_SETTLED, AFTER_TIME = 1, 2
+STILL_INSIDE = 0.5
+"""Of what was inside when the load began, that must be inside when it is gone."""
 STANDS = ("waiting", "pulled", "held", "slipped_off")
 WAITING, PULLED, HELD, SLIPPED_OFF = range(len(STANDS))
 
@@ -71,7 +76,7 @@ def make(composition: Any) -> PullOff:
     """Kernels for the composition's net, target and clock."""
     memory, rouse, now = composition.memory, composition.rouse, composition.clock.now
     node_plane, apex = memory.node_plane, memory.apex
-    tell_threads = make_bearing(composition)
+    tell_threads, share_inside = make_bearing(composition), make_share(composition)
 
     def make_vertex(place: int) -> Any:
         """Kernel of the vertex by the positions in the planes from `place` on."""
@@ -185,12 +190,15 @@ def make(composition: Any) -> PullOff:
 
     @kernel
     def look(p, work, time):
-        """Begin when captured or settled for so long; tell how it ended.
+        """Begin when captured or settled for so long, or at the time; tell how it ended.
 
         Checked  tests/net_capture/test_pull_off.py
         """
         if p.pull_off_stands == WAITING:
-            if p.captured == 0 or (p.pull_off_after == AFTER_SETTLED and p.settled == 0):
+            waits = p.captured == 0 or (p.pull_off_after == AFTER_SETTLED and p.settled == 0)
+            if p.pull_off_after == AFTER_TIME:
+                waits = time < p.pull_off_time
+            if waits:
                 p.pull_off_ready = -1.0
             elif p.pull_off_ready < 0.0:
                 p.pull_off_ready = time
@@ -198,12 +206,16 @@ def make(composition: Any) -> PullOff:
                 p.pull_off_stands = PULLED
                 p.pull_off_t_start = time
                 p.pull_off_fresh = 1
+                p.pull_off_inside[0] = share_inside(p, work)
                 aim(p, work)
         elif p.pull_off_stands == PULLED:
-            if p.captured == 0:
+            over = time >= p.pull_off_t_start + 2.0 * p.pull_off_ramp + p.pull_off_duration
+            if p.pull_off_after != AFTER_TIME and p.captured == 0:
                 p.pull_off_stands = SLIPPED_OFF
-            elif time >= p.pull_off_t_start + 2.0 * p.pull_off_ramp + p.pull_off_duration:
-                p.pull_off_stands = HELD
+            elif over:
+                p.pull_off_inside[1] = share_inside(p, work)
+                gone = p.pull_off_inside[1] <= STILL_INSIDE * p.pull_off_inside[0]
+                p.pull_off_stands = SLIPPED_OFF if p.pull_off_after == AFTER_TIME and gone else HELD
 
     @kernel
     def show(p, work, late):
@@ -249,6 +261,8 @@ def make(composition: Any) -> PullOff:
         p.pull_off_ready = -1.0
         p.pull_off_stands = WAITING
         p.pull_off_fresh = 0
+        p.pull_off_inside[0] = -1.0
+        p.pull_off_inside[1] = -1.0
         p.pull_off_work = 0.0
         p.pull_off_drawn_max = 0.0
         p.pull_off_tension_max = 0.0
@@ -280,6 +294,7 @@ PART = Term(
             "parameter",
         ),
         choice("pull_off.after", "what has to come before", AFTER),
+        at_least_zero("pull_off.time", "s", "since the shot, for after time", 15.0),
         at_least_zero("pull_off.delay", "s", "after that until the force begins", 0.0),
         positive("pull_off.ramp", "s", "in which it rises, and falls in the end", 2.0),
         at_least_zero("pull_off.duration", "s", "of the whole force", 5.0),
@@ -302,6 +317,7 @@ PART = Term(
         vector("pull_off.slip", "m", "way of the net's centre of mass about the target since then, the target's axes"),
         output("pull_off.drawn", "m", "way of the vertex about the target since then, along the load"),
         peak("pull_off.drawn_max", "m", "the most of that"),
+        peak("pull_off.inside[#]", "1", "share of the target inside as it began and in the end; -1 before", shape=(2,)),
         peak("pull_off.tension_max", "N", "largest tension of a thread while the net was pulled"),
         count("pull_off.tension_index", "which thread that was, counted from 1"),
         peak(

@@ -29,9 +29,15 @@ def cautions(scene: str, *settings: str) -> str:
     return "\n".join(load(scene, settings).cautions)
 
 
+TOO_SMALL = ("large-conf2", "large-conf2-holds", "large-conf3", "large-conf3-holds")
+"""The paper's nets that can not be drawn together behind their target, as these scenes say."""
+
+
 @pytest.mark.parametrize("scene", shipped())
 def test_the_shipped_scenes_give_no_cause(scene: str) -> None:
-    assert cautions(scene) == ""
+    told = cautions(scene).splitlines()
+    assert len(told) == (scene in TOO_SMALL)
+    assert all("so it can hardly count as captured" in line for line in told)
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,25 @@ def test_the_threads_that_bear_most_are_told(shoot):
     raise AssertionError("the whole load never came")
 
 
+def test_a_load_beyond_what_threads_bear_is_told_by_their_tension(shoot):
+    """2 kN on a net whose threads break at 1.07 kN: the load comes to the vertex along more than one of them."""
+    strength = 2.92e9 * 0.33 / (1440.0 * 624.0)
+    for net in pulled(shoot, {"pull_off.force": 2000.0}):
+        at_most = net["pull_off.tension_max"]
+    assert strength < at_most == net["thread.tension_max"]
+    assert net["pull_off.hardest[1].tension"] > 500.0
+
+
+@pytest.mark.parametrize(("at", "stands", "inside"), [(20.0, "held", 1.0), (3.0, "slipped_off", 0.0)])
+def test_a_load_may_come_at_a_time(shoot, at, stands, inside):
+    """On a net that is closed; and on one that flies, where nothing of a target has ever been inside."""
+    net = shoot(CAUGHT | PULL | {"pull_off.after": 2, "pull_off.time": at, "pull_off.delay": 0.0}, HOLDING)
+    net.step(at + 3.0)
+    assert STANDS[net["pull_off.stands"]] == stands
+    assert net["pull_off.inside[2]"] == pytest.approx(inside, abs=0.1)
+    assert net["pull_off.t_start"] == pytest.approx(at, abs=0.011)
+
+
 def test_the_load_rises_stays_and_falls():
     class Record:
         pull_off_t_start, pull_off_force, pull_off_ramp, pull_off_duration = 10.0, 8.0, 2.0, 3.0

@@ -136,6 +136,34 @@ def test_near_a_corner_it_is_not_held_there(kernels, find, a, b, chain, length):
     assert length_of(found) < length_of(np.array([a, corner, b])) - 2e-4
 
 
+PLATE = 0.5 * np.array((1.0, 1.6, 0.3)) - INSET
+
+
+def test_a_way_that_has_come_to_a_corner_draws_back_where_it_is_shorter_over_both_edges(kernels, find):
+    """As ends that wandered over a plate met it: over three edges, two of which meet at a corner."""
+    ways = Ways(kernels, find, box, target_size=(1.0, 1.6, 0.3))
+    ways.edges, ways.p["wrap_chain"][:4] = 3, (4, 1, 3, 5)
+    a, b = np.array((-0.283095, -0.219012, 0.175618)), np.array((-0.158829, -0.510481, -0.15))
+    found = ways(a, b, anew=False)
+    x, y, z = PLATE
+    over = lambda t: np.array([a, (-x, t[0], z), (-x, -y, t[1]), (t[2], -y, -z), b])  # noqa: E731
+    shortest = minimize(lambda t: length_of(over(t)), [-0.4, 0.0, -0.3], tol=1e-14)
+    assert len(found) == 5
+    assert length_of(found) == pytest.approx(shortest.fun, abs=1e-7)
+
+
+def test_a_way_that_has_come_to_a_corner_slides_over_it_where_it_is_not(kernels, find):
+    """The same plate: over the side between, the faces take more than half a turn, and one edge is left."""
+    ways = Ways(kernels, find, box, target_size=(1.0, 1.6, 0.3))
+    ways.edges, ways.p["wrap_chain"][:3] = 2, (5, 1, 3)
+    a, b = np.array((-0.331748, -0.579109, -0.15)), np.array((-0.135303, -0.972276, 0.141359))
+    found = ways(a, b, anew=False)
+    over = lambda t: np.array([a, (t[0], -PLATE[1], -PLATE[2]), b])  # noqa: E731
+    shortest = minimize(lambda t: length_of(over(t)), [-0.2], tol=1e-14)
+    assert len(found) == 3
+    assert length_of(found) == pytest.approx(shortest.fun, abs=1e-7)
+
+
 def test_what_does_not_cut_an_edge_stays_straight(ways):
     assert ways((0.0, 0.0, 2.0), (1.0, 0.0, 2.0)) is None, "both on one face"
     assert ways((0.0, 0.0, 2.5), (1.0, 0.0, 2.1)) is None, "above it"

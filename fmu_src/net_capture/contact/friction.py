@@ -9,6 +9,9 @@ from fmu_src.net_capture.contact.pushing import make_push
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
+FRICTION = 0.1
+"""Of Kevlar 49 on aluminium: a shear stress of 0.099 p^0.91 at a pressure p. Source: Brown and Burgoyne, Wear 236,
+1999."""
 CARRIED, SINCE, PLANES = 0, 3, 4
 """Node planes behind those of scheme and pace: how far a node has been carried along the surface from where it holds
 on, body axes [m], and the substep after the one in which it last touched."""

@@ -30,7 +30,7 @@ from fmu_src.extremes import Extreme
 from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture.contact import Checks, Contact
-from fmu_src.net_capture.contact.friction import PLANES, SINCE, make_friction
+from fmu_src.net_capture.contact.friction import FRICTION, PLANES, SINCE, make_friction
 from fmu_src.net_capture.contact.pushing import make_push
 from fmu_src.net_capture.contact.touching import INSIDE_TARGET, ROWS, make_contact
 from fmu_src.net_capture.contact.touching import refuses as refuses_place
@@ -46,9 +46,6 @@ SCHEME, PRECISION = "leapfrog", "double"
 DURATION = 1e-3
 """Seconds that a contact lasts unless the scene says otherwise: at 3 m/s a node goes 1 mm deep, and the substep of an
 aramid net hardly feels it."""
-FRICTION = 0.1
-"""Of Kevlar 49 on aluminium: a shear stress of 0.099 p^0.91 at a pressure p. Source: Brown and Burgoyne, Wear 236,
-1999."""
 DEEPEST = 0.1
 """Of half the target's least dimension, that a bullet may go below the surface."""
 TARGET_SHARE = 40.0

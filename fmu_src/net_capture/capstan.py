@@ -34,10 +34,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmu_src.interface import Variable
-from fmu_src.net_capture.contact.near import FINE, KEPT
-from fmu_src.net_capture.contact.penalty import FRICTION
+from fmu_src.net_capture.contact.friction import FRICTION
 from fmu_src.net_capture.contact.section import MOST
 from fmu_src.net_capture.contact.shortest import along
+from fmu_src.net_capture.near import FINE, KEPT
 from fmu_src.rows import at_least_zero, count, peak, state
 from orbital.kernel import kernel
 

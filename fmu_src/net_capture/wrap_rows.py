@@ -1,0 +1,71 @@
+"""What an FMU tells of threads that bend, what their kernels scribble on, and the ends of their range."""
+
+from __future__ import annotations
+
+import math
+
+from fmu_src.extremes import Extreme
+from fmu_src.net_capture.contact.section import FACES, MOST
+from fmu_src.rows import count, output, peak, state
+
+ROWS = (
+    count("wrap.threads", "taut threads that bend round an edge now"),
+    count("wrap.passed", "how often a taut thread has gone through the target"),
+    count("wrap.slipped", "how often a taut thread has slid over a corner"),
+    peak("wrap.slip_loss", "J", "lost by threads that slid over a corner"),
+    peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
+    output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
+    count("wrap_listed", "threads near the target", "state"),
+    count("wrap_next", "substep at which they are looked up again", "state"),
+    count("wrap_faces", "faces of the target", "state"),
+    count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
+    count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
+    state("wrap_clear", "m", "how far a thread is from the target, at least"),
+    state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),
+    state("wrap_substep", "s", "the substep then"),
+    state("wrap_inset", "m", "how far below the surface ways lie"),
+    *(
+        state(f"wrap_{name}[#][#]", "1", text, shape=(rows, columns))
+        for name, rows, columns, text in (
+            ("planes", FACES, 4, "faces of the target, body axes: way out, and distance along it [m]"),
+            ("flat", FACES, 3, "lines of the faces in the plane of a way, the last column in metres"),
+            ("bends", MOST + 2, 3, "points of a way, body axes [m]"),
+            ("pieces", MOST + 1, 4, "directions between them, body axes, and lengths [m]"),
+            ("edges", MOST, 3, "directions of the edges, body axes"),
+            ("feet", MOST, 3, "points on them, body axes [m]"),
+            ("spans", MOST, 4, "where the way crosses them and both ends [m], and slope there"),
+            ("steps", MOST, 4, "Newton's equations of a way"),
+        )
+    ),
+    *(
+        state(f"wrap_{name}[#]", unit, text, shape=(3,))
+        for name, unit, text in (
+            ("a", "m", "one end of a thread, body axes"),
+            ("b", "m", "the other end, body axes"),
+            ("turned", "m", "a bend from the target's centre of mass, frame axes"),
+            ("moving", "m/s", "velocity of the surface there, less that of the centre of mass; a lever"),
+            ("first", "1", "direction from the first bend to one end"),
+            ("last", "1", "direction from the last bend to the other end"),
+            ("line", "1", "direction of the straight thread"),
+            ("up", "1", "direction across it, body axes"),
+        )
+    ),
+)
+"""Rows of threads that bend, with friction or without."""
+
+EXTREMES = (
+    Extreme(
+        "threads wound on at 60 deg/s",
+        "edges turn under the net faster than it closes: each bend wanders from edge to edge",
+        "through",
+        {"target.start_rate": (0.0, 0.0, math.radians(60.0))},
+        chief=True,
+    ),
+    Extreme(
+        "threads flung round edges at 10 m/s",
+        "they meet the edges as fast as they stretch",
+        "through",
+        {"bullets.speed": 10.0},
+    ),
+)
+"""Of threads that bend."""
