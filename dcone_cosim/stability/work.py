@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+import time as clock
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -37,6 +38,8 @@ from dcone_cosim.stability.judge import (
     verdict,
 )
 
+IDLE = 0.01
+"""Share of the time in which a case that does not hang uses some of the processor."""
 PATIENCE = 12.0
 """Limits after which a case that is still there counts as hanging: it was reckoned to take one, a finer run four."""
 FINER = 5.0
@@ -79,23 +82,27 @@ def measure(case: Case) -> Row:
 
 @contextmanager
 def _patience(seconds: float) -> Iterator[None]:
-    """Ends the process after so long on the clock."""
+    """Ends the process after so much of its CPU time, or where it has used next to none of it for as long on the clock:
+    on a machine with other work a case takes its time."""
+    over = threading.Event()
 
-    def end() -> None:
-        sys.stderr.write(f"it had not ended after {spoken(seconds)}\n")
-        sys.stderr.flush()
-        os._exit(70)
+    def watch() -> None:
+        begin = before = clock.process_time()
+        while not over.wait(seconds):
+            now = clock.process_time()
+            if now - begin >= seconds or now - before < IDLE * seconds:
+                sys.stderr.write(f"it had not ended after {spoken(seconds)}\n")
+                sys.stderr.flush()
+                os._exit(70)
+            before = now
 
-    timer = threading.Timer(seconds, end)
-    timer.daemon = True
-    timer.start()
+    threading.Thread(target=watch, daemon=True).start()
     try:
         yield
     finally:
-        timer.cancel()
+        over.set()
 
 
-@dataclass
 class _Ran:
     """A run, or the row that says why there is none."""
 

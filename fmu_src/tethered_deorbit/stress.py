@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from fmu_src.extremes import Extreme, Values
-from orbital.constants import EARTH_EQUATORIAL_RADIUS
+from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
 HOUR, DAY, YEAR = 3600.0, 86400.0, 365.25 * 86400.0
 PERIGEE = 800e3
@@ -13,6 +13,8 @@ PERIGEE = 800e3
 GEOSTATIONARY = 35786e3
 HANDED_OVER = 3
 """Number of the start that takes given states, see `interface.CONDITIONS`."""
+HELD = 1.8
+"""Stiffness over the tide's [1]: at 1 the tide has it, and the pair drifts apart until its orbit ends."""
 
 
 GRAZES = "its tension comes back to zero at no speed, and which of these touches are tugs hangs on the last digit"
@@ -20,6 +22,15 @@ GRAZES = "its tension comes back to zero at no speed, and which of these touches
 
 def _axis_less_radius(eccentricity: float) -> float:
     return (EARTH_EQUATORIAL_RADIUS + PERIGEE) / (1.0 - eccentricity) - EARTH_EQUATORIAL_RADIUS
+
+
+def _soft(values: Values) -> float:
+    """Young's modulus [Pa] of a line HELD times as stiff as the tide at perigee pulls its pair apart, 3 n^2 m_r."""
+    chaser, target = values["chaser.mass"], values["target.mass"]
+    perigee = EARTH_EQUATORIAL_RADIUS + values.get("orbit.altitude", PERIGEE)
+    perigee *= 1.0 - values.get("orbit.eccentricity", 0.0)
+    tide = 3.0 * EARTH_MU / perigee**3 * chaser * target / (chaser + target)
+    return HELD * tide * values["tether.rest_length"] / (0.25 * math.pi * values["tether.diameter"] ** 2)
 
 
 def _length(values: Values) -> float:
@@ -65,7 +76,7 @@ LOCKED = (
     Extreme("ten years", "of a stiff line, in the orbit as it is", "longer", {"thrust.level": 0.0},
             needs=("thrust",), duration=10.0 * YEAR, macro_step=DAY),
     Extreme("ten years on a soft line", "of a line as soft as a reel keeps it", "longer",
-            {"thrust.level": 0.0, "tether.youngs_modulus": 6e4}, needs=("thrust",), duration=10.0 * YEAR,
+            {"thrust.level": 0.0, "tether.youngs_modulus": _soft}, needs=("thrust",), duration=10.0 * YEAR,
             macro_step=DAY),
 )  # fmt: skip
 """Of the elastic line between fixed ends."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -178,3 +180,17 @@ def test_a_run_that_stops_is_refused_by_its_bound_alone(words: str, kind: str) -
     (own,) = scene.phases
     foreign: Any = SimpleNamespace(scene=replace(scene, phases=(replace(own, main=replace(own.main, fmu=object())),)))
     assert _stopped(foreign, phase, [well]).kind == FAILED
+
+
+def test_a_case_that_hangs_ends_its_process_and_one_that_is_slow_does_not() -> None:
+    """A wait that uses no processor, and work that uses more of it than is allowed; work within it goes on, however
+    long the machine takes for it."""
+    waits, works = "time.sleep(30)", "\nwhile time.process_time() < begin + {}: pass"
+    for body, code in ((waits, 70), (works.format(30.0), 70), (works.format(0.3), 0)):
+        text = (
+            "import time; from dcone_cosim.stability.work import _patience\n"
+            f"with _patience(0.5):\n begin = time.process_time()\n {body.strip()}"
+        )
+        found = subprocess.run([sys.executable, "-c", text], check=False, capture_output=True, text=True, timeout=60)
+        assert found.returncode == code, found.stderr
+        assert ("had not ended" in found.stderr) is (code == 70)
