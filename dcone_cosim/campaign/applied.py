@@ -123,7 +123,7 @@ def inputs_of(spec: Spec, base: Scene, isolate: bool | None = None) -> Inputs:
                 wrong.append(Mistake((*one.path, "distribution"), one.distribution, said))
     factor = _factor(len(inputs), matrix)
     if matrix and factor is None:
-        wrong.append(Mistake(("correlation",), None, "these coefficients contradict one another: no values have them"))
+        wrong.append(_contradicting(spec))
     if wrong:
         raise _wrong(spec, wrong)
     found = Inputs(tuple(inputs), tuple(groups.values()), factor)
@@ -154,6 +154,15 @@ def _overlap(one: str, other: str) -> bool:
     """Whether two keys set the same: a vector and an element of it, or twice the same."""
     plain = [key.partition("[")[0] for key in (one, other)]
     return one == other or (plain[0] == plain[1] and ("[" not in one or "[" not in other))
+
+
+def _contradicting(spec: Spec) -> Mistake:
+    """What is wrong where no values are correlated as the file says, with the coefficients."""
+    text = "these coefficients contradict one another: no values have them all; make them smaller, or leave one out"
+    if spec.correlations:
+        return Mistake(("correlation",), [link.coefficient for link in spec.correlations], text)
+    one = next(one for one in spec.dispersions if one.together)
+    return Mistake((*one.path, "together"), one.together, text)
 
 
 def _factor(size: int, matrix: Mapping[tuple[int, int], float]) -> npt.NDArray[np.float64] | None:

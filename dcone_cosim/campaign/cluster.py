@@ -10,6 +10,8 @@ one on which `DEATHS` workers have died is a row that says so. dask is imported 
 
 from __future__ import annotations
 
+import re
+import socket
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager, suppress
@@ -27,6 +29,9 @@ DEATHS = 3
 """Workers that may die on a case."""
 RUNNING = ("running", "newly-created")
 """What a client of dask says of itself while its scheduler is there."""
+ADDRESS = re.compile(r"(?:tcp|tls)://(\[[0-9a-fA-F:.]+\]|[^:/\s]+):(\d{1,5})")
+KNOCK = 5.0
+"""How long to wait for somebody at its address [s]."""
 PATIENCE = "20 s"
 """How long to wait for a scheduler."""
 
@@ -122,6 +127,24 @@ def has_dask() -> bool:
     return find_spec("distributed") is not None
 
 
+def check(scheduler: str | None) -> None:
+    """`InputError` for an address at which nobody answers, before anything is built.
+
+    Checked  tests/campaign/test_engine.py
+    """
+    if not scheduler or scheduler == PROCESSES:
+        return
+    if not has_dask():
+        raise InputError(f"--scheduler {scheduler}: needs dask; pip install 'dcone-cosim[campaign]'")
+    match = ADDRESS.fullmatch(scheduler)
+    if match is None:
+        raise InputError(f"--scheduler {scheduler}: expected {PROCESSES}, or an address such as tcp://host:8786")
+    try:
+        socket.create_connection((match[1].strip("[]"), int(match[2])), timeout=KNOCK).close()
+    except (OSError, OverflowError) as error:
+        raise InputError(f"--scheduler {scheduler}: no scheduler there: {error}") from None
+
+
 @contextmanager
 def opened(scheduler: str | None, jobs: int | None) -> Iterator[Cluster]:
     """What runs the cases, for as long as they are run.
@@ -173,8 +196,6 @@ def _here(count: int) -> Iterator[Cluster]:
 
 @contextmanager
 def _elsewhere(address: str) -> Iterator[Cluster]:
-    if not has_dask():
-        raise InputError(f"--scheduler {address}: needs dask; pip install 'dcone-cosim[campaign]'")
     distributed: Any = import_module("distributed")
 
     try:

@@ -161,6 +161,7 @@ def campaign(
     work               what makes the row of a case, a function of a module
     """
     started = datetime.now(UTC)
+    cluster.check(scheduler)
     plan = planned(path, progress, isolate)
     spec, folder = plan.spec, out if out is not None else default_folder(f"{plan.spec.name}-campaign")
     coordinates = [one.points for one in plan.inputs.inputs]

@@ -25,6 +25,7 @@ from dcone_cosim.cases.runner import Rows, Runner
 from dcone_cosim.errors import Interrupted
 from dcone_cosim.progress import Progress
 
+KEPT = "cases done; they are kept, and the same command goes on with the rest"
 Work = Callable[[Shot], Row]
 
 
@@ -177,8 +178,9 @@ class Engine:
                 yield row, before
                 self._idle()
         except (Interrupted, SchedulerGone) as error:
-            told = f"{error} with {pace.done} cases done; they are kept, and the same command goes on with the rest"
-            raise type(error)(told) from None
+            raise type(error)(f"{error} with {pace.done} {KEPT}") from None
+        except OSError as error:  # the disk is full, or gone
+            raise OSError(error.errno, f"{error.strerror} with {pace.done} {KEPT}", error.filename) from None
 
 
 class _Stop:

@@ -65,6 +65,7 @@ def settled(spec: Spec, base: Scene) -> Spec:
     Checked  tests/campaign/test_outcomes.py
     """
     words, success = possible(base), spec.success
+    _followed(spec, base)
     if success.figure:
         return spec
     if not success.said:
@@ -73,6 +74,22 @@ def settled(spec: Spec, base: Scene) -> Spec:
         text = f"no case of {base.name} can come out so: expected one of {', '.join(words)}, or a figure with a bound"
         raise SceneError([Mistake(("success",), success.outcome, text)], spec.places)
     return spec
+
+
+def _followed(spec: Spec, base: Scene) -> None:
+    """`SceneError` where no case can be followed until the instant after the capture at which it is to be judged."""
+    after = spec.success.judged.after
+    if not math.isfinite(after):
+        return
+    text = f"{base.name} has no capture"
+    for phase in base.phases:
+        if phase.name in SHOTS:
+            options = phase.options
+            text = "" if phase is base.phases[-1] else f"the {phase.name} ends as it hands over"
+            if not text and options.after_capture < after:
+                text = f"{phase.name}.after_capture is {options.after_capture:g} s, and must not be less"
+    if text:
+        raise SceneError([Mistake(("judged_after",), f"{after:g} s", text)], spec.places)
 
 
 def answered(row: Row) -> bool:

@@ -17,6 +17,7 @@ from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
 from dcone_cosim.scene.expected import ANY, Expected
 from dcone_cosim.scene.toml_lines import dotted
+from dcone_cosim.scenes.alike import filled
 from dcone_cosim.scenes.components import term_named
 from dcone_cosim.scenes.keys import (
     COUPLING_KEYS,
@@ -50,7 +51,7 @@ def new_scene(text: str, origin: str, name: str, schema: str = "", comments: Seq
     schema    path of a JSON schema for editors, "" for none
     comments  what else is to be known of it
     """
-    document = tomllib.loads(text)
+    document = filled(tomllib.loads(text), [])
     lines = [f"#:schema {schema}"] if schema else []
     lines += [
         f"# A scene begun from {origin!r}. Check it with `dcone validate {name}`, run it with `dcone run {name}`.",

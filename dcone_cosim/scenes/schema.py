@@ -16,6 +16,7 @@ from dcone_cosim import build
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
 from dcone_cosim.scene.expected import ANY, TEXT, Expected
+from dcone_cosim.scenes.alike import LIKE
 from dcone_cosim.scenes.keys import (
     COMPONENT_KEYS,
     COUPLING_KEYS,
@@ -141,18 +142,19 @@ def _phase(phase: str) -> Schema:
     needed = [name for name, group in model.groups.items() if not group.optional and not group.default]
     strict = {name: {"properties": dict.fromkeys(t["properties"], True), "additionalProperties": False}
               for name, t in tables.items()}  # fmt: skip
-    return {
+    own_only: Schema = {"properties": {**dict.fromkeys(own, True), **strict}, "additionalProperties": False}
+    found: Schema = {
         "type": "object",
         "description": model.summary,
         "properties": {**own, **tables},
-        "required": list(REQUIRED),
         "if": {"required": ["fmu"]},
-        "else": {
-            "properties": {**dict.fromkeys(own, True), **strict},
-            "additionalProperties": False,
-            "required": needed,
-        },
     }
+    if LIKE not in own:
+        return {**found, "required": list(REQUIRED), "else": {**own_only, "required": needed}}
+    for table in tables.values():  # what a table must have may be said by the phase that this one is like
+        table.pop("required", None)
+    whole = {"if": {"required": [LIKE]}, "else": {"required": [*REQUIRED, *needed]}}
+    return {**found, "else": {**own_only, **whole}}
 
 
 def _tables(model: build.Model) -> dict[str, Schema]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import itertools
+import os
 import random
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
@@ -13,6 +15,7 @@ import numpy as np
 import pytest
 
 from dcone_cosim.campaign.cluster import DEATHS, Cluster, GivenUp, Persistent, SchedulerGone, _Dask
+from dcone_cosim.campaign.commands import campaign
 from dcone_cosim.campaign.engine import Engine
 from dcone_cosim.campaign.inputs import Group as InputGroup
 from dcone_cosim.campaign.inputs import Input, Inputs
@@ -21,7 +24,9 @@ from dcone_cosim.campaign.shots import Ground, Shot
 from dcone_cosim.campaign.spec import Spec
 from dcone_cosim.cases.rows import LOST, Row, lost, refused
 from dcone_cosim.cases.runner import Memory
+from dcone_cosim.cases.store import Store
 from dcone_cosim.cases.workers import WorkerDied, Workers
+from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from tests.campaign import fakes
 from tests.campaign.conftest import spec_of
@@ -218,3 +223,39 @@ def test_what_dask_says() -> None:
         (ZeroDivisionError, asked("running", _Answer("error", ZeroDivisionError()), good)),
     ):
         assert type(future.exception()) is error
+
+
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [
+        ("nonsense", "expected processes, or an address such as tcp://host:8786"),
+        ("tcp://127.0.0.1", "expected processes, or an address"),
+        ("tcp://127.0.0.1:1", "no scheduler there"),
+        ("tcp://127.0.0.1:99999", "no scheduler there"),
+    ],
+)
+def test_a_scheduler_that_is_not_there_is_told_before_anything_is_built(
+    address: str, said: str, drift: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=said):
+        campaign(drift, tmp_path / "out", Progress(), scheduler=address)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_full_disk_says_that_the_cases_are_kept(drift: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And the same command goes on once there is room."""
+    put, left = Store.put_all, [30]
+
+    def full(self: Store, rows: Any) -> None:
+        if left[0] <= 0:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "row")
+        left[0] -= len(rows)
+        put(self, rows)
+
+    monkeypatch.setattr(Store, "put_all", full)
+    with pytest.raises(OSError, match="cases done; they are kept, and the same command goes on") as error:
+        campaign(drift, tmp_path / "out", Progress(), scheduler="processes", jobs=1, with_figures=False)
+    assert error.value.errno == errno.ENOSPC
+    monkeypatch.undo()
+    done = campaign(drift, tmp_path / "out", Progress(), scheduler="processes", jobs=1, with_figures=False)
+    assert done.content["cases"] == 60
