@@ -31,6 +31,7 @@ from fmu_src.net_capture import lines as net_capture_lines
 from fmu_src.net_capture import stress as net_capture_stress
 from fmu_src.net_capture import trade as net_capture_trade
 from fmu_src.net_capture.capacity import FAMILIES
+from fmu_src.net_capture.entered import over_time as energy_entered
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
 from fmu_src.net_capture.interface import NETS, TARGETS
 from fmu_src.packaging.c_header import STATE_HEAD
@@ -63,6 +64,7 @@ __all__ = [
     "Rung",
     "Table",
     "Variable",
+    "energy_entered",
     "from_files",
 ]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import os
 import sys
 import threading
 from collections.abc import Mapping, Sequence
@@ -25,8 +26,10 @@ from dcone_cosim.resume import instants
 from dcone_cosim.resume.begin import Origin
 from dcone_cosim.run_folder import default_folder, fill
 from dcone_cosim.running import run_once
+from dcone_cosim.scene.toml_lines import Path as KeyPath
 from dcone_cosim.scenes.kept import unlike
 from dcone_cosim.scenes.reading import parse, read_text
+from dcone_cosim.scenes.text import beside, with_values
 from dcone_cosim.scratch import Scratch, clear_left
 
 LEFT_BEHIND = (
@@ -190,18 +193,37 @@ def write_scene(name: str, origin: str, share: str = "") -> tuple[Path, list[str
     if any(component.fmu is not None for phase in scene.phases for component in phase.components):
         raise InputError(f"{source} names FMU files: only a scene of our models can be begun from; copy the file")
     schema = f"./{SCHEMA}" if (path.parent / SCHEMA).is_file() else ""
-    given, comments = read_text(source), list[str]()
+    given, comments, files = read_text(source), list[str](), dict[KeyPath, tuple[str, str]]()
+    given = with_values(given, beside(given, {table.path: table.file for table in scene.tables}, path.parent))
     if share:
         from dcone_cosim.scenes.scaled import scaled, share_of
 
-        given, comments = scaled(given, scene, share_of(share))
+        given, comments, files = scaled(given, scene, share_of(share), path.stem)
     text = new_scene(given, origin, str(path), schema, comments)
-    parse(text, path.stem, str(path))
-    write_new(path, text)
+    _put_scene(path, text, files, f"{origin} scaled by {share}" if share else str(path))
     steps = [f"next: edit {path}, then `dcone validate {path}` and `dcone run {path}`"]
     if not schema:
         steps.append(f"for an editor that completes and checks it: `dcone schema -o {path.parent / SCHEMA}`")
     return path, steps
+
+
+def _put_scene(path: Path, text: str, files: Mapping[KeyPath, tuple[str, str]], source: str) -> None:
+    """Write a scene with the files of its tables beside it, once it has passed every check; none may be there yet.
+
+    files     name and text by the key that names each
+    source    of what is checked, for messages: the scene is not written yet
+    """
+    with Scratch(path.absolute().parent) as folder:
+        for name, content in files.values():
+            (folder / name).write_text(content, encoding="utf-8")
+        drafts = {key: str(folder / name) for key, (name, _) in files.items()}
+        parse(with_values(text, drafts), path.stem, source, path.parent)
+    wanted = {path.with_name(name): content for name, content in files.values()} | {path: text}
+    taken = next((each for each in wanted if os.path.lexists(each)), None)
+    if taken is not None:
+        raise InputError(f"{taken} is there already and was not touched; choose another name")
+    for place, content in wanted.items():
+        write_new(place, content)
 
 
 def write_new(path: Path, text: str) -> None:

@@ -63,6 +63,8 @@ class Table:
     read    `read(path)`: the numbers of such a file; ValueError, with the line where there is one, for what is none
     entry   rows that a scene may say of each of its entries, where it is no file but an array of tables
     gather  `gather(entries)`: the numbers of such entries, each with what it says by key [SI]; ValueError as `read`
+    counted_in  row of the scene's that says the unit of its numbers, "" where the file does
+    rewritten   `rewritten(path, factor)`: text of such a file with every number times the factor of its FMI unit
     made    `made(numbers)`: the numbers of one that no scene gives, from those of the tables before it, by name
     """
 
@@ -74,6 +76,8 @@ class Table:
     entry: tuple[Any, ...] = ()
     gather: Callable[[Sequence[Mapping[str, Any]]], npt.ArrayLike] | None = None
     made: Callable[[Mapping[str, npt.NDArray[np.float64]]], npt.ArrayLike] | None = None
+    counted_in: str = ""
+    rewritten: Callable[[Path, Callable[[str], float]], str] | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.dimensions <= MOST_DIMENSIONS:

@@ -17,6 +17,8 @@ ACCURATE, STABLE = 0.01, 0.05
 ROUNDING = {"double": (1e-9, 1e-7), "single": (1e-4, 1e-2)}
 """Shares of momentum by which it may change, accurate and stable, by the bits of a number: a velocity is rounded once a
 substep, by 2^-53 or 2^-24 of it at most, so that 160,000 substeps of one sign come to a hundredth with 24 bits."""
+FALLING = ("uniform", "history")
+"""Gravities that give energy to a net in free flight."""
 ON_GRID = 1.1e-3
 """Share of a substep by which a communication point may miss the grid and still be taken for on it, and a little."""
 BOOKED = {"double": 2e-6}
@@ -53,22 +55,12 @@ def _step(evidence: Evidence) -> Iterator[Criterion]:
         yield Criterion("bound", "substep above the bound of stability", max(0.0, ratio - 1.0), "1", 1e-9, 1e-9)
 
 
-def entered(evidence: Evidence) -> Array:
-    """Energy [J] that the shot, the reels of mouth and tether, and a test load have brought in by then."""
-    columns = evidence.columns
-    energy = np.full(len(columns["time"]), columns["energy.kinetic"][0])
-    for work in ("closing.work", "tether.work", "pull_off.work"):
-        if work in columns:
-            energy = energy + np.maximum.accumulate(np.maximum(columns[work], 0.0))
-    return energy
-
-
 def _book(evidence: Evidence) -> Iterator[Criterion]:
     """The book of energy, and what is in it: nothing that takes energy gives any back."""
     columns = evidence.columns
     if not evidence.has("energy.kinetic"):
         return
-    size = entered(evidence)
+    size = build.energy_entered(columns)
     if not size[0] > 0.0:
         return
     if evidence.has("energy.remainder"):
@@ -86,7 +78,8 @@ def _book(evidence: Evidence) -> Iterator[Criterion]:
             yield Criterion(
                 f"{name.partition('.')[0]}_takes", f"energy given by the {label}", back, "1", 1e-3, ACCURATE
             )
-    if evidence.has("energy.total") and not {"closing", "contact", "tether"} & evidence.terms.keys():
+    alone = not {"closing", "contact", "tether"} & evidence.terms.keys()
+    if evidence.has("energy.total") and alone and evidence.terms.get("gravity") not in FALLING:
         # a net in free flight, whatever the book says
         risen = rise(columns["energy.total"]) / size[0]
         yield Criterion("energy_rises", "energy of the flying net above what it was", risen, "1", ACCURATE, STABLE)
@@ -183,7 +176,7 @@ def _stretch(evidence: Evidence) -> Iterator[Criterion]:
     for number, side in enumerate(sides):
         apart = np.linalg.norm(corners[(number + 1) % len(corners)] - corners[number], axis=1)
         held += 0.5 * strength / side * np.maximum(apart - side, 0.0) ** 2
-    came = entered(evidence)
+    came = build.energy_entered(evidence.columns)
     beyond = float(np.max(np.maximum(held - came, 0.0) / np.maximum(came, 1e-300)))
     label = "energy that the rim's stretch alone holds, above what came in"
     yield Criterion("stretch", label, beyond, "1", ACCURATE, STABLE)

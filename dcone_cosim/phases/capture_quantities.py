@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from dcone_cosim import build
 from dcone_cosim.contract import bullets
 from dcone_cosim.quantities import Quantity, at
 from dcone_cosim.results import PhaseResult
@@ -41,10 +42,11 @@ def quantities(result: PhaseResult, parameters: Mapping[str, float], instants: S
         yield Quantity("captured", "whether it is captured", [float(last["captured"] > 0.0)], "1", 1.0, "1")
         if last.get("t_capture", -1.0) >= 0.0:
             yield Quantity("t_capture", "captured at", [last["t_capture"]], "s")
-    if "energy.remainder" in recorder and recorder["energy.total"][0] > 0.0:
-        shot = float(recorder["energy.total"][0])
+    if "energy.remainder" in recorder and "energy.kinetic" in recorder:
+        entered = float(build.energy_entered(recorder)[-1])
         left = [last["energy.remainder"]]
-        yield Quantity("energy_book", "left over in the energy book", left, "J", shot, "the shot's energy", False)
+        if entered > 0.0:
+            yield Quantity("energy_book", "left over in the energy book", left, "J", entered, "what came in", False)
     if "thread.tension_max" in last:
         yield Quantity("thread_peak", "largest tension of a thread", [last["thread.tension_max"]], "N", meant=False)
 

@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from dcone_cosim import loads
+from dcone_cosim import build, loads
 from dcone_cosim.cases.rows import CLOCK
 from dcone_cosim.findings import spoken
 from dcone_cosim.phases import kind_of
@@ -137,8 +137,8 @@ def trust(run: RunResult) -> list[str]:
     ]
     for name, result in run.phases.items():
         recorder = result.recorder
-        if len(recorder) and {"energy.remainder", "energy.total"} <= set(recorder.names):
-            left, size = abs(float(recorder["energy.remainder"][-1])), float(recorder["energy.total"].max())
+        if len(recorder) and {"energy.remainder", "energy.kinetic"} <= set(recorder.names):
+            left, size = abs(float(recorder["energy.remainder"][-1])), float(build.energy_entered(recorder)[-1])
             said.append(
                 f"{name}: its energy book leaves {spoken(left, most=2)} J of {spoken(size)} J open: its scheme's error"
             )

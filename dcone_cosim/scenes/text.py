@@ -6,6 +6,7 @@ them, and the paths of the FMUs' copies beside it.
 
 from __future__ import annotations
 
+import os
 import pickle
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -138,6 +139,18 @@ def moved(text: str, places: Mapping[File, str], tables: Mapping[Path, str] = Ma
     return with_values(text, {**{path: place for path, place in found if place is not None}, **tables})
 
 
+def beside(text: str, tables: Mapping[Path, File], folder: File) -> dict[Path, str]:
+    """Paths that a scene in this folder has to say of the tables that the text tells by paths that are relative.
+
+    tables    files of tables by the key that names each
+    """
+    document = tomllib.loads(text)
+    relative = {
+        path: file for path, file in tables.items() if not File(given_at(document, path)).expanduser().is_absolute()
+    }
+    return {path: os.path.relpath(file.absolute(), folder.absolute()) for path, file in relative.items()}
+
+
 def with_values(text: str, changes: Mapping[Path, Any]) -> str:
     """The text with other values at some places, and its comments as far as they can be kept."""
     if not changes:
@@ -147,11 +160,11 @@ def with_values(text: str, changes: Mapping[Path, Any]) -> str:
 
     wanted = tomllib.loads(text)
     for path, value in changes.items():
-        _put(wanted, path, value)
+        put(wanted, path, value)
     try:
         kept = pickle.loads(_parsed(text))
         for path, value in changes.items():
-            _put(kept, path, value)
+            put(kept, path, value)
         changed = tomlkit.dumps(kept)
         if tomllib.loads(changed) == wanted:
             return changed
@@ -169,9 +182,10 @@ def _parsed(text: str) -> bytes:
     return pickle.dumps(tomlkit.parse(text))
 
 
-def _put(document: Any, path: Path, value: Any) -> None:
+def put(document: Any, path: Path, value: Any) -> None:
+    """Give a document a value at a place; tables that it lacks on the way are made."""
     for part in path[:-1]:
-        if part not in document:
+        if not isinstance(part, int) and part not in document:
             document[part] = {}
         document = document[part]
     document[path[-1]] = value

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
+from fmu_src.net_capture.entered import by_the_end
 from fmu_src.net_capture.implied import open_loop, substeps
 from fmu_src.net_capture.interface import GROUPS, TARGETS
 from fmu_src.net_capture.pull_off import PULLED, WAITING
@@ -112,11 +113,9 @@ def _needs(terms: Mapping[str, str]) -> Needs:
 
 def _unbalanced(values: Values, terms: Mapping[str, str], seen: Seen) -> Iterator[Caution]:
     """An energy book that leaves over more than a hundredth of what came in: the scheme's own error."""
-    left, kinetic = seen("energy.remainder"), seen("energy.kinetic")
-    if left is None or kinetic is None:
+    left, entered = seen("energy.remainder"), by_the_end(seen)
+    if left is None or entered is None:
         return
-    works = [work for work in (seen("closing.work"), seen("pull_off.work")) if work is not None]
-    entered = kinetic.first + sum(work.largest for work in works)
     size = max(abs(left.least), abs(left.largest))
     if size > LEFT_OVER * entered:
         yield Caution(

@@ -10,6 +10,7 @@ from fmu_src.net_capture import formulas
 from fmu_src.net_capture.interface import GROUPS, NETS, rigged_of
 from fmu_src.net_capture.nets import USUAL_BULLETS, Checks, Hanging, Thread
 from fmu_src.net_capture.release import ejection, ejector
+from fmu_src.net_capture.rigging.knots import in_series
 from fmu_src.net_capture.shapes import mesh, solids
 from fmu_src.net_capture.shot import opening_distance
 from fmu_src.net_capture.substeps import COUNT
@@ -34,8 +35,8 @@ def thread_section(values: Values, terms: Mapping[str, str]) -> float | None:
 
 def hanging(values: Values, terms: Mapping[str, str]) -> Hanging:
     """Masses [kg] of the pieces of thread that hang on a knot inside the net, on its edge, and at a bullet."""
-    pieces = values["net.segments"]
-    return Hanging(*(mass / pieces for mass in NETS[terms["net"]].checks.hanging(values)))
+    pieces, found = values["net.segments"], NETS[terms["net"]].checks.hanging(values)
+    return Hanging(found.inside / pieces, found.edge / pieces, found.corner / pieces, found.alike)
 
 
 def cord_mass(values: Values, terms: Mapping[str, str]) -> float:
@@ -56,9 +57,11 @@ def open_loop(values: Values, terms: Mapping[str, str]) -> float:
 
 
 def bullet_thread(values: Values, terms: Mapping[str, str]) -> float:
-    """Mass [kg] of the thread that hangs on a bullet: of the net's corner, or of its lead."""
+    """Mass [kg] of what hangs on a bullet: of the net's corner with its knot, or of its lead."""
     led = [part.checks.corner for part in rigged_of(terms).values() if part.checks.corner is not None]
-    return led[0](values, NETS[terms["net"]].checks) if led else hanging(values, terms).corner
+    if led:
+        return float(led[0](values, NETS[terms["net"]].checks))
+    return hanging(values, terms).corner + (values["knots.mass"] if "knots" in terms else 0.0)
 
 
 def catch_mass(values: Values, terms: Mapping[str, str]) -> float:
@@ -99,23 +102,45 @@ def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
 
 
 def _of_thread(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
+    """Where threads differ, of the least and of the most; stiffness and dashpot with the knots in series."""
     thread: Thread = NETS[terms["net"]].checks.thread(values)
     if thread.section is not None:
-        yield Implied("thread.area", "section of a thread", thread.section, "m2")
+        which = "a thread" if _equal(thread.strength, thread.hardest) else "the thinnest thread"
+        yield Implied("thread.area", f"section of {which}", thread.section, "m2")
         diameter = formula(formulas.round_diameter)(thread.section)
         yield Implied("thread.diameter", "its diameter, were it solid and round", diameter, "m")
-    yield Implied("thread.axial_stiffness", "EA of a thread", thread.strength, "N")
-    yield Implied("thread.stiffness", "stiffness of a thread from knot to knot", thread.stiffness, "N/m")
-    yield Implied("thread.dashpot", "dashpot of a thread from knot to knot", thread.dashpot, "N.s/m")
+    if _equal(thread.strength, thread.hardest):
+        yield Implied("thread.axial_stiffness", "EA of a thread", thread.strength, "N")
+    else:
+        yield Implied("thread.axial_stiffness", "EA of the softest thread", thread.strength, "N")
+        yield Implied("thread.axial_stiffness_most", "EA of the hardest thread", thread.hardest, "N")
+    compliance = values["knots.compliance"] if "knots" in terms else 0.0
+    with_knots = ", its knots in series" if compliance > 0.0 else ""
+    whole, softest = (formula(in_series)(stiffness, compliance) for stiffness in (thread.stiffness, thread.softest))
+    dashpot = thread.dashpot * math.sqrt(whole / thread.stiffness)
+    which = thread.called
+    if not _equal(whole, softest):
+        which = "the stiffest thread"
+        label = f"stiffness of the least stiff thread from knot to knot{with_knots}"
+        yield Implied("thread.stiffness_least", label, softest, "N/m")
+    yield Implied("thread.stiffness", f"stiffness of {which} from knot to knot{with_knots}", whole, "N/m")
+    yield Implied("thread.dashpot", f"dashpot of {which} from knot to knot{with_knots}", dashpot, "N.s/m")
+
+
+def _equal(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=1e-9)
 
 
 def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
-    """Half of each piece of thread that ends at a node."""
-    inside, edge, corner = hanging(values, terms)
-    yield Implied("knot.mass", "mass of a knot inside the net", inside, "kg")
-    yield Implied("edge.mass", "mass of a knot on its edge", edge, "kg")
+    """Half of each piece of thread that ends at a node, and the knot itself."""
+    inside, edge, corner, alike = hanging(values, terms)
+    knot = values["knots.mass"] if "knots" in terms else 0.0
+    which = "a knot" if alike else "the heaviest knot"
+    yield Implied("knot.mass", f"mass of {which} inside the net", inside + knot, "kg")
+    bare = ", without its rope" if "edge" in terms else ""
+    yield Implied("edge.mass", f"mass of {which} on its edge{bare}", edge + knot, "kg")
     if "leads" in terms:
-        yield Implied("corner.mass", "thread on a corner of the net, without its lead", corner, "kg")
+        yield Implied("corner.mass", "thread and knot at a corner of the net, without its lead", corner + knot, "kg")
         yield Implied(
             "bullet.mass",
             "a bullet with half a piece of its lead",
@@ -123,7 +148,8 @@ def _of_nodes(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
             "kg",
         )
     else:
-        yield Implied("corner.mass", "mass of a corner, with its bullet", corner + values["bullets.mass"], "kg")
+        bullet = bullet_thread(values, terms) + values["bullets.mass"]
+        yield Implied("corner.mass", "mass of a corner, with its bullet", bullet, "kg")
     for name, mass in rigged_masses(values, terms).items():
         yield Implied(f"{name}.mass", f"mass of all that [{name}] brings", mass, "kg")
     if values["net.segments"] > 1:

@@ -12,6 +12,7 @@ from fmu_src.net_capture.implied import catch_mass
 from fmu_src.net_capture.interface import MODEL, refusals
 from tests.conftest import FREE
 from tests.net_capture.laid import Layer
+from tests.net_capture.told import knots_are_as_told
 from tests.validation import other_code
 
 TERMS = FREE | {"net": "hexagon", "bullets": "6"}
@@ -60,6 +61,11 @@ def laid(request, layer):
     n, mesh, pieces = request.param
     values = {"net.radius": n * mesh, "net.mesh": mesh, "net.segments": pieces, "net.fold_side": 0.4 * mesh}
     return request.param, values, layer.lay(values)
+
+
+def test_knots_weigh_what_is_told(laid, layer):
+    _, values, net = laid
+    knots_are_as_told(layer.terms, values, net)
 
 
 def test_threads_are_those_drawn(laid):

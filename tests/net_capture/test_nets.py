@@ -15,6 +15,7 @@ from fmu_src.net_capture.nets.pyramid import pyramid_length
 from fmu_src.net_capture.planes import MASS
 from tests.conftest import FREE
 from tests.net_capture.laid import Layer
+from tests.net_capture.told import knots_are_as_told
 from tests.validation import closed_form
 
 MESH = 2.0
@@ -98,6 +99,11 @@ def kernels():
 def pair(request, kernels):
     """A case, the net drawn by hand, and the net of the kernels."""
     return request.param, draw(*request.param), kernels[request.param[0]].lay(parameters(*request.param))
+
+
+def test_knots_weigh_what_is_told(pair, kernels):
+    (shape, *size), _, laid = pair
+    knots_are_as_told(kernels[shape].terms, parameters(shape, *size), laid)
 
 
 def test_nodes_stand_in_the_order_of_the_outputs(pair):

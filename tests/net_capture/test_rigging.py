@@ -136,6 +136,11 @@ def test_knots_weigh_and_give_way(rigged):
     np.testing.assert_allclose(1.0 / soft, 1.0 / alone + 4e-4, rtol=1e-11)
     dashpot = 2.0 * 0.106 * np.sqrt(soft * 2.0 * 1440.0 * area * whole)
     np.testing.assert_allclose(graph.damping[rigged.net] / pieces, dashpot, rtol=1e-11)
+    told = {row.key: row.value for row in rows(all_values(rigged.shape, values, *RIGS), rigged.layer.terms)}
+    assert np.abs(soft / told["thread.stiffness"] - 1.0).min() < 1e-9
+    assert np.abs(graph.damping[rigged.net] / pieces / told["thread.dashpot"] - 1.0).min() < 1e-9
+    inside = np.setdiff1d(laid.slots[:inner], graph.rim)
+    assert told["knot.mass"] == pytest.approx(laid.mass[inside].max(), rel=1e-9)
 
 
 @pytest.mark.parametrize("change", [{}, {"leads.length": 0.3}, {"edge.diameter": 1e-4}, {"leads.segments": 1}], ids=str)

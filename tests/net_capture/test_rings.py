@@ -11,6 +11,7 @@ from fmu_src.instance import Instance, ModelFault
 from fmu_src.net_capture.interface import MODEL, refusals
 from tests.conftest import FREE
 from tests.net_capture.laid import Layer
+from tests.net_capture.told import knots_are_as_told
 
 SPAN = 2.0 / 3.0
 """Of the mesh: knots nearer than this crowd, as the page of the model says."""
@@ -93,6 +94,11 @@ def pair(request, layers):
     """The name of a case, its values, the net drawn, and the net of the kernels."""
     values = CASES[request.param]
     return request.param, values, draw(values), layers[shape_of(request.param)].lay(values)
+
+
+def test_knots_weigh_what_is_told(pair, layers):
+    case, values, _, laid = pair
+    knots_are_as_told(layers[shape_of(case)].terms, values, laid)
 
 
 def test_nodes_and_threads_are_those_drawn(pair):

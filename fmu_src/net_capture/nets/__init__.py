@@ -37,11 +37,12 @@ class Net(NamedTuple):
 
 class Hanging(NamedTuple):
     """Mass of thread [kg] that hangs on a knot inside the net, on its edge, and where a bullet is made fast: half of
-    every thread that ends there, the largest of each; with threads uncut."""
+    every thread that ends there, the largest of each; with threads uncut. `alike`: whether all inside have the same."""
 
     inside: float
     edge: float
     corner: float
+    alike: bool = True
 
 
 class Thread(NamedTuple):
@@ -52,6 +53,9 @@ class Thread(NamedTuple):
     stiffness    from knot to knot, of the stiffest              [N/m]
     dashpot      of that                                         [N s/m]
     mass         from knot to knot, of the lightest              [kg]
+    hardest      E A of the one where it is most                 [N]
+    softest      from knot to knot, where it is least            [N/m]
+    called       which one stiffness and dashpot are of, where all have one section
     """
 
     section: float | None
@@ -59,6 +63,9 @@ class Thread(NamedTuple):
     stiffness: float
     dashpot: float
     mass: float
+    hardest: float
+    softest: float
+    called: str = "a thread"
 
 
 class Checks(NamedTuple):

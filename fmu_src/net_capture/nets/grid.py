@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from fmu_src.interface import fault
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.nets import LARGEST_MESH, Checks, Net, Values
-from fmu_src.net_capture.nets.uniform import uniform
+from fmu_src.net_capture.nets.uniform import Lengths, uniform
 from fmu_src.net_capture.nets.weave import (
     TOO_FINE,
     add_strip,
@@ -39,9 +39,15 @@ NO_WHOLE_MESHES = "no_whole_meshes"
 Sides = Callable[[Values], dict[str, float]]
 
 
-def checks(sides: Sides, total: Callable[[Values], float]) -> Checks:
+def checks(sides: Sides, total: Callable[[Values], float], steeper: Callable[[Values], float] | None = None) -> Checks:
     """What a net of a grid says: of its sides by the name of their variable, along the rows first, one name if equal;
-    and of the length of all its threads [m]."""
+    of the length of all its threads [m]; and by how much those up its walls are longer than a mesh, None for flat."""
+
+    def lengths(values: Values) -> Lengths:
+        mesh, up = values["net.mesh"], 1.0 if steeper is None else steeper(values)
+        has_top = all(round(side / mesh) % 2 == 0 for side in sides(values).values())
+        return (2.0 * up if has_top else 1.0 + up) * mesh, (1.0 + 0.5 * up) * mesh, mesh
+
     return uniform(
         corner=lambda values: _halves(sides(values)),
         widths=lambda values: _both(sides(values)),
@@ -51,7 +57,8 @@ def checks(sides: Sides, total: Callable[[Values], float]) -> Checks:
         gap=lambda values: values["net.mesh"],
         total=total,
         shortest=lambda values: values["net.mesh"],
-        lengths=lambda values: (2.0 * values["net.mesh"], 1.5 * values["net.mesh"], values["net.mesh"]),
+        lengths=lengths,
+        even=steeper is None,
         nodes=lambda values: nodes_of(values, sides(values)),
         drawing=lambda values: _drawing(sides(values), values["net.mesh"]),
     )

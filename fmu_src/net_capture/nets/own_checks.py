@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from fmu_src.implied import formula
 from fmu_src.net_capture.nets import LARGEST_MESH, USUAL_BULLETS, Checks, Hanging, Thread, Values
-from fmu_src.net_capture.nets.own_graph import NODES, THREADS, NetError, own_graph
+from fmu_src.net_capture.nets.own_graph import CLOSE, NODES, THREADS, NetError, own_graph
 from fmu_src.net_capture.nets.own_tables import CORNER, EDGE, INSIDE, KIND, MASS_BY_AREA, OWN_MASS, kinds_of
 from fmu_src.net_capture.nets.own_threads import of_kinds, plain_thread
 from fmu_src.net_capture.refusal import Refusal, Scene
@@ -56,20 +56,24 @@ def _knots(values: Values) -> int:
 def _thread(values: Values) -> Thread:
     graph, found = own_graph(values), _threads(values)
     diameters = graph.told[:, 0]
-    stiffest = found[np.argmax(found[:, 0])]
+    stiffest, strengths = found[np.argmax(found[:, 0])], found[:, 0] * graph.lengths
     return Thread(
         0.25 * math.pi * float(diameters.min()) ** 2 if diameters.all() else None,
-        float((found[:, 0] * graph.lengths).min()),
+        float(strengths.min()),
         float(stiffest[0]),
         float(stiffest[1]),
         float(found[:, 2].min()),
+        float(strengths.max()),
+        float(found[:, 0].min()),
     )
 
 
 def _hanging(values: Values) -> Hanging:
     kinds = kinds_of(own_graph(values))
     masses = kinds[:, OWN_MASS] + values["net.density"] * kinds[:, MASS_BY_AREA]
-    return Hanging(*(float(masses[kinds[:, KIND] == kind].max(initial=0.0)) for kind in (INSIDE, EDGE, CORNER)))
+    inside, edge, corner = (masses[kinds[:, KIND] == kind] for kind in (INSIDE, EDGE, CORNER))
+    most = (float(of.max(initial=0.0)) for of in (inside, edge, corner))
+    return Hanging(*most, alike=len(inside) == 0 or bool(np.ptp(inside) <= CLOSE * inside.max()))
 
 
 def _nodes(values: Values) -> int:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fmu_src.net_capture.nets.own_graph import NODES, THREADS, OwnGraph, own_graph
 from fmu_src.net_capture.nets.own_rows import OF, STRIP_COLUMNS, rows_of
-from fmu_src.net_capture.nets.written import read_nodes, read_threads
+from fmu_src.net_capture.nets.written import read_nodes, read_threads, rewritten_nodes, rewritten_threads
 from fmu_src.net_capture.planes import FACE_WORDS
 from fmu_src.tables import Table
 
@@ -107,13 +107,21 @@ def _made(of: Callable[[OwnGraph], Any]) -> Callable[[Mapping[str, Any]], Any]:
 
 
 TABLES = (
-    Table(NODES, "1", "node, x [m], y [m], z [m], role: the nodes of a net, a row each", 2, read=read_nodes),
+    Table(
+        NODES,
+        "1",
+        "node, x [m], y [m], z [m], role: the nodes of a net, a row each",
+        2,
+        read=read_nodes,
+        rewritten=rewritten_nodes,
+    ),
     Table(
         THREADS,
         "1",
         "from, to, length [m], diameter [mm], stiffness [N/m], mass [g], damping [N s/m]: its threads, a row each",
         2,
         read=read_threads,
+        rewritten=rewritten_threads,
     ),
     Table("net.sizes", "1", "how large it is", made=_made(_sizes)),
     Table("net.knots", "1", "where its nodes stand and are", 2, made=_made(_knots)),

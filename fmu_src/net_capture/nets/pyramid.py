@@ -95,6 +95,7 @@ CHECKS = checks(
     lambda values: formula(pyramid_length)(
         values[SIDE], formula(slope)(values[SIDE], values["net.depth"]), values["net.mesh"]
     ),
+    lambda values: float(formula(slope)(values[SIDE], values["net.depth"])),
 )
 
 PART = Term(

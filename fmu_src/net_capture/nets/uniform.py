@@ -17,6 +17,7 @@ def uniform(
     total: Callable[[Values], float],
     shortest: Callable[[Values], float],
     lengths: Callable[[Values], Lengths],
+    even: bool = False,
     **others: Any,
 ) -> Checks:
     """What such a net says.
@@ -26,6 +27,7 @@ def uniform(
                stiffest: the square root of the least sum of l over sum of 1/l at a knot                     [m]
     lengths    of thread that hangs on a knot inside, on the edge, and where a bullet is made fast, the most of each:
                half of every thread that ends there                                                          [m]
+    even       whether all threads are as long, and all knots inside hold as much
     others     of `Checks`
     """
 
@@ -42,9 +44,10 @@ def uniform(
 
     def thread(values: Values) -> Thread:
         """Of one as long as a mesh is wide."""
-        return Thread(
-            section(values), values["net.youngs_modulus"] * section(values), *of_length(values, values["net.mesh"])
-        )
+        strength = values["net.youngs_modulus"] * section(values)
+        stiffness, dashpot, mass = of_length(values, values["net.mesh"])
+        called = "a thread" if even else "a thread as long as net.mesh"
+        return Thread(section(values), strength, stiffness, dashpot, mass, strength, stiffness, called)
 
     def piece(values: Values) -> tuple[float, float, float]:
         """See `make_thread`."""
@@ -54,7 +57,7 @@ def uniform(
 
     def hanging(values: Values) -> Hanging:
         line = values["net.density"] * section(values)
-        return Hanging(*(line * length for length in lengths(values)))
+        return Hanging(*(line * length for length in lengths(values)), alike=even)
 
     return Checks(
         total=total,

@@ -20,7 +20,7 @@ import csv
 import difflib
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
@@ -98,6 +98,27 @@ def read_threads(path: Path) -> list[list[float]]:
                 raise ValueError(f"line {line}: damping = {cells['damping']}, expected 0 or more")
         rows.append([line, a, b, *told.values(), damping])
     return rows
+
+
+def rewritten_nodes(path: Path, factor: Callable[[str], float]) -> str:
+    """Text of a file of nodes with every number in SI, times the factor of its unit."""
+    return _rewritten(path, NODE_COLUMNS, factor)
+
+
+def rewritten_threads(path: Path, factor: Callable[[str], float]) -> str:
+    """Text of a file of threads, as `rewritten_nodes`."""
+    return _rewritten(path, THREAD_COLUMNS, factor)
+
+
+def _rewritten(path: Path, columns: Mapping[str, Units], factor: Callable[[str], float]) -> str:
+    si = {name: [unit for unit, of in units.items() if of == 1.0][-1] for name, units in columns.items() if units}
+    lines: list[str] = []
+    for _, cells, factors in _rows(path, columns, ()):
+        if not lines:
+            lines.append(", ".join(f"{name} [{si[name]}]" if name in si else name for name in cells))
+        told = {name: f"{float(cells[name]) * factors[name] * factor(si[name]):.12g}" for name in si if cells.get(name)}
+        lines.append(", ".join({**cells, **told}.values()))
+    return "\n".join(lines) + "\n"
 
 
 def _rows(path: Path, columns: Mapping[str, Units], needed: tuple[str, ...]) -> Iterator[tuple[int, Row, Units]]:

@@ -257,7 +257,16 @@ PART = Term(
         Table(LATTICE, "m", "lowest corner of that grid in body axes, its cell, and its error"),
         *samples.TABLES,
     ),
-    sources=(Table(MESH, "1", "a closed mesh of triangles, .stl or .obj", dimensions=2, read=triangles.read),),
+    sources=(
+        Table(
+            MESH,
+            "1",
+            "a closed mesh of triangles, .stl or .obj",
+            dimensions=2,
+            read=triangles.read,
+            counted_in="target.mesh_unit",
+        ),
+    ),
     asked=(
         positive("target.mesh_unit", "m", "length that one unit of the mesh's file stands for", 1.0),
         positive("target.resolution", "m", "distance of the points of the grid of its distances", 0.1),
