@@ -103,6 +103,7 @@ def _patience(seconds: float) -> Iterator[None]:
         over.set()
 
 
+@dataclass
 class _Ran:
     """A run, or the row that says why there is none."""
 
