@@ -9,12 +9,14 @@ Checked  tests/orbital/test_keeping.py
 
 from __future__ import annotations
 
+import dis
 import enum
 import hashlib
 import importlib
 import inspect
 import types as python
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -96,12 +98,25 @@ class Keys:
     def _function(self, function: Any) -> str:
         code = function.__code__
         names = sorted(_names(code))
-        around = [(name, function.__globals__[name]) for name in names if name in function.__globals__]
-        for _, module in list(around):
-            if isinstance(module, python.ModuleType) and module.__name__.partition(".")[0] in OWN:
-                around += [(name, getattr(module, name)) for name in names if hasattr(module, name)]
-        closed = [cell.cell_contents for cell in function.__closure__ or ()]
-        return digest(self.of(code), self.of(around), self.of(closed), self.of(function.__defaults__))
+        around = {name: function.__globals__[name] for name in names if name in function.__globals__}
+        modules = [module for module in around.values() if isinstance(module, python.ModuleType)]
+        own = [module for module in modules if module.__name__.partition(".")[0] in OWN]
+        there = [(name, getattr(module, name)) for module in own for name in names if hasattr(module, name)]
+        cells = [cell.cell_contents for cell in function.__closure__ or ()]
+        around |= zip(code.co_freevars, cells, strict=True)
+        asked = [(name, _asked(code, name, value)) for name, value in around.items()]
+        return digest(self.of(code), self.of(asked + there), self.of(function.__defaults__))
+
+
+def _asked(code: python.CodeType, name: str, value: Any) -> Any:
+    """What a function asks of something that it refers to: of several things with names, those that it names."""
+    fields = getattr(value, "_fields", None)
+    if fields is None or any(isinstance(constant, python.CodeType) for constant in code.co_consts):
+        return value
+    uses = [then for step, then in pairwise(dis.get_instructions(code)) if step.argval == name]
+    if all(then.opname in ("LOAD_ATTR", "LOAD_METHOD") and then.argval in fields for then in uses):
+        return [(field, getattr(value, field)) for field in sorted({then.argval for then in uses})]
+    return value
 
 
 class Apart(Keys):

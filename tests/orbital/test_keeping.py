@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -256,6 +257,32 @@ def test_what_is_closed_over_is_in_its_key():
     values = (1.0, 1, True, "1", None, (1.0,), (1.0, 1.0), callee, another, np.float32(1.0), np.ones(2), np.ones(3))
     assert len({close_over(value) for value in values}) == len(values)
     assert close_over((callee, 2.0)) == close_over((callee, 2.0))
+
+
+class Two(NamedTuple):
+    one: Any
+    other: Any
+
+
+def test_of_things_with_names_those_that_are_named_are_in_the_key():
+    """And all of them where it is not told which."""
+
+    def named(two):
+        @kernel
+        def made(x):
+            return x * two.one
+
+        return Keys().of(made)
+
+    def counted(two):
+        @kernel
+        def made(x):
+            return x * two[0]
+
+        return Keys().of(made)
+
+    assert named(Two(2.0, 3.0)) == named(Two(2.0, another)) != named(Two(1.0, 3.0))
+    assert counted(Two(2.0, 3.0)) != counted(Two(2.0, 4.0))
 
 
 @kernel
