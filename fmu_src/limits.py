@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from fmu_src.interface import Interface, Variable
 from orbital.kernel import kernel
 
@@ -28,27 +30,38 @@ def make_limits(interface: Interface, *names: str) -> Callable[..., Any]:
     Checked  tests/packaging/test_rows.py
     """
     rows = {v.name: v for v in interface.variables}
-    found: Callable[..., Any] = no_limits
-    for name in reversed(names):
-        if name in rows:
-            found = _and_then(rows[name], interface.references[name], found)
-    return found
+    there = [name for name in names if name in rows]
+    slots = np.array([interface.references[name] for name in there] or [-1])
+    first: Callable[..., Any] = no_limits
+    for name in reversed(there):
+        first = _and_then(rows[name], first)
+
+    @kernel
+    def limits(record: Any) -> tuple[int, float]:
+        """Slot and value of the first one, by its place among them.
+
+        Checked  tests/packaging/test_rows.py
+        """
+        place, value = first(record)
+        return slots[place] if place >= 0 else -1, value
+
+    return limits
 
 
-def _and_then(v: Variable, slot: int, others: Callable[..., Any]) -> Callable[..., Any]:
-    """The kernel that judges one parameter, and then the others."""
+def _and_then(v: Variable, others: Callable[..., Any]) -> Callable[..., Any]:
+    """The kernel that judges one parameter, and then the others; it is the same wherever the record has them."""
     field, low, high, excluded = v.field, v.minimum, v.maximum, v.open_minimum
 
     @kernel
     def limits(record: Any) -> tuple[int, float]:
-        """Slot and value of a parameter that is out of its bounds or not finite, else what the others say.
+        """Place in the line, 0 for this one, and value of a parameter that is out of its bounds or not finite.
 
         Checked  tests/packaging/test_rows.py
         """
         value = float(record[0][field])
         if not (math.isfinite(value) and low <= value <= high) or (excluded and value == low):
-            return slot, value
-        found: tuple[int, float] = others(record)
-        return found
+            return 0, value
+        place, value = others(record)
+        return place + 1 if place >= 0 else -1, value
 
     return limits
