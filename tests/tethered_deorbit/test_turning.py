@@ -13,6 +13,7 @@ from fmu_src.integrators.dop853 import DAMPED_REACH, UNDAMPED_REACH, make_dop853
 from fmu_src.integrators.dop853 import reach as reach_of_dop853
 from fmu_src.tethered_deorbit import kinematics, turning
 from fmu_src.tethered_deorbit.bodies import points
+from fmu_src.tethered_deorbit.bodies.attached import FURTHER
 from fmu_src.tethered_deorbit.environment import make_environment
 from fmu_src.tethered_deorbit.environment.central import add_gravity
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
@@ -158,8 +159,10 @@ def _size(context: Any, state: Any, error: Any) -> float:
 
 
 def test_longest_step() -> None:
-    """The scheme's own damping is at most a hundredth of the line's, at the longest step that each damping allows."""
-    scheme, longest_taut_step = make_dop853(_oscillator, _size, 2), make_longest_taut_step(reach_of_dop853)
+    """The scheme's own damping is at most a hundredth of the line's, at the longest step that each damping allows; of a
+    body that turns an eighth, where its dashpot is strong, and no more than of points where there is none."""
+    scheme, longest_taut_step = make_dop853(_oscillator, _size, 2), make_longest_taut_step(reach_of_dop853, 1.0)
+    of_turning = make_longest_taut_step(reach_of_dop853, FURTHER)
 
     def excess(zeta: float, reach: float) -> float:
         """Damping of the scheme beyond the line's, in units of the line's."""
@@ -180,7 +183,11 @@ def test_longest_step() -> None:
         assert longest == pytest.approx(reach, abs=1e-3)
         assert abs(excess(zeta, longest)) < 0.01
         assert abs(excess(zeta, 1.2 * longest)) > 0.01
+        further = float(of_turning(record, 1.0)) * FREQUENCY
+        assert further == pytest.approx(reach * (1.0 + min(1.0, zeta / 0.05) / 3.0), abs=2e-3)
+        assert abs(excess(zeta, further)) < 0.125
     record["state_damping"] = 0.0
     assert longest_taut_step(record, 1.0) * FREQUENCY == pytest.approx(UNDAMPED_REACH, rel=1e-15)
+    assert of_turning(record, 1.0) == longest_taut_step(record, 1.0)
     record["state_damping"] = 100.0
     assert longest_taut_step(record, 1.0) * FREQUENCY == DAMPED_REACH
