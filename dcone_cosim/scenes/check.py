@@ -54,7 +54,7 @@ from dcone_cosim.scenes.keys import (
     read_value,
     table_in,
 )
-from dcone_cosim.scenes.lines import read_own, set_apart
+from dcone_cosim.scenes.lines import known_by_name, read_own, set_apart
 from dcone_cosim.scenes.read_component import ReadComponent
 from dcone_cosim.scenes.relations import about_steps, about_values, designed, laid, pairs, phases_to_run
 from orbital.materials import Material
@@ -137,6 +137,7 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
     sizing = _sizing(document, mistakes)
     present = [phase for phase in kinds() if isinstance(document.get(phase), dict)]
     phases = {phase: _read_phase(phase, document[phase], orbit, folder, materials, mistakes) for phase in present}
+    mistakes[:] = [mistake for mistake in mistakes if not known_by_name(document, materials, mistake)]
     chosen = phases_to_run(document, present, mistakes)
     whole = Document(document, {phase: read.main.part for phase, read in phases.items()}, chosen)
     for phase in present:

@@ -93,6 +93,13 @@ def read_own(document: Mapping[str, Any], mistakes: list[Mistake]) -> dict[str, 
     return found
 
 
+def known_by_name(document: Mapping[str, Any], own: Mapping[str, Material], mistake: Mistake) -> bool:
+    """Whether a mistake is that a line names a material of the scene that has mistakes itself, which are told."""
+    tables = document.get(OWN)
+    names = tables.keys() - own.keys() if isinstance(tables, dict) else ()
+    return mistake.path[-1] == MATERIAL and isinstance(mistake.given, str) and mistake.given in names
+
+
 def read_line(
     line: build.Line,
     keys: Mapping[str, Expected],

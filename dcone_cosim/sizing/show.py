@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Literal
 
 from dcone_cosim.sizing.section import Section
@@ -15,8 +16,10 @@ MOST_ROWS = 14
 """Rows of a part that are shown; its file has all."""
 
 
-ASIDE, WIDE = ("how", "why", "note", "youngs_modulus", "strength"), 140
+ASIDE, WIDE = ("how", "why", "note", "youngs_modulus", "strength", "beam"), 140
 """Columns that a terminal with fewer letters leaves out; page and files have them."""
+LETTERS = 9
+"""In a line of the head of a column of numbers, or as many as its longest word has: none is cut in two."""
 
 
 def show(done: Sizing, console: Console) -> None:
@@ -39,7 +42,8 @@ def _show(section: Section, console: Console) -> None:
     shown = [i for i, head in enumerate(section.heads) if console.width >= WIDE or head.key not in ASIDE]
     for head in (section.heads[i] for i in shown):
         side: Literal["left", "right"] = "left" if not head.unit else "right"
-        table.add_column(Text(head.title), justify=side, overflow="fold")
+        title = "\n".join(textwrap.wrap(head.title, LETTERS, break_long_words=False)) if head.unit else head.title
+        table.add_column(Text(title), justify=side, overflow="fold", no_wrap=bool(head.unit))
     cells = section.cells()
     for row in cells[:MOST_ROWS]:
         table.add_row(*(Text(row[i]) for i in shown))

@@ -171,6 +171,12 @@ def test_what_is_refused(text: str, told: tuple[str, ...]) -> None:
         assert part in said
 
 
+def test_a_material_with_a_mistake_is_not_told_as_unknown_too() -> None:
+    said = mistakes(TOW + MINE.replace('"20 GPa"', "20") + '[removal.tether]\nmaterial = "mine"\n')
+    assert "materials.mine.youngs_modulus = 20: a bare number has no unit" in said
+    assert "no material of that name" not in said
+
+
 def bare(text: str) -> str:
     """A scene without the names of its materials."""
     return re.sub(r'^(material = .*|axial_stiffness = "903 N".*)\n', "", text, flags=re.MULTILINE)

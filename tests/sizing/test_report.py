@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import io
 import math
 
 import pytest
+from rich.console import Console
 
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene_fmus import SceneFmus
-from dcone_cosim.sizing import required
+from dcone_cosim.sizing import required, show
 from dcone_cosim.sizing.result import Sizing
-from dcone_cosim.sizing.section import Head
+from dcone_cosim.sizing.section import Head, Section, text
 from dcone_cosim.sizing.work import loads_of
 from orbital.materials import MATERIALS
 from tests.sizing.conftest import SAFETY, SHORT
@@ -136,3 +138,18 @@ def test_loads_of_a_run() -> None:
     assert "taut" not in loads_of(result, history=False)
     lengthening = found["extremes"]["tether.length_rate"]
     assert lengthening[0] < lengthening[1] < lengthening[2]
+
+
+def test_no_word_of_a_head_is_cut_in_two() -> None:
+    """On a terminal of 80 letters, by the table with the longest heads."""
+    heads = (
+        text("way", "engine"), Head("a", "thrust", "N"), Head("b", "Isp", "s"), Head("c", "dv", "m/s"),
+        Head("d", "propellant", "kg"), Head("e", "time", "s", "day"), Head("f", "power", "W"),
+        Head("g", "steady tension", "N"), Head("beam", "beam lost on the debris", "1", "%"),
+    )  # fmt: skip
+    row = ("electric, as `electric-tug`", 0.25, 3000.0, 332.4, 33.71, 3.97e6, 6129.0, 0.08333, 0.7606)
+    console = Console(width=80, file=io.StringIO())
+    show._show(Section("disposal", "Bringing it down", "purpose", heads, [row]), console)
+    printed = console.file.getvalue()  # type: ignore[attr-defined]
+    for word in ("thrust", "propellant", "steady", "tension", "electric-tug"):
+        assert word in printed
