@@ -375,7 +375,6 @@ MODEL = Model(
     base=BASE,
     groups={
         "reel": REELS,
-        "lumped": NODES,
         "thrust": THRUSTS,
         "burn": BURN,
         "engine": ENGINES,
@@ -391,6 +390,7 @@ MODEL = Model(
         "target": TARGETS,
         "chaser": CHASERS,
         "appendage": APPENDAGE,
+        "lumped": NODES,
         "aocs": AOCS,
         "ends": ENDS,
         "break": BREAKING,

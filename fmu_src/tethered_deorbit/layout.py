@@ -18,12 +18,17 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from fmu_src.integrators.scheme import AdaptiveScheme
-from fmu_src.tethered_deorbit.node_rows import GATHERED, MOVED
 
 PAIR = 12
 """Components of the motion of the two centres of mass, four vectors. Those of the bodies that turn lie behind."""
 ATTITUDE = 7
 """Components of one body that turns."""
+CAPACITY = 32
+"""Nodes that there is room for. Room costs: some two per cent of a node that is used for each that is not."""
+WIDTH = 6
+"""Components of a node: place and velocity."""
+MOVED, GATHERED = WIDTH * CAPACITY, 1
+"""Components of all, and the heat of the dashpots."""
 
 
 class StateLayout(NamedTuple):

@@ -7,13 +7,11 @@ from collections.abc import Iterator, Mapping
 from fmu_src.interface import Group, Term, Variable
 from fmu_src.rows import at_least_zero, choice, output, peak, positive, rate, state
 from fmu_src.tethered_deorbit import stress
+from fmu_src.tethered_deorbit.body_rows import LARGEST
+from fmu_src.tethered_deorbit.layout import CAPACITY, GATHERED, MOVED
 
-CAPACITY = 32
-"""Nodes that there is room for. Room costs: some two per cent of a node that is used for each that is not."""
-WIDTH = 6
-"""Components of a node in the state: place and velocity."""
-MOVED, GATHERED = WIDTH * CAPACITY, 1
-"""Components of all, and the heat of the dashpots."""
+WIDEST = LARGEST + MOVED + GATHERED
+"""Components of the largest state of two bodies that turn on a line of nodes."""
 DAMPED_AS = ("pair", "node")
 AS_PAIR, AS_NODE = range(2)
 
@@ -24,12 +22,13 @@ NOT_WITH = (
     "sunlight",
     "electrodynamic",
     "plume",
+    "appendage",
     "break",
     "release",
     "level",
 )
 """Groups that know one massless piece alone."""
-CARRIED = {"reel": ("locked",), "solver": ("dop853",), "target": ("point",), "chaser": ("point",)}
+CARRIED = {"reel": ("locked",), "solver": ("dop853",), "target": ("point", "rigid"), "chaser": ("point", "rigid")}
 """Terms that carry nodes, of groups of which one is always named."""
 
 
@@ -87,6 +86,8 @@ NODES = Group(
                 state("state.nodes_peak_piece", "1", "the piece that had it", kind="Integer"),
                 state("state.ends[#][#]", "1", "attachments of the chaser and of the target, and their rates, from the "
                       "target's centre of mass", shape=(4, 3)),
+                state("state.seen[#]", "1", "of a step, as it is: see `layout`", shape=(WIDEST,)),
+                state("state.seen_rate[#]", "1", "and its rate", shape=(WIDEST,)),
                 state("state.node_room[#][#]", "1", "room for vectors", shape=(6, 3)),
                 state("state.node_motion[#][#]", "1", "room for places and velocities", shape=(5, 6)),
             ),

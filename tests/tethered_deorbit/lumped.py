@@ -12,8 +12,7 @@ import numpy.typing as npt
 from fmu_src.tethered_deorbit.bodies import make_bodies
 from fmu_src.tethered_deorbit.environment import make_environment
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
-from fmu_src.tethered_deorbit.layout import StateLayout, layout_of
-from fmu_src.tethered_deorbit.node_rows import WIDTH
+from fmu_src.tethered_deorbit.layout import WIDTH, StateLayout, layout_of
 from fmu_src.tethered_deorbit.nodes.chain import Noded, make_nodes
 from fmu_src.tethered_deorbit.reel import components, make_reel
 from fmu_src.tethered_deorbit.sights import Sights
@@ -48,14 +47,14 @@ def apart(length: float, *velocity: float) -> dict[str, Any]:
     return {"start_relative_position": (0.0, length, 0.0), "start_relative_velocity": velocity}
 
 
-def layout() -> StateLayout:
+def layout(terms: Mapping[str, str] | None = None) -> StateLayout:
     """Where things lie in the state of such a pair."""
-    return layout_of(MODEL.interface(TERMS).terms, *components("locked"))
+    return layout_of(terms or MODEL.interface(TERMS).terms, *components("locked"))
 
 
 def state_of(i: PlainInstance) -> Floats:
     """The state at the last communication point, inertial axes."""
-    size = layout().size
+    size = layout(i.interface.terms).size
     i.refresh()
     found: Floats = np.array(i.work[2 * size : 3 * size])
     return found
@@ -63,7 +62,7 @@ def state_of(i: PlainInstance) -> Floats:
 
 def nodes_of(i: PlainInstance) -> tuple[Floats, Floats]:
     """Places from the target [m] and velocities relative to it [m/s] of the nodes, (N, 3) each."""
-    first, count = layout().reel, int(i["lumped.nodes"])
+    first, count = layout(i.interface.terms).reel, int(i["lumped.nodes"])
     rows = state_of(i)[first : first + WIDTH * count].reshape(count, WIDTH)
     return rows[:, :3], rows[:, 3:]
 
@@ -84,3 +83,20 @@ def put_nodes(i: PlainInstance, places: Floats) -> None:
         state = i.work[row * size : (row + 1) * size]
         nodes = state[where.reel : where.reel + WIDTH * len(places)].reshape(-1, WIDTH)
         nodes[:, :3], nodes[:, 3:] = places, 0.0
+
+
+def momenta(i: PlainInstance) -> tuple[Floats, Floats]:
+    """Linear [kg m/s] and angular momentum [kg m2/s] of bodies and nodes, in inertial axes about their origin; spins of
+    bodies that turn included."""
+    state, (places, rates) = state_of(i), nodes_of(i)
+    center, velocity, apart_by, parting = state[:12].reshape(4, 3)
+    whole, node = CHASER + TARGET, i["lumped.mass"] / len(places)
+    target, its_rate = center + CHASER / whole * apart_by, velocity + CHASER / whole * parting
+    x = np.vstack([target - apart_by, target, target + places])
+    v = np.vstack([its_rate - parting, its_rate, its_rate + rates])
+    mass = np.array([CHASER, TARGET, *[node] * len(places)])[:, None]
+    angular = np.cross(x, mass * v).sum(axis=0)
+    for role in ("chaser", "target"):
+        if i.interface.terms[role] != "point":
+            angular += [i[f"{role}.spin[{axis}]"] for axis in (1, 2, 3)]
+    return (mass * v).sum(axis=0), angular

@@ -50,8 +50,17 @@ class Bodies(NamedTuple):
     energy(record, state, turning) -> E         of the attitudes [J], constant in a frame that turns evenly [rad/s] but
                                                 for what the line does
     differentiate(record, state, rate, turning, change) -> E'   rates of their outputs; power [W]
-
     further       by how much farther than of points a step of a damped line may reach over its vibration
+
+    Of a line with nodes are asked, after `stand` of the same state, in place of `pull`:
+
+    ends(record, state, out)                    where it is made fast at the chaser and its rate, in rows 0 and 1, and
+                                                at the target, in rows 2 and 3, from the target's centre of mass (4, 3)
+    chaser_end(record, state, rate, out)        second derivative of the chaser's arm, taken off `out`, after `ends`
+    twist_chaser(record, state, rate, x, y, z)  what the pull at the chaser's end [N] does to the rate of its attitude
+    twist_target(record, state, rate, x, y, z)  the same at the target, of the opposite of the pull there [N]
+    beyond                                      field of the record with the distance that the line ends short of the
+                                                target [m]
 
     Of a line that goes straight to its attachments nothing of what follows is asked:
 
@@ -91,6 +100,11 @@ class Bodies(NamedTuple):
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]
+    ends: Callable[..., Any]
+    chaser_end: Callable[..., Any] = nothing
+    twist_chaser: Callable[..., Any] = nothing
+    twist_target: Callable[..., Any] = nothing
+    beyond: str = "target_attachment_distance"
     further: float = 1.0
     hold: Callable[..., Any] = nothing
     trouble: Callable[..., Any] = no_fault

@@ -262,6 +262,21 @@ def make_attached(
             chaser.pull(record, state, rate, force * vector[0], force * vector[1], force * vector[2])
 
     @kernel
+    def ends(record: Any, state: Array, out: Array) -> None:
+        """Attachments and their rates, from the target's centre of mass: see `Bodies`.
+
+        Checked  tests/tethered_deorbit/test_nodes_on_bodies.py
+        """
+        for row in range(4):
+            for i in range(3):
+                out[row][i] = 0.0
+        target.reach(record, state, out[2], out[3], True)
+        chaser.reach(record, state, out[0], out[1], True)
+        for i in range(3):
+            out[0][i] = -state[6 + i] - out[0][i]
+            out[1][i] = -state[9 + i] - out[1][i]
+
+    @kernel
     def place(record: Any, state: Array, longest: float) -> int:
         """Attitudes at the start, in the frame of the orbit's point; fault of a line that is stretched there, or 0.
 
@@ -371,6 +386,11 @@ def make_attached(
         energy=energy,
         differentiate=differentiate,
         further=FURTHER,
+        ends=ends,
+        chaser_end=chaser.reach_acceleration,
+        twist_chaser=chaser.pull,
+        twist_target=target.pull,
+        beyond=shorter,
     )
     if straight:
         return pair

@@ -141,6 +141,19 @@ def pull(record: Any, state: Array, rate: Array, tension: float, separation: flo
             rate[9 + i] -= factor * state[6 + i]
 
 
+@kernel
+def ends(record: Any, state: Array, out: Array) -> None:
+    """Both centres of mass: see `Bodies`.
+
+    Checked  tests/tethered_deorbit/test_nodes.py
+    """
+    for i in range(3):
+        out[0][i] = -state[6 + i]
+        out[1][i] = -state[9 + i]
+        out[2][i] = 0.0
+        out[3][i] = 0.0
+
+
 @view
 def as_it_is(record: Any, state: Array, elapsed: float) -> Array:
     """The state of a step: for points it has no coordinates of its own.
@@ -215,4 +228,5 @@ def make_points(interface: Interface) -> Bodies:
         publish=nothing,
         energy=zero,
         differentiate=zero,
+        ends=ends,
     )

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.environment import Environment
 from fmu_src.tethered_deorbit.idle import nothing
-from fmu_src.tethered_deorbit.node_rows import CAPACITY, WIDTH
+from fmu_src.tethered_deorbit.layout import CAPACITY, WIDTH
 from fmu_src.tethered_deorbit.nodes.pieces import pull, stored, stored_by_length, unloaded
 from orbital.frames import relative_to_orbital
 from orbital.hill import hill_jacobi
@@ -19,7 +19,7 @@ class Watch(NamedTuple):
     """Kernels that keep the largest tension along the line; as they stand, of a line that has one.
 
     begin(record)              a macro step begins
-    note(record, state)        a step of the integrator has ended in this state
+    note(record, state)        a step of the integrator has ended in this state, in the coordinates of the step
     """
 
     begin: Callable[..., Any] = nothing
@@ -41,12 +41,18 @@ class Books(NamedTuple):
 
 
 def make_books(
-    place: int, heat: int, span: Callable[..., Any], find_ends: Callable[..., Any], environment: Environment
+    place: int,
+    heat: int,
+    span: Callable[..., Any],
+    find_ends: Callable[..., Any],
+    seen: Callable[..., Any],
+    environment: Environment,
 ) -> Books:
     """The kernels.
 
     place, heat   of the first node and of the dashpots' heat in the state
-    span, find_ends   kernels of `places`
+    span, find_ends   kernels of pieces and attachments
+    seen              kernel of `Bodies`
 
     Checked  tests/tethered_deorbit/test_nodes.py
     """
@@ -83,8 +89,9 @@ def make_books(
         Checked  tests/tethered_deorbit/test_nodes.py: the largest along the line
         """
         r = record[0]
-        find_ends(record, state)
-        most, where = hardest(record, state, r.state_since + r.state_step)
+        there = seen(record, state, r.state_step)
+        find_ends(record, there)
+        most, where = hardest(record, there, r.state_since + r.state_step)
         if most > r.state_nodes_peak:
             r.state_nodes_peak = most
             r.state_nodes_peak_piece = where

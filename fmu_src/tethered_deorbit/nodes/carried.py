@@ -8,10 +8,9 @@ from typing import Any
 
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.idle import nothing
-from fmu_src.tethered_deorbit.node_rows import WIDTH
+from fmu_src.tethered_deorbit.layout import WIDTH
 from fmu_src.tethered_deorbit.nodes.books import Books
 from fmu_src.tethered_deorbit.nodes.pieces import unloaded
-from fmu_src.tethered_deorbit.nodes.places import find_ends
 from fmu_src.tethered_deorbit.tolerances import ROUNDING
 from fmu_src.tethered_deorbit.turning import add_turning_to, turn_vectors_back
 from orbital.kernel import kernel
@@ -21,14 +20,18 @@ NEARING = 0.5
 """Share of the time in which a slack piece can at the soonest be tight, that a step may take."""
 
 
-def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], books: Books) -> Bodies:
+def carried_by(
+    bodies: Bodies, place: int, heat: int, span: Callable[..., Any], find_ends: Callable[..., Any], books: Books
+) -> Bodies:
     """The bodies with the nodes between them.
 
     place, heat   of the first node and of the dashpots' heat in the state
-    span          kernel of `places`
+    span, find_ends   kernels of pieces and attachments
 
     Checked  tests/tethered_deorbit/test_nodes.py
     """
+
+    seen = bodies.seen
 
     @kernel
     def add_turning(record: Any, state: Array, rate: Array, sign: float) -> None:
@@ -71,10 +74,11 @@ def carried_by(bodies: Bodies, place: int, heat: int, span: Callable[..., Any], 
         Checked  tests/tethered_deorbit/test_nodes.py: a slack line costs little
         """
         r = record[0]
-        find_ends(record, state)
         soonest = bodies.longest(record, state)
+        there = seen(record, state, 0.0)
+        find_ends(record, there)
         for piece in range(r.lumped_nodes + 1):
-            length, _ = span(record, state, piece)
+            length, _ = span(record, there, piece)
             rest, _ = unloaded(record, piece, r.state_since)
             if not length < rest:
                 soonest = 0.0

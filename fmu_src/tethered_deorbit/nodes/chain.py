@@ -23,12 +23,12 @@ from fmu_src.tethered_deorbit.idle import zero
 from fmu_src.tethered_deorbit.interface import NO_LENGTH
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, turning_share
 from fmu_src.tethered_deorbit.law import Reel
-from fmu_src.tethered_deorbit.layout import StateLayout
-from fmu_src.tethered_deorbit.node_rows import GATHERED, MOVED, WIDTH, unfit
+from fmu_src.tethered_deorbit.layout import GATHERED, MOVED, WIDTH, StateLayout
+from fmu_src.tethered_deorbit.node_rows import unfit
 from fmu_src.tethered_deorbit.nodes.books import Watch, make_books
 from fmu_src.tethered_deorbit.nodes.carried import carried_by
 from fmu_src.tethered_deorbit.nodes.pieces import fastest, pull, slopes, stored_by_length, tune, unloaded
-from fmu_src.tethered_deorbit.nodes.places import find_ends, make_lay, make_span
+from fmu_src.tethered_deorbit.nodes.places import make_lay, make_span
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
@@ -57,8 +57,20 @@ def make_nodes(
     place, impulse = layout.reel, layout.impulse
     heat, end_of_nodes = impulse + GATHERED, layout.reel + MOVED
     offset_slot = interface.references["reel.length_offset"]
-    span, lay, gravity = make_span(place), make_lay(place), environment.gravity_apart
-    books = make_books(place, heat, span, find_ends, environment)
+    span, lay, gravity = make_span(place, bodies.beyond), make_lay(place, bodies.beyond), environment.gravity_apart
+    stand, ends = bodies.stand, bodies.ends
+    chaser_end, twist_chaser, twist_target = bodies.chaser_end, bodies.twist_chaser, bodies.twist_target
+
+    @kernel
+    def find_ends(record: Any, state: Array) -> None:
+        """Attachments and their rates into `state.ends`, of a state as it is.
+
+        Checked  tests/tethered_deorbit/test_nodes.py, test_nodes_on_bodies.py
+        """
+        stand(record, state)
+        ends(record, state, record[0].state_ends)
+
+    books = make_books(place, heat, span, find_ends, bodies.seen, environment)
 
     @kernel
     def prepare(record: Any, value: float, rate: float, duration: float) -> int:
@@ -125,9 +137,11 @@ def make_nodes(
         room = r.state_node_room
         for i in range(3):
             room[2][i] = rate[place + 3 + i] + rate[9 + i]
+            room[3][i] = state[place + 3 + i] + state[9 + i]
+        chaser_end(record, state, rate, room[2])
         length, speed = r.state_end_length, r.state_end_speed
         r.state_end_acceleration = distance_acceleration(room[0], room[1], room[2], length, speed)
-        r.state_end_acceleration += turned * turning_share(record, room[0], room[1], length)
+        r.state_end_acceleration += turned * turning_share(record, room[0], room[3], length)
 
     @kernel
     def tension(record: Any, length: float, rate: float, since: float) -> float:
@@ -197,6 +211,10 @@ def make_nodes(
             _, moving = unloaded(record, piece, since)
             rate[heat] += (force - spring) * (parting - moving)
             force /= norm(vector)
+            if piece == 0:
+                twist_chaser(record, state, rate, force * vector[0], force * vector[1], force * vector[2])
+            if piece == count:
+                twist_target(record, state, rate, force * vector[0], force * vector[1], force * vector[2])
             before, after = place + WIDTH * (piece - 1) + 3, place + WIDTH * piece + 3
             for i in range(3):
                 along = force * vector[i]
@@ -253,4 +271,4 @@ def make_nodes(
         publish=publish,
         by_length=True,
     )
-    return Noded(law, carried_by(bodies, place, heat, span, books), books.watch)
+    return Noded(law, carried_by(bodies, place, heat, span, find_ends, books), books.watch)

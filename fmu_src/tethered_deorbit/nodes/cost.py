@@ -9,11 +9,13 @@ from typing import Any, NamedTuple
 from fmu_src.implied import formula
 from fmu_src.integrators import dop853
 from fmu_src.tethered_deorbit.nodes import pieces
+from orbital import oscillators
 
 HOUR = 3600.0
 PER_STEP, PER_NODE = 3e-6, 1e-6
 """Processor time of a step [s], and what a node adds."""
 
+reduced_mass = formula(oscillators.reduced_mass)
 tune, fastest, reach = formula(pieces.tune), formula(pieces.fastest), formula(dop853.reach)
 NAMES = (
     "chaser.mass",
@@ -44,6 +46,7 @@ def cost(values: Mapping[str, float]) -> Cost:
     Checked  tests/tethered_deorbit/test_nodes.py: as the model has it
     """
     r: Any = SimpleNamespace(**{name.replace(".", "_"): values[name] for name in NAMES})
+    r.state_effective_mass = reduced_mass(r.chaser_mass, r.target_mass)
     tune([r])
     shortest = r.state_piece_length + min(0.0, values["reel.length_offset"])
     rate, share = fastest([r], shortest) if shortest > 0.0 else (0.0, 0.0)

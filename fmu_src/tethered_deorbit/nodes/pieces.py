@@ -149,7 +149,8 @@ def fastest(record: Any, shortest: float) -> tuple[float, float]:
         w = sqrt(k a), z = tau w/2, and w max(1, 2 z);   a = max(4/m, 2/m + 1/m_b)
 
     By Gershgorin's circles a is no less than the largest eigenvalue of the pieces' own matrix, in which a piece has the
-    inverse masses of both its ends and hands on that of a node it shares; m_b is the lighter body.
+    inverse masses of both its ends and hands on that of a node it shares; m_b is the least mass that a massless
+    line has to move, which is below that of either body.
 
     shortest      length that the chaser's piece comes to        [m]
 
@@ -159,7 +160,7 @@ def fastest(record: Any, shortest: float) -> tuple[float, float]:
     """
     r = record[0]
     firm = r.state_piece_stiffness * max(1.0, r.state_piece_length / shortest)
-    node, body = 1.0 / r.state_node_mass, 1.0 / min(r.chaser_mass, r.target_mass)
+    node, body = 1.0 / r.state_node_mass, 1.0 / r.state_effective_mass
     ease = 2.0 * node + body
     if r.lumped_nodes > 1:
         ease = max(ease, 4.0 * node)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fmu_src.tethered_deorbit.kinematics import distance_rate
-from fmu_src.tethered_deorbit.node_rows import WIDTH
+from fmu_src.tethered_deorbit.layout import WIDTH
 from fmu_src.tethered_deorbit.nodes.pieces import unloaded
 from orbital.kernel import kernel
 from orbital.vectors import Array, cross, dot, norm
@@ -19,10 +19,11 @@ from orbital.vectors import Array, cross, dot, norm
 HALVINGS = 60
 
 
-def make_span(place: int) -> Callable[..., Any]:
+def make_span(place: int, beyond: str) -> Callable[..., Any]:
     """The kernel `span(record, state, piece) -> (length [m], its rate [m/s])`.
 
     place         of the first node in the state
+    beyond        as of `Bodies`
     """
 
     @kernel
@@ -54,24 +55,10 @@ def make_span(place: int) -> Callable[..., Any]:
         distance = norm(vector)
         rate: float = distance_rate(vector, velocity, distance)
         if piece == r.lumped_nodes:
-            return distance - r.target_attachment_distance, rate
+            return distance - r[beyond], rate
         return distance, rate
 
     return span
-
-
-@kernel
-def find_ends(record: Any, state: Array) -> None:
-    """Attachments and their rates into `state.ends`: of two points, from the target.
-
-    Checked  tests/tethered_deorbit/test_nodes.py
-    """
-    ends = record[0].state_ends
-    for i in range(3):
-        ends[0][i] = -state[6 + i]
-        ends[1][i] = -state[9 + i]
-        ends[2][i] = 0.0
-        ends[3][i] = 0.0
 
 
 @kernel
@@ -115,10 +102,11 @@ def bow(record: Any, chord: float) -> float:
     return float(0.5 * (low + high))
 
 
-def make_lay(place: int) -> Callable[..., Any]:
+def make_lay(place: int, beyond: str) -> Callable[..., Any]:
     """The kernel `lay(record, state)` that places the nodes at the start.
 
     place         of the first in the state
+    beyond        as of `Bodies`
     """
 
     @kernel
@@ -156,7 +144,7 @@ def make_lay(place: int) -> Callable[..., Any]:
         for i in range(3):
             side[i] /= wide
         # the line of a point target ends short of it, on the line of centres
-        reaching = chord - r.target_attachment_distance
+        reaching = chord - r[beyond]
         half = bow(record, reaching)
         whole, askew = sum_of_arc(record, half)
         size = math.hypot(whole, askew)
