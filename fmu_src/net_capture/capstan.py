@@ -56,7 +56,7 @@ class Capstan(NamedTuple):
 
     start(p)                                  nothing lost yet
     remember(p)                               keep the faces in `wrap_chain`, before a way is found anew
-    hold(p, words, at, edges, way, length, stiffness, slipped)  let it slide, and book that; elastic pulls into
+    hold(p, words, at, edges, way, length, stiffness, known)  let it slide, and book that; elastic pulls into
                                               `wrap_pulls` [N]
     let_go(p, words, at)                      it is slack or straight
     stretch(p, words, at, edges, way, length, stiffness) -> energy   pulls as it is held now, without sliding [J]
@@ -252,19 +252,19 @@ def make_capstan() -> Capstan:
         words[at + HELD * p.thread_numbers] = 0
 
     @kernel
-    def hold(p, words, at, edges, way, length, stiffness, slipped):
+    def hold(p, words, at, edges, way, length, stiffness, known):
         """Let a taut thread slide over its edges, book what friction takes, and keep how it is shared; its pulls go
         into `wrap_pulls`.
 
         at                  where its state stands
         way, length         of the way, and unstretched                  [m]
         stiffness           of the whole thread                          [N/m]
-        slipped             whether it has just slid over a corner
+        known               whether it was round these edges a substep ago, and has not slid over a corner since
 
         Checked  tests/net_capture/test_capstan.py
         """
         axial = stiffness * length
-        if not take_up(p, words, at, edges, way, length, not slipped):
+        if not take_up(p, words, at, edges, way, length, known):
             let_go(p, words, at)
         for j in range(edges + 1):
             p.wrap_was[j] = p.wrap_parts[j]

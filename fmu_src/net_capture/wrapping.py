@@ -271,7 +271,7 @@ def make(composition: Any) -> Wrap:
             q = STRIP_NUMBERS * strip
             length, stiffness, damping = numbers[q + LENGTH], numbers[q + STIFFNESS], numbers[q + DAMPING]
             edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
-            slips = p.wrap_slipped
+            known, slips = words[kept] == BENT, p.wrap_slipped
             follow(p, words, kept, edges, way, going, straight, length, stiffness)
             if words[kept] != BENT or way <= length:
                 if rubs:
@@ -283,7 +283,7 @@ def make(composition: Any) -> Wrap:
             tension = max(0.0, elastic + damping * going)
             farther = tension
             if rubs:
-                hold(p, words, kept, edges, way, length, stiffness, p.wrap_slipped != slips)
+                hold(p, words, kept, edges, way, length, stiffness, known and p.wrap_slipped == slips)
                 near, far = p.wrap_pulls[0], p.wrap_pulls[edges]
                 tension, farther = max(0.0, near + damping * going), max(0.0, far + damping * going)
                 p.thread_loss += h * ((tension - near) * p.wrap_rates[0] + (farther - far) * p.wrap_rates[1])

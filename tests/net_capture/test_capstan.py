@@ -1,13 +1,17 @@
 """Friction of threads that bend over edges: what holds, what slides, and what that takes."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from fmu_src.net_capture.contact.section import INSET
+from fmu_src.implied import formula
+from fmu_src.net_capture.capstan import EXCESS, HELD, PARTS, WITH_FRICTION, make_capstan
+from fmu_src.net_capture.contact.section import INSET, MOST
+from fmu_src.net_capture.near import FINE
 from fmu_src.net_capture.planes import U, X
 from tests.net_capture.on_target import Kernels
 
@@ -201,3 +205,31 @@ def momenta(hung):
     held = hung.p["target_mass"] * hung.p["target_drift"]
     turning = np.cross(places, MASS * speeds).sum(axis=0) + np.cross(hung.p["target_place"], held)
     return MASS * speeds.sum(axis=0) + held, turning + hung.p["target_spin"]
+
+
+@pytest.mark.parametrize(
+    ("chain", "lengths", "parts"),
+    [
+        ((5, 1, 3), (0.31, 0.51, 0.2), (0.3, 0.5, 0.2)),
+        ((1, 3), (0.9, 0.2), (0.8, 0.2)),
+        ((5, 1), (0.31, 0.8), (0.3, 0.7)),
+        ((4, 5, 1, 3), (0.1, 0.2, 0.51, 0.2), (0.1, 0.2, 0.5, 0.2)),
+        ((5, 1, 3, 0), (0.31, 0.51, 0.05, 0.15), (0.3, 0.5, 0.05, 0.15)),
+        ((1, 3, 0), (0.82, 0.06, 0.14), (0.8, 0.06, 0.14)),
+        ((4, 5, 1), (0.2, 0.1, 0.8), (0.2, 0.1, 0.7)),
+        ((2, 4), (0.3, 0.9), (0.25, 0.75)),
+        ((5, 1, 2), (0.4, 0.4, 0.4), (1 / 3, 1 / 3, 1 / 3)),
+    ],
+)
+def test_a_piece_keeps_what_it_holds_as_edges_come_and_go(chain, lengths, parts):
+    """By hand, of a thread of 1 m that lay over faces 5, 1, 3 with 0.3, 0.5 and 0.2 m of it on each."""
+    words = np.zeros(WITH_FRICTION, np.int64)
+    words[HELD], words[PARTS : PARTS + 2] = 3, np.round(np.array((0.3, 0.5)) / FINE)
+    planes = {"wrap_was": np.zeros(MOST + 1), "wrap_parts": np.zeros(MOST + 1), "wrap_pulls": np.zeros(MOST + 1)}
+    p = SimpleNamespace(thread_numbers=1, wrap_before=np.array((5, 1, 3)), wrap_chain=np.array(chain), **planes)
+    p.wrap_pieces = np.array([(0.0, 0.0, 0.0, length) for length in lengths])
+    energy = formula(make_capstan().stretch)(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)
+    assert p.wrap_parts[: len(parts)] == pytest.approx(np.array(parts), abs=1e-12)
+    stretch = np.maximum(0.0, np.array(lengths) - parts)
+    assert energy == pytest.approx((50.0 * stretch**2 / parts).sum(), rel=1e-9)
+    assert words[EXCESS] == 0
