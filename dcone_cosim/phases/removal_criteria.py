@@ -248,8 +248,8 @@ def _conducts(evidence: Evidence) -> Iterator[Criterion]:
 
         E(t) - E(0) = -int P dt,   E of the orbit with its flattening, P the power that the force takes from it
 
-    The integral is that of trapezoids through what is told, where the pair turns by less than COARSE from row to row
-    and nothing else does work.
+    The integral is that of trapezoids through what is told, where the pair turns by less than COARSE from row to row,
+    on its orbit and by itself, and nothing else does work.
     """
     columns, time = evidence.columns, evidence.columns["time"]
     if not evidence.has("electrodynamic.power", "electrodynamic.orbit_power"):
@@ -259,13 +259,16 @@ def _conducts(evidence: Evidence) -> Iterator[Criterion]:
     yield Criterion("generates", "power that a line without a source gives", given, "1", 1e-9, 1e-6)
     place, velocity = evidence.vector("center.position"), evidence.vector("center.velocity")
     rates = np.linalg.norm(np.cross(place, velocity), axis=1) / np.einsum("ij,ij->i", place, place)
-    if OTHER_WORK & evidence.terms.keys() or float((rates[1:] * np.diff(time)).max()) > COARSE or not taken.any():
+    apart, drift = evidence.vector("relative.position"), evidence.vector("relative.velocity")
+    own = np.linalg.norm(drift, axis=1) / np.maximum(np.linalg.norm(apart, axis=1), 1e-300)
+    turned = float(((rates + own)[1:] * np.diff(time)).max())
+    if OTHER_WORK & evidence.terms.keys() or turned > COARSE or not taken.any():
         return
     work = np.concatenate([[0.0], np.cumsum(0.5 * (taken[1:] + taken[:-1]) * np.diff(time))])
     energy = columns["energy.orbital"]
     # what the pair's own motion may hold of it, as in `_jacobi`
-    own = 1.5 * float(rates.max()) ** 2 * _masses(evidence)[2] * float(columns["separation"].max()) ** 2
-    off = max(0.0, float(np.abs(energy - energy[0] + work).max()) - own)
+    held = 1.5 * float(rates.max()) ** 2 * _masses(evidence)[2] * float(columns["separation"].max()) ** 2
+    off = max(0.0, float(np.abs(energy - energy[0] + work).max()) - held)
     label = "energy of the orbit from what the conducting line takes"
     yield Criterion("orbit_taken", label, off / float(np.abs(work).max()), "1", ACCURATE, STABLE)
 
