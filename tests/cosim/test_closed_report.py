@@ -24,7 +24,7 @@ LAST = {
 
 
 def told(**changes: float) -> dict[str, object]:
-    return {found.key: found.value for found in findings({**LAST, **changes})}
+    return {found.key: found.value for found in findings("capture", {**LAST, **changes})}
 
 
 def test_the_words_for_how_it_stands_are_the_models() -> None:
