@@ -11,13 +11,16 @@ import numpy as np
 
 from dcone_cosim.campaign import intervals
 from dcone_cosim.campaign.engine import Made
-from dcone_cosim.campaign.outcomes import answered, outcome, succeeded
+from dcone_cosim.campaign.figures import OPTIONAL
+from dcone_cosim.campaign.outcomes import TOLD_BY, answered, outcome, succeeded
 from dcone_cosim.campaign.spec import RANDOM, Spec
 from dcone_cosim.cases.statistics import Share
 from dcone_cosim.scene.data import Scene
 
 PERCENTS = (5.0, 50.0, 95.0, 99.0)
 """Percentiles that are told."""
+ROUNDING = 1e-12
+"""Spread over mean of a figure that is the same in all cases [1]."""
 MARGIN, DIAMETER, REQUIRED = "line.margin_of_safety", "tether.diameter", "line.diameter_required"
 
 
@@ -43,6 +46,11 @@ class Distribution:
     mean: float
     deviation: float
     percentiles: tuple[Percentile, ...]
+
+    @property
+    def varies(self) -> bool:
+        """Whether its spread is more than rounding."""
+        return self.deviation > ROUNDING * abs(self.mean)
 
 
 @dataclass
@@ -92,16 +100,23 @@ def answers(spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[flo
         found.success = intervals.of_share(spec, good, len(known))
         found.bounds = (good / len(made), (good + lost) / len(made))
     if sample:
-        found.figures = dict(_figures(made, confidence if spec.sampler in intervals.HAVE else math.nan, derived))
+        bounded = confidence if spec.sampler in intervals.HAVE else math.nan
+        found.figures = dict(_figures(made, bounded, derived, _beside(spec)))
     return found
 
 
+def _beside(spec: Spec) -> set[str]:
+    """Figures that are kept for the verdicts alone, and that the campaign does not name."""
+    kept = {name.removesuffix(OPTIONAL) for name in spec.record}
+    return set(TOLD_BY) - kept if kept else set()
+
+
 def _figures(
-    made: Sequence[Made], confidence: float, derived: Mapping[str, Sequence[float]]
+    made: Sequence[Made], confidence: float, derived: Mapping[str, Sequence[float]], beside: set[str]
 ) -> Iterator[tuple[str, Distribution]]:
     rows = [one.row for one in made if answered(one.row)]
     names = dict.fromkeys(name for row in rows for name, value in row.figures.items() if isinstance(value, int | float))
-    for name in names:
+    for name in (name for name in names if name not in beside):
         values = [row.figures.get(name) for row in rows]
         numbers = [float(value) for value in values if isinstance(value, int | float) and math.isfinite(value)]
         unit = next((row.units[name] for row in rows if name in row.units), "1")

@@ -59,7 +59,8 @@ N    tension_mean tension_least tension_largest electrodynamic_force
 1    level_* reel.limited
 m    separation altitude approach lowered raised return_distance *_perigee *_apogee reel.paid_out
 m/s  lowering_rate raising_rate
-J    reel.work reel.heat tether.heat
+N m s  appendage_momentum
+J    appendage_energy reel.work reel.heat tether.heat
 W    electrodynamic_power
 V    electrodynamic_emf
 A    electrodynamic_current
@@ -75,8 +76,8 @@ m/s  velocity_change target_speed
 1    nets_left
 m    distance released_axis beyond_hull line attachment_distance slack slack_after
 m/s  relative_speed attachment_speed tug_speed
-N m s  spin spin_dropped
-J    spin_energy spin_energy_dropped energy_lost
+N m s  spin spin_dropped appendage_momentum
+J    appendage_energy spin_energy spin_energy_dropped energy_lost
 rad/s  body_rate
 1    point_bound_time point_bound_peak ledger_closure
 N    tension_cut

@@ -82,7 +82,7 @@ def _estimate(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, 
 
 
 def _figures(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, spread: Explained) -> Any:
-    shown = [(name, one) for name, one in found.figures.items() if one.deviation > 0.0][:MOST_FIGURES]
+    shown = [(name, one) for name, one in found.figures.items() if one.varies][:MOST_FIGURES]
     if not shown:
         return None
     rows = math.ceil(len(shown) / 3)

@@ -81,3 +81,11 @@ def test_required_diameter() -> None:
         "removal.line.diameter_required"
     ]
     assert found == pytest.approx([2.0 * own], rel=1e-12)
+
+
+def test_a_figure_that_is_the_same_but_for_rounding_does_not_vary() -> None:
+    """It has no histogram: a bin of it would be narrower than a number is exact."""
+    assert not distribution([3.0, 3.0 + 4e-16, 3.0], "s", 0, 0.95).varies
+    assert not distribution([0.0, 0.0], "s", 0, 0.95).varies
+    assert distribution([3.0, 3.0001], "s", 0, 0.95).varies
+    assert not distribution([3.0], "s", 0, 0.95).varies

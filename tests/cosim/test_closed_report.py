@@ -24,7 +24,7 @@ LAST = {
 
 
 def told(**changes: float) -> dict[str, object]:
-    return {found.key: found.value for found in findings({**LAST, **changes})}
+    return {found.key: found.value for found in findings("capture", {**LAST, **changes})}
 
 
 def test_the_words_for_how_it_stands_are_the_models() -> None:
@@ -52,7 +52,7 @@ def test_other_ends_are_told_in_words(stands: float, text: str, further: bool) -
 
 def test_nothing_is_told_without_the_tables() -> None:
     assert told()
-    assert not list(findings({"t_capture": 3.0}))
+    assert not list(findings("capture", {"t_capture": 3.0}))
 
 
 @pytest.mark.parametrize(("stands", "word"), [(0.0, "still to be pulled"), (1.0, "was pulled"), (2.0, ""), (3.0, "")])
