@@ -116,6 +116,7 @@ def run(
     finally:
         progress.close()
     result = written.result
+    from dcone_cosim import loads
     from dcone_cosim.reports import summary
     from dcone_cosim.reports.warnings import warnings
 
@@ -130,10 +131,13 @@ def run(
             typer.echo(f"results in {written.folder}")
     for note in written.notes:
         _complain(f"note: {note}")
+    headlines = loads.headlines(result)
     for warning in warnings(result):
-        _complain(f"warning: {warning}")
-    if result.message:
-        _complain(result.message)
+        if warning not in headlines:
+            _complain(f"warning: {warning}")
+    for line in result.message.splitlines():
+        if json or line not in headlines:  # which the summary begins with
+            _complain(line)
     raise typer.Exit(result.exit_code)
 
 

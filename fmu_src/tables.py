@@ -15,6 +15,7 @@ Checked  tests/packaging/test_tables.py
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,8 +33,10 @@ LINE = 8
 MOST_DIMENSIONS = 3
 
 
-def read_rows(path: Path) -> list[list[float]]:
+def read_rows(path: Path, units: Sequence[str] = ()) -> list[list[float]]:
     """Numbers of a text file, a row a line, apart by commas or blanks; from # on a line is a comment.
+
+    units    of the columns, where a head may stand before the rows, `time [s], x [m/s2]`: it has to name these
 
     ValueError, with the number of the line, for what is no number, and for a row that is not as long as the first.
     """
@@ -42,8 +45,13 @@ def read_rows(path: Path) -> list[list[float]]:
     except UnicodeDecodeError:
         raise ValueError("is no text in UTF-8") from None
     rows: list[list[float]] = []
+    headed = False
     for count, line in enumerate(lines, 1):
-        words = line.partition("#")[0].replace(",", " ").split()
+        bare = line.partition("#")[0]
+        if units and not rows and not headed and "[" in bare:
+            headed = _check_head(count, bare, units)
+            continue
+        words = bare.replace(",", " ").split()
         try:
             row = [float(word) for word in words]
         except ValueError:
@@ -52,6 +60,14 @@ def read_rows(path: Path) -> list[list[float]]:
             raise ValueError(f"line {count}: {len(row)} numbers, expected {len(rows[0])} as in the rows before")
         rows += [row] if row else []
     return rows
+
+
+def _check_head(count: int, line: str, units: Sequence[str]) -> bool:
+    """True for a head that names these units; ValueError for one that names others."""
+    found = [unit.strip().replace("^", "") for unit in re.findall(r"\[([^\[\]]*)\]", line)]
+    if found != list(units):
+        raise ValueError(f"line {count}: a head with the units {', '.join(found)}, expected {', '.join(units)}")
+    return True
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ from dcone_cosim.scenes.keys import (
 )
 from dcone_cosim.scenes.lines import known_by_name, read_own, set_apart
 from dcone_cosim.scenes.read_component import ReadComponent
-from dcone_cosim.scenes.relations import about_steps, about_values, designed, laid, pairs, phases_to_run
+from dcone_cosim.scenes.relations import about_sizes, about_steps, about_values, designed, laid, pairs, phases_to_run
 from orbital.materials import Material
 
 
@@ -162,7 +162,7 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
         if unlaid:
             raise SceneError([*mistakes, *unlaid], places)
         scene, undesigned = designed(scene, document)
-        mistakes += undesigned or about_values(scene, document)
+        mistakes += undesigned or list(about_sizes(scene, document)) or about_values(scene, document)
         for before, own in pairs(scene):
             mistakes += kind_of(own.name).value_faults(before, own, document)
         if not mistakes:

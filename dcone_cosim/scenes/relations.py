@@ -15,6 +15,10 @@ from dcone_cosim.scene.mistakes import Mistake, shown, unknown
 from dcone_cosim.scene.toml_lines import Path, given_at
 from dcone_cosim.scenes.keys import MOST_STEPS
 
+PHYSICAL = {"kg": (1e-9, 1e24), "kg/m3": (1e-20, 1e6), "Pa": (1e-6, 1e15)}
+"""From the least to the most that there is of these, by unit: a crumb of dust to the Earth, the air of the
+highest orbits to fifty times osmium, the pressure of light to a thousand times diamond."""
+
 
 def phases_to_run(document: dict[str, Any], present: list[str], mistakes: list[Mistake]) -> list[str]:
     """The phases in their order: those that `phases` names, or all that have a table."""
@@ -68,6 +72,22 @@ def about_steps(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
         if phase.coupling.step > phase.macro_step:
             at = (phase.name, "coupling", "step")
             yield Mistake(at, given_at(document, at), f"must be at most {phase.name}.macro_step, {shown(given)}")
+
+
+def about_sizes(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:
+    """Values of our models that are above zero and yet no body's or material's: no step would be short enough."""
+    for phase in scene.phases:
+        for component in phase.components:
+            if component.fmu is not None:
+                continue
+            above: Path = (phase.name,) if component is phase.main else (phase.name, "components", component.name)
+            for row in build.settable(build.CATALOGUE[component.model].interface(component.terms)):
+                least, most = PHYSICAL.get(row.unit, (0.0, math.inf))
+                given = [component.parameters.get(name, 0.0) for name in row.element_names()]
+                if any(value and not least <= abs(value) <= most for value in given):
+                    path = (*above, row.section, row.key)
+                    text = f"is no such quantity of a body or a material: {least:g} to {most:g} {row.unit}"
+                    yield Mistake(path, given_at(document, path), text)
 
 
 def about_values(scene: Scene, document: dict[str, Any]) -> Iterator[Mistake]:

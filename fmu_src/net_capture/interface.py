@@ -69,10 +69,10 @@ def bullet_rows(number: int) -> tuple[Variable, Variable]:
 
 BASE = (
     positive("bullets.mass", "kg", "mass of each bullet", 0.5),
-    at_least_zero("bullets.speed", "m/s", "speed at which the bullets leave", 3.0),
+    at_least_zero("bullets.speed", "m/s", "speed at which the bullets leave; with a target above 0", 3.0),
     angle(
         "bullets.angle",
-        "angle of the bullets from the shot axis, outward along the diagonals",
+        "angle of the bullets from the shot axis, outward along the diagonals; with a target neither 0 nor 90 deg",
         math.radians(40.0),
         0.0,
         math.pi / 2,

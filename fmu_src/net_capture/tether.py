@@ -189,6 +189,10 @@ def make(composition: Any, drags: bool = False) -> Tether:
     def reel_in(p, work):
         """The tension times what the line has come in.
 
+        Friction keeps the tension that it had at the begin of the substep. Where the line turns back within it, at an
+        acceleration a after a share u of the substep h, the loss falls by up to F a h^2/2: of second order, and what
+        the bodies got, so the book closes.
+
         Checked  tests/net_capture/test_energy_book.py
         """
         if p.tether_vertex_tension != 0.0 or drags:
@@ -244,7 +248,12 @@ DRAGGING = Term(
         at_least_zero("tether.friction", "N", "tension at which it is drawn off", 1.0),
         at_least_zero("tether.brake_force", "N", "tension that the brake adds", 0.0),
         at_least_zero("tether.brake_at", "m", "length drawn off from which the brake holds", 0.0),
-        output("tether.friction_loss", "J", "taken by friction and brake so far"),
+        output(
+            "tether.friction_loss",
+            "J",
+            "taken by friction and brake so far; a substep keeps its tension to its end, so the one in which the line "
+            "turns back gives a little of it back: an error of the scheme, of second order",
+        ),
         state("tether_drag", "N", "tension of friction and brake in this substep"),
         state("tether_out", "m", "most that was drawn off before this substep"),
     ),

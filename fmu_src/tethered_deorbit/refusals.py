@@ -11,6 +11,7 @@ from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDE
 from fmu_src.tethered_deorbit.node_rows import unfit
 from fmu_src.tethered_deorbit.optional_rows import POINTS_ONLY, SETTLING_LAWS, not_mapped
 from fmu_src.tethered_deorbit.reel_refusals import of_reel
+from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
 SELECTORS = {"reel": "law", "solver": "scheme", "target": "body", "chaser": "body"}
 """Key by which a scene names a term of these groups."""
@@ -30,9 +31,23 @@ def refusals(terms: Mapping[str, str], values: Mapping[str, float], handed_over:
 
     Checked  tests/cosim/test_tow_refusals.py
     """
+    yield from _of_orbit(terms, values)
     yield from _of_parts(terms, values)
     if not (handed_over or values["start.condition"] == HANDED_OVER):
         yield from _of_start(terms, values)
+
+
+def _of_orbit(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
+    """A perigee a (1 - e) within the Earth."""
+    if terms.get("environment") == "none" or not {"orbit.altitude", "orbit.eccentricity"} <= values.keys():
+        return
+    axis, eccentricity = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], values["orbit.eccentricity"]
+    perigee = axis * (1.0 - eccentricity)
+    if perigee < EARTH_EQUATORIAL_RADIUS:
+        most = 1.0 - EARTH_EQUATORIAL_RADIUS / axis
+        below = 1e-3 * (EARTH_EQUATORIAL_RADIUS - perigee)
+        text = f"has its perigee {below:.4g} km below the equatorial radius; with this altitude at most {most:.4g}"
+        yield "orbit.eccentricity", f"{eccentricity:g}", text
 
 
 def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:

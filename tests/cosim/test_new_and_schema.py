@@ -55,6 +55,15 @@ class TestNew:
                 }
         assert tried > (2 if origin == "deployment" else 5)  # it says nearly all that it has
 
+    def test_what_a_target_asks_beyond_the_bounds_is_told(self) -> None:
+        """0 and 90 deg lie within the bounds of the FMU, and no net ever reaches a target with them."""
+        text = begun("table1-capture")
+        assert "with a target neither 0 nor 90 deg" in text
+        assert "with a target above 0" in text
+        for value in ("angle=0 deg", "angle=90 deg", "speed=0 m/s"):
+            with pytest.raises(InputError, match=f"bullets.{value[:5]}"):
+                load("table1-capture", (f"capture.bullets.{value}",))
+
     def test_a_marked_table_can_be_brought_in(self) -> None:
         text = begun("mission")
         marked = text[text.index("# [capture.settling]") :].split("\n\n")[0]

@@ -126,11 +126,23 @@ def test_uniform_gravity_pulls_what_it_is_told_to():
     assert moved[True] - moved[False] == pytest.approx(2000.0 * g * time, rel=1e-9)
 
 
+def test_a_history_may_have_a_head(tmp_path):
+    file = tmp_path / "g.csv"
+    rows = "0, 0, 0, -9.81\n1.5, 0, 0, 0\n"
+    for head in ("", "# measured\ntime [s], x [m/s2], y [m/s^2], z [m/s2]\n"):
+        file.write_text(head + rows)
+        assert read(file) == [[0.0, 0.0, 0.0, -9.81], [1.5, 0.0, 0.0, 0.0]]
+
+
 def test_a_history_that_is_none_is_refused(tmp_path):
     file = tmp_path / "g.csv"
     for text, told in (("0, 1, 2", "4: time"), ("0, 1, 2, 3\n0, 1, 2, 3", "expected one after 0 s")):
         file.write_text(text)
         with pytest.raises(ValueError, match=told):
+            read(file)
+    for head in ("t [ms], x [m/s2], y [m/s2], z [m/s2]", "t [s], x [m/s2]", "t, x, y, z"):
+        file.write_text(f"{head}\n0, 1, 2, 3\n")
+        with pytest.raises(ValueError, match="line 1: "):
             read(file)
     values = {v: s for v, _, _, s in MODEL.interface({**FREE, "gravity": "uniform"}).scalars()}
     found = refusals({**FREE, "gravity": "history", "solver": "rk4"}, values)

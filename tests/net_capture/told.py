@@ -28,7 +28,8 @@ def knots_are_as_told(terms, values, laid):
     inside = laid.mass[np.setdiff1d(laid.slots[joined[laid.slots]], rim)]
     edge = laid.mass[np.setdiff1d(rim[joined[rim]], corners)]
     assert told["knot.mass"].value == pytest.approx(inside.max(), rel=1e-9)
-    assert told["edge.mass"].value == pytest.approx(edge.max(), rel=1e-9)
+    if edge.size:
+        assert told["edge.mass"].value == pytest.approx(edge.max(), rel=1e-9)
     assert told["corner.mass"].value == pytest.approx(laid.mass[corners].max() + values["bullets.mass"], rel=1e-9)
     alike = np.ptp(inside) < 1e-9 * inside.max()
     assert ("the heaviest knot" in told["knot.mass"].label) != alike

@@ -172,7 +172,8 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     inside = in_body_axes(scene.vector("target.start_attitude", 4), chaser)
     if shape.turn is not None:
         inside = in_body_axes(shape.turn(scene.values), inside)
-    if any(chaser) and shape.distance(scene.values, inside) < 0.0:
+    directed = any(chaser) or any(scene.vector("shot.axis"))  # else `refuses_place` speaks
+    if directed and shape.distance(scene.values, inside) < 0.0:
         expected = "must be outside the target: the folded net would begin inside it"
         yield Refusal("chaser.start_position", text(chaser, " m"), expected)
 

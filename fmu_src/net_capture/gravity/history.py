@@ -21,10 +21,13 @@ from fmu_src.rows import output, state
 from fmu_src.tables import Table, read_rows
 from orbital.kernel import kernel
 
+UNITS = ("s", "m/s2", "m/s2", "m/s2")
+"""Of the columns, in which a head may name them: time [s], x [m/s2], y [m/s2], z [m/s2]."""
+
 
 def read(path: Path) -> list[list[float]]:
-    """Rows of such a file; ValueError if they are not four numbers, or times do not rise."""
-    rows = read_rows(path)
+    """Rows of such a file, with a head or without; ValueError if they are not four numbers, or times do not rise."""
+    rows = read_rows(path, UNITS)
     for count, row in enumerate(rows, 1):
         if len(row) != 4:
             raise ValueError(
@@ -211,7 +214,13 @@ PART = Term(
     ),
     make=make,
     tables=(
-        Table("gravity.history", "1", "time since the shot [s], acceleration along each axis [m/s2]", 2, read=read),
+        Table(
+            "gravity.history",
+            "1",
+            "time since the shot [s], acceleration along each axis [m/s2]; a head with these units may stand first",
+            2,
+            read=read,
+        ),
     ),
     refuses=refuses,
 )

@@ -71,9 +71,9 @@ def _thread(values: Values) -> Thread:
 def _hanging(values: Values) -> Hanging:
     kinds = kinds_of(own_graph(values))
     masses = kinds[:, OWN_MASS] + values["net.density"] * kinds[:, MASS_BY_AREA]
-    inside, edge, corner = (masses[kinds[:, KIND] == kind] for kind in (INSIDE, EDGE, CORNER))
-    most = (float(of.max(initial=0.0)) for of in (inside, edge, corner))
-    return Hanging(*most, alike=len(inside) == 0 or bool(np.ptp(inside) <= CLOSE * inside.max()))
+    at = {kind: masses[kinds[:, KIND] == kind] for kind in (INSIDE, EDGE, CORNER)}
+    inside, edge, corner = (float(of.max(initial=0.0)) for of in at.values())
+    return Hanging(inside, edge, corner, float(np.ptp(at[INSIDE])) <= CLOSE * inside if len(at[INSIDE]) else True)
 
 
 def _nodes(values: Values) -> int:

@@ -223,6 +223,10 @@ def make_checks(profile: Profile) -> Checks:
             onward = 0.5 * measures.inward_of(p, i) if i + 1 < p.grid_rows or written.has_tip(p) else 0.0
             along = measures.along_of(p, i, measures.every_of(p, i))
             inside = max(inside, along + 0.5 * measures.inward_of(p, i - 1) + onward)
+        if written.has_tip(p):
+            last = p.grid_rows - 1
+            meet = p.grid_columns // measures.every_of(p, last)
+            inside = max(inside, 0.5 * meet * measures.inward_of(p, last))
         return inside, edge, edge
 
     def nodes(values: Values) -> int:

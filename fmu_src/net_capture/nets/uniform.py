@@ -57,7 +57,8 @@ def uniform(
 
     def hanging(values: Values) -> Hanging:
         line = values["net.density"] * section(values)
-        return Hanging(*(line * length for length in lengths(values)), alike=even)
+        inside, edge, corner = (line * length for length in lengths(values))
+        return Hanging(inside, edge, corner, even)
 
     return Checks(
         total=total,

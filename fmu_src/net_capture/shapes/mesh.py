@@ -158,8 +158,7 @@ def _laid(content: _Content, unit: float, cell: float) -> Laid:
     lattice = np.array([*low, cell, error])
     thickness = _thickness(corners, grid, lattice)
     if thickness < CELLS * cell:
-        expected = f"is too coarse for walls of {thickness:.3g} m; expected {thickness / CELLS:.2g} m or less"
-        raise Undesigned("target.resolution", f"{cell:g} m", expected)
+        raise _too_coarse(corners, cell, min(thickness, triangles.thickness(corners, THIN)))
     tables = {
         GRID: grid,
         LATTICE: lattice,
@@ -167,6 +166,16 @@ def _laid(content: _Content, unit: float, cell: float) -> Laid:
         "target.samples": _samples(grid, lattice, nodes),
     }
     return Laid(tables, {}, {FACES: corners.reshape(-1, 9)})
+
+
+def _too_coarse(corners: Array, cell: float, thickness: float) -> Undesigned:
+    """Walls [m] that need a finer grid: which at once, or that none has so many points."""
+    needed = thickness / CELLS
+    points = float(np.prod(np.ptp(corners.reshape(-1, 3), axis=0) / needed + 2 * MARGIN + 1))
+    expected = f"is too coarse for walls of {thickness:.3g} m; expected {needed:.2g} m or less"
+    if points > MOST:
+        expected += f", which makes {points:.2g} points, and at most {MOST:,} go: close the hollow, or take a union"
+    return Undesigned("target.resolution", f"{cell:g} m", expected)
 
 
 def between(grid: Array, lattice: Array, points: Array) -> Array:

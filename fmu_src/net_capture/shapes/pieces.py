@@ -37,7 +37,7 @@ SIZES: tuple[tuple[str, ...], ...] = (
 """What says the sizes of each kind, in the order of its row."""
 ENTRY: tuple[Variable, ...] = (
     choice("shape", "shape of the piece; a shell is a piece of a tube, as of a fairing", KINDS),
-    vector("size", "m", "edges of a box", "parameter", (1.0, 1.0, 1.0)),
+    vector("size", "m", "edges of a box, each above 0", "parameter", (1.0, 1.0, 1.0)),
     positive("radius", "m", "of a cylinder, a sphere, or a shell's outside", 1.0),
     parameter("radius_bottom", "m", "of a frustum at the lower end of its third axis", 1.0, 0.0),
     parameter("radius_top", "m", "of a frustum at the upper end of its third axis", 0.5, 0.0),

@@ -14,6 +14,10 @@ Numbers = npt.NDArray[np.int64]
 KINDS = (".stl", ".obj")
 MOST = 200_000
 """Triangles of the largest mesh that is read."""
+HEAD, EACH = 80, 50
+"""Bytes of a binary STL: before the number of its triangles, and for each of them."""
+LOOKED_ACROSS = 400
+"""Triangles from which a thickness is looked for."""
 FLAT = 1e-12
 """Area of a triangle, as a share of the square of the mesh's size, below which it is none."""
 NEIGHBOURS = 6
@@ -36,22 +40,24 @@ def read(path: Path) -> Array:
         import trimesh
     except ImportError:
         raise ValueError("meshes need trimesh: pip install 'dcone-cosim[mesh]'") from None
-    path.read_bytes()  # an OSError of its own
+    _whole(path.read_bytes() if path.suffix.lower() == ".stl" else b"")  # an OSError of its own
     try:
+        as_written = trimesh.load_mesh(path, process=False)
         mesh = trimesh.load_mesh(path, process=True, maintain_order=True)
     except Exception as error:  # whatever the reader stumbles over
         raise ValueError(f"cannot be read as a mesh: {error}") from None
+    if isinstance(as_written, trimesh.Trimesh):
+        _finite(np.asarray(as_written.triangles, dtype=float))
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
         raise ValueError("holds no triangles")
     if len(mesh.faces) > MOST:
         raise ValueError(f"holds {len(mesh.faces):,} triangles, expected at most {MOST:,}")
     corners = np.asarray(mesh.triangles, dtype=float)
-    if not np.isfinite(corners).all():
-        raise ValueError(f"triangle {int(np.argwhere(~np.isfinite(corners))[0][0]) + 1} has a corner that is no number")
     size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     thin = np.flatnonzero(areas(corners) <= FLAT * size * size)
     if len(thin):
         raise ValueError(f"triangle {int(thin[0]) + 1} of {len(corners):,} has no area ({len(thin)} such in all)")
+    _once(np.asarray(mesh.faces))
     edges = np.sort(mesh.edges, axis=1)
     _, counts = np.unique(edges, axis=0, return_counts=True)
     if (counts != 2).any():
@@ -65,6 +71,32 @@ def read(path: Path) -> Array:
     return corners.reshape(-1, 9)
 
 
+def _whole(content: bytes) -> None:
+    """ValueError for a binary STL of fewer triangles than it says: a head of 80 bytes, their number, 50 bytes each."""
+    head = content[: HEAD + 4]
+    if len(head) < HEAD + 4 or b"\0" not in head:  # too short for one, or a text
+        return
+    said, there = int.from_bytes(head[HEAD:], "little"), (len(content) - len(head)) / EACH
+    if there < said:
+        raise ValueError(f"is cut short: it says {said:,} triangles and holds {int(there):,}")
+
+
+def _finite(corners: Array) -> None:
+    bad = np.argwhere(~np.isfinite(corners))
+    if len(bad):
+        raise ValueError(f"triangle {int(bad[0][0]) + 1} has a corner that is no number")
+
+
+def _once(faces: Numbers) -> None:
+    """ValueError for triangles that stand twice, whichever way they face."""
+    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    if (counts > 1).any():
+        twice = int((counts > 1).sum())
+        raise ValueError(
+            f"has triangle {int(first[counts > 1].min()) + 1} twice, with the same corners ({twice} such in all)"
+        )
+
+
 def areas(corners: Array) -> Array:
     """Areas of triangles (n, 3, 3) [m2]."""
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -74,6 +106,34 @@ def areas(corners: Array) -> Array:
 def volume(corners: Array) -> float:
     """Volume within triangles (n, 3, 3) that face outward [m3], by the theorem of Gauss."""
     return float(np.einsum("ni,ni->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()) / 6.0
+
+
+def thickness(corners: Array, share: float) -> float:
+    """Thickness [m] that this share of the surface falls below: the way inward, across it, from evenly chosen triangles
+    to the next one.
+
+    corners    of a closed mesh that faces outward (n, 3, 3) [m]
+
+    Source   T. Moller and B. Trumbore, J. Graphics Tools 2 (1997) 21: where a ray meets a triangle
+    Checked  tests/net_capture/test_mesh_messages.py
+    """
+    area = areas(corners)
+    places = (np.arange(LOOKED_ACROSS) + 0.5) / LOOKED_ACROSS * area.sum()
+    chosen = corners[np.minimum(np.searchsorted(np.cumsum(area), places), len(corners) - 1)]
+    across = np.cross(chosen[:, 1] - chosen[:, 0], chosen[:, 2] - chosen[:, 0])
+    inward = -across / np.linalg.norm(across, axis=1)[:, None]
+    nearest = 1e-9 * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    a, ab, ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    found = np.empty(len(chosen))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for k, (way, start) in enumerate(zip(inward, chosen.mean(axis=1), strict=True)):
+            p, s = np.cross(way, ac), start - a
+            q = np.cross(s, ab)
+            whole = np.einsum("ni,ni->n", ab, p)
+            u, v, t = (np.einsum("ni,ni->n", *pair) / whole for pair in ((s, p), (q, way[None, :] + 0.0 * q), (ac, q)))
+            hit = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > nearest)
+            found[k] = t[hit].min(initial=math.inf)
+    return float(np.sort(found)[int(share * len(found))])
 
 
 def moments(corners: Array) -> tuple[float, Array, Array]:
