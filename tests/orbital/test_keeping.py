@@ -33,7 +33,7 @@ from pathlib import Path
 import numpy as np
 
 from orbital import keeping
-from orbital.kernel import entry, kernel
+from orbital.kernel import entry, kernel, view
 
 LIMIT = 3.0
 
@@ -46,13 +46,19 @@ def half(x):
 def make_add(factor, half):
     @kernel
     def add(p, x):
-        p.sum += factor * half(x) + p.offsets[1]
+        p.sum += factor * half(x) + tail(p.offsets)[0]
     return add
+
+
+@view
+def tail(values):
+    return values[1:]
 
 
 @kernel
 def tell(records, command):
     records[0].other = command
+    records[0].other += int(tail(records[0].offsets)[0])
 
 
 def make_entry(dtype):
@@ -151,13 +157,17 @@ def test_a_field_of_another_type_is_another_kernels(compiler: Compiler, kind: st
 
 
 def test_an_array_of_another_length_is_another_kernels(compiler: Compiler) -> None:
-    assert compiler([FIELDS[0], ("offsets", "f8", [3]), FIELDS[2]]) == ["add"]
+    assert set(compiler([FIELDS[0], ("offsets", "f8", [3]), FIELDS[2]])) == {"add", "tell"}
 
 
 def test_what_is_new_is_compiled_and_no_more(compiler: Compiler) -> None:
     compiler.text = compiler.text.replace("make_add(2.0", "make_add(4.0")
     assert compiler(FIELDS) == ["add"]
     assert compiler.run(FIELDS, 8.0) == 6.25
+    text = compiler.ir
+    shutil.rmtree(compiler.kept)
+    assert set(compiler(FIELDS)) == {"add", "half", "tell"}
+    assert compiler.ir == text, "it does not show what was compiled before"
 
 
 def test_another_kernel_that_is_called_alike_leaves_its_caller_as_it_is(compiler: Compiler) -> None:
