@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from dcone_cosim import build
 from dcone_cosim.events import Event
@@ -17,6 +18,7 @@ from dcone_cosim.phases.nodes_report import of_nodes
 from dcone_cosim.phases.tension import last_orbit
 from dcone_cosim.results import PhaseResult, RunResult
 
+Array = npt.NDArray[np.float64]
 SEVERAL = 1.5
 """Orbits from which on what rows tell is not called that of the last one [1]."""
 UNKNOWN_EXTENT = 1.0
@@ -79,6 +81,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         yield Finding(phase, "broke_at", f"the tether broke{then} at", last["break.time"], "s")
     if phase not in run.handovers:
         yield from _of_appendage(phase, last)
+    if "tether.wrapped" in recorder:
+        yield from of_wrapping(phase, recorder["time"] - result.start, recorder["tether.wrapped"])
     for name, label, unit, shown_in in (
         ("separation", "distance at the end", "m", ""),
         ("altitude", "altitude at the end", "m", "km"),
@@ -96,6 +100,14 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         yield from _of_modes(phase, last)
     elif "level.settled" in last:
         yield from _of_level(phase, result, last)
+
+
+def of_wrapping(phase: str, elapsed: Array, wrapped: Array) -> Iterator[Finding]:
+    """Whether the tether lay round the target in any row, how much of it [m], and from when on [s]; both (n,)."""
+    yield Finding(phase, "wrapped", "tether round the target, at most (of rows)", float(np.max(wrapped)), "m")
+    if np.any(wrapped > 0.0):
+        first = float(elapsed[int(np.argmax(wrapped > 0.0))])
+        yield Finding(phase, "wrapped_after", "it first lay round it after (of rows)", first, "s")
 
 
 def _of_appendage(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:

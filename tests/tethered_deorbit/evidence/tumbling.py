@@ -54,13 +54,14 @@ def row(target: str, scheme: str, factor: float) -> dict[str, Any]:
 
 
 def main() -> None:
-    rows = []
+    """Every row is stored as soon as it is there."""
+    stamp = {"command": COMMAND, "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")}}
+    rows: list[dict[str, Any]] = []
     for target in ("point", "rigid"):
         for scheme, factor in CASES:
             rows.append(row(target, scheme, factor))
             print(rows[-1], flush=True)
-    stamp = {"command": COMMAND, "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")}}
-    RESULT.write_text(json.dumps(stamp | {"rows": rows}, indent=1) + "\n")
+            RESULT.write_text(json.dumps(stamp | {"rows": rows}, indent=1) + "\n")
 
 
 if __name__ == "__main__":
