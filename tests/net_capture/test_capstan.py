@@ -8,12 +8,14 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from fmu_src.implied import formula
 from fmu_src.net_capture.capstan import EXCESS, HELD, PARTS, WITH_FRICTION, make_capstan
 from fmu_src.net_capture.contact.section import INSET, MOST
 from fmu_src.net_capture.near import FINE
 from fmu_src.net_capture.planes import U, X
 from tests.net_capture.on_target import Kernels
+from tests.plain import plain
+
+__all__ = ["plain"]
 
 BOX = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic", "wrap": "friction"}
 SIDES = {"target_size": (4.0, 8.0, 4.0), "target_mass": 1e9}
@@ -207,6 +209,7 @@ def momenta(hung):
     return MASS * speeds.sum(axis=0) + held, turning + hung.p["target_spin"]
 
 
+@pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize(
     ("chain", "lengths", "parts"),
     [
@@ -228,7 +231,7 @@ def test_a_piece_keeps_what_it_holds_as_edges_come_and_go(chain, lengths, parts)
     planes = {"wrap_was": np.zeros(MOST + 1), "wrap_parts": np.zeros(MOST + 1), "wrap_pulls": np.zeros(MOST + 1)}
     p = SimpleNamespace(thread_numbers=1, wrap_before=np.array((5, 1, 3)), wrap_chain=np.array(chain), **planes)
     p.wrap_pieces = np.array([(0.0, 0.0, 0.0, length) for length in lengths])
-    energy = formula(make_capstan().stretch)(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)
+    energy = make_capstan().stretch(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)
     assert p.wrap_parts[: len(parts)] == pytest.approx(np.array(parts), abs=1e-12)
     stretch = np.maximum(0.0, np.array(lengths) - parts)
     assert energy == pytest.approx((50.0 * stretch**2 / parts).sum(), rel=1e-9)
