@@ -6,9 +6,9 @@ makes `similar.json` again, or these shapes of it: mouth area over the flat net'
 s = 1, 1/16 and 3, at the same speeds and moduli; its largest difference from s = 1, and that of a twin whose bullets'
 masses are scaled by s2.
 
-Substeps come in a whole number to every `MEASURE_INTERVAL`, so those of two sizes differ by up to a thousandth, and folds that part
-company make of that what they make of a micrometre. At s = 1/16 substeps can be made to scale as well (`alike`): as 16
-is a power of two, all numbers then do, and every mouth area has the same bits.
+Substeps come in a whole number to every `MEASURE_INTERVAL`, so those of two sizes differ by up to a thousandth, and
+folds that part company make of that what they make of a micrometre. At s = 1/16 substeps can be made to scale as well
+(`alike`): as 16 is a power of two, all numbers then do, and every mouth area has the same bits.
 """
 
 from __future__ import annotations
