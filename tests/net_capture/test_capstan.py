@@ -8,12 +8,14 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from fmu_src.implied import formula
 from fmu_src.net_capture.capstan import EXCESS, HELD, PARTS, WITH_FRICTION, make_capstan
 from fmu_src.net_capture.contact.section import INSET, MOST
 from fmu_src.net_capture.near import FINE
 from fmu_src.net_capture.planes import U, X
 from tests.net_capture.on_target import Kernels
+from tests.plain import plain
+
+__all__ = ["plain"]
 
 BOX = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic", "wrap": "friction"}
 SIDES = {"target_size": (4.0, 8.0, 4.0), "target_mass": 1e9}
@@ -207,6 +209,29 @@ def momenta(hung):
     return MASS * speeds.sum(axis=0) + held, turning + hung.p["target_spin"]
 
 
+@pytest.mark.usefixtures("plain")
+def test_what_slides_goes_through_a_short_piece_at_once():
+    """As met at a corner: 30 um between pieces of 2 m and 1 m, with and without friction; by force balance."""
+    lengths = np.array((2.0, 3e-5, 1.001))
+    for mu in (0.0, 0.2):
+        planes = {f"wrap_{name}": np.zeros(MOST + 1) for name in ("was", "parts", "pulls", "grips")}
+        p = SimpleNamespace(thread_numbers=1, wrap_before=np.zeros(MOST + 1), wrap_chain=np.arange(MOST + 1), **planes)
+        p.wrap_friction, p.wrap_friction_loss, p.wrap_slide = mu, 0.0, 0.0
+        p.wrap_before, words = p.wrap_chain.copy(), np.zeros(WITH_FRICTION, np.int64)
+        words[HELD], words[PARTS : PARTS + 2] = 3, np.round(np.array((2.0, 3e-5)) / FINE)
+        turns = np.array([(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)])
+        p.wrap_pieces, p.wrap_edges = np.column_stack((turns, lengths)), np.array([(0.0, 0.0, 1.0)] * 2)
+        whole = 3.00003 - 1e-4
+        make_capstan().hold(p, words, 0, 2, lengths.sum(), whole, 1000.0, True)
+        pulls, grip = p.wrap_pulls[:3], math.exp(mu * math.pi / 2.0)
+        assert p.wrap_parts[:3].sum() == pytest.approx(whole, abs=1e-12)
+        for ratio in (pulls[2] / pulls[1], pulls[1] / pulls[0]):
+            assert (1.0 - 1e-4) * grip < ratio < (1.0 + 1e-6) * grip, "beyond none, and at both but for a trace"
+        assert p.wrap_friction_loss >= -1e-12
+        assert (p.wrap_friction_loss > 1e-4) == (mu > 0.0)
+
+
+@pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize(
     ("chain", "lengths", "parts"),
     [
@@ -228,7 +253,7 @@ def test_a_piece_keeps_what_it_holds_as_edges_come_and_go(chain, lengths, parts)
     planes = {"wrap_was": np.zeros(MOST + 1), "wrap_parts": np.zeros(MOST + 1), "wrap_pulls": np.zeros(MOST + 1)}
     p = SimpleNamespace(thread_numbers=1, wrap_before=np.array((5, 1, 3)), wrap_chain=np.array(chain), **planes)
     p.wrap_pieces = np.array([(0.0, 0.0, 0.0, length) for length in lengths])
-    energy = formula(make_capstan().stretch)(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)
+    energy = make_capstan().stretch(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)
     assert p.wrap_parts[: len(parts)] == pytest.approx(np.array(parts), abs=1e-12)
     stretch = np.maximum(0.0, np.array(lengths) - parts)
     assert energy == pytest.approx((50.0 * stretch**2 / parts).sum(), rel=1e-9)

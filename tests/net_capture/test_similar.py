@@ -13,3 +13,4 @@ def test_a_square_is_similar():
     assert whole.max() > 0.5
     assert 100.0 * np.abs(whole - small).max() < ALIKE
     assert 100.0 * np.abs(whole - twin).max() > 5.0 * ALIKE
+    assert (similar.curve("square", 1.0 / 16.0, alike=True) == whole).all(), "with substeps alike, the same bits"
