@@ -46,7 +46,7 @@ HELD, EXCESS, PARTS, WITH_FRICTION = KEPT, KEPT + 1, KEPT + 2, KEPT + 2 + MOST
 it would without friction [pJ], and the unstretched length in each piece but the last,
 `FINE` metres to one."""
 SWEEPS = 60
-"""Over all pairs of pieces at most, in each of which length goes over between those that slide."""
+"""Over all edges at most, in each of which length goes over every edge that it slides over."""
 STRAIN = 1e-12
 """By which one side of an edge may be strained more than friction bears."""
 
@@ -206,61 +206,40 @@ def make_capstan() -> Capstan:
         return 2.0 * math.asin(math.sqrt(squared / (4.0 * across))) * math.sqrt(across)
 
     @kernel
-    def strain(p, j):
-        """Of piece number j [1]; below 0 where it is slack.
+    def pass_over(p, j, share_of_far):
+        """Let length go over edge number j until the piece before it pulls so many times what that after does.
 
         Checked  tests/net_capture/test_capstan.py
         """
-        return p.wrap_pieces[j, 3] / p.wrap_parts[j] - 1.0
-
-    @kernel
-    def pass_over(p, i, k, share):
-        """Let length go over from one piece to another until the first pulls so many times what the second does.
-
-        Checked  tests/net_capture/test_capstan.py
-        """
-        near, far = p.wrap_pieces[i, 3], p.wrap_pieces[k, 3]
-        whole = p.wrap_parts[i] + p.wrap_parts[k]
-        middle = near + whole + share * (far - whole)
-        held = 2.0 * near * whole / (middle + math.sqrt(middle * middle - 4.0 * (1.0 - share) * near * whole))
-        p.wrap_parts[i] = held
-        p.wrap_parts[k] = whole - held
-
-    @kernel
-    def slides(p, edges):
-        """Whether the thread overcomes the friction of any edge.
-
-        Checked  tests/net_capture/test_capstan.py
-        """
-        for j in range(edges):
-            near, far, grip = strain(p, j), strain(p, j + 1), p.wrap_grips[j]
-            if near > grip * far + STRAIN or far > grip * near + STRAIN:
-                return True
-        return False
+        near, far = p.wrap_pieces[j, 3], p.wrap_pieces[j + 1, 3]
+        whole = p.wrap_parts[j] + p.wrap_parts[j + 1]
+        middle = near + whole + share_of_far * (far - whole)
+        held = 2.0 * near * whole / (middle + math.sqrt(middle * middle - 4.0 * (1.0 - share_of_far) * near * whole))
+        p.wrap_parts[j] = held
+        p.wrap_parts[j + 1] = whole - held
 
     @kernel
     def slide(p, edges):
         """Let the thread slide over every edge whose friction it overcomes.
-
-        Between any two pieces at once, with the grip of all edges between them: through a short piece between two long
-        ones little would go at a time.
 
         Checked  tests/net_capture/test_capstan.py
         """
         for j in range(edges):
             p.wrap_grips[j] = math.exp(p.wrap_friction * arc(p, j))
         for _ in range(SWEEPS):
-            if not slides(p, edges):
+            slid = False
+            for j in range(edges):
+                near = p.wrap_pieces[j, 3] / p.wrap_parts[j] - 1.0
+                far = p.wrap_pieces[j + 1, 3] / p.wrap_parts[j + 1] - 1.0
+                grip = p.wrap_grips[j]
+                if near > grip * far + STRAIN:
+                    pass_over(p, j, grip)
+                    slid = True
+                elif far > grip * near + STRAIN:
+                    pass_over(p, j, 1.0 / grip)
+                    slid = True
+            if not slid:
                 return
-            for i in range(edges):
-                grip = 1.0
-                for k in range(i + 1, edges + 1):
-                    grip *= p.wrap_grips[k - 1]
-                    near, far = strain(p, i), strain(p, k)
-                    if near > grip * far + STRAIN:
-                        pass_over(p, i, k, grip)
-                    elif far > grip * near + STRAIN:
-                        pass_over(p, i, k, 1.0 / grip)
 
     @kernel
     def let_go(p, words, at):

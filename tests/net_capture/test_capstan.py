@@ -210,28 +210,6 @@ def momenta(hung):
 
 
 @pytest.mark.usefixtures("plain")
-def test_what_slides_goes_through_a_short_piece_at_once():
-    """As met at a corner: 30 um between pieces of 2 m and 1 m, with and without friction; by force balance."""
-    lengths = np.array((2.0, 3e-5, 1.001))
-    for mu in (0.0, 0.2):
-        planes = {f"wrap_{name}": np.zeros(MOST + 1) for name in ("was", "parts", "pulls", "grips")}
-        p = SimpleNamespace(thread_numbers=1, wrap_before=np.zeros(MOST + 1), wrap_chain=np.arange(MOST + 1), **planes)
-        p.wrap_friction, p.wrap_friction_loss, p.wrap_slide = mu, 0.0, 0.0
-        p.wrap_before, words = p.wrap_chain.copy(), np.zeros(WITH_FRICTION, np.int64)
-        words[HELD], words[PARTS : PARTS + 2] = 3, np.round(np.array((2.0, 3e-5)) / FINE)
-        turns = np.array([(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)])
-        p.wrap_pieces, p.wrap_edges = np.column_stack((turns, lengths)), np.array([(0.0, 0.0, 1.0)] * 2)
-        whole = 3.00003 - 1e-4
-        make_capstan().hold(p, words, 0, 2, lengths.sum(), whole, 1000.0, True)
-        pulls, grip = p.wrap_pulls[:3], math.exp(mu * math.pi / 2.0)
-        assert p.wrap_parts[:3].sum() == pytest.approx(whole, abs=1e-12)
-        for ratio in (pulls[2] / pulls[1], pulls[1] / pulls[0]):
-            assert (1.0 - 1e-4) * grip < ratio < (1.0 + 1e-6) * grip, "beyond none, and at both but for a trace"
-        assert p.wrap_friction_loss >= -1e-12
-        assert (p.wrap_friction_loss > 1e-4) == (mu > 0.0)
-
-
-@pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize(
     ("chain", "lengths", "parts"),
     [
