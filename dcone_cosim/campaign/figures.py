@@ -50,14 +50,14 @@ N s  recoil
 """
 _OF_TOW = """
 s    simulated broke_at settled_since tension_window approach_time if_*_at reel.calmed released_at return_time
-s    first_tug first_tug_seen first_tug_without_recoil first_tug_seen_without_recoil *_lifetime
+s    wrapped_after first_tug first_tug_seen first_tug_without_recoil first_tug_seen_without_recoil *_lifetime
 m/s  first_tug_speed first_tug_seen_speed first_tug_speed_without_recoil first_tug_seen_speed_without_recoil
 N    first_tug_peak first_tug_seen_peak first_tug_peak_without_recoil first_tug_seen_peak_without_recoil
 N    largest_tug_peak largest_tug_seen_peak largest_tug_peak_without_recoil largest_tug_seen_peak_without_recoil
 N    tension_mean tension_least tension_largest electrodynamic_force
 1    tugs tugs_without_recoil tugs_missed tugs_missed_without_recoil times_settled settled_share shadows shadow_share
 1    level_* reel.limited
-m    separation altitude approach lowered raised return_distance *_perigee *_apogee reel.paid_out
+m    wrapped separation altitude approach lowered raised return_distance *_perigee *_apogee reel.paid_out
 m/s  lowering_rate raising_rate
 N m s  appendage_momentum
 J    appendage_energy reel.work reel.heat tether.heat

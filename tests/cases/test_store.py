@@ -288,3 +288,20 @@ def test_several_processes_write_at_once(tmp_path: Path) -> None:
     with Store(tmp_path / "out", STUDY) as after:
         assert all(after.get(row_of(n).key) == row_of(n) for n in range(60))
     assert not [name for name in names(tmp_path) if ".dcone-" in name]
+
+
+def test_rows_that_come_together_are_one_file(tmp_path: Path) -> None:
+    """Beside those of cases whose worker died, which lie alone: another row takes their place later."""
+    whole = [Row(f"{number:064x}", "completed", 0, "", {"removal.value": float(number)}) for number in range(40)]
+    died = lost(f"{99:064x}", "died")
+    with Store(tmp_path / "out", STUDY) as store:
+        store.put_all([*whole[:20], died, *whole[20:]])
+        assert [store.get(row.key) for row in (*whole, died)] == [*whole, died]
+    names = sorted(path.suffix for path in (tmp_path / "out" / "rows").iterdir())
+    assert names == [".json", ".parquet"]
+    with Store(tmp_path / "out", STUDY) as again:
+        assert [again.get(row.key) for row in (*whole, died)] == [*whole, died]
+        again.put(Row(died.key, "completed"))
+        found = again.get(died.key)
+        assert found is not None
+        assert found.lasting
