@@ -20,7 +20,7 @@ BEYOND = {("electric-tug, plume left out", "averaged", f"error of {of} [1]") for
 """Where a level errs by more than it tells, 6e-3 and 1.2e-3 for 1e-3: a swing about as slow as the orbit."""
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def stored() -> dict[str, Any]:
     found: dict[str, Any] = json.loads(RESULT.read_text(encoding="utf-8"))
     return found
@@ -52,10 +52,10 @@ def test_it_is_of_these_scenes_and_was_made_by_its_command(stored: dict[str, Any
 
 
 def test_no_level_errs_by_more_than_it_tells(stored: dict[str, Any]) -> None:
-    """But for the one that is known; and a tenth of the bounds would be exceeded elsewhere."""
+    """But for the one that is known; a twentieth of the bounds would be exceeded elsewhere."""
     assert beyond(stored) == BEYOND
     for _, _, row in rows(stored):
-        row["bounds told"] = {name: 0.1 * bound for name, bound in row["bounds told"].items()}
+        row["bounds told"] = {name: 0.05 * bound for name, bound in row["bounds told"].items()}
     assert len(beyond(stored)) > len(BEYOND)
 
 
