@@ -213,7 +213,7 @@ def _put_scene(path: Path, text: str, files: Mapping[KeyPath, tuple[str, str]], 
     files     name and text by the key that names each
     source    of what is checked, for messages: the scene is not written yet
     """
-    with Scratch(path.absolute().parent) as folder:
+    with Scratch.temporary() as folder:
         for name, content in files.values():
             (folder / name).write_text(content, encoding="utf-8")
         drafts = {key: str(folder / name) for key, (name, _) in files.items()}
