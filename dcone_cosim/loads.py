@@ -180,13 +180,18 @@ def _times(strength: float | None, area: float | None) -> float | None:
     return None if strength is None or area is None else strength * area
 
 
+NAMED = {"youngs_modulus": "Young's modulus"}
+"""What some keys are called in words."""
+
+
 def made_of(scene: LineScene) -> str:
     """The material of a line in words, "" where none is named."""
     material = scene.material
     if material is None:
         return ""
     apart = [name.partition(".")[2] for name in scene.apart]
-    own = f"; {', '.join(name.replace('_', ' ') for name in apart)} as the scene has it" if apart else ""
+    words = ", ".join(NAMED.get(name, name.replace("_", " ")) for name in apart)
+    own = f"; {words} as the scene has it" if apart else ""
     return f"{material.name}, {material.form}{own}"
 
 

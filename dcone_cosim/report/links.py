@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,10 @@ REPORT, REPLAY = "report.html", "replay.html"
 """Names of pages."""
 COMMANDS = {"sizing": "size", "accuracy": "accuracy", "stability": "stability"}
 """The command that makes each kind of report."""
+
+
+BROUGHT, UNSURE = "the scene's line", "the default flux may be off"
+"""How the sentences of a sizing begin that tell what the scene's own line is worth, and how far debris is known."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,11 @@ class Linked:
         return cls(kind, folder, [str(one) for one in said], content.get("parts", {}).get("governs"))
 
 
+def named(folder: Path) -> str:
+    """A run folder as a command takes it; a bare name may be that of a scene."""
+    return shlex.quote(f"./{folder.absolute().name}")
+
+
 def shown(kind: str, linked: Sequence[Linked], place: Path, scene: str) -> dict[str, Any]:
     """A report of that kind that is there, or how to make it, for a page at `place`."""
     found = next((one for one in linked if one.kind == kind), None)
@@ -67,4 +77,23 @@ def governing(linked: Sequence[Linked]) -> dict[str, Any] | None:
         }
         for row in sorted(part["rows"], key=lambda row: -row["diameter"])
     ]
-    return {"purpose": part["purpose"], "rows": rows}
+    answer = next(one.said for one in linked if one.governs is not None)
+    return {
+        "purpose": part["purpose"],
+        "rows": rows,
+        "said": [one for one in answer if one.startswith((BROUGHT, UNSURE))],
+    }
+
+
+def tile(linked: Sequence[Linked]) -> dict[str, str] | None:
+    """For the top of a page: of a sizing among them, which load governs, and how thick it asks the line to be."""
+    part = governing(linked)
+    if part is None or not part["rows"]:
+        return None
+    first = part["rows"][0]
+    return {
+        "label": "least diameter of the tether",
+        "value": first["diameter"],
+        "unit": "mm",
+        "since": f"by its sizing; {first['load']} governs: {first['how']}",
+    }

@@ -23,6 +23,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.report import packing
 from dcone_cosim.report.carried import Carried, carry
 from dcone_cosim.report.knobs import Knob, knobs_of, knobs_of_shot
+from dcone_cosim.report.links import named
 from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.transaction import HandoffRecord
@@ -81,7 +82,7 @@ def of_tow(folder: Path, run: RunResult, progress: Progress) -> Live | str:
     knobs = tuple(knobs_of(carried.phase, carried.bounds, run))
     plan, told = _tow(carried, run)
     told["knobs"] = [knob.told() for knob in knobs]
-    return Live(name, told, knobs, *_lasting(plan, carried.phase), f"dcone size {run.scene.name}")
+    return Live(name, told, knobs, *_lasting(plan, carried.phase), f"dcone size {named(folder)}/scene.toml")
 
 
 def of_shot(folder: Path, run: RunResult, progress: Progress) -> Live | str:
@@ -158,7 +159,7 @@ def _tow(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, An
             "reach": float(result.recorder["tether.length"][0]) if "tether.length" in result.recorder else None,
         },
         "spreads": {name: spreads[key] for name, key in SPREADS.items() if key in spreads},
-        "native": {"wall": result.wall, "duration": result.end - result.start},
+        "native": {"cpu": result.cpu, "duration": result.end - result.start},
     }
 
 
@@ -202,7 +203,7 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
         "spreads": {name: spreads[name] for name in FIGURES if name in spreads}
         | ({"mouth.area": spreads["mouth.area_max"]} if "mouth.area_max" in spreads else {}),
         "run": {name: float(np.max(result.recorder[name])) for name in FIGURES if name in result.recorder},
-        "native": {"wall": result.wall, "duration": result.end - result.start},
+        "native": {"cpu": result.cpu, "duration": result.end - result.start},
     }
 
 

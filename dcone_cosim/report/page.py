@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -45,7 +44,7 @@ def of_folder(
     up    address of the index that the page is of, "" for none
     """
     run, about = read_run(folder), provenance_of(folder)
-    here = shlex.quote(f"./{folder.absolute().name}")  # a bare name may be that of a scene
+    here = links.named(folder)
     clips, charts = [], []
     for name, result in run.phases.items():
         kind = kind_of(name)
@@ -73,7 +72,7 @@ def of_folder(
         "up": up,
         "good": run.exit_code == 0,
         "whole": whole,
-        "chief": tiles.chief(run),
+        "chief": [*tiles.chief(run), *([governs] if (governs := links.tile(linked)) else [])],
         "warnings": [one for one in warnings(run) if one not in tiles.said(run)],
         "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
@@ -91,7 +90,7 @@ def of_folder(
             "events": list(told.events(run)),
             "figures": list(told.figures(run)),
             "trust": told.trust(run),
-            "linked": [links.shown(kind, linked, place, run.scene.name) for kind in links.COMMANDS],
+            "linked": [links.shown(kind, linked, place, f"{here}/scene.toml") for kind in links.COMMANDS],
             "governs": links.governing(linked),
             "live": _shown(models, [_head(clip) for clip in clips]),
             "workers": [(one, live.worker(one)) for one in live.SCRIPTS],

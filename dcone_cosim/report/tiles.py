@@ -8,6 +8,7 @@ from dcone_cosim import loads
 from dcone_cosim.contract import FAILED_OUTCOMES, FLOWN
 from dcone_cosim.findings import SHOWN_IN, Finding, spoken
 from dcone_cosim.phases import kind_of
+from dcone_cosim.plots.style import time_axis
 from dcone_cosim.report.knobs import THRUST, signed
 from dcone_cosim.reports import summary
 from dcone_cosim.results import RunResult
@@ -28,6 +29,8 @@ TETHER = "line"
 """Name of the line of a tow in the table of lines; all others are of a net."""
 SHOWN_AS = {"m2": "m²", "m3": "m³"}
 """Units as a page writes them."""
+COUNTED = 1000
+"""Below which a count that is one sample of many is told in full: half a tug is none."""
 MARGIN = "strength over stress, less 1; breaks below 0"
 """What a margin is."""
 Tile = dict[str, str]
@@ -39,8 +42,12 @@ def cells(row: Finding) -> tuple[str, str]:
         return row.value, ""
     unit = row.shown_in or row.unit
     value = row.value / SHOWN_IN[row.shown_in] if row.shown_in else row.value
-    if isinstance(row.value, int) and not row.spread:
-        return f"{row.value:,}" if abs(row.value) >= 10000 else str(row.value), unit
+    if isinstance(row.value, int):
+        digits = f"{row.value:,}" if abs(row.value) >= 10000 else str(row.value)
+        if not row.spread:
+            return digits, unit
+        if abs(row.value) < COUNTED:
+            return f"~{digits}", unit
     size = abs(value)
     if unit == "s" and 0.0 < size < 1e-3:
         value, unit = value / 1e-6, "µs"
@@ -88,12 +95,16 @@ def _tile(run: RunResult, row: Finding, known: Mapping[str, Finding], several: b
     elif row.key == "lasted":
         value, colon, more = value.partition(": ") if ": " in value else value.partition(", ")
         since = more if colon else ""
+    elif row.key == "lowered" and row.phase in run.phases:
+        result = run.phases[row.phase]
+        divisor, unit_of_time = time_axis(result.end - result.start)
+        since = f"in {spoken((result.end - result.start) / divisor)} {unit_of_time}"
     elif row.unit == "s" and row.phase in run.phases:
         since = kind_of(row.phase).clock(run).partition(",")[0]
     bound = known.get(BOUNDS.get(row.key, ""))
     if bound is not None and bound.phase == "hand-off" and _is_point(known):
         share = spoken(100.0 * float(bound.value), most=2)
-        since += f"{'; ' if since else ''}the target as a point may put it off by {share} %"
+        since += f"{'; ' if since else ''}taking the target for a point changes it by at most {share} %"
     if several:
         since = f"{spoken_phase(row.phase)}{', ' + since if since else ''}"
     return {"label": label, "value": value, "unit": unit, "since": since}
@@ -118,8 +129,10 @@ def _held(run: RunResult, phase: str, held: list[loads.Load]) -> Tile:
         lost = run.phases[phase].outcome in FAILED_OUTCOMES
         value = "nothing of it broke" if lost else "yes"
         told = (f"{spoken(load.margin or 0.0, load.margin_spread)} of {load.line.label}" for load in known)
-        unknown = [load.line.label for load in held if load.breaks_at is None]
-        since = f"margin {', '.join(told)}" + (f"; not known of {', '.join(unknown)}" if unknown else "")
+        unknown = ", ".join(load.line.label for load in held if load.breaks_at is None)
+        result = run.phases[phase]
+        since = f"in the {spoken(result.end - result.start)} s of the {spoken_phase(phase)}; margin {', '.join(told)}"
+        since += f"; not known of {unknown}" if unknown else ""
     return {"label": "did the net hold", "value": value, "unit": "", "since": since}
 
 

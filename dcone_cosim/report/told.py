@@ -107,7 +107,10 @@ def handovers(run: RunResult) -> Iterator[dict[str, Any]]:
             for row in handover.rows
         ]
         worst = max((row.closure for row in handover.rows), default=math.nan)
-        yield {"to": name, "rows": rows, "failure": handover.failure, "worst": spoken(worst, most=2)}
+        left = [
+            f"{row['quantity']} {row['accounted']} {row['unit']} ({row['account']})" for row in rows if row["account"]
+        ]
+        yield {"to": name, "rows": rows, "failure": handover.failure, "worst": spoken(worst, most=2), "left": left}
 
 
 def events(run: RunResult) -> Iterator[dict[str, Any]]:

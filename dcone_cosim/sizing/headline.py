@@ -18,14 +18,16 @@ def headline(study: Study) -> list[str]:
     factor = study.options.factor_of_safety
     whose = "given" if "factor_of_safety" in study.options.told else "by default"
     line = 1e3 * study.ground.values["tether.diameter"]
-    margin = margin_of_safety(study.bears(sample), worst.peak, factor)
+    bears = study.bears(sample)
+    margin = margin_of_safety(bears, worst.peak, factor)
+    thicker = "" if bears == study.breaking else f", in a run whose own line breaks at {bears:.4g} N"
     said = [
         f"peak tension {study.nominal.peak:.4g} N in the scene as it is; the highest of {len(study.all)} runs of what "
         f"is uncertain has {worst.peak:.4g} N ({sample.label})",
         f"sustained tension {study.steady:.4g} N, without tugs: the largest of the scene's last orbit, or what thrust "
         "and tide keep in the line",
         f"the scene's line, {line:.4g} mm of {called(study.chief)}, breaks at {study.breaking:.4g} N: margin of safety "
-        f"{margin:+.3g} with a factor of safety of {factor:g} ({whose}) on the highest tension"
+        f"{margin:+.3g} with a factor of safety of {factor:g} ({whose}) on the highest tension{thicker}"
         + (": TOO WEAK" if margin < 0.0 else ""),
     ]
     governing = study.demands[0]

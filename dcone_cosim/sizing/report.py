@@ -134,9 +134,8 @@ def _governs(study: Study) -> Section:
     if study.governing is not None:
         peak, margin = study.governing
         of = min(3, len(study.made))
-        how = (
-            f"largest of the scene and its {of} hardest neighbours on that line, which leaves a margin of {margin:+.3g}"
-        )
+        left = f"which leaves a margin of {margin:+.3g} with that factor"
+        how = f"largest of the scene and its {of} hardest neighbours on that line, {left}"
         rows.append(("run at the diameter that governs", peak, study.demands[0].diameter, how))
     heads = (
         text("load", "load"), Head("size", "size", "N"), Head("diameter", "diameter it asks for", "m", "mm"),

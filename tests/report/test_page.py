@@ -196,6 +196,9 @@ def test_reports_that_belong_to_it_are_linked_from_where_the_page_is(kept: Path,
     assert "Report of sizing: 2.1 mm of Kevlar 29" in page.text
     assert "the first tug governs" in page.text
     assert page.row("snap, governs") == ["snap, governs", "2.1", "812.2", "the hardest tug"]
+    assert re.search(
+        r"least diameter of the tether\s*2\.1 mm\s*by its sizing; snap governs: the hardest tug", page.text
+    )
     loads = [row[0] for row in page.rows]
     assert loads.index("snap, governs") < loads.index("debris cut") < loads.index("steady load")
 

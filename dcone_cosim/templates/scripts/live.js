@@ -26,7 +26,7 @@ export class Live extends Panel {
     this.results = { run: null, moved: null };
     this.recorded = unpack(data.tugs);
     this.factor.value = data.line.factor;
-    this.factor.addEventListener("change", () => { this.results.run = null; this.change(); });
+    this.factor.addEventListener("change", () => { this.factor.value = Math.max(Number(this.factor.value) || 1, 1); this.results.run = null; this.change(); });
     const { phase, clock, unit } = data;
     this.chart = new Chart(this.part("chart"), { key: `${phase}-live`, title: "Tension of the tether", clock, unit: "N", xUnit: unit, log: true, range: [0, data.plan.duration / data.divisor], marks: [], series: this.series() });
     this.tell();
@@ -136,7 +136,7 @@ export class Live extends Panel {
         const cell = this.root.querySelector(`[data-figure="${name}"] [data-of="${which}"]`);
         if (!cell) continue;
         const value = told ? of(told) : NaN;
-        cell.textContent = Number.isFinite(value) ? spoken(value, 4, this.spread(spread, value)) : told ? (name === "required" && told.sought ? "…" : "–") : waits ? "…" : "";
+        cell.textContent = Number.isFinite(value) ? (Number.isInteger(value) && value < 1000 ? `${this.spread(spread, value) ? "~" : ""}${value}` : spoken(value, 4, this.spread(spread, value))) : told ? (name === "required" && told.sought ? "…" : "–") : waits ? "…" : "";
         if (name === "margin") {
           cell.classList.toggle("bad", value < 0);
           if (value < 0) cell.textContent += ": breaks";
@@ -149,7 +149,7 @@ export class Live extends Panel {
     const shown = told && told.number === this.number;
     this.refuse(this.failed);
     this.status.textContent = this.failed ? `The model refuses that, and nothing is computed: ${this.failed}.` : !told ? "computing …"
-      : `${spoken(told.time / 3600)} h simulated in ${spoken(told.took, 2)} s, in this page; the compiled FMU took ${spoken((this.told.native.wall * told.time) / this.told.native.duration, 2)} s for them. ${this.same ?? ""}` + (told.ended ? ` It ended early: ${told.ended}.` : "");
+      : `${spoken(told.time / 3600)} h simulated in ${spoken(told.took, 2)} s, in this page; the compiled FMU took ${spoken((this.told.native.cpu * told.time) / this.told.native.duration, 2)} s of CPU time for them. ${this.same ?? ""}` + (told.ended ? ` It ended early: ${told.ended}.` : "");
     this.root.classList.toggle("waits", !shown && !this.failed);
     this.root.dataset.done = shown && !this.waiting && !this.busy ? this.number : "";
     const again = now.some((knob) => knob.told.again);

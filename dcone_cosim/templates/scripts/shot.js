@@ -123,7 +123,7 @@ export class ShotView extends Panel {
     this.refuse(this.failed);
     this.status.textContent = this.failed ? `The model refuses that, and nothing is shot: ${this.failed}.`
       : stale && over ? "The values have changed since the shot that is shown: shoot again."
-      : over ? `${spoken(over.time, 3)} s simulated${speed}; the compiled FMU took ${spoken((this.told.native.wall * over.time) / this.told.native.duration, 2)} s for them. Outcome: ${(over.outcome || over.ended || "the end of its time").replaceAll("_", " ")}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: something is rounded otherwise here, and a net is chaotic, so that these are two samples."}`
+      : over ? `${spoken(over.time, 3)} s simulated${speed}; the compiled FMU took ${spoken((this.told.native.cpu * over.time) / this.told.native.duration, 2)} s of CPU time for them. Outcome: ${(over.outcome || over.ended || "the end of its time").replaceAll("_", " ")}.${!over || this.shot ? "" : same ? " Unmoved it is the run again, bit for bit." : " Unmoved it is not the run to the bit: something is rounded otherwise here, and a net is chaotic, so that these are two samples."}`
         : this.held ? `${spoken(here, 3)} s simulated${speed} …`
           : this.state === "ready" ? "Nothing is shot yet." : "…";
     this.offer(this.failed ? [] : ["dcone run", this.told.folder, ...settings, ...(settings.length ? ["-o moved"] : [])]);
