@@ -67,11 +67,12 @@ def dead_links(page, text):
 
 def lost_files(text):
     """Files of the tests that a page names, in prose or in a command, and that are not there."""
-    for path in re.findall(r"\btests/[\w/.]*\w", text):
+    for path in re.findall(r"\btests/[\w/.-]*\w", text):
         if not (ROOT / path).exists():
             yield path
     for module in re.findall(r"python -m (tests[.\w]*\w)", text):
-        if not (ROOT / module.replace(".", "/")).with_suffix(".py").is_file():
+        place = ROOT / module.replace(".", "/")
+        if not (place.with_suffix(".py").is_file() or (place / "__main__.py").is_file()):
             yield module
 
 

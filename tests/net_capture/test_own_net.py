@@ -200,7 +200,7 @@ def test_what_it_says_is_what_is_laid_out(layer, pieces):
     edge = [slot for slot in rim if slot not in corners]
     assert node == pytest.approx(min(mass[edge].min() / 0.75, mass[corners].min() / 0.5), rel=1e-12)
     hanging = [pieces * mass[slots].max() for slots in (np.setdiff1d(laid.slots[:10], rim), edge, corners)]
-    assert CHECKS.hanging(every) == pytest.approx(hanging, rel=1e-9)
+    assert CHECKS.hanging(every)[:3] == pytest.approx(hanging, rel=1e-9)
     found = CHECKS.thread(every)
     assert (found.section, found.stiffness, found.mass) == (None, pytest.approx(max(told)), pytest.approx(min(masses)))
     lines, edge = CHECKS.drawing(every)
