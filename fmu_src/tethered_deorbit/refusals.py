@@ -8,13 +8,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
-from fmu_src.tethered_deorbit.node_rows import unfit
 from fmu_src.tethered_deorbit.optional_rows import POINTS_ONLY, SETTLING_LAWS, not_mapped
 from fmu_src.tethered_deorbit.reel_refusals import of_reel
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
-SELECTORS = {"reel": "law", "solver": "scheme", "target": "body", "chaser": "body"}
-"""Key by which a scene names a term of these groups."""
 Refusal = tuple[str, str, str]
 """FMI name, its value as text, what was expected."""
 NOTCH = 2
@@ -84,10 +81,6 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
             if terms["level"] == "averaged":
                 text += ", central gravity and thrust along_track"
             yield "level.detail", terms["level"], text
-    if "lumped" in terms:
-        for group, term, carried in unfit(terms):
-            text = f"carries no nodes: take {' or '.join(carried)}, or leave the table lumped out"
-            yield f"{group}.{SELECTORS[group]}", term, text
     yield from of_reel(values, terms)
 
 
