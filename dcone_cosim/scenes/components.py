@@ -90,7 +90,8 @@ def _part_company(part: ReadComponent, model: build.Model, tables: Mapping[str, 
     """Note the terms that do not go with others, and go on without them; of their keys nothing is said then."""
     for group_name, other, carried in model.unfit(part.terms):
         group = model.groups[group_name]
-        text = f"does not go with the table [{dotted((*part.path, other))}]: take {' or '.join(carried)}, or leave that out"
+        table, fit = dotted((*part.path, other)), " or ".join(carried)
+        text = f"does not go with the table [{table}]: take {fit}, or leave that out"
         path = (*part.path, group.table or group_name, group.selector)
         mistakes.append(Mistake(path, part.terms[group_name], text))
         part.terms[group_name] = carried[0]
