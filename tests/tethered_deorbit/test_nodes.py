@@ -184,6 +184,15 @@ def test_a_slack_start_is_an_arc_of_unloaded_pieces(chord: float) -> None:
     assert i["tether.tension"] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("count", [1, 6, 10])
+def test_no_piece_of_a_slack_start_pulls(count: int) -> None:
+    """Not even by rounding, so that none is told as the hardest."""
+    for share in (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999, 1.0 - 1e-9):
+        i = lumped(count, 1440.0, {"tether.youngs_modulus": 60e9} | apart(share * pair.LENGTH, 0.0, 0.0, 0.0))
+        told = [i[name] for name in ("lumped.most_tension", "lumped.most_piece", "lumped.target_tension")]
+        assert told == [0.0, 0, 0.0], share
+
+
 def test_a_taut_start_is_straight_and_turns_with_the_line() -> None:
     i = lumped(3, HEAVY, apart(12.5, 0.4, 0.2, 0.0))
     places, rates = pair.nodes_of(i)
