@@ -17,6 +17,10 @@ from dcone_cosim.recorder import Recorder, Snapshots, TugLog
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.states import KeptState
 
+NO_SLACK = 1e-9
+"""Way at the speed of the first tug since the start [m] up to which it is no tug: the line began at its length, and the
+slack it took up is rounding."""
+
 
 @dataclass
 class PhaseResult:
@@ -61,6 +65,15 @@ class PhaseResult:
     @property
     def end(self) -> float:
         return float(self.recorder["time"][-1]) if len(self.recorder) else self.start
+
+    @property
+    def is_taut_from_start(self) -> bool:
+        """Whether the line carried tension as the phase began, or had less slack than counts: that pull is the first of
+        the table of tugs and is counted by the FMU, and is no tug in what is told."""
+        first = self.tugs.rows.get(1) if self.tugs is not None else None
+        if first is not None and 0.0 <= first[0] * first[2] < NO_SLACK:
+            return True
+        return "tether.taut" in self.recorder and len(self.recorder) > 0 and bool(self.recorder["tether.taut"][0])
 
 
 class Handover(Protocol):

@@ -78,6 +78,7 @@ class Term:
     variables   its rows; one of a name that the model has already takes that row's place
     needs    groups without a term of which it has nothing to act on
     excludes groups with any term of which it cannot go together
+    carries  terms of other groups, by group, of which it goes with these alone
     lacks    variables that the model has otherwise, and that mean nothing with it
     states   outputs that are states with it: they begin with what their inputs say, and follow them over a step only
     faults   for which its kernels may stop
@@ -97,6 +98,7 @@ class Term:
     variables: tuple[Variable, ...] = ()
     needs: tuple[str, ...] = ()
     excludes: tuple[str, ...] = ()
+    carries: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     lacks: tuple[str, ...] = ()
     states: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
@@ -211,6 +213,13 @@ class Model:
             for other in self.groups[group].terms[term].excludes:
                 if other in terms:
                     yield group, other
+
+    def unfit(self, terms: Mapping[str, str]) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+        """Each group whose term another group's does not carry, that group, and the terms that it does carry."""
+        for group, term in terms.items():
+            for other, carried in self.groups[group].terms[term].carries.items():
+                if other in terms and terms[other] not in carried:
+                    yield other, group, carried
 
     def interface(self, terms: Mapping[str, str]) -> Interface:
         """The interface of this model built with the given terms, `{group: term}`."""

@@ -261,21 +261,17 @@ def _of_reel(run: RunResult, phase: str, last: Mapping[str, float]) -> Iterator[
                 yield Finding(phase, row.key, row.label, row.value, row.unit, shown_in=shown_in)
 
 
-NO_SLACK = 1e-9
-"""Way at the speed of the first tug since the start [m] up to which it is no tug: the line began at its length, and the
-slack it took up is rounding."""
-
-
 def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterator[Finding]:
     """Of one removal; `begin` is what its times count from, "" where that needs no word."""
     tugs = result.tugs
     if tugs is None:
         return
     note = " (had the shot no recoil)" if suffix else ""
-    taut = _is_taut_from_start(result)
-    yield Finding(phase, f"tugs{suffix}", f"tugs{note}", tugs.count - taut)
+    taut = result.is_taut_from_start
     if taut:
         yield Finding(phase, f"taut_from_start{suffix}", f"tether{note}", "taut from the start")
+    label = "tugs after that" if taut else "tugs"
+    yield Finding(phase, f"tugs{suffix}", f"{label}{note}", tugs.count - taut)
     if tugs.missed:
         label = f"of these not seen: more than {tugs.ring} in one macro step{note}"
         yield Finding(phase, f"tugs_missed{suffix}", label, tugs.missed)
@@ -302,7 +298,7 @@ def _of_tugs(phase: str, result: PhaseResult, suffix: str, begin: str) -> Iterat
 
 def own_events(result: PhaseResult) -> Iterator[Event]:
     """Its tugs, how near the bodies came, and when the line broke."""
-    taut, log = _is_taut_from_start(result), result.tugs
+    taut, log = result.is_taut_from_start, result.tugs
     for number, (time, peak, speed) in sorted(log.rows.items()) if log is not None else ():
         label = "taut from the start" if taut and number == 1 else f"tug {number - taut}"
         yield Event(result.name, label, time, peak, speed)
@@ -317,16 +313,6 @@ def own_events(result: PhaseResult) -> Iterator[Event]:
         back = released.after_the_cut(result)
         if back is not None:
             yield Event(result.name, "bodies return nearest", back.after)
-
-
-def _is_taut_from_start(result: PhaseResult) -> bool:
-    """Whether the line carried tension as the phase began, or had less slack than counts; the FMU counts that as its
-    first tug."""
-    recorder = result.recorder
-    first = result.tugs.rows.get(1) if result.tugs is not None else None
-    if first is not None and 0.0 <= first[0] * first[2] < NO_SLACK:
-        return True
-    return "tether.taut" in recorder and len(recorder) > 0 and bool(recorder["tether.taut"][0])
 
 
 def meeting(phase: str, result: PhaseResult, reach: float | None) -> Iterator[str]:

@@ -95,8 +95,8 @@ def _tug_sets(result: PhaseResult, comparison: PhaseResult | None) -> list[tuple
         (result, "tugs", style.BULLET, True),
     ):
         if phase is not None and phase.tugs is not None and phase.tugs.rows:
-            rows = np.array(list(phase.tugs.rows.values()))[:, :2]
-            rows = rows[rows[:, 0] > 0.0]
-            if len(rows):
-                sets.append((label, rows, colour, strong))
+            taut = phase.is_taut_from_start
+            rows = [row[:2] for number, row in phase.tugs.rows.items() if not (taut and number == 1)]
+            if rows:
+                sets.append((label, np.array(rows), colour, strong))
     return sets

@@ -161,7 +161,7 @@ def _hardest(run: RunResult, load: loads.Load) -> Tile:
 
 def governing(run: RunResult, load: loads.Load) -> str:
     """Which load is the largest of a line."""
-    log, recorder = run.phases[load.phase].tugs, run.phases[load.phase].recorder
+    log = run.phases[load.phase].tugs
     if load.line.name != TETHER:
         return "largest of the phase"
     if log is None or not log.rows:
@@ -169,7 +169,7 @@ def governing(run: RunResult, load: loads.Load) -> str:
     number, (time, peak, _) = max(log.rows.items(), key=lambda item: item[1][1])
     if peak < (1.0 - 1e-9) * load.tension:
         return "largest tension of the phase, not a tug"
-    taut = "tether.taut" in recorder and len(recorder) > 0 and bool(recorder["tether.taut"][0])
+    taut = run.phases[load.phase].is_taut_from_start
     if taut and number == 1:
         return "taut from the start"
     return f"tug {number - taut} of {log.count - taut}, at {spoken(time)} s"

@@ -19,6 +19,8 @@ LIKE = "like"
 def filled(document: Mapping[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
     """The document with each phase that is like another one written out; it is not changed itself.
 
+    One that is like none that it can be is written out as the first of these, so that it lacks nothing because of that.
+
     Checked  tests/cosim/test_alike.py
     """
     found = dict(document)
@@ -30,7 +32,9 @@ def filled(document: Mapping[str, Any], mistakes: list[Mistake]) -> dict[str, An
         alike = [one for one, other in kinds().items() if other.model == kind.model and one != name and one in found]
         if not isinstance(given, str) or given not in alike:
             mistakes.append(unknown(path, given, "expected a phase of this scene of the same kind", str(given), alike))
-            continue
+            if not alike:
+                continue
+            given = alike[0]
         found[name] = _over(_without_taken(found[given], kind), table)
     return found
 

@@ -76,13 +76,34 @@ def of_model(
                 text = f"needs the table [{dotted((*part.path, needed))}], which this scene lacks"
                 mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
             part.terms[needed] = next(iter(model.groups[needed].terms))
+    _part_company(part, model, tables, mistakes)
+    interface = model.interface(part.terms)
+    part.keys = dict(_keys(model.name, tuple(part.terms.items())))
+    given = (table for table in build.from_files(interface.tables) if table.name not in interface.laid)
+    part.files = {table.name: table for table in (*given, *interface.sources)}
+    part.lines = {line.table: line for line in build.lines(model.name, part.terms)}
+    _offer_slots(part, model)
+    return part
+
+
+def _part_company(part: ReadComponent, model: build.Model, tables: Mapping[str, Any], mistakes: list[Mistake]) -> None:
+    """Note the terms that do not go with others, and go on without them; of their keys nothing is said then."""
+    for group_name, other, carried in model.unfit(part.terms):
+        group = model.groups[group_name]
+        table, fit = dotted((*part.path, other)), " or ".join(carried)
+        text = f"does not go with the table [{table}]: take {fit}, or leave that out"
+        path = (*part.path, group.table or group_name, group.selector)
+        mistakes.append(Mistake(path, part.terms[group_name], text))
+        part.terms[group_name] = carried[0]
+        part.refused.add(group_name)
     clashes: dict[str, list[str]] = {}
     several = {name: "1" for name in part.following if name in build.FAMILIES}  # however many follow
     for group_name, other in model.clashing(part.terms | several):
         clashes.setdefault(group_name, []).append(f"[{dotted((*part.path, other))}]")
     for group_name, others in clashes.items():
+        part.refused.add(group_name)
         group, text = model.groups[group_name], f"cannot go together with {' and '.join(others)}"
-        if group_name in build.FAMILIES:
+        if group_name in build.FAMILIES or group_name in part.following:
             mistakes.append(Mistake((*part.path, group_name), tables[group_name], text))
             part.terms.pop(group_name, None)
             part.following = [name for name in part.following if name != group_name]
@@ -93,13 +114,6 @@ def of_model(
         if group.optional and group_name in (name for name, _ in model.clashing(part.terms)):
             part.terms.pop(group_name)
             part.following = [name for name in part.following if name != group_name]
-    interface = model.interface(part.terms)
-    part.keys = dict(_keys(model.name, tuple(part.terms.items())))
-    given = (table for table in build.from_files(interface.tables) if table.name not in interface.laid)
-    part.files = {table.name: table for table in (*given, *interface.sources)}
-    part.lines = {line.table: line for line in build.lines(model.name, part.terms)}
-    _offer_slots(part, model)
-    return part
 
 
 def _early(part: ReadComponent, group: build.Group, model: build.Model, tables: Mapping[str, Any], folder: File) -> str:
@@ -272,8 +286,10 @@ def _walk(
             mistakes.append(_no_variable(part, joined, path, value))
     elif _is_table(part, names):
         mistakes.append(Mistake(path, value, f"expected a table [{dotted(path)}]"))
-    else:
-        mistakes.append(_unknown(part, names, value) if ours else _no_variable(part, joined, path, value))
+    elif not ours:
+        mistakes.append(_no_variable(part, joined, path, value))
+    elif _group_that_has(part, names) not in part.refused:
+        mistakes.append(_unknown(part, names, value))
 
 
 def _look_at_choice(part: ReadComponent, names: tuple[str, ...], value: Any, mistakes: list[Mistake]) -> None:
@@ -334,8 +350,11 @@ def _unknown(part: ReadComponent, names: tuple[str, ...], value: object) -> Mist
     path, key = (*part.path, *names), names[-1]
     if names[0] == SHARED:
         return Mistake(path, value, f"the orbit is shared by the phases: write it as [{SHARED}]")
-    home = _term_that_has(part, names)
-    if home is not None:
+    group_name = _group_that_has(part, names)
+    if group_name is not None:
+        group = part.groups[group_name]
+        term = next(term for term in group.terms if _brings(group, term, names))
+        home = f'[{dotted((*part.path, group.table or group_name))}] {group.selector} = "{term}"'
         return Mistake(path, value, f"belongs to the term {home}, which this scene does not name")
     if len(names) == 1:
         tables = {name.partition(".")[0] for name in (*part.keys, *part.files, *part.lines)}
@@ -347,15 +366,17 @@ def _unknown(part: ReadComponent, names: tuple[str, ...], value: object) -> Mist
     return unknown(path, value, "unknown key", key, keys)
 
 
-def _term_that_has(part: ReadComponent, names: tuple[str, ...]) -> str | None:
-    """The term, as a scene would name it, that brings a table or key which is not there now."""
-    for group_name, group in part.groups.items():
-        for term in group.terms:
-            for row in build.term_rows(group, term):
-                if row.causality in build.SETTABLE and (row.section, row.key)[: len(names)] == names:
-                    path = (*part.path, group.table or group_name)
-                    return f'[{dotted(path)}] {group.selector} = "{term}"'
-    return None
+def _group_that_has(part: ReadComponent, names: tuple[str, ...]) -> str | None:
+    """The group of which a term brings a table or key that is not there now."""
+    return next(
+        (name for name, group in part.groups.items() if any(_brings(group, term, names) for term in group.terms)), None
+    )
+
+
+def _brings(group: build.Group, term: str, names: tuple[str, ...]) -> bool:
+    """Whether a term brings a table or key."""
+    rows = build.term_rows(group, term)
+    return any(row.causality in build.SETTABLE and (row.section, row.key)[: len(names)] == names for row in rows)
 
 
 def reserved_of(phase: str) -> frozenset[str]:

@@ -32,6 +32,7 @@ class ReadComponent:
     archive      of the FMU, closed again: its model description is read
     given        where the value of each variable was given
     following    groups whose term follows from the values
+    refused      groups whose term does not go with others: nothing is said of their keys
     texts        that the scene gives to Strings, by variable
     files        tables that our model reads, by name, which a scene gives as the path of a file or entry by entry
     tables       those that it gives as files
@@ -50,6 +51,7 @@ class ReadComponent:
     archive: Archive | None = None
     given: dict[str, Path] = field(default_factory=dict)
     following: list[str] = field(default_factory=list)
+    refused: set[str] = field(default_factory=set)
     texts: dict[str, str] = field(default_factory=dict)
     files: dict[str, build.Table] = field(default_factory=dict)
     tables: dict[str, TableFile] = field(default_factory=dict)

@@ -11,6 +11,9 @@ LARGEST = state_layout(2, wheels=True, spends=True, moved=2, gathered=2).size
 """Components of the largest state."""
 RATE_FRAMES = ("inertial", "orbital", "line")
 """What a body rate that a scene gives is relative to."""
+NOT_OF_A_BODY = (
+    "no body has that inertia: its principal moments must be positive, none greater than the sum of the others"
+)
 
 POINT_TARGET = (
     parameter("target.attachment_distance", "m", "from the target's centre of mass to where the line is made fast",

@@ -34,8 +34,11 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
         yield Implied("line.area", "section of the line", extensional / values["tether.youngs_modulus"], "m2")
         yield Implied("line.axial_stiffness", "EA of the line", extensional, "N")
         yield Implied("line.stiffness", "stiffness of the line", stiffness, "N/m")
-        damping = dashpot(values["tether.damping_ratio"], stiffness, reduced)
-        yield Implied("line.dashpot", "dashpot of the line", damping, "N.s/m")
+        if "lumped" in terms:
+            label, damping = "dashpot of the line, its pieces in series", cost(values).dashpot
+        else:
+            label, damping = "dashpot of the line", dashpot(values["tether.damping_ratio"], stiffness, reduced)
+        yield Implied("line.dashpot", label, damping, "N.s/m")
     elif terms["reel"] in ("linear", "regulator"):
         length, stiffness = values["reel.length"] + values["reel.length_offset"], values["reel.proportional_gain"]
     if stiffness > 0.0:

@@ -24,7 +24,7 @@ from fmu_src.rows import (
     vector,
 )
 from fmu_src.tethered_deorbit import stress
-from fmu_src.tethered_deorbit.body_rows import APPENDAGE, ATTACHED, POINT_TARGET, THRUSTER, rigid_body
+from fmu_src.tethered_deorbit.body_rows import APPENDAGE, ATTACHED, NOT_OF_A_BODY, POINT_TARGET, THRUSTER, rigid_body
 from fmu_src.tethered_deorbit.node_rows import NODES
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, RELEASE, SCHEMES
 from fmu_src.tethered_deorbit.orbit_rows import AIR, ELECTRODYNAMIC, OBLATENESS, POWER, SHADOW, SUNLIGHT, THIRD_BODIES
@@ -71,12 +71,7 @@ FAULTS = (
     Fault(
         NO_ORBIT, "error", "start.condition needs an orbit, and there is none; take equal_velocity or handed_over", True
     ),
-    Fault(
-        BAD_INERTIA,
-        "error",
-        "no body has that inertia: its principal moments must be positive, none greater than the sum of the others",
-        True,
-    ),
+    Fault(BAD_INERTIA, "error", NOT_OF_A_BODY, True),
     Fault(BAD_ATTITUDE, "error", "the attitude at the start must be a quaternion of unit length, or zero", True),
     Fault(
         BODIES_MET,

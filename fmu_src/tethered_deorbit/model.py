@@ -29,7 +29,7 @@ from fmu_src.tethered_deorbit.levels.averaged import leapt
 from fmu_src.tethered_deorbit.levels.choosing import check_level, make_held_of, make_level
 from fmu_src.tethered_deorbit.minded import LIMITED
 from fmu_src.tethered_deorbit.nodes.books import Watch
-from fmu_src.tethered_deorbit.nodes.chain import check_nodes, make_nodes
+from fmu_src.tethered_deorbit.nodes.chain import make_nodes
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
@@ -100,7 +100,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     reel = releasable(reel, terms, interface)
     watch = Watch()
     if "lumped" in terms:
-        check_nodes(MODEL.name, terms)
+        for group, _, carried in MODEL.unfit(terms):
+            raise ValueError(f"{MODEL.name}: nodes go with {group} = {' or '.join(carried)}, not {terms[group]!r}")
         reel, bodies, watch = make_nodes(reel, bodies, environment, layout, interface)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 

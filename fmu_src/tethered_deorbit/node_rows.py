@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-
 from fmu_src.interface import Group, Term, Variable
 from fmu_src.rows import at_least_zero, choice, output, peak, positive, rate, state
 from fmu_src.tethered_deorbit import stress
@@ -29,15 +27,7 @@ NOT_WITH = (
 )
 """Groups that know one massless piece alone."""
 CARRIED = {"reel": ("locked",), "solver": ("dop853",), "target": ("point", "rigid"), "chaser": ("point", "rigid")}
-"""Terms that carry nodes, of groups of which one is always named."""
-
-
-def unfit(terms: Mapping[str, str]) -> Iterator[tuple[str, str, tuple[str, ...]]]:
-    """What is named that carries no nodes: group, term, and what would."""
-    for group, carried in CARRIED.items():
-        if terms[group] not in carried:
-            yield group, terms[group], carried
-
+"""Terms that go with nodes, of groups of which one is always named."""
 
 NODES = Group(
     {
@@ -92,6 +82,7 @@ NODES = Group(
                 state("state.node_motion[#][#]", "1", "room for places and velocities", shape=(5, 6)),
             ),
             excludes=NOT_WITH,
+            carries=CARRIED,
             extremes=stress.NODES,
         ),
     },

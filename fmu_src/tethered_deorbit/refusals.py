@@ -6,18 +6,20 @@ import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+import numpy.typing as npt
 
+from fmu_src.tethered_deorbit.body_rows import NOT_OF_A_BODY
 from fmu_src.tethered_deorbit.interface import CONDITIONS, EQUAL_VELOCITY, HANDED_OVER
-from fmu_src.tethered_deorbit.node_rows import unfit
 from fmu_src.tethered_deorbit.optional_rows import POINTS_ONLY, SETTLING_LAWS, not_mapped
 from fmu_src.tethered_deorbit.reel_refusals import of_reel
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
-SELECTORS = {"reel": "law", "solver": "scheme", "target": "body", "chaser": "body"}
-"""Key by which a scene names a term of these groups."""
 Refusal = tuple[str, str, str]
 """FMI name, its value as text, what was expected."""
+Matrix = npt.NDArray[np.float64]
 NOTCH = 2
+ROUNDING = 1e-9
+"""Of a moment of inertia, as the kernels have it."""
 ORBITAL = {"oblateness": "zonal", "air": "law", "third_bodies": "which", "shadow": "shape", "electrodynamic": "field"}
 """Groups that mean nothing without an orbit, and the key by which a scene names their terms."""
 
@@ -32,6 +34,7 @@ def refusals(terms: Mapping[str, str], values: Mapping[str, float], handed_over:
     Checked  tests/cosim/test_tow_refusals.py
     """
     yield from _of_orbit(terms, values)
+    yield from _of_inertias(terms, values, handed_over)
     yield from _of_parts(terms, values)
     if not (handed_over or values["start.condition"] == HANDED_OVER):
         yield from _of_start(terms, values)
@@ -48,6 +51,43 @@ def _of_orbit(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         below = 1e-3 * (EARTH_EQUATORIAL_RADIUS - perigee)
         text = f"has its perigee {below:.4g} km below the equatorial radius; with this altitude at most {most:.4g}"
         yield "orbit.eccentricity", f"{eccentricity:g}", text
+
+
+def _of_inertias(terms: Mapping[str, str], values: Mapping[str, float], handed_over: bool) -> Iterator[Refusal]:
+    """Of bodies that turn, of an appendage, and of what the target is without that; of a target that is handed over
+    the last is not known."""
+    given = [role for role in ("target", "chaser", "appendage") if f"{role}.inertia[1]" in values]
+    wrong = [role for role in given if not _is_of_a_body(_inertia(values, role), thin=role == "appendage")]
+    for role in wrong:
+        yield f"{role}.inertia", _inertia_given(values, role), NOT_OF_A_BODY
+    if "appendage" not in given or "target" not in given or wrong or handed_over:
+        return
+    mass, whole = values["appendage.mass"], values["target.mass"]
+    if mass >= whole:
+        return  # told by `_of_appendage`
+    center = np.array([values[f"appendage.center[{i}]"] for i in (1, 2, 3)])
+    apart = mass * whole / (whole - mass) * (center @ center * np.eye(3) - np.outer(center, center))
+    if not _is_of_a_body(_inertia(values, "target") - _inertia(values, "appendage") - apart, thin=True):
+        text = "leaves no body of the target: target.inertia has that of the appendage in it, about the common centre"
+        yield "appendage.inertia", _inertia_given(values, "appendage"), text
+
+
+def _inertia(values: Mapping[str, float], role: str) -> Matrix:
+    """Matrix of inertia [kg m2], (3, 3)."""
+    i11, i22, i33, i12, i13, i23 = (values[f"{role}.inertia[{i}]"] for i in range(1, 7))
+    return np.array([[i11, i12, i13], [i12, i22, i23], [i13, i23, i33]])
+
+
+def _inertia_given(values: Mapping[str, float], role: str) -> str:
+    told = ", ".join(f"{values[f'{role}.inertia[{i}]']:g}" for i in range(1, 7))
+    return f"[{told}] kg m2"
+
+
+def _is_of_a_body(inertia: Matrix, thin: bool) -> bool:
+    """Whether a body can have that inertia; a thin one may have no moment about an axis, within rounding."""
+    least, _, greatest = np.linalg.eigvalsh(inertia)
+    trace = float(np.trace(inertia))
+    return bool((least >= -ROUNDING * trace if thin else least > 0.0) and greatest <= 0.5 * trace * (1.0 + ROUNDING))
 
 
 def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
@@ -84,10 +124,6 @@ def _of_parts(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
             if terms["level"] == "averaged":
                 text += ", central gravity and thrust along_track"
             yield "level.detail", terms["level"], text
-    if "lumped" in terms:
-        for group, term, carried in unfit(terms):
-            text = f"carries no nodes: take {' or '.join(carried)}, or leave the table lumped out"
-            yield f"{group}.{SELECTORS[group]}", term, text
     yield from of_reel(values, terms)
 
 
@@ -107,10 +143,8 @@ def _of_tank(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[
     if terms.get("chaser") == "point":
         yield "engine.tank_radius", given, "needs a chaser that turns, chaser.body = rigid"
         return
-    moments = [values[f"chaser.inertia[{i}]"] for i in range(1, 7)]
-    inertia = np.diag(moments[:3])
-    inertia[0, 1], inertia[0, 2], inertia[1, 2] = moments[3:]
-    least = 0.5 * sum(moments[:3]) - float(np.linalg.eigvalsh(inertia, UPLO="U")[-1])
+    inertia = _inertia(values, "chaser")
+    least = 0.5 * float(np.trace(inertia)) - float(np.linalg.eigvalsh(inertia)[-1])
     taken = values["engine.propellant"] * values["engine.tank_radius"] ** 2
     if not 0.5 * taken < least:
         text = (

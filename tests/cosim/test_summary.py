@@ -76,11 +76,15 @@ class TestTugs:
         rows = found(removal_run(make_scene("removal"), self.columns(taut=1.0), [0.0, 50.0, 100.0], tugs))
         assert rows["taut_from_start"].value == "taut from the start"
         assert (rows["tugs"].value, rows["first_tug"].value) == (1, 60.0)
+        assert rows["tugs"].label == "tugs after that"
         rounded = TugLog(2)
         rounded.update(2, np.array([[60.0, 2.0, 0.01], [5.7e-6, 30.0, 1.4e-9]]))
         rows = found(removal_run(make_scene("removal"), self.columns(), [0.0, 50.0, 100.0], rounded))
         assert rows["taut_from_start"].value == "taut from the start"
         assert (rows["tugs"].value, rows["first_tug"].value) == (1, 60.0)
+        run = removal_run(make_scene("removal"), self.columns(), [0.0, 50.0, 100.0], rounded)
+        ((_, stems, _, _),) = tow._tug_sets(run.phases["removal"], None)
+        assert stems.tolist() == [[60.0, 2.0]]
         slack = TugLog(2)
         slack.update(1, np.array([[0.01, 30.0, 0.01], [0.0, 0.0, 0.0]]))
         rows = found(removal_run(make_scene("removal"), self.columns(), [0.0, 50.0, 100.0], slack))
@@ -90,6 +94,8 @@ class TestTugs:
         rows = found(removal_run(make_scene("removal"), self.columns(taut=1.0), [0.0, 50.0, 100.0], alone))
         assert rows["tugs"].value == 0
         assert "first_tug" not in rows
+        names = list(rows)
+        assert names.index("tugs") == names.index("taut_from_start") + 1
 
 
 class TestLowering:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 
 import pytest
@@ -77,6 +78,52 @@ def test_what_does_not_go_together(tables: str, said: Sequence[str], mended: tup
     assert all(word in str(caught.value) for word in said)
     assert "wrong.toml:" in str(caught.value)
     parse(text.replace(*mended), "right", "right.toml")
+
+
+TURNING = (
+    TABLE_2.replace("[removal.target]", '[removal.target]\nbody = "rigid"').replace(
+        "[removal.chaser]", '[removal.chaser]\nbody = "rigid"'
+    )
+    + '\n[removal.appendage]\nmass = "20 kg"\n'
+)
+NOT_OF_A_BODY = "no body has that inertia: its principal moments must be positive"
+
+
+@pytest.mark.parametrize(
+    ("role", "moments", "said"),
+    [
+        ("appendage", (-40, 12, 50, 0, 0, 0), NOT_OF_A_BODY),
+        ("appendage", (40, 12, 500, 0, 0, 0), NOT_OF_A_BODY),
+        ("appendage", (4000, 4000, 4000, 0, 0, 0), "leaves no body of the target"),
+        ("appendage", (10, 10, 900, 0, 0, 890), NOT_OF_A_BODY),
+        ("target", (6000, 12, 500, 0, 0, 0), NOT_OF_A_BODY),
+        ("target", (1000, 1000, 0, 0, 0, 0), NOT_OF_A_BODY),
+        ("chaser", (1000, 1000, 1000, 2000, 0, 0), NOT_OF_A_BODY),
+    ],
+)
+def test_an_inertia_that_no_body_has(role: str, moments: Sequence[float], said: str) -> None:
+    setting = f"removal.{role}.inertia={json.dumps([f'{one} kg m2' for one in moments])}"
+    with pytest.raises(InputError) as caught:
+        parse(TURNING, "wrong", "wrong.toml", settings=(setting,))
+    _, *mistakes = str(caught.value).splitlines()
+    assert len(mistakes) == 1
+    assert f"removal.{role}.inertia = [" in mistakes[0]
+    assert said in mistakes[0]
+
+
+@pytest.mark.parametrize(
+    ("role", "moments"),
+    [
+        ("appendage", (0, 10, 10, 0, 0, 0)),
+        ("appendage", (900, 818, 818, 0, 0, 0)),
+        ("target", (5500, 3000, 3000, 0, 0, 0)),
+        ("chaser", (1000, 1500, 1000, 400, 0, 0)),
+    ],
+)
+def test_an_inertia_that_some_body_has(role: str, moments: Sequence[float]) -> None:
+    """A rod, a disc, and bodies whose principal axes are turned; an appendage that has most of the target's."""
+    setting = f"removal.{role}.inertia={json.dumps([f'{one} kg m2' for one in moments])}"
+    parse(TURNING, "right", "right.toml", settings=(setting,))
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,14 @@
 """A line of lumped nodes without a field: what is conserved, the massless limit, its spectrum, how it starts."""
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import pytest
 
+from fmu_src.tethered_deorbit import implied
 from fmu_src.tethered_deorbit.interface import MODEL
 from fmu_src.tethered_deorbit.layout import WIDTH
 from fmu_src.tethered_deorbit.model import make_entry
@@ -100,9 +103,9 @@ STRETCH = 1.01
 """Of a line that is tight between two bodies of 1e6 kg."""
 
 
-def tight(count: int) -> PlainInstance:
+def tight(count: int, density: float = 1440.0, values: Mapping[str, Any] = MappingProxyType({})) -> PlainInstance:
     heavy = {"chaser.mass": 1e6, "target.mass": 1e6}
-    return lumped(count, 1440.0, heavy | apart(STRETCH * pair.LENGTH, 0.0, 0.0, 0.0))
+    return lumped(count, density, heavy | dict(values) | apart(STRETCH * pair.LENGTH, 0.0, 0.0, 0.0))
 
 
 def test_first_frequencies_and_wave_speed(validated: Validated) -> None:
@@ -145,9 +148,24 @@ def test_a_line_of_nodes_has_the_dashpot_of_one_piece() -> None:
     own = {"tether.damping_ratio": 0.3, "lumped.damped_as": AS_NODE}
     r = lumped(5, HEAVY, own | apart(11.0, 0.0, 0.0, 0.0)).record[0]
     assert r.state_piece_lag * r.state_piece_stiffness == pytest.approx(
-        2.0 * 0.3 * math.sqrt(r.state_piece_stiffness * r.state_node_mass)
+        0.3 * math.sqrt(2.0 * r.state_piece_stiffness * r.state_node_mass)
     )
     assert AS_PAIR == 0
+
+
+def test_a_node_between_two_pieces_decays_by_the_ratio() -> None:
+    """One node of a taut line between two heavy bodies, 1 cm beside its place: after a vibration it has exp(-zeta w t)
+    of that left, w = sqrt(2 k/m)."""
+    zeta, aside = 0.1, 0.01
+    i = tight(1, HEAVY, {"tether.damping_ratio": zeta, "lumped.damped_as": AS_NODE})
+    r = i.record[0]
+    start, _ = pair.nodes_of(i)
+    pair.put_nodes(i, start + np.array([0.0, aside, 0.0]))
+    rate = math.sqrt(2.0 * r.state_piece_stiffness / r.state_node_mass)
+    period = math.tau / (rate * math.sqrt(1.0 - zeta**2))
+    i.step(period)
+    left = (pair.nodes_of(i)[0] - start)[0, 1] / aside
+    assert left == pytest.approx(math.exp(-zeta * rate * period), rel=1e-4)
 
 
 @pytest.mark.parametrize("chord", [3.0, 11.999])
@@ -164,6 +182,15 @@ def test_a_slack_start_is_an_arc_of_unloaded_pieces(chord: float) -> None:
     assert np.all(places[:, 0] > 0.0)
     assert i["lumped.deflection"] == pytest.approx(places[:, 0].max(), rel=1e-9)
     assert i["tether.tension"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 6, 10])
+def test_no_piece_of_a_slack_start_pulls(count: int) -> None:
+    """Not even by rounding, so that none is told as the hardest."""
+    for share in (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999, 1.0 - 1e-9):
+        i = lumped(count, 1440.0, {"tether.youngs_modulus": 60e9} | apart(share * pair.LENGTH, 0.0, 0.0, 0.0))
+        told = [i[name] for name in ("lumped.most_tension", "lumped.most_piece", "lumped.target_tension")]
+        assert told == [0.0, 0, 0.0], share
 
 
 def test_a_taut_start_is_straight_and_turns_with_the_line() -> None:
@@ -257,3 +284,18 @@ def test_the_cost_is_told_beforehand() -> None:
     assert told.fastest == pytest.approx(r.state_nodes_fastest)
     assert told.steps == pytest.approx(3600.0 / r.state_nodes_reach)
     assert told.mass == pytest.approx(i["lumped.mass"])
+    assert told.dashpot == pytest.approx(r.state_piece_lag * r.state_piece_stiffness / 6.0)
+
+
+def test_the_dashpot_of_the_line_is_that_of_its_pieces_in_series() -> None:
+    """By the pair's ratio that of a massless line; by a node's what six pieces make of theirs."""
+    values = {"tether.damping_ratio": 0.3} | apart(11.0, 0.0, 0.0, 0.0)
+    named = (*NAMES, "reel.length_offset")
+    found = []
+    for damped_as in (AS_PAIR, AS_NODE):
+        i = lumped(5, HEAVY, values | {"lumped.damped_as": damped_as})
+        told = implied.rows({name: i[name] for name in named}, MODEL.interface(pair.TERMS).terms)
+        found.append(next(row for row in told if row.key == "line.dashpot"))
+    node = 0.3 * math.sqrt(2.0 * FIRM * 6.0 * i["lumped.mass"] / 5.0) / 6.0
+    assert [row.value for row in found] == pytest.approx([2.0 * 0.3 * math.sqrt(FIRM * pair.REDUCED), node])
+    assert found[1].label == "dashpot of the line, its pieces in series"

@@ -10,7 +10,6 @@ target. Gravity differences are formed without cancellation. The bodies feel the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.integrators.dop853 import reach
@@ -24,7 +23,6 @@ from fmu_src.tethered_deorbit.interface import NO_LENGTH
 from fmu_src.tethered_deorbit.kinematics import distance_acceleration, turning_share
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import GATHERED, MOVED, WIDTH, StateLayout
-from fmu_src.tethered_deorbit.node_rows import unfit
 from fmu_src.tethered_deorbit.nodes.books import Watch, make_books
 from fmu_src.tethered_deorbit.nodes.carried import carried_by
 from fmu_src.tethered_deorbit.nodes.pieces import fastest, pull, slopes, stored_by_length, tune, unloaded
@@ -39,12 +37,6 @@ class Noded(NamedTuple):
     reel: Reel
     bodies: Bodies
     watch: Watch
-
-
-def check_nodes(model: str, terms: Mapping[str, str]) -> None:
-    """ValueError where something else that is named knows a line without nodes alone."""
-    for group, term, carried in unfit(terms):
-        raise ValueError(f"{model}: nodes go with {group} = {' or '.join(carried)}, not {term!r}")
 
 
 def make_nodes(

@@ -31,10 +31,11 @@ NAMES = (
 
 
 class Cost(NamedTuple):
-    """Mass of all nodes [kg], bound of the line's fastest motion [rad/s], and of an hour of the line taut its steps and
-    their processor time [s]."""
+    """Mass of all nodes [kg], dashpot of all pieces in series [N s/m], bound of the line's fastest motion [rad/s], and
+    of an hour of the line taut its steps and their processor time [s]."""
 
     mass: float
+    dashpot: float
     fastest: float
     steps: float
     seconds: float
@@ -51,4 +52,7 @@ def cost(values: Mapping[str, float]) -> Cost:
     shortest = r.state_piece_length + min(0.0, values["reel.length_offset"])
     rate, share = fastest([r], shortest) if shortest > 0.0 else (0.0, 0.0)
     steps = HOUR * rate / reach(share)
-    return Cost(r.lumped_nodes * r.state_node_mass, rate, steps, steps * (PER_STEP + PER_NODE * r.lumped_nodes))
+    dashpot = r.state_piece_lag * r.state_piece_stiffness / (r.lumped_nodes + 1.0)
+    return Cost(
+        r.lumped_nodes * r.state_node_mass, dashpot, rate, steps, steps * (PER_STEP + PER_NODE * r.lumped_nodes)
+    )

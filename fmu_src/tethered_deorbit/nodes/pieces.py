@@ -15,7 +15,7 @@ def tune(record: Any) -> None:
     """Properties of the pieces from the parameters.
 
         l_p = L/(N + 1)   k_p = EA/l_p   m = rho A l_p
-        tau = c/k = 2 zeta sqrt(m_r L/EA), or by a node 2 zeta sqrt(m/k_p)
+        tau = c/k = 2 zeta sqrt(m_r L/EA), or by a node between two pieces 2 zeta sqrt(m/(2 k_p))
 
     Pieces of one lag tau in series have it together, so that with `pair` the whole line has the dashpot of one piece.
 
@@ -27,9 +27,10 @@ def tune(record: Any) -> None:
     r.state_piece_stiffness = line_stiffness(r.tether_youngs_modulus, r.tether_diameter, r.state_piece_length)
     section = 0.25 * math.pi * r.tether_diameter * r.tether_diameter
     r.state_node_mass = r.lumped_density * section * r.state_piece_length
-    mass, firm = r.state_node_mass, r.state_piece_stiffness
-    if r.lumped_damped_as != AS_NODE:
-        mass, firm = reduced_mass(r.chaser_mass, r.target_mass), firm / (r.lumped_nodes + 1.0)
+    if r.lumped_damped_as == AS_NODE:
+        mass, firm = r.state_node_mass, 2.0 * r.state_piece_stiffness
+    else:
+        mass, firm = reduced_mass(r.chaser_mass, r.target_mass), r.state_piece_stiffness / (r.lumped_nodes + 1.0)
     r.state_piece_lag = dashpot(r.tether_damping_ratio, firm, mass) / firm
 
 

@@ -16,6 +16,8 @@ from fmu_src.tethered_deorbit.nodes.pieces import unloaded
 from orbital.kernel import kernel
 from orbital.vectors import Array, cross, dot, norm
 
+CLOSE = 1.0 - 1e-12
+"""Length of the pieces of a slack arc over that unloaded [1]: none is stretched by rounding."""
 HALVINGS = 60
 
 
@@ -145,11 +147,11 @@ def make_lay(place: int, beyond: str) -> Callable[..., Any]:
             side[i] /= wide
         # the line of a point target ends short of it, on the line of centres
         reaching = chord - r[beyond]
-        half = bow(record, reaching)
+        half = bow(record, reaching / CLOSE)
         whole, askew = sum_of_arc(record, half)
         size = math.hypot(whole, askew)
         cosine, sine = whole / size, askew / size
-        scale = reaching / size if half == 0.0 else 1.0
+        scale = reaching / size if half == 0.0 else CLOSE
         along = across = 0.0
         velocity, offset = room[4], room[5]
         for node in range(r.lumped_nodes):
