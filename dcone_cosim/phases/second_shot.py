@@ -25,11 +25,14 @@ from dcone_cosim.results import Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.scene.expected import TEXT, Expected
 from dcone_cosim.scene.mistakes import Mistake
-from orbital.manoeuvres import flown, turned_freely, two_impulses
+from orbital.manoeuvres import flown, two_impulses
+from orbital.tumbling import turned_freely
 
 MASS = "chaser.mass"
 INERTIA = tuple(f"target.inertia[{i}]" for i in (1, 2, 3))
 NOTHING = np.zeros(3)
+LONGEST_RELOAD = 86400.0
+"""Fourteen low orbits: what Hill's equations leave out, air and flattening first, counts by then [s]."""
 ADDED = ("chaser", "target", "vertex", "catch")
 """Bodies of a capture whose places and velocities are told in its frame."""
 
@@ -205,7 +208,7 @@ class FurtherShot(Capture):
     keys: Mapping[str, Expected] = {
         **Capture.keys,
         "like": Expected("1", TEXT),
-        "reload": Expected("s", example="60 s", minimum=0.0, open_minimum=True),
+        "reload": Expected("s", example="60 s", minimum=0.0, maximum=LONGEST_RELOAD, open_minimum=True),
     }
     handoff_keys: Mapping[str, Expected] = {
         "specific_impulse": Expected("s", example="220 s", minimum=0.0, open_minimum=True),

@@ -113,6 +113,7 @@ def test_a_chaser_without_propellant_does_not_shoot_again(folder: Path) -> None:
     ("text", "said"),
     [
         (SHOTS.replace('reload = "50 s"', ""), "second_shot.reload missing"),
+        (SHOTS.replace('reload = "50 s"', 'reload = "25 h"'), 'second_shot.reload = "25 h": must be at most 24 h'),
         (SHOTS.replace('specific_impulse = "300 s"', ""), "handoff.specific_impulse"),
         (SHOTS.replace('like = "capture"', 'like = "captrue"'), "did you mean 'capture'"),
         (SHOTS + '[second_shot.chaser]\nmass = "9 kg"\n', "is set by the hand-off from the capture"),
