@@ -30,6 +30,8 @@ TARGET = "target.mass"
 FALLING = "engine.propellant_left"
 """Output of a tow whose masses fall as propellant is used."""
 BODIES = ("chaser", "target", "center")
+FASTEST = 2e4
+"""From the lowest orbit to the lowest one the other way round takes less [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ class NextHandover:
                 0.0,
                 "km",
             ),
-            *self.expended.findings(place),
+            *self.expended.findings(place, bool(self.failure)),
         ]
         if self.rows:
             closure = max(row.closure for row in self.rows)
@@ -138,7 +140,7 @@ class NextCapture(Capture):
     keys: Mapping[str, Expected] = {
         **Capture.keys,
         "like": Expected("1", TEXT),
-        "velocity_change": Expected("m/s", example="10 m/s", minimum=0.0),
+        "velocity_change": Expected("m/s", example="10 m/s", minimum=0.0, maximum=FASTEST),
     }
     handoff_keys = FurtherShot.handoff_keys
     takes = (
@@ -174,6 +176,7 @@ class NextCapture(Capture):
             raise HandoffError("hand-off refused: the chaser is on no closed orbit when it lets go")
         change = spiral_speed(*axes) + phase.options.velocity_change
         record.expended = expended(run, phase, mass, change, net_mass(phase, None))
+        record.expended.check()
         return record
 
     def clock(self, run: RunResult) -> str:

@@ -115,7 +115,7 @@ class ShotHandover:
         drift = float(np.linalg.norm(self.origin[1]))
         rows = [
             Finding(place, "time", "shot again, after the shot before", self.time, "s"),
-            *self.expended.findings(place),
+            *self.expended.findings(place, bool(self.failure)),
             Finding(place, "target_speed", "speed that the shots so far gave the target", drift, "m/s", 0.0, "mm/s"),
         ]
         if self.rows:
@@ -256,6 +256,7 @@ class FurtherShot(Capture):
         )
         run.handovers[self.name] = record
         record.expended = expended(run, phase, left[MASS], speed, net_mass(phase, left.get(NET)))
+        record.expended.check()
         return record
 
     def leaves(self, run: RunResult, phase: PhaseScene, left: Mapping[str, float]) -> dict[str, float]:

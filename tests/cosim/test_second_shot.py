@@ -109,6 +109,92 @@ def test_a_chaser_without_propellant_does_not_shoot_again(folder: Path) -> None:
     assert f"it had {1.5 * needed:.6g} kg, handoff.propellant" in refused.message
 
 
+def test_a_shot_that_is_refused_tells_what_it_needed(folder: Path) -> None:
+    """The same figures as where it has enough, and none of what it would have left."""
+    names = ("velocity_change", "propellant")
+    enough = {row.key: row.value for row in run(scene(folder)).handovers["second_shot"].findings()}
+    record = run(scene(folder, "handoff.propellant=1e-3 kg")).handovers["second_shot"]
+    told = {row.key: row.value for row in record.findings()}
+    assert [told[name] for name in names] == [enough[name] for name in names]
+    assert told["propellant"] > 1e-3
+    assert told["propellant_spent"] == 0.0
+    assert not {"chaser_mass", "nets_left"} & set(told)
+
+
+class Saying(Progress):
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def say(self, text: str) -> None:
+        self.said.append(text)
+
+
+TOWS = (
+    SHOTS.replace('"second_shot", "third_shot"', '"second_shot", "removal", "second_tow"')
+    + """
+propellant = "1 kg"
+
+[removal]
+macro_step = "20 s"
+duration = "100 s"
+
+[removal.reel]
+law = "locked"
+
+[removal.tether]
+rest_length = "100 m"
+
+[removal.thrust]
+direction = "along_track"
+level = "-2 N"
+specific_impulse = "200 s"
+
+[second_tow]
+macro_step = "20 s"
+duration = "200 s"
+
+[second_tow.reel]
+law = "locked"
+
+[second_tow.tether]
+rest_length = "100 m"
+
+[second_tow.thrust]
+direction = "along_track"
+level = "-2 N"
+specific_impulse = "200 s"
+"""
+)
+FIRST_TOW, SECOND_TOW = (2.0 * time / (200.0 * G0) for time in (100.0, 200.0))
+"""Propellant that they take [kg]."""
+
+
+@pytest.mark.parametrize(
+    ("share", "status", "beyond"),
+    [
+        (0.9, "propellant overdrawn", ["removal"]),
+        (2.9, "propellant overdrawn", ["second tow"]),
+        (3.1, "completed", []),
+    ],
+)
+def test_no_tow_takes_more_propellant_than_there_is(folder: Path, share: float, status: str, beyond: list[str]) -> None:
+    """Told before it begins, and booked once it is over; the second takes twice as much as the first."""
+    chosen, progress = scene(folder, hits("capture"), f"handoff.propellant={share * FIRST_TOW} kg", text=TOWS), Saying()
+    with SceneFmus(chosen, Progress()) as fmus:
+        ran = run_scene(chosen, fmus.instantiate, progress, fmus.adopt)
+    assert (ran.status, ran.exit_code) == (status, HANDOFF_FAILED if beyond else SUCCESS), ran.message
+    assert [text for text in progress.said if "propellant" in text] == [
+        f"warning: the {tow} would take {needed:.6g} kg of propellant if it thrust all the time; the chaser had "
+        f"{share * FIRST_TOW:.6g} kg, handoff.propellant, and {before:.6g} kg were spent before"
+        for tow, needed, before in (("removal", FIRST_TOW, 0.0), ("second tow", SECOND_TOW, FIRST_TOW))
+        if tow in beyond
+    ]
+    if beyond:
+        assert ran.message.startswith(f"the {beyond[0]} has taken ")
+        assert f"the chaser had {share * FIRST_TOW:.6g} kg, handoff.propellant" in ran.message
+        assert list(ran.phases)[-1].replace("_", " ") == beyond[0]
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
