@@ -18,7 +18,7 @@ from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.phases.capture import Capture, CaptureOptions
 from dcone_cosim.phases.expended import NET, TOWED_ON, Expended, expended, net_mass
 from dcone_cosim.phases.phase import Document, Main, Stage
-from dcone_cosim.phases.second_shot import MASS, FurtherShot, about_handover, elements, vector
+from dcone_cosim.phases.second_shot import MASS, FurtherShot, about_handover, about_net, elements, vector
 from dcone_cosim.results import Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.scene.expected import TEXT, Expected
@@ -158,6 +158,10 @@ class NextCapture(Capture):
     def faults(self, document: Document) -> Iterator[Mistake]:
         yield from super().faults(document)
         yield from about_handover(self, document)
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        yield from super().value_faults(before, own, tables)
+        yield from about_net(own, tables) if before is not None else ()
 
     def take_over(self, stage: Stage) -> Handover | None:
         """What is left of the chaser; `HandoffError` where its propellant does not bring it there."""

@@ -18,13 +18,15 @@ from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, Vector, frame_rate
 from dcone_cosim.ledger import AXES, LedgerRow
 from dcone_cosim.level import ATTITUDE, RATE
+from dcone_cosim.phases import kinds
 from dcone_cosim.phases.capture import Capture, CaptureOptions
 from dcone_cosim.phases.expended import NET, Expended, expended, net_mass
 from dcone_cosim.phases.phase import Document, Main, Phase, Stage
 from dcone_cosim.results import Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.scene.expected import TEXT, Expected
-from dcone_cosim.scene.mistakes import Mistake
+from dcone_cosim.scene.mistakes import Mistake, shown
+from dcone_cosim.scene.toml_lines import given_at
 from orbital.manoeuvres import flown, two_impulses
 from orbital.tumbling import turned_freely
 
@@ -200,6 +202,23 @@ def about_handover(kind: Phase, document: Document) -> Iterator[Mistake]:
                 yield Mistake((kind.name, section, key), keys[key], text)
 
 
+def about_net(own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+    """A net of ours that is heavier than the whole chaser: that of the first phase, no later one tells it."""
+    if own.main.fmu is not None:
+        return
+    mass, told = own.main.defaults[MASS], ""
+    for first in kinds():
+        for path in ((first, *MASS.split(".")), (first, "parameters", MASS)):
+            given = given_at(tables, path)
+            if given is not None and not told:
+                mass, told = float(Expected("kg").read(given)), f"{'.'.join(path)} = {shown(given)}"
+    net = net_mass(own, None)
+    if net >= mass:
+        at = (own.name, "net", "mass")
+        text = f"must be less, with bullets and vertex, than {told or f'that of the chaser, {mass:g} kg'}"
+        yield Mistake(at, given_at(tables, at), f"{text}; these are {net:.6g} kg")
+
+
 class FurtherShot(Capture):
     """Another shot of the same mission; it is left out where the one before has caught the target."""
 
@@ -212,7 +231,7 @@ class FurtherShot(Capture):
     }
     handoff_keys: Mapping[str, Expected] = {
         "specific_impulse": Expected("s", example="220 s", minimum=0.0, open_minimum=True),
-        "propellant": Expected("kg", example="40 kg", minimum=0.0),
+        "propellant": Expected("kg", example="40 kg", minimum=0.0, open_minimum=True),
     }
     takes = (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)
     taken_over = (MASS, "target.start_attitude", "target.start_rate")
@@ -231,6 +250,10 @@ class FurtherShot(Capture):
         if document.before(self.name) and "reload" not in document.tables[self.name]:
             yield Mistake((self.name, "reload"), None, 'expected, time between the two shots, such as "60 s"')
         yield from about_handover(self, document)
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        yield from super().value_faults(before, own, tables)
+        yield from about_net(own, tables) if before is not None else ()
 
     def take_over(self, stage: Stage) -> Handover | None:
         """The chaser brought back to its place, and the target as it then lies; `HandoffError` without propellant."""

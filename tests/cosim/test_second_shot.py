@@ -212,6 +212,34 @@ def test_what_is_missing_or_said_twice_is_told(folder: Path, text: str, said: st
     assert said in str(error.value)
 
 
+OF_OURS = {name: find(name).read_text(encoding="utf-8") for name in ("second-shot", "two-debris")}
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "said"),
+    [
+        (
+            "second-shot",
+            "second_shot.net.mass=3000 kg",
+            'second_shot.net.mass = "3000 kg": must be less, with bullets and vertex, than capture.chaser.mass = '
+            '"2000 kg"; these are 3005.23 kg',
+        ),
+        ("two-debris", "next_capture.net.mass=1995 kg", 'capture.chaser.mass = "2000 kg"; these are 2000.23 kg'),
+        ("second-shot", "handoff.propellant=0 kg", 'handoff.propellant = "0 kg": must be greater than 0 kg'),
+        ("two-debris", "next_capture.velocity_change=1e5 m/s", "must be at most 20000 m/s"),
+        ("second-shot", "second_shot.reload=1e6 s", "must be at most 86400 s"),
+    ],
+)
+def test_values_that_no_mission_has(name: str, setting: str, said: str) -> None:
+    with pytest.raises(SceneError) as error:
+        parse(OF_OURS[name], name, f"{name}.toml", settings=(setting,))
+    assert said in str(error.value)
+
+
+def test_a_net_lighter_than_its_chaser_will_do() -> None:
+    parse(OF_OURS["second-shot"], "second-shot", "second-shot.toml", settings=("second_shot.net.mass=1990 kg",))
+
+
 def test_what_is_left_is_in_the_frame_of_the_first_shot() -> None:
     """A second shot's frame begins at a target that drifts; by Hill's equations, all its bodies come out where they are
     in the frame of the first."""
@@ -252,6 +280,8 @@ def test_shipped_missions_close_their_ledgers(name: str, tmp_path: Path) -> None
     ran = run(chosen)
     assert ran.exit_code == SUCCESS, ran.message
     assert list(ran.phases) == [phase.name for phase in chosen.phases]
+    first = {"second-shot": "tether_taut", "two-debris": "captured"}[name]
+    assert ran.phases["capture"].outcome == first
     for record in ran.handovers.values():
         assert record.rows
         assert all(row.closed for row in record.rows), json.dumps(record.told(), default=str)
