@@ -211,7 +211,7 @@ def about_net(own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
         for path in ((first, *MASS.split(".")), (first, "parameters", MASS)):
             given = given_at(tables, path)
             if given is not None and not told:
-                mass, told = float(Expected("kg").read(given)), f"{'.'.join(path)} = {shown(given)}"
+                mass, told = Expected("kg").read_each([given])[0], f"{'.'.join(path)} = {shown(given)}"
     net = net_mass(own, None)
     if net >= mass:
         at = (own.name, "net", "mass")
