@@ -148,6 +148,16 @@ def towed_on(result: PhaseResult) -> float:
     return float(recorder.last()[TOWED_ON]) if len(recorder) and TOWED_ON in recorder else 0.0
 
 
+def of_tows(run: RunResult, until: str) -> float:
+    """Propellant [kg] of the tows before a phase since the last shot: their FMUs hold the mass that the chaser had
+    then."""
+    total = 0.0
+    for phase in takewhile(lambda one: one.name != until, run.scene.phases):
+        if phase.name in run.phases:
+            total = 0.0 if kind_of(phase.name).model == SHOOTING else total + towed_on(run.phases[phase.name])
+    return total
+
+
 def foreseen(run: RunResult, tow: PhaseScene) -> str | None:
     """What is to be said of a tow that would take more propellant than there is if it thrust all the time, by
     |F| t/(Isp g0)."""

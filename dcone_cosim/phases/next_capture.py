@@ -16,7 +16,7 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.phases.capture import Capture, CaptureOptions
-from dcone_cosim.phases.expended import NET, TOWED_ON, Expended, expended, net_mass
+from dcone_cosim.phases.expended import NET, TOWED_ON, Expended, expended, net_mass, of_tows
 from dcone_cosim.phases.phase import Document, Main, Stage
 from dcone_cosim.phases.second_shot import MASS, FurtherShot, about_handover, about_net, elements, vector
 from dcone_cosim.results import Handover, RunResult
@@ -51,7 +51,7 @@ class NextHandover:
     """From the tow of one debris to the capture of the next.
 
     time       from the begin of the tow to the release [s]
-    left       what the tow left
+    left       what the tow left; the propellant is that of all tows since the shot
     axes       semi-major axes of the chaser's orbit at the release, and of that of the next debris [m]
     """
 
@@ -117,7 +117,7 @@ class NextHandover:
 
 def _rows(record: NextHandover, held: Mapping[str, float]) -> Iterator[LedgerRow]:
     left, spent = record.left, record.expended
-    towed, mass = left.get(TOWED_ON, 0.0), left[MASS]
+    towed, mass = left[TOWED_ON], left[MASS]
     gone = towed + spent.propellant
     yield LedgerRow(
         "mass, chaser and nets aboard", "kg", mass, held[MASS] + held[NET], gone, "propellant of tow and transfer", mass
@@ -147,7 +147,7 @@ class NextCapture(Capture):
         *(MASS, TARGET),
         *(one for body in BODIES for of in ("position", "velocity") for one in elements(f"{body}.{of}", np.zeros(3))),
     )
-    takes_too = (TOWED_ON, FALLING)
+    takes_too = (FALLING,)
     taken_over = (MASS,)
 
     def options(self, found: Mapping[str, Any], main: Main | None) -> NextCaptureOptions:
@@ -168,12 +168,13 @@ class NextCapture(Capture):
         if stage.before is None:
             return None
         run, phase, tow = stage.run, stage.phase, stage.run.phases[stage.before.name]
-        left, altitude = run.left[stage.before.name], phase.setting("orbit.altitude")
+        left = {**run.left[stage.before.name], TOWED_ON: of_tows(run, self.name)}
+        altitude = phase.setting("orbit.altitude")
         assert altitude is not None, "the contract asks for it"
         place, speed = vector(left, "chaser.position"), vector(left, "chaser.velocity")
         axis = 1.0 / (2.0 / float(np.linalg.norm(place)) - float(speed @ speed) / EARTH_MU)
         axes = axis, EARTH_EQUATORIAL_RADIUS + altitude
-        mass = left[MASS] - left.get(TOWED_ON, 0.0)
+        mass = left[MASS] - left[TOWED_ON]
         record = NextHandover(tow.end - tow.start, phase, left, axes, Expended.nothing(mass))
         run.handovers[self.name] = record
         if axis <= 0.0:

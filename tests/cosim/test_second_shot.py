@@ -14,6 +14,7 @@ from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, SUCCESS, InputErr
 from dcone_cosim.loading import find
 from dcone_cosim.master import run_scene
 from dcone_cosim.phases import kinds
+from dcone_cosim.phases.expended import of_tows
 from dcone_cosim.phases.second_shot import ShotHandover
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import RunResult
@@ -189,6 +190,8 @@ def test_no_tow_takes_more_propellant_than_there_is(folder: Path, share: float, 
         for tow, needed, before in (("removal", FIRST_TOW, 0.0), ("second tow", SECOND_TOW, FIRST_TOW))
         if tow in beyond
     ]
+    taken = of_tows(ran, "next_capture")
+    assert taken == pytest.approx(FIRST_TOW + (SECOND_TOW if "second_tow" in ran.phases else 0.0), rel=1e-9)
     if beyond:
         assert ran.message.startswith(f"the {beyond[0]} has taken ")
         assert f"the chaser had {share * FIRST_TOW:.6g} kg, handoff.propellant" in ran.message
