@@ -177,7 +177,10 @@ def overdrawn(run: RunResult, result: PhaseResult) -> str | None:
 
 
 def _beyond(run: RunResult, phase: str, needed: float, said: str) -> str | None:
-    earlier, budget = spent(run, phase), run.scene.handoff.propellant
+    budget = run.scene.handoff.propellant
+    if math.isinf(budget):
+        return None
+    earlier = spent(run, phase)
     if earlier + needed <= budget:
         return None
     return f"{said}; the chaser had {budget:.6g} kg, handoff.propellant, and {earlier:.6g} kg were spent before"
