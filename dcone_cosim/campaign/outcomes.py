@@ -30,13 +30,15 @@ TOLD_BY = (
 """Figures that say how a case came out; they are always kept."""
 BROKE, OUT_AGAIN, DONE, NOT_HANDED_OVER = "broke", "out again", "completed", "not handed over"
 TOO_NEAR = "too near the chaser"
+OVERDRAWN = "propellant overdrawn"
+"""Status of a run whose tow took more propellant than the chaser had."""
 FLYING, UNDECIDED = "flying", "undecided at the end"
 """What the FMU says of a net that is neither caught nor lost by the end of the phase, and what that is called."""
 CAUGHT = ("captured", "settled")
 """Outcomes of a capture that has come to its hand-over."""
 FAILED = ("missed", "slipped off", "not closed", "tether taut")
 """Outcomes of a capture that failed, as the FMU says; `tether taut`: the line stopped the net on its way."""
-WORDS = (CAUGHT[0], *FAILED, UNDECIDED, OUT_AGAIN, TOO_NEAR, BROKE, NOT_HANDED_OVER, FLOWN, DONE)
+WORDS = (CAUGHT[0], *FAILED, UNDECIDED, OUT_AGAIN, TOO_NEAR, BROKE, NOT_HANDED_OVER, OVERDRAWN, FLOWN, DONE)
 """Every outcome of a case that gives an answer."""
 
 
@@ -50,8 +52,9 @@ def possible(base: Scene) -> tuple[str, ...]:
     if capture is None:
         return DONE, TOO_NEAR, BROKE
     if capture.options.hand_over != NEVER:
-        return tuple(word for word in WORDS if word not in (FLOWN, DONE))
-    words = tuple(word for word in WORDS if word not in (FLOWN, DONE, NOT_HANDED_OVER, UNDECIDED))
+        without = (FLOWN, DONE) if math.isfinite(base.handoff.propellant) else (FLOWN, DONE, OVERDRAWN)
+        return tuple(word for word in WORDS if word not in without)
+    words = tuple(word for word in WORDS if word not in (FLOWN, DONE, NOT_HANDED_OVER, OVERDRAWN, UNDECIDED))
     if "closing" in capture.main.terms:
         return (*words, FLOWN)
     needs_closing = () if capture.main.fmu is not None else (CAUGHT[0], "not closed", OUT_AGAIN)
@@ -114,7 +117,7 @@ def outcome(row: Row, judged: Judged = AT_THE_END) -> str:
     if any(_number(row, f"{phase}{APPROACH}", math.inf) < judged.too_near for phase in NEAR):
         return TOO_NEAR
     if row.exit_code == HANDOFF_FAILED:
-        return NOT_HANDED_OVER
+        return OVERDRAWN if row.status == OVERDRAWN else NOT_HANDED_OVER
     last = next((shot for shot in reversed(SHOTS) if isinstance(row.figures.get(f"{shot}{OUTCOME}"), str)), "")
     if not last:
         return DONE

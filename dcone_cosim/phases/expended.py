@@ -8,12 +8,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 
 from dcone_cosim import build
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
 from dcone_cosim.phases import kind_of
-from dcone_cosim.results import RunResult
+from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from orbital.constants import STANDARD_GRAVITY
 from orbital.manoeuvres import propellant
@@ -96,7 +97,14 @@ class Expended:
                 f"of propellant and a net of {self.net:.6g} kg are gone"
             )
 
-    def findings(self, place: str) -> Iterator[Finding]:
+    def findings(self, place: str, failed: bool = False) -> Iterator[Finding]:
+        """What it took; of one that failed what it needed, as far as that is known."""
+        if failed:
+            if self.speed > 0.0:
+                yield Finding(place, "velocity_change", "change of the chaser's velocity, needed", self.speed, "m/s")
+                yield Finding(place, "propellant", "propellant that it needs", self.propellant, "kg")
+                yield Finding(place, "propellant_spent", "propellant spent so far", self.earlier, "kg")
+            return
         yield Finding(place, "velocity_change", "change of the chaser's velocity", self.speed, "m/s")
         yield Finding(place, "propellant", "propellant that it took", self.propellant, "kg")
         yield Finding(place, "propellant_spent", "propellant spent since the first shot", self.spent, "kg")
@@ -110,26 +118,69 @@ def expended(run: RunResult, phase: PhaseScene, before: float, speed: float, net
     before    mass of the chaser [kg], net and propellant aboard
     speed     change of velocity that it makes [m/s]
     net       mass of the net [kg]
-
-    `HandoffError` where the chaser has not so much propellant.
     """
     names = [one.name for one in run.scene.phases if kind_of(one.name).model == SHOOTING]
     options = run.scene.handoff
-    found = Expended(
+    return Expended(
         before,
         speed,
         options.specific_impulse,
         net,
         len(names) - names.index(phase.name),
         options.propellant,
-        spent(run),
+        spent(run, phase.name),
     )
-    found.check()
-    return found
 
 
-def spent(run: RunResult) -> float:
-    """Propellant [kg] of all manoeuvres and tows of a run so far."""
-    tows = (left.get(TOWED_ON, 0.0) for left in run.left.values())
-    booked = (getattr(record, "expended", None) for record in run.handovers.values())
-    return float(sum(tows) + sum(one.propellant for one in booked if one is not None))
+def spent(run: RunResult, until: str) -> float:
+    """Propellant [kg] of all manoeuvres and tows of a run before a phase."""
+    total = 0.0
+    for phase in takewhile(lambda one: one.name != until, run.scene.phases):
+        booked, result = getattr(run.handovers.get(phase.name), "expended", None), run.phases.get(phase.name)
+        total += 0.0 if booked is None else booked.propellant
+        total += 0.0 if result is None else towed_on(result)
+    return total
+
+
+def towed_on(result: PhaseResult) -> float:
+    """Propellant [kg] that a phase has used, by its FMU; nothing where that does not tell it."""
+    recorder = result.recorder
+    return float(recorder.last()[TOWED_ON]) if len(recorder) and TOWED_ON in recorder else 0.0
+
+
+def of_tows(run: RunResult, until: str) -> float:
+    """Propellant [kg] of the tows before a phase since the last shot: their FMUs hold the mass that the chaser had
+    then."""
+    total = 0.0
+    for phase in takewhile(lambda one: one.name != until, run.scene.phases):
+        if phase.name in run.phases:
+            total = 0.0 if kind_of(phase.name).model == SHOOTING else total + towed_on(run.phases[phase.name])
+    return total
+
+
+def foreseen(run: RunResult, tow: PhaseScene) -> str | None:
+    """What is to be said of a tow that would take more propellant than there is if it thrust all the time, by
+    |F| t/(Isp g0)."""
+    level, specific_impulse = (tow.setting(f"thrust.{name}") for name in ("level", "specific_impulse"))
+    if level is None or specific_impulse is None:
+        return None
+    needed = abs(level) * tow.duration / (specific_impulse * STANDARD_GRAVITY)
+    said = f"the {kind_of(tow.name).spoken} would take {needed:.6g} kg of propellant if it thrust all the time"
+    return _beyond(run, tow.name, needed, said)
+
+
+def overdrawn(run: RunResult, result: PhaseResult) -> str | None:
+    """What is to be said of a tow that has taken more propellant than there was."""
+    taken = towed_on(result)
+    said = f"the {kind_of(result.name).spoken} has taken {taken:.6g} kg of propellant"
+    return _beyond(run, result.name, taken, said)
+
+
+def _beyond(run: RunResult, phase: str, needed: float, said: str) -> str | None:
+    budget = run.scene.handoff.propellant
+    if math.isinf(budget):
+        return None
+    earlier = spent(run, phase)
+    if earlier + needed <= budget:
+        return None
+    return f"{said}; the chaser had {budget:.6g} kg, handoff.propellant, and {earlier:.6g} kg were spent before"

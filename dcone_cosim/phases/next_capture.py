@@ -16,9 +16,9 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.ledger import LedgerRow
 from dcone_cosim.phases.capture import Capture, CaptureOptions
-from dcone_cosim.phases.expended import NET, TOWED_ON, Expended, expended, net_mass
+from dcone_cosim.phases.expended import NET, TOWED_ON, Expended, expended, net_mass, of_tows
 from dcone_cosim.phases.phase import Document, Main, Stage
-from dcone_cosim.phases.second_shot import MASS, FurtherShot, about_handover, elements, vector
+from dcone_cosim.phases.second_shot import MASS, FurtherShot, about_handover, about_net, elements, vector
 from dcone_cosim.results import Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.scene.expected import TEXT, Expected
@@ -30,6 +30,8 @@ TARGET = "target.mass"
 FALLING = "engine.propellant_left"
 """Output of a tow whose masses fall as propellant is used."""
 BODIES = ("chaser", "target", "center")
+FASTEST = 2e4
+"""From the lowest orbit to the lowest one the other way round takes less [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ class NextHandover:
     """From the tow of one debris to the capture of the next.
 
     time       from the begin of the tow to the release [s]
-    left       what the tow left
+    left       what the tow left; the propellant is that of all tows since the shot
     axes       semi-major axes of the chaser's orbit at the release, and of that of the next debris [m]
     """
 
@@ -94,7 +96,7 @@ class NextHandover:
                 0.0,
                 "km",
             ),
-            *self.expended.findings(place),
+            *self.expended.findings(place, bool(self.failure)),
         ]
         if self.rows:
             closure = max(row.closure for row in self.rows)
@@ -115,7 +117,7 @@ class NextHandover:
 
 def _rows(record: NextHandover, held: Mapping[str, float]) -> Iterator[LedgerRow]:
     left, spent = record.left, record.expended
-    towed, mass = left.get(TOWED_ON, 0.0), left[MASS]
+    towed, mass = left[TOWED_ON], left[MASS]
     gone = towed + spent.propellant
     yield LedgerRow(
         "mass, chaser and nets aboard", "kg", mass, held[MASS] + held[NET], gone, "propellant of tow and transfer", mass
@@ -138,14 +140,14 @@ class NextCapture(Capture):
     keys: Mapping[str, Expected] = {
         **Capture.keys,
         "like": Expected("1", TEXT),
-        "velocity_change": Expected("m/s", example="10 m/s", minimum=0.0),
+        "velocity_change": Expected("m/s", example="10 m/s", minimum=0.0, maximum=FASTEST),
     }
     handoff_keys = FurtherShot.handoff_keys
     takes = (
         *(MASS, TARGET),
         *(one for body in BODIES for of in ("position", "velocity") for one in elements(f"{body}.{of}", np.zeros(3))),
     )
-    takes_too = (TOWED_ON, FALLING)
+    takes_too = (FALLING,)
     taken_over = (MASS,)
 
     def options(self, found: Mapping[str, Any], main: Main | None) -> NextCaptureOptions:
@@ -157,23 +159,29 @@ class NextCapture(Capture):
         yield from super().faults(document)
         yield from about_handover(self, document)
 
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        yield from super().value_faults(before, own, tables)
+        yield from about_net(own, tables) if before is not None else ()
+
     def take_over(self, stage: Stage) -> Handover | None:
         """What is left of the chaser; `HandoffError` where its propellant does not bring it there."""
         if stage.before is None:
             return None
         run, phase, tow = stage.run, stage.phase, stage.run.phases[stage.before.name]
-        left, altitude = run.left[stage.before.name], phase.setting("orbit.altitude")
+        left = {**run.left[stage.before.name], TOWED_ON: of_tows(run, self.name)}
+        altitude = phase.setting("orbit.altitude")
         assert altitude is not None, "the contract asks for it"
         place, speed = vector(left, "chaser.position"), vector(left, "chaser.velocity")
         axis = 1.0 / (2.0 / float(np.linalg.norm(place)) - float(speed @ speed) / EARTH_MU)
         axes = axis, EARTH_EQUATORIAL_RADIUS + altitude
-        mass = left[MASS] - left.get(TOWED_ON, 0.0)
+        mass = left[MASS] - left[TOWED_ON]
         record = NextHandover(tow.end - tow.start, phase, left, axes, Expended.nothing(mass))
         run.handovers[self.name] = record
         if axis <= 0.0:
             raise HandoffError("hand-off refused: the chaser is on no closed orbit when it lets go")
         change = spiral_speed(*axes) + phase.options.velocity_change
         record.expended = expended(run, phase, mass, change, net_mass(phase, None))
+        record.expended.check()
         return record
 
     def clock(self, run: RunResult) -> str:

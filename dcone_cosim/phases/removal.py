@@ -13,14 +13,14 @@ import numpy as np
 from dcone_cosim import build
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.criteria import Criterion, Evidence
-from dcone_cosim.errors import DconeError, FmuError, Interrupted
+from dcone_cosim.errors import HANDOFF_FAILED, DconeError, FmuError, Interrupted
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
-from dcone_cosim.phases import chaos, passive, removal_criteria, removal_quantities, removal_report, tow_clip
+from dcone_cosim.phases import chaos, expended, passive, removal_criteria, removal_quantities, removal_report, tow_clip
 from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
 from dcone_cosim.phases.second_shot import since_first_shot
 from dcone_cosim.phases.stepping import PhaseLoop
@@ -131,6 +131,18 @@ class Tow(Phase):
         if steps > 1:
             loop.thin(steps)
         return loop
+
+    def foresee(self, stage: Stage) -> None:
+        """Say beforehand that the propellant may not last."""
+        told = expended.foreseen(stage.run, stage.phase)
+        if told is not None:
+            stage.progress.say(f"warning: {told}")
+
+    def judge(self, stage: Stage, result: PhaseResult) -> None:
+        """Whether the chaser had the propellant that the tow took."""
+        told = expended.overdrawn(stage.run, result)
+        if told is not None:
+            stage.run.fail("propellant overdrawn", told, HANDOFF_FAILED)
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """What becomes of the pair if it stops on the way."""
@@ -313,6 +325,7 @@ class Removal(Tow):
         corners, record.shortfall = build.hull_corners({**held, **main.made}, main.terms)
         record.shape |= corners
         check_before(record, run.scene.handoff, build.towed_surface(main.terms.get(GROUP, "")))
+        self.foresee(stage)
         return record
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:

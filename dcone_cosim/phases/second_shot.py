@@ -18,18 +18,23 @@ from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, Vector, frame_rate
 from dcone_cosim.ledger import AXES, LedgerRow
 from dcone_cosim.level import ATTITUDE, RATE
+from dcone_cosim.phases import kinds
 from dcone_cosim.phases.capture import Capture, CaptureOptions
 from dcone_cosim.phases.expended import NET, Expended, expended, net_mass
 from dcone_cosim.phases.phase import Document, Main, Phase, Stage
 from dcone_cosim.results import Handover, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.scene.expected import TEXT, Expected
-from dcone_cosim.scene.mistakes import Mistake
-from orbital.manoeuvres import flown, turned_freely, two_impulses
+from dcone_cosim.scene.mistakes import Mistake, shown
+from dcone_cosim.scene.toml_lines import given_at
+from orbital.manoeuvres import flown, two_impulses
+from orbital.tumbling import turned_freely
 
 MASS = "chaser.mass"
 INERTIA = tuple(f"target.inertia[{i}]" for i in (1, 2, 3))
 NOTHING = np.zeros(3)
+LONGEST_RELOAD = 86400.0
+"""Fourteen low orbits: what Hill's equations leave out, air and flattening first, counts by then [s]."""
 ADDED = ("chaser", "target", "vertex", "catch")
 """Bodies of a capture whose places and velocities are told in its frame."""
 
@@ -112,7 +117,7 @@ class ShotHandover:
         drift = float(np.linalg.norm(self.origin[1]))
         rows = [
             Finding(place, "time", "shot again, after the shot before", self.time, "s"),
-            *self.expended.findings(place),
+            *self.expended.findings(place, bool(self.failure)),
             Finding(place, "target_speed", "speed that the shots so far gave the target", drift, "m/s", 0.0, "mm/s"),
         ]
         if self.rows:
@@ -197,6 +202,23 @@ def about_handover(kind: Phase, document: Document) -> Iterator[Mistake]:
                 yield Mistake((kind.name, section, key), keys[key], text)
 
 
+def about_net(own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+    """A net of ours that is heavier than the whole chaser: that of the first phase, no later one tells it."""
+    if own.main.fmu is not None:
+        return
+    mass, told = own.main.defaults[MASS], ""
+    for first in kinds():
+        for path in ((first, *MASS.split(".")), (first, "parameters", MASS)):
+            given = given_at(tables, path)
+            if given is not None and not told:
+                mass, told = Expected("kg").read_each([given])[0], f"{'.'.join(path)} = {shown(given)}"
+    net = net_mass(own, None)
+    if net >= mass:
+        at = (own.name, "net", "mass")
+        text = f"must be less, with bullets and vertex, than {told or f'that of the chaser, {mass:g} kg'}"
+        yield Mistake(at, given_at(tables, at), f"{text}; these are {net:.6g} kg")
+
+
 class FurtherShot(Capture):
     """Another shot of the same mission; it is left out where the one before has caught the target."""
 
@@ -205,11 +227,11 @@ class FurtherShot(Capture):
     keys: Mapping[str, Expected] = {
         **Capture.keys,
         "like": Expected("1", TEXT),
-        "reload": Expected("s", example="60 s", minimum=0.0, open_minimum=True),
+        "reload": Expected("s", example="60 s", minimum=0.0, maximum=LONGEST_RELOAD, open_minimum=True),
     }
     handoff_keys: Mapping[str, Expected] = {
         "specific_impulse": Expected("s", example="220 s", minimum=0.0, open_minimum=True),
-        "propellant": Expected("kg", example="40 kg", minimum=0.0),
+        "propellant": Expected("kg", example="40 kg", minimum=0.0, open_minimum=True),
     }
     takes = (*CAPTURE_OUTPUTS, *CAPTURE_PARAMETERS)
     taken_over = (MASS, "target.start_attitude", "target.start_rate")
@@ -228,6 +250,10 @@ class FurtherShot(Capture):
         if document.before(self.name) and "reload" not in document.tables[self.name]:
             yield Mistake((self.name, "reload"), None, 'expected, time between the two shots, such as "60 s"')
         yield from about_handover(self, document)
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        yield from super().value_faults(before, own, tables)
+        yield from about_net(own, tables) if before is not None else ()
 
     def take_over(self, stage: Stage) -> Handover | None:
         """The chaser brought back to its place, and the target as it then lies; `HandoffError` without propellant."""
@@ -253,6 +279,7 @@ class FurtherShot(Capture):
         )
         run.handovers[self.name] = record
         record.expended = expended(run, phase, left[MASS], speed, net_mass(phase, left.get(NET)))
+        record.expended.check()
         return record
 
     def leaves(self, run: RunResult, phase: PhaseScene, left: Mapping[str, float]) -> dict[str, float]:

@@ -257,6 +257,7 @@ class SecondTow(Tow):
                 f"hand-off refused: the bodies are {apart:.6g} m apart, and the new line reaches {reaches:.6g} m: "
                 f"{self.name}.{REST_LENGTH} must be larger"
             )
+        self.foresee(stage)
         return record
 
     def clock(self, run: RunResult) -> str:

@@ -15,6 +15,7 @@ from dcone_cosim.drafts import PROVENANCE
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.loading import load
+from dcone_cosim.phases import kind_of
 from dcone_cosim.results import Begun, RunResult
 from dcone_cosim.resume.differences import Difference, differences
 from dcone_cosim.resume.instants import Place, begin_of, go_on_at, phase_of
@@ -49,8 +50,11 @@ class Origin:
         if self.scene.accuracy is not None:
             raise InputError(f"{self.option}: the scene asks for an accuracy, which takes runs from their beginning")
         self.place: Place = go_on_at(text, self.scene)
-        self._names = [phase.name for phase in self.scene.phases]
-        self.over = self._names[: self._names.index(self.place.phase)]
+        names = [phase.name for phase in self.scene.phases]
+        before = names[: names.index(self.place.phase)]
+        run = self._told["phases"]
+        self.over = [name for name in before if name in run or not kind_of(name).retries]
+        """Phases before it, but for shots that were left out."""
 
     def begun(self, archives: SceneFmus, scene: Scene) -> Begun:
         """What is gone on from, once the FMUs are there; `InputError` where it does not fit.
@@ -76,7 +80,13 @@ class Origin:
         of = self.place.phase
         if self.place.time is None and not self.over:
             raise InputError(f"{self.option}: the {of} takes over from no other phase; run the scene itself")
-        if self._names[: len(self.over)] != run[: len(self.over)]:
+        later = run[len(self.over) :]
+        if kind_of(of).retries and later and of not in later:
+            raise InputError(
+                f"{self.option}: that run left the {of} out: the {self.over[-1]} before it had not failed. To make it, "
+                f"run the scene from its beginning, so that the {self.over[-1]} fails"
+            )
+        if self.over != run[: len(self.over)]:
             raise InputError(f"{self.option}: that run has the phases {', '.join(run)}; the {of} has others before it")
         if self.place.time is not None and of not in run:
             raise InputError(

@@ -45,6 +45,7 @@ SEEN = "yes, for the 5 s to the end of the phase"
         (row(capture__outcome="flown"), "flown", False),
         (row(3, "capture failed", capture__outcome="flying"), "undecided at the end", False),
         (row(4, "hand-off refused", capture__outcome="captured"), "not handed over", False),
+        (row(4, "propellant overdrawn", capture__outcome="captured"), "propellant overdrawn", False),
         (row(), "completed", False),
         (row(5, "FMU failed"), "FMU failed", None),
         (lost("k", "died"), "lost", None),

@@ -14,6 +14,7 @@ from dcone_cosim.errors import CAPTURE_FAILED, HANDOFF_FAILED, SUCCESS, InputErr
 from dcone_cosim.loading import find
 from dcone_cosim.master import run_scene
 from dcone_cosim.phases import kinds
+from dcone_cosim.phases.expended import of_tows
 from dcone_cosim.phases.second_shot import ShotHandover
 from dcone_cosim.progress import Progress
 from dcone_cosim.results import RunResult
@@ -109,10 +110,99 @@ def test_a_chaser_without_propellant_does_not_shoot_again(folder: Path) -> None:
     assert f"it had {1.5 * needed:.6g} kg, handoff.propellant" in refused.message
 
 
+def test_a_shot_that_is_refused_tells_what_it_needed(folder: Path) -> None:
+    """The same figures as where it has enough, and none of what it would have left."""
+    names = ("velocity_change", "propellant")
+    enough = {row.key: row.value for row in run(scene(folder)).handovers["second_shot"].findings()}
+    record = run(scene(folder, "handoff.propellant=1e-3 kg")).handovers["second_shot"]
+    told = {row.key: row.value for row in record.findings()}
+    assert [told[name] for name in names] == [enough[name] for name in names]
+    assert told["propellant"] > 1e-3
+    assert told["propellant_spent"] == 0.0
+    assert not {"chaser_mass", "nets_left"} & set(told)
+
+
+class Saying(Progress):
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def say(self, text: str) -> None:
+        self.said.append(text)
+
+
+TOWS = (
+    SHOTS.replace('"second_shot", "third_shot"', '"second_shot", "removal", "second_tow"')
+    + """
+propellant = "1 kg"
+
+[removal]
+macro_step = "20 s"
+duration = "100 s"
+
+[removal.reel]
+law = "locked"
+
+[removal.tether]
+rest_length = "100 m"
+
+[removal.thrust]
+direction = "along_track"
+level = "-2 N"
+specific_impulse = "200 s"
+
+[second_tow]
+macro_step = "20 s"
+duration = "200 s"
+
+[second_tow.reel]
+law = "locked"
+
+[second_tow.tether]
+rest_length = "100 m"
+
+[second_tow.thrust]
+direction = "along_track"
+level = "-2 N"
+specific_impulse = "200 s"
+"""
+)
+FIRST_TOW, SECOND_TOW = (2.0 * time / (200.0 * G0) for time in (100.0, 200.0))
+"""Propellant that they take [kg]."""
+
+
+@pytest.mark.parametrize(
+    ("share", "status", "beyond"),
+    [
+        (0.9, "propellant overdrawn", ["removal"]),
+        (2.9, "propellant overdrawn", ["second tow"]),
+        (3.1, "completed", []),
+    ],
+)
+def test_no_tow_takes_more_propellant_than_there_is(folder: Path, share: float, status: str, beyond: list[str]) -> None:
+    """Told before it begins, and booked once it is over; the second takes twice as much as the first."""
+    chosen, progress = scene(folder, hits("capture"), f"handoff.propellant={share * FIRST_TOW} kg", text=TOWS), Saying()
+    with SceneFmus(chosen, Progress()) as fmus:
+        ran = run_scene(chosen, fmus.instantiate, progress, fmus.adopt)
+    assert (ran.status, ran.exit_code) == (status, HANDOFF_FAILED if beyond else SUCCESS), ran.message
+    assert [text for text in progress.said if "propellant" in text] == [
+        f"warning: the {tow} would take {needed:.6g} kg of propellant if it thrust all the time; the chaser had "
+        f"{share * FIRST_TOW:.6g} kg, handoff.propellant, and {before:.6g} kg were spent before"
+        for tow, needed, before in (("removal", FIRST_TOW, 0.0), ("second tow", SECOND_TOW, FIRST_TOW))
+        if tow in beyond
+    ]
+    taken = of_tows(ran, "next_capture")
+    assert taken == pytest.approx(FIRST_TOW + (SECOND_TOW if "second_tow" in ran.phases else 0.0), rel=1e-9)
+    if beyond:
+        assert ran.message.startswith(f"the {beyond[0]} has taken ")
+        assert f"the chaser had {share * FIRST_TOW:.6g} kg, handoff.propellant" in ran.message
+        assert list(ran.phases)[-1].replace("_", " ") == beyond[0]
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         (SHOTS.replace('reload = "50 s"', ""), "second_shot.reload missing"),
+        (SHOTS.replace('reload = "50 s"', 'reload = "25 h"'), 'second_shot.reload = "25 h": must be at most 24 h'),
         (SHOTS.replace('specific_impulse = "300 s"', ""), "handoff.specific_impulse"),
         (SHOTS.replace('like = "capture"', 'like = "captrue"'), "did you mean 'capture'"),
         (SHOTS + '[second_shot.chaser]\nmass = "9 kg"\n', "is set by the hand-off from the capture"),
@@ -123,6 +213,34 @@ def test_what_is_missing_or_said_twice_is_told(folder: Path, text: str, said: st
     with pytest.raises((SceneError, InputError)) as error:
         scene(folder, text=text)
     assert said in str(error.value)
+
+
+OF_OURS = {name: find(name).read_text(encoding="utf-8") for name in ("second-shot", "two-debris")}
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "said"),
+    [
+        (
+            "second-shot",
+            "second_shot.net.mass=3000 kg",
+            'second_shot.net.mass = "3000 kg": must be less, with bullets and vertex, than capture.chaser.mass = '
+            '"2000 kg"; these are 3005.23 kg',
+        ),
+        ("two-debris", "next_capture.net.mass=1995 kg", 'capture.chaser.mass = "2000 kg"; these are 2000.23 kg'),
+        ("second-shot", "handoff.propellant=0 kg", 'handoff.propellant = "0 kg": must be greater than 0 kg'),
+        ("two-debris", "next_capture.velocity_change=1e5 m/s", "must be at most 20000 m/s"),
+        ("second-shot", "second_shot.reload=1e6 s", "must be at most 86400 s"),
+    ],
+)
+def test_values_that_no_mission_has(name: str, setting: str, said: str) -> None:
+    with pytest.raises(SceneError) as error:
+        parse(OF_OURS[name], name, f"{name}.toml", settings=(setting,))
+    assert said in str(error.value)
+
+
+def test_a_net_lighter_than_its_chaser_will_do() -> None:
+    parse(OF_OURS["second-shot"], "second-shot", "second-shot.toml", settings=("second_shot.net.mass=1990 kg",))
 
 
 def test_what_is_left_is_in_the_frame_of_the_first_shot() -> None:
@@ -165,6 +283,8 @@ def test_shipped_missions_close_their_ledgers(name: str, tmp_path: Path) -> None
     ran = run(chosen)
     assert ran.exit_code == SUCCESS, ran.message
     assert list(ran.phases) == [phase.name for phase in chosen.phases]
+    first = {"second-shot": "tether_taut", "two-debris": "captured"}[name]
+    assert ran.phases["capture"].outcome == first
     for record in ran.handovers.values():
         assert record.rows
         assert all(row.closed for row in record.rows), json.dumps(record.told(), default=str)

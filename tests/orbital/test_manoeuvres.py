@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.spatial.transform import Rotation
 
 from orbital.constants import EARTH_MU
-from orbital.manoeuvres import flown, propellant, spiral_speed, turned_freely, two_impulses
+from orbital.manoeuvres import flown, propellant, spiral_speed, two_impulses
 
 RATE = 1.0381e-3
 
@@ -70,30 +69,3 @@ def test_propellant_and_spiral() -> None:
     ended = solve_ivp(spiralling, (0.0, 1e7), begin, method="DOP853", rtol=1e-9, atol=1e-3, events=reached)
     assert push * ended.t[-1] == pytest.approx(spiral_speed(low, high), rel=1e-3)
     assert spiral_speed(high, low) == spiral_speed(low, high)
-
-
-def test_a_body_with_an_axis_of_symmetry_turns_in_closed_form() -> None:
-    """Its axis goes round the angular momentum at H/I1, and it turns about it at (1 - I3/I1) w3 besides."""
-    inertia, rate, time = np.array([400.0, 400.0, 150.0]), np.array([0.05, 0.0, 0.2]), 90.0
-    begun = Rotation.from_quat([0.3, -0.2, 0.5, 0.7])
-    attitude = begun.as_quat(scalar_first=True)
-    found, turned = turned_freely(attitude, rate, inertia, RATE, time)
-    spin = inertia * rate
-    around = Rotation.from_rotvec(begun.apply(spin) / 400.0 * time)
-    about = Rotation.from_rotvec([0.0, 0.0, (1.0 - 150.0 / 400.0) * rate[2] * time])
-    expected = Rotation.from_rotvec([0.0, 0.0, -RATE * time]) * around * begun * about
-    assert (Rotation.from_quat(found, scalar_first=True).inv() * expected).magnitude() < 1e-9
-    assert turned == pytest.approx(about.inv().apply(rate), abs=1e-9)
-
-
-def test_any_body_keeps_its_spin_and_its_energy() -> None:
-    """Over a tumble about the middle axis, which turns over."""
-    inertia, rate = np.array([700.0, 1000.0, 1300.0]), np.array([1e-3, 0.3, 1e-3])
-    attitude = np.array([1.0, 0.0, 0.0, 0.0])
-    found, turned = turned_freely(attitude, rate, inertia, 0.0, 120.0)
-    before = inertia * rate
-    assert Rotation.from_quat(found, scalar_first=True).apply(inertia * turned) == pytest.approx(
-        before, rel=1e-12, abs=1e-9
-    )
-    assert inertia @ turned**2 == pytest.approx(inertia @ rate**2, rel=1e-8)
-    assert turned[1] < 0.29
