@@ -15,7 +15,7 @@ from dcone_cosim.scene.mistakes import Mistake, shown, unknown
 from dcone_cosim.scene.toml_lines import Path, given_at
 from dcone_cosim.scenes.keys import MOST_STEPS
 
-PHYSICAL = {"kg": (1e-9, 1e24), "kg/m3": (1e-20, 1e6), "Pa": (1e-6, 1e15)}
+PHYSICAL = {"kg": (1e-15, 1e24), "kg/m3": (1e-20, 1e6), "Pa": (1e-9, 1e20)}
 """From the least to the most that there is of these, by unit: a crumb of dust to the Earth, the air of the
 highest orbits to fifty times osmium, the pressure of light to a thousand times diamond."""
 

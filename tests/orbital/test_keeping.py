@@ -200,7 +200,7 @@ def test_a_kernel_that_is_called_otherwise_is_another_for_its_caller(
 def test_which_of_two_kernels_is_called_is_in_the_callers_key(compiler: Compiler) -> None:
     """Of (a, b), (b, a) and (a, a) the last is another: there one kernel is called twice."""
     compiler.text = compiler.text.replace(
-        "half(x) + p", "(half(x) - third(x)) + p").replace("(factor, half)", "(factor, half, third)").replace(
+        "half(x) + tail", "(half(x) - third(x)) + tail").replace("(factor, half)", "(factor, half, third)").replace(
         "make_add(2.0, half)", "make_add(2.0, half, third)").replace(
         "@kernel\ndef half", "@kernel\ndef third(x):\n    return x / 4.0\n\n\n@kernel\ndef half")  # fmt: skip
     assert set(compiler(FIELDS)) == {"add", "third"}

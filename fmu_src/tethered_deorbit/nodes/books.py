@@ -123,12 +123,12 @@ def make_books(
         r.lumped_deflection = 0.0
         for node in range(CAPACITY):
             for i in range(3):
-                r.lumped_position[node][i] = state[place + WIDTH * node + i] if node < count else 0.0
+                r.lumped_node_position[node][i] = state[place + WIDTH * node + i] if node < count else 0.0
             if node >= count:
                 continue
             along = 0.0
             for i in range(3):
-                offset[i] = r.lumped_position[node][i] - ends[0][i]
+                offset[i] = r.lumped_node_position[node][i] - ends[0][i]
                 along += offset[i] * chord[i]
             for i in range(3):
                 offset[i] -= along / square * chord[i]
