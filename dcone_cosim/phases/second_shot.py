@@ -255,6 +255,16 @@ class FurtherShot(Capture):
         yield from super().value_faults(before, own, tables)
         yield from about_net(own, tables) if before is not None else ()
 
+    def cautions(self, before: PhaseScene | None, own: PhaseScene) -> Iterator[str]:
+        """A return beyond what `two_impulses` is good for."""
+        yield from super().cautions(before, own)
+        rate, reload = frame_rate(own), own.options.reload
+        if before is not None and rate * reload >= np.pi:
+            yield (
+                f"{self.name}.reload: {reload:g} s is half an orbit, {np.pi / rate:.6g} s, or more: near each half "
+                "orbit the two burns that bring the chaser back grow without bound"
+            )
+
     def take_over(self, stage: Stage) -> Handover | None:
         """The chaser brought back to its place, and the target as it then lies; `HandoffError` without propellant."""
         if stage.before is None:

@@ -239,6 +239,15 @@ def test_values_that_no_mission_has(name: str, setting: str, said: str) -> None:
     assert said in str(error.value)
 
 
+@pytest.mark.parametrize(("reload", "told"), [("50 min", False), ("51 min", True)])
+def test_a_return_of_half_an_orbit_is_told(reload: str, told: bool) -> None:
+    """At 800 km half an orbit takes 50.4 min."""
+    chosen = parse(
+        OF_OURS["second-shot"], "second-shot", "second-shot.toml", settings=(f"second_shot.reload={reload}",)
+    )
+    assert any(text.startswith("second_shot.reload: ") for text in chosen.cautions) is told
+
+
 def test_a_net_lighter_than_its_chaser_will_do() -> None:
     parse(OF_OURS["second-shot"], "second-shot", "second-shot.toml", settings=("second_shot.net.mass=1990 kg",))
 
