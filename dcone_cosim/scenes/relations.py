@@ -16,8 +16,9 @@ from dcone_cosim.scene.toml_lines import Path, given_at
 from dcone_cosim.scenes.keys import MOST_STEPS
 
 PHYSICAL = {"kg": (1e-15, 1e24), "kg/m3": (1e-20, 1e6), "Pa": (1e-9, 1e20)}
-"""From the least to the most that there is of these, by unit: a crumb of dust to the Earth, the air of the
-highest orbits to fifty times osmium, the pressure of light to a thousand times diamond."""
+"""From the least to the most that a scene may say of these, by unit: a grain of pollen to the Earth, the air of the
+highest orbits to fifty times osmium, what is far below the pressure of light to what is far stiffer than a net a
+million times as stiff as Kevlar, which a stability report tries."""
 
 
 def phases_to_run(document: dict[str, Any], present: list[str], mistakes: list[Mistake]) -> list[str]:

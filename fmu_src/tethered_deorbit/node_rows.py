@@ -57,8 +57,8 @@ NODES = Group(
                 output("lumped.length", "m", "of the line along its pieces, stretched or slack", 10.0),
                 output("lumped.deflection", "m", "largest distance of a node from the straight line between the "
                        "attachments", 1.0),
-                output("lumped.node[#].position[#]", "m", "of each node from the target's centre of mass, inertial axes; "
-                       "zero where there is none", 10.0, shape=(CAPACITY, 3)),
+                output("lumped.node[#].position[#]", "m", "of each node from the target's centre of mass, inertial "
+                       "axes; zero where there is none", 10.0, shape=(CAPACITY, 3)),
                 output("lumped.heat", "J", "that the pieces' dashpots have taken, since the start", 0.01,
                        "rate.lumped_heat"),
                 rate("lumped_heat", "W"),
