@@ -9,13 +9,15 @@ sums would hide everything: 1e-12 of the geocentric angular momentum is 160 N m 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from dcone_cosim.appendage import Hinged
+from dcone_cosim.errors import HandoffError
+from dcone_cosim.findings import Finding
 from dcone_cosim.handoff import Body, Handoff, HeldTurning, Values, Vector, held_bodies, spin_energy
 
 CLOSURE = 1e-12
@@ -76,6 +78,26 @@ class LedgerRow:
             "relative_closure": self.closure,
             "closed": self.closed,
         }
+
+
+def require_closed(rows: Iterable[LedgerRow], more: Sequence[str] = ()) -> None:
+    """`HandoffError` with every row that does not close, and with what else is found wrong."""
+    broken = [
+        f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}, "
+        f"difference {row.difference:.3g} {row.unit} is {row.closure:.3g} of the sum of magnitudes"
+        for row in rows
+        if not row.closed
+    ]
+    broken += more
+    if broken:
+        raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
+
+
+def closure_finding(place: str, rows: Sequence[LedgerRow]) -> Iterator[Finding]:
+    """To what share of what enters the worst row closes; none without rows."""
+    if rows:
+        worst = max(row.closure for row in rows)
+        yield Finding(place, "ledger_closure", "ledger closes to, relative to what enters it", worst)
 
 
 def ledger(

@@ -25,7 +25,7 @@ from dcone_cosim.handoff import (
     spin_energy,
     spin_speeds,
 )
-from dcone_cosim.ledger import LedgerRow, ledger
+from dcone_cosim.ledger import LedgerRow, closure_finding, ledger, require_closed
 from dcone_cosim.level import (
     GROUP,
     POINT,
@@ -268,19 +268,12 @@ def close_ledger(record: HandoffRecord, component: Steppable) -> None:
         of_line = attached_rows(record.line, held, turning.attachment, apart)
     record.rows = ledger(record.handed, held, turning, record.appendage) + of_line
     record.checks = _cross_check(record, component)
-    broken = [
-        f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}, "
-        f"difference {row.difference:.3g} {row.unit} is {row.closure:.3g} of the sum of magnitudes"
-        for row in record.rows
-        if not row.closed
-    ]
-    broken += [
+    differing = [
         f"{c.quantity}: handed over {c.given:.12g} {c.unit}, the removal computes {c.found:.12g} {c.unit}"
         for c in record.checks
         if not abs(c.found - c.given) <= c.tolerance
     ]
-    if broken:
-        raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
+    require_closed(record.rows, differing)
 
 
 def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:
@@ -375,8 +368,7 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
         )
     yield from _of_line(record)
     if record.rows:
-        worst = max(record.rows, key=lambda row: row.closure)
-        yield Finding("hand-off", "ledger_closure", "ledger closes to, relative to what enters it", worst.closure)
+        yield from closure_finding("hand-off", record.rows)
         book = next(row for row in record.rows if row.quantity == "kinetic energy")
         lost = book.accounted - (0.0 if record.turns else spin_energy(handed.joint))
         if (moving := record.appendage) is not None:

@@ -14,7 +14,7 @@ import numpy as np
 from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.ledger import LedgerRow
+from dcone_cosim.ledger import LedgerRow, closure_finding, require_closed
 from dcone_cosim.phases.capture import Capture, CaptureOptions
 from dcone_cosim.phases.expended import NET, TOWED_ON, Expended, expended, net_mass, of_tows
 from dcone_cosim.phases.phase import Document, Main, Stage
@@ -71,13 +71,7 @@ class NextHandover:
     def close(self, component: Steppable) -> None:
         """Masses by what both FMUs say, and the momentum of both bodies as they part."""
         self.rows = list(_rows(self, component.get([MASS, NET])))
-        broken = [
-            f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}"
-            for row in self.rows
-            if not row.closed
-        ]
-        if broken:
-            raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
+        require_closed(self.rows)
 
     def recall(self, told: Mapping[str, Any]) -> None:
         self.rows, self.failure = [LedgerRow.of(row) for row in told["rows"]], told["failure"]
@@ -98,10 +92,7 @@ class NextHandover:
             ),
             *self.expended.findings(place, bool(self.failure)),
         ]
-        if self.rows:
-            closure = max(row.closure for row in self.rows)
-            rows.append(Finding(place, "ledger_closure", "ledger closes to, relative to what enters it", closure))
-        return rows
+        return [*rows, *closure_finding(place, self.rows)]
 
     def told(self) -> dict[str, Any]:
         return {

@@ -12,11 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim.errors import HandoffError
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, Vector, frame_rate
-from dcone_cosim.ledger import AXES, LedgerRow
+from dcone_cosim.ledger import AXES, LedgerRow, closure_finding, require_closed
 from dcone_cosim.level import ATTITUDE, RATE
 from dcone_cosim.phases import kinds
 from dcone_cosim.phases.capture import Capture, CaptureOptions
@@ -101,13 +100,7 @@ class ShotHandover:
         names = (MASS, "target.mass", NET, "chaser.position", "chaser.start_velocity", "target.spin")
         each = [one for name in names for one in ((name,) if "mass" in name else elements(name, np.zeros(3)))]
         self.rows = list(_rows(self, component.get(each)))
-        broken = [
-            f"{row.quantity}: before {row.before:.17g} {row.unit}, after {row.after:.17g} {row.unit}"
-            for row in self.rows
-            if not row.closed
-        ]
-        if broken:
-            raise HandoffError("hand-off violated: the ledger does not close\n  " + "\n  ".join(broken))
+        require_closed(self.rows)
 
     def recall(self, told: Mapping[str, Any]) -> None:
         self.rows, self.failure = [LedgerRow.of(row) for row in told["rows"]], told["failure"]
@@ -120,10 +113,7 @@ class ShotHandover:
             *self.expended.findings(place, bool(self.failure)),
             Finding(place, "target_speed", "speed that the shots so far gave the target", drift, "m/s", 0.0, "mm/s"),
         ]
-        if self.rows:
-            closure = max(row.closure for row in self.rows)
-            rows.append(Finding(place, "ledger_closure", "ledger closes to, relative to what enters it", closure))
-        return rows
+        return [*rows, *closure_finding(place, self.rows)]
 
     def told(self) -> dict[str, Any]:
         return {
