@@ -160,6 +160,34 @@ def test_the_order_of_threads_changes_nothing_but_rounding(layer):
             assert stiffness[frozenset(pair)] == k
 
 
+ORDERS = {
+    "shuffled": lambda threads, chance: chance.permutation(len(threads)),
+    "node by node": lambda threads, chance: np.lexsort((threads[:, TO], threads[:, FROM])),
+}
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_threads_in_another_order_stand_in_strips_all_the_same(layer, squares, tmp_path, order):
+    """A net of 441 knots, every third row of another stiffness, half of its threads turned round: each thread is laid
+    out once, with what its line says, in at most twice the strips of the net written row by row."""
+    tables = write(squares.lay({"net.side": 10.0, "net.mesh": 0.5, **RIGGED}), tmp_path, 840)
+    threads, chance = tables[THREADS].copy(), np.random.default_rng(5)
+    threads[threads[:, FROM] // 21 % 3 == 0, STIFFNESS] *= 1.5
+    ours = rows_of(own_graph({NODES: tables[NODES], THREADS: threads}))
+    given = threads[ORDERS[order](threads, chance)]
+    turned = chance.random(len(given)) < 0.5
+    given[np.ix_(turned, (FROM, TO))] = given[np.ix_(turned, (TO, FROM))]
+    found = rows_of(own_graph({NODES: tables[NODES], THREADS: given}))
+    assert len(found.strips) <= 2 * len(ours.strips) < 0.3 * len(threads)
+    layer.tables = {NODES: tables[NODES], THREADS: given}
+    laid = layer.lay({})
+    told = {frozenset(row[[FROM, TO]].astype(int)): row[[STIFFNESS, LENGTH, MASS]] for row in threads}
+    ends = laid.number[laid.graph.ends[: len(threads)]] + 1
+    assert {frozenset(pair) for pair in ends.tolist()} == set(told)
+    held = np.column_stack([laid.graph.stiffness, laid.graph.length, laid.graph.mass])[: len(threads)]
+    np.testing.assert_array_equal(held, [told[frozenset(pair)] for pair in ends.tolist()])
+
+
 @pytest.mark.parametrize("pieces", [1, 4])
 def test_what_it_says_is_what_is_laid_out(layer, pieces):
     """Masses, lengths, bound and drawing, before anything is built."""

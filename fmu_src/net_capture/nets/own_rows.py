@@ -2,7 +2,8 @@
 
 Threads that follow one another in their file, from and to nodes that go up in step, are a strip, as far as they are
 alike. Nodes that a strip reaches over stand in one row, so a net that is written row by row stands as it would if it
-were one of ours. Of a net whose threads are written in no order the rows are full, and many strips have one lane.
+were one of ours. Where most threads do not follow one another so (they are written node by node, say, or in no order)
+they are sorted first. Where the nodes too are in no order the rows are full, and many strips have one lane.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from fmu_src.net_capture.planes import LONGEST_ROW
 Floats = npt.NDArray[np.float64]
 EMPTY = 2.0
 """Slots for each node from which on rows are filled up."""
+DISORDER = 0.5
+"""Strips for each thread from which on the threads are sorted."""
 
 HALF_WORD = 32
 ROW, COLUMN = 0, 1
@@ -52,8 +55,14 @@ class Rows(NamedTuple):
 def rows_of(graph: OwnGraph) -> Rows:
     """Rows and strips of a graph."""
     alike = _alike(graph)
+    unplaced = np.zeros((len(graph.names), 2), dtype=np.int64)
     ends = graph.ends.tolist()
-    runs = _runs(ends, alike, np.zeros((len(graph.names), 2), dtype=np.int64))
+    order: Sequence[int] = range(len(ends))
+    runs = _runs(ends, order, alike, unplaced)
+    if len(runs) > DISORDER * len(ends):
+        upward = np.sort(graph.ends, axis=1)
+        ends, order = upward.tolist(), np.lexsort((upward[:, 0], upward[:, 1] - upward[:, 0], alike)).tolist()
+        runs = _runs(ends, order, alike, unplaced)
     lengths = _row_lengths(len(graph.names), ends, runs)
     slots = _slots(lengths)
     longest = int(slots[:, COLUMN].max()) + 1
@@ -61,7 +70,7 @@ def rows_of(graph: OwnGraph) -> Rows:
         slots = _slots([len(graph.names)])
         longest = int(slots[:, COLUMN].max()) + 1
     found, row, column = [], 0, 0
-    for run in _runs(ends, alike, slots):
+    for run in _runs(ends, order, alike, slots):
         a, b = ends[run[0]]
         lanes = [ends[k][0] - a for k in run]
         word = sum(1 << lane for lane in lanes)
@@ -88,11 +97,14 @@ def _alike(graph: OwnGraph) -> list[int]:
     return found
 
 
-def _runs(ends: Sequence[Sequence[int]], alike: Sequence[int], slots: npt.NDArray[np.int64]) -> list[list[int]]:
-    """Threads that are a strip each: consecutive, alike, going up in step at both ends within a row."""
+def _runs(
+    ends: Sequence[Sequence[int]], order: Sequence[int], alike: Sequence[int], slots: npt.NDArray[np.int64]
+) -> list[list[int]]:
+    """Threads that are a strip each: consecutive in that order, alike, going up in step at both ends within a row."""
     rows = slots[:, ROW].tolist()
     found: list[list[int]] = []
-    for k, (a, b) in enumerate(ends):
+    for k in order:
+        a, b = ends[k]
         if found:
             run = found[-1]
             first_a, first_b = ends[run[0]]
