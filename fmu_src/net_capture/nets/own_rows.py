@@ -55,15 +55,15 @@ class Rows(NamedTuple):
 def rows_of(graph: OwnGraph) -> Rows:
     """Rows and strips of a graph."""
     alike = _alike(graph)
-    unplaced = np.zeros((len(graph.names), 2), dtype=np.int64)
     ends = graph.ends.tolist()
     order: Sequence[int] = range(len(ends))
-    runs = _runs(ends, order, alike, unplaced)
-    if len(runs) > DISORDER * len(ends):
+    runs = _runs(ends, order, alike, np.zeros((len(graph.names), 2), dtype=np.int64))
+    if len(runs) <= DISORDER * len(ends):
+        lengths = _row_lengths(len(graph.names), ends, runs)
+    else:
         upward = np.sort(graph.ends, axis=1)
-        ends, order = upward.tolist(), np.lexsort((upward[:, 0], upward[:, 1] - upward[:, 0], alike)).tolist()
-        runs = _runs(ends, order, alike, unplaced)
-    lengths = _row_lengths(len(graph.names), ends, runs)
+        ends, order = upward.tolist(), np.lexsort((upward[:, 0], upward[:, 1] - upward[:, 0], np.array(alike))).tolist()
+        lengths = _threaded(len(graph.names), upward)
     slots = _slots(lengths)
     longest = int(slots[:, COLUMN].max()) + 1
     if (slots[-1, ROW] + 1) * longest > EMPTY * len(slots):
@@ -131,6 +131,13 @@ def _row_lengths(count: int, ends: Sequence[Sequence[int]], runs: Sequence[Seque
             held[ends[run[-1]][end]] -= 1
     bounds = [0, *(np.flatnonzero(np.cumsum(held)[: count - 1] == 0) + 1).tolist(), count]
     return [b - a for a, b in itertools.pairwise(bounds)]
+
+
+def _threaded(count: int, ends: npt.NDArray[np.int64]) -> list[int]:
+    """Nodes of each row: in one stand nodes of which each has a thread to the next in the file."""
+    begins = np.ones(count + 1, dtype=bool)
+    begins[ends[ends[:, 1] - ends[:, 0] == 1, 1]] = False
+    return [int(length) for length in np.diff(np.flatnonzero(begins))]
 
 
 def _slots(lengths: Sequence[int]) -> npt.NDArray[np.int64]:
