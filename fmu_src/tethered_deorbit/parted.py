@@ -2,10 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fmu_src.tethered_deorbit.law import Reel
 from orbital.kernel import kernel
+
+
+def make_loose(terms: Mapping[str, str]) -> Callable[..., Any]:
+    """Kernel (record) -> bool: whether the line of these terms has parted."""
+    breaks, released = "break" in terms, "release" in terms
+
+    @kernel
+    def loose(record: Any) -> bool:
+        """Whether the line is broken or cut.
+
+        Checked  tests/tethered_deorbit/test_parted.py
+        """
+        if breaks:
+            if record[0].state_broken:
+                return True
+        if released:
+            if record[0].state_released:
+                return True
+        return False
+
+    return loose
 
 
 def make_parted(reel: Reel, parted: Any) -> Reel:

@@ -135,4 +135,4 @@ def make_bodies(
     turning = tuple(role for role in ("target", "chaser") if terms[role] != "point")
     if not turning:
         return points.make_points(interface)
-    return attached.make_attached(turning, terms["target"], size, frame_at, strength_at, interface)
+    return attached.make_attached(turning, terms, size, frame_at, strength_at, interface)

@@ -7,7 +7,7 @@ A body that does not turn has its attachment at its centre of mass; a point targ
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from fmu_src.interface import Interface
@@ -67,7 +67,7 @@ STILL = Rigid(
 
 def make_attached(
     turning: Sequence[str],
-    surface: str,
+    terms: Mapping[str, str],
     size: int,
     frame_at: Callable[..., Any],
     strength_at: Callable[..., Any],
@@ -76,14 +76,15 @@ def make_attached(
     """The kernels for a record of this interface.
 
     turning       which bodies turn: "target", "chaser", or both, in the order of their attitudes in the state
-    surface       of the target, among `SURFACES` or none
+    terms         of the interface; the target's is among `SURFACES` or none
     size          of the state
     frame_at, strength_at   kernels `place` and `gradient` of the environment
 
     Checked  tests/tethered_deorbit/test_rigid.py
     """
+    surface = terms["target"]
     straight = surface not in SURFACES
-    wrapping = Wrapping() if straight else make_wrapping(SURFACES[surface])
+    wrapping = Wrapping() if straight else make_wrapping(SURFACES[surface], terms)
     show, keep, trouble = wrapping.publish, wrapping.keep, wrapping.trouble
     way_holds, renew_way, retry_way, on_body = wrapping.holds, wrapping.renew, wrapping.retry, wrapping.on_body
     lay_out, start_way = wrapping.begin, wrapping.start

@@ -4,7 +4,8 @@ Over a step of the integrator the edges stay as they are, and the length of the 
 the state. The step ends where they no longer hold: where the line would pull on an edge, pass through the body, or has
 slid to a corner. Then an edge on which it pulls is left; where it passes through the body it is led round, over the
 edge between the face it enters by and the one it leaves by; and off a corner it slips to the other side, where it is
-shorter at once. So turns are counted.
+shorter at once. So turns are counted. A line that is broken or cut lies over no edge any more: what is told of it is
+the straight way.
 
 Checked  tests/tethered_deorbit/test_wrapping.py
 """
@@ -12,7 +13,7 @@ Checked  tests/tethered_deorbit/test_wrapping.py
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.bodies.corners import make_corners
@@ -26,6 +27,7 @@ from fmu_src.tethered_deorbit.bodies.polyhedron import (
 from fmu_src.tethered_deorbit.bodies.unfolded import follow_unfolded, unfold
 from fmu_src.tethered_deorbit.idle import always, never, no_fault, nothing, zero
 from fmu_src.tethered_deorbit.interface import BODIES_MET
+from fmu_src.tethered_deorbit.parted import make_loose
 from fmu_src.tethered_deorbit.surfaces.surface import Surface
 from orbital.kernel import kernel
 from orbital.vectors import Array, dot
@@ -76,8 +78,9 @@ class Wrapping(NamedTuple):
     turning: float = math.inf
 
 
-def make_wrapping(surface: Surface) -> Wrapping:
-    """The kernels for a body with this surface."""
+def make_wrapping(surface: Surface, terms: Mapping[str, str]) -> Wrapping:
+    """The kernels for a body with this surface, in a scene with these terms."""
+    loose = make_loose(terms)
     faces, lay_out = surface.faces, surface.lay_out
     polyhedron = make_polyhedron(faces, surface.edges)
     path = make_path(polyhedron)
@@ -177,6 +180,8 @@ def make_wrapping(surface: Surface) -> Wrapping:
             return True
         if met(record, r.path_far):
             return False
+        if loose(record):
+            return bool(r.held_count == 0)
         if r.held_stuck == 1:
             return True
         complete(record)
@@ -193,11 +198,14 @@ def make_wrapping(surface: Surface) -> Wrapping:
             r.state_way_fault = BODIES_MET
             return
         r.held_stuck = 0
-        follow_path(record)
-        settle(record)
-        keep(record)
-        slip(record)
-        r.held_stuck = 0 if holds(record) else 1
+        if loose(record):
+            r.held_count = 0
+        else:
+            follow_path(record)
+            settle(record)
+            keep(record)
+            slip(record)
+            r.held_stuck = 0 if holds(record) else 1
         unfold(record)
 
     @kernel
