@@ -261,7 +261,7 @@ def test_a_straight_line_beyond_its_face_meets_no_other(monkeypatch: pytest.Monk
     of the face alone."""
     made: list[Any] = []
     make_wrapping = attached.make_wrapping
-    monkeypatch.setattr(attached, "make_wrapping", lambda surface: made.append(make_wrapping(surface)) or made[-1])
+    monkeypatch.setattr(attached, "make_wrapping", lambda *given: made.append(make_wrapping(*given)) or made[-1])
     place = [0.3, 0.5 * SIZE[1], 0.2]
     i = PlainInstance(
         MODEL,
