@@ -62,7 +62,7 @@ FAULTS = (
     Fault(
         START_STRETCHED,
         "error",
-        "start.separation may exceed the line and its attachments by zero at most: a locked line would start stretched",
+        "the ends of the line start farther apart than a locked line is long: it would start stretched",
         True,
     ),
     Fault(NO_LENGTH, "error", "the line's length with reel.length_offset is not positive", True),

@@ -163,15 +163,29 @@ def _of_burns(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator
         yield "burn.duration", "0 s", "stands for the period of the line, and this line has none; give a duration"
 
 
+def _arm(values: Mapping[str, float], role: str) -> float:
+    """How far from the centre of mass of a body that turns the line is made fast [m]."""
+    return math.hypot(*(values[f"{role}.attachment[{axis}]"] for axis in (1, 2, 3)))
+
+
 def _of_start(terms: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Refusal]:
     if terms.get("environment") == "none" and values["start.condition"] != EQUAL_VELOCITY:
         given = CONDITIONS[int(values["start.condition"])]
         yield "start.condition", given, "needs an orbit; without a field take equal_velocity or handed_over"
         return
-    if terms.get("target") != "point" or terms.get("chaser") != "point":
-        return  # how far the attachments are apart, the attitudes say
-    separation, attachment = values["start.separation"], values["target.attachment_distance"]
-    rest_length = values.get("tether.rest_length", math.inf)
+    separation, rest_length = values["start.separation"], values.get("tether.rest_length", math.inf)
+    turning = [role for role in ("chaser", "target") if terms.get(role) != "point"]
+    if turning:
+        # how far the attachments are apart, the attitudes say: at least so far
+        least = separation - sum(_arm(values, role) for role in turning)
+        if least > rest_length:
+            text = (
+                f"leaves the attachments at least {least:g} m apart: at most tether.rest_length, {rest_length:g} m, or "
+                "the locked line would start stretched"
+            )
+            yield "start.separation", f"{separation:g} m", text
+        return
+    attachment = values["target.attachment_distance"]
     longest = rest_length + attachment
     if separation > longest:
         sum_of = "tether.rest_length" + (" + target.attachment_distance" if attachment else "")

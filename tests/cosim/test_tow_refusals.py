@@ -233,3 +233,17 @@ def test_degrees_celsius_as_people_write_them(value: str) -> None:
         settings=(f'removal.electrodynamic.electron_temperature="{value}"',),
     )
     assert scene.phases[0].main.parameters["electrodynamic.electron_temperature"] == pytest.approx(1500.0, rel=1e-12)
+
+
+def test_a_line_stretched_however_the_bodies_stand() -> None:
+    """20 m apart, made fast 1 m and 2 m off the centres of mass: at least 17 m, and the line has 12 m."""
+    text = TABLE_2.replace('[removal.chaser]\nmass = "2000 kg"', f'{RIGID}\nattachment = ["0 m", "1 m", "0 m"]')
+    text = text.replace("[removal.target]", '[removal.target]\nbody = "rigid"\nattachment = ["0 m", "0 m", "-2 m"]')
+    head, _, tail = text.partition("separation = ")
+    for separation, refused in (("20 m", True), ("14.9 m", False)):
+        scene = f'{head}separation = "{separation}"{tail[tail.index(chr(10)) :]}'
+        if refused:
+            with pytest.raises(InputError, match=r"start.separation = \"20 m\".*at least 17 m apart.*12 m"):
+                parse(scene, "mine", "mine.toml")
+        else:
+            parse(scene, "mine", "mine.toml")

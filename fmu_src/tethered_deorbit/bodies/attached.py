@@ -300,7 +300,8 @@ def make_attached(
             return 0
         if not length > 0.0:
             return blame(record, BAD_PARAMETER, separation_slot, r.start_separation)
-        return blame(record, START_STRETCHED, separation_slot, length) if length > longest * (1.0 + OVERRUN) else 0
+        stretched = length > longest * (1.0 + OVERRUN)
+        return blame(record, START_STRETCHED, separation_slot, r.start_separation) if stretched else 0
 
     @kernel
     def move(record: Any, state: Array, rate: Array) -> None:
