@@ -13,6 +13,7 @@ from dcone_cosim import build
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.phases import lowering, passive, released
+from dcone_cosim.phases.chaser_report import of_chaser
 from dcone_cosim.phases.end import of_end
 from dcone_cosim.phases.nodes_report import of_nodes
 from dcone_cosim.phases.tension import last_orbit
@@ -90,6 +91,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     ):
         if name in last:
             yield Finding(phase, name, label, last[name], unit, shown_in=shown_in)
+    yield from of_chaser(phase, result, run.parameters.get(phase, {}))
     yield from _of_approach(phase, result)
     yield from lowering.findings(run, phase, result)
     yield from _of_safety(run, phase, result)

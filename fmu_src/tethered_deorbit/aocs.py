@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -186,6 +187,20 @@ def make_aocs(
             rate[w_at + i] += change[i]
 
     @kernel
+    def angle(record: Any) -> float:
+        """By how much the attitude is off [rad], from 0 to pi; after `deviation`, of which the law takes a sine.
+
+        Checked  tests/tethered_deorbit/test_aocs.py: large angles
+        """
+        r = record[0]
+        off = norm(r.state_aocs_off[0])
+        if r.aocs_points == LINE:
+            a, d = r.chaser_attachment, r.state_aocs_off[3]
+            lengths = norm(a) * norm(d)
+            return math.atan2(off, dot(d, a) / lengths) if lengths > 0.0 else 0.0
+        return 2.0 * math.atan2(0.5 * off, abs(r.state_aocs[1][0]))
+
+    @kernel
     def publish(record: Any, state: Array) -> None:
         """Torque [N m], momentum [N m s], deviation [rad], and whether either limit holds it back.
 
@@ -197,7 +212,7 @@ def make_aocs(
             r.aocs_torque[i] = r.state_aocs_torque[i]
             r.aocs_momentum[i] = state[h_at + i]
             r.rate_aocs_momentum[i] = -r.state_aocs_torque[i]
-        r.aocs_deviation = norm(r.state_aocs_off[0])
+        r.aocs_deviation = angle(record)
         r.aocs_limited = r.state_aocs_full == 1 or r.state_aocs_asked > r.aocs_torque_limit
 
     return Aocs(begin, add, publish)

@@ -181,3 +181,22 @@ def test_a_point_has_no_attitude_to_control() -> None:
             {"reel": "commanded", "environment": "none", "aocs": "wheels"},
             {"start.condition": HANDED_OVER, "start_relative_position": (0.0, 20.0, 0.0)},
         )
+
+
+@pytest.mark.parametrize("points", [0, 1])
+def test_large_deviations_are_told_as_angles(points: int) -> None:
+    """A chaser that turns on, held by next to nothing, to 2.5 rad off: the angle itself, where the law takes a sine."""
+    i = chaser(
+        chaser_inertia=(1000.0, 1000.0, 1000.0, 0.0, 0.0, 0.0),
+        chaser_start_rate=(0.01 if points else 0.006, 0.0, 0.0 if points else 0.008),
+        **{"aocs.points": points, "aocs.torque_limit": 1e-9},
+    )
+    for _ in range(5):
+        i.step(50.0)
+        turned = attitude(i)
+        arm = turned.apply([0.0, 1.0, 0.0])
+        line = i.array("target_position") - i.array("chaser_position") - arm
+        to_line = math.acos(arm @ line / np.linalg.norm(line))
+        expected = to_line if points else np.linalg.norm(turned.as_rotvec())
+        assert i["aocs.deviation"] == pytest.approx(expected, abs=1e-6)
+    assert i["aocs.deviation"] > 2.4
