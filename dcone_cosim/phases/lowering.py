@@ -15,6 +15,8 @@ from orbital.constants import EARTH_MU
 
 NEAR = 1e-3
 """Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
+CLEAR = 10.0
+"""How many times what an axis swings by it has to have moved for that to be told."""
 
 
 def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.float64]:
@@ -22,17 +24,36 @@ def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.f
 
         a = -mu M/(2 E),   E with the potential of the flattening in it
 
-    The osculating one breathes by kilometres there, twice a revolution, and two samples of it tell nothing.
+    The osculating one breathes by kilometres there, twice a revolution, and two samples of it tell nothing. Of an FMU
+    from elsewhere the two say whether its gravity is another than a sphere's.
     """
     recorder = result.recorder
     main = next(one.main for one in run.scene.phases if one.name == phase)
     values = run.parameters.get(phase, {})
-    known = {"chaser.mass", "target.mass"} <= values.keys() and "energy.orbital" in recorder
-    if main.fmu is not None or "oblateness" not in main.terms or not known:
-        return recorder["center.semi_major_axis"]
+    osculating = recorder["center.semi_major_axis"]
+    if not ({"chaser.mass", "target.mass"} <= values.keys() and "energy.orbital" in recorder):
+        return osculating
+    falls = "engine" in main.terms or (main.fmu is not None and "engine.propellant_left" in recorder)
+    used = recorder["chaser.propellant"] if falls else 0.0
     mass = values["chaser.mass"] + values["target.mass"]
-    used = recorder["chaser.propellant"] if "engine" in main.terms else 0.0
-    return np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
+    by_energy = np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
+    if main.fmu is None:
+        return by_energy if "oblateness" in main.terms else osculating
+    breathes = np.ptp(by_energy - osculating) > _noise(recorder["separation"], osculating)
+    return by_energy if breathes else osculating
+
+
+def _noise(separation: npt.NDArray[np.float64], axis: npt.NDArray[np.float64]) -> float:
+    """What the pair's own motion moves the osculating axis by, at most [m]."""
+    share = float(np.max(separation)) / float(np.min(axis))
+    return (3.0 * share**2 + 1e-9) * float(axis[0])
+
+
+def _breath(time: npt.NDArray[np.float64], axis: npt.NDArray[np.float64]) -> float:
+    """By how much an axis goes up and down beside its course, in half a revolution [m]."""
+    to_and_fro = float(np.abs(np.diff(axis)).sum()) - abs(float(axis[-1] - axis[0]))
+    turns = max(1.0, 4.0 * float(time[-1] - time[0]) / orbital_period(float(axis[0])))
+    return to_and_fro / turns
 
 
 def _while_held(result: PhaseResult) -> tuple[npt.NDArray[np.intp], str]:
@@ -54,8 +75,8 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     """How far the semi-major axis of the pair fell, where that is an orbit's.
 
     Gravity on the pair is not that on its mass at the centre: it differs by (3/2) (s/r)^2 at most, and moves the
-    osculating axis by some of that. What is smaller than this is not told, and nothing when the pair is far apart;
-    a rate per day needs a whole revolution.
+    osculating axis by some of that. What is smaller than this is not told, nor what is less than ten times what the
+    axis goes up and down by, and nothing when the pair is far apart; a rate per day needs a whole revolution.
     """
     recorder = result.recorder
     if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
@@ -65,7 +86,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     if len(rows) < 2:
         yield Finding(phase, "lowered", "orbit lowered by", f"not reported: too few rows before {until}")
         return
-    axis, until = axis[rows], f", until {until}" if until else ""
+    time, axis, until = recorder["time"][rows], axis[rows], f", until {until}" if until else ""
     share = float(np.max(recorder["separation"][rows])) / float(np.min(axis))
     if not 0.0 <= share <= NEAR:
         text = f"not reported: chaser and target are up to {share:.2g} of the orbit's radius apart, more than {NEAR:g}"
@@ -73,9 +94,15 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         return
     lowered, elapsed = float(axis[0] - axis[-1]), result.end - result.start
     if until:
-        elapsed = float(recorder["time"][rows[-1]] - recorder["time"][0])
-    if not abs(lowered) > (3.0 * share**2 + 1e-9) * float(axis[0]):
+        elapsed = float(time[-1] - time[0])
+    noise = _noise(recorder["separation"][rows], axis)
+    if not abs(lowered) > noise:
         yield Finding(phase, "lowered", f"orbit lowered by{until}", "too little to tell from the pair's own motion")
+        return
+    breath = _breath(time, axis)
+    if breath > noise and abs(lowered) < CLEAR * breath:
+        text = f"not reported: its osculating axis goes up and down by about {breath:.2g} m by itself"
+        yield Finding(phase, "lowered", f"orbit lowered by{until}", text)
         return
     key, rate = ("lowered", "lowering_rate") if lowered > 0.0 else ("raised", "raising_rate")
     yield Finding(phase, key, f"orbit {key} by{until}", abs(lowered), "m")

@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
+from dcone_cosim.phases import lowering
 from dcone_cosim.phases.lowering import axis_of
 from dcone_cosim.phases.passive import conic
 from dcone_cosim.phases.released import apsides, findings, nearest_return, returning
@@ -94,6 +95,28 @@ def test_a_flattened_earth_lowers_no_orbit_by_itself() -> None:
         assert axis_of(run, "removal", result) == pytest.approx(7.178e6 - 0.1 * time, rel=1e-12)
         run, result = told(engine, columns, values)
         assert axis_of(run, "removal", result) == pytest.approx(breathing)
+
+
+def test_of_an_fmu_from_elsewhere_the_axis_goes_by_energy_or_is_not_told() -> None:
+    """Nothing says what its gravity is: 600 m are lost beside a breath of 20 km, by its energy or not at all; without a
+    breath, by its axis."""
+    time = np.linspace(0.0, 6000.0, 101)
+    breath = 1e4 * np.cos(2.0 * np.pi * time / 3000.0)
+    columns = {"time": time, "separation": np.full(101, 12.0), "altitude": time}
+    energy = {"energy.orbital": -0.5 * EARTH_MU * 3000.0 / (7.178e6 - 0.1 * time)}
+    values = {"chaser.mass": 2000.0, "target.mass": 1000.0}
+    for axis, known, lowered in (
+        (7.178e6 - 0.1 * time + breath, energy, 600.0),
+        (7.178e6 - 0.1 * time + breath, {}, None),
+        (7.178e6 - 0.1 * time, {}, 600.0),
+    ):
+        run, result = told({}, {**columns, **known, "center.semi_major_axis": axis}, values)
+        run.scene.phases[0].main.fmu = "elsewhere.fmu"
+        found = next(iter(lowering.findings(run, "removal", result)))
+        if lowered is None:
+            assert "not reported: its osculating axis goes up and down by about 2e+04 m" in str(found.value)
+        else:
+            assert found.value == pytest.approx(lowered, rel=1e-6)
 
 
 def test_what_is_told_of_two_bodies_that_no_line_holds() -> None:
