@@ -27,6 +27,8 @@ from orbital.materials import MATERIALS, Material, margin_of_safety, nearest_in_
 STATUS_OVERLOADED, STATUS_BROKEN = "overloaded", "broken"
 SCATTERS_AS = {"line": "largest_tug_peak", "thread": "thread.tension_max", "cord": "cord.tension_max"}
 """Figure of the summary whose spread is that of a line's largest tension."""
+LOCATED = 1e-6
+"""Share of its strength to which the instant of a line's break is located: a margin below it is none."""
 SIGMAS = 2.0
 """Standard deviations within which one sample of many is taken to stand for all."""
 
@@ -257,6 +259,8 @@ def findings(run: RunResult, name: str) -> Iterator[Finding]:
 def _of_margin(name: str, key: str, load: Load) -> Finding:
     label, margin = f"margin of safety of {load.line.label} (factor 1)", load.margin
     if margin is not None:
+        if abs(margin) < LOCATED:
+            return Finding(name, f"{key}.margin_of_safety", label, 0.0)
         return Finding(name, f"{key}.margin_of_safety", label, margin, "", load.margin_spread)
     if load.breaks_at is None:
         unknown = f"strength not known: name a material in {load.where}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -80,6 +81,14 @@ def test_without_a_strength_none_is_guessed(make_scene: MakeScene) -> None:
     assert thick["line.margin_of_safety"].value == "section not known: name a diameter in [removal.tether]"
     slack = rows(tow(make_scene, [0.0, 0.0, 0.0]))
     assert slack["line.margin_of_safety"].value == "it bore nothing"
+
+
+def test_a_line_that_broke_has_no_margin_left(make_scene: MakeScene) -> None:
+    """The instant of a break is found to a millionth of the strength: what is left beside it is no margin."""
+    breaks_at = 2.92e9 * math.pi / 4.0 * 1e-6
+    for share, expected in ((1.0 - 1e-8, 0.0), (1.0 + 1e-8, 0.0), (1.0 - 1e-4, 1.0e-4)):
+        found = rows(tow(make_scene, [0.0, share * breaks_at, 0.0]))
+        assert found["line.margin_of_safety"].value == pytest.approx(expected, rel=1e-3, abs=0.0)
 
 
 @pytest.mark.parametrize(("share", "overloaded"), [(1.01, True), (0.99, False)])
