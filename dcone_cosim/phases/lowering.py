@@ -11,12 +11,17 @@ import numpy.typing as npt
 from dcone_cosim.findings import Finding
 from dcone_cosim.phases.tension import orbital_period
 from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.scene.data import ComponentScene
 from orbital.constants import EARTH_MU
 
 NEAR = 1e-3
 """Largest distance of the pair over its radius up to which its centre of mass moves as one body does [1]."""
 CLEAR = 10.0
 """How many times what an axis swings by it has to have moved for that to be told."""
+
+
+def _main(run: RunResult, phase: str) -> ComponentScene:
+    return next(one.main for one in run.scene.phases if one.name == phase)
 
 
 def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.float64]:
@@ -28,7 +33,7 @@ def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.f
     from elsewhere the two say whether its gravity is another than a sphere's.
     """
     recorder = result.recorder
-    main = next(one.main for one in run.scene.phases if one.name == phase)
+    main = _main(run, phase)
     values = run.parameters.get(phase, {})
     osculating = recorder["center.semi_major_axis"]
     if not ({"chaser.mass", "target.mass"} <= values.keys() and "energy.orbital" in recorder):
@@ -75,8 +80,9 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     """How far the semi-major axis of the pair fell, where that is an orbit's.
 
     Gravity on the pair is not that on its mass at the centre: it differs by (3/2) (s/r)^2 at most, and moves the
-    osculating axis by some of that. What is smaller than this is not told, nor what is less than ten times what the
-    axis goes up and down by, and nothing when the pair is far apart; a rate per day needs a whole revolution.
+    osculating axis by some of that. What is smaller than this is not told, nor, of an FMU whose gravity is not
+    known, what is less than ten times what the axis goes up and down by, and nothing when the pair is far apart; a rate
+    per day needs a whole revolution.
     """
     recorder = result.recorder
     if not {"center.semi_major_axis", "separation", "altitude"} <= set(recorder.names) or len(recorder) < 2:
@@ -99,7 +105,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     if not abs(lowered) > noise:
         yield Finding(phase, "lowered", f"orbit lowered by{until}", "too little to tell from the pair's own motion")
         return
-    breath = _breath(time, axis)
+    breath = _breath(time, axis) if _main(run, phase).fmu is not None else 0.0
     if breath > noise and abs(lowered) < CLEAR * breath:
         text = f"not reported: its osculating axis goes up and down by about {breath:.2g} m by itself"
         yield Finding(phase, "lowered", f"orbit lowered by{until}", text)
