@@ -101,6 +101,7 @@ class Held:
         self._state = _State()
         self._kept: dict[str, _State] = {}
         self._pending = False
+        self._rewinds = self._log is not None and self.can_save and self.can_vary_step
         self._rates: dict[str, float] = {}
         self._moving: Mapping[str, float] = {}
         self._steps: list[tuple[float, float]] = []
@@ -141,7 +142,8 @@ class Held:
         return cpu_apart(self.component)
 
     def begin_row(self) -> None:
-        self.settle()
+        if self._pending:
+            self.settle()
         if self._state.recorded and self._log is not None:  # no step yet: the line may be taut already
             self._gather(self._log, self._told())
         self._state.recorded = True
@@ -160,29 +162,30 @@ class Held:
         return self._pending
 
     def step(self, time: float, size: float) -> None:
-        self.settle()
-        if self._log is not None and self.can_save and self.can_vary_step:
-            self._keep()
+        if self._pending:
+            self.settle()
+        if self._rewinds:
+            if not self._checkpoint or len(self._steps) >= APART:
+                self._keep()
             self._steps.append((time, size))
         self.component.step(time, size)
         self._pending = bool(self.watched)
 
     def _keep(self) -> None:
-        """Save the state now and then, and whenever inputs have changed: from there all steps can be taken again."""
-        if not self._checkpoint or len(self._steps) >= APART:
-            self.component.save(PIECE)
-            self._checkpoint = True
-            self._steps = []
-            self._moving, self._rates = self._rates, {}
+        """Save the state, now and then and whenever inputs have changed: from there all steps can be taken again."""
+        self.component.save(PIECE)
+        self._checkpoint = True
+        self._steps = []
+        self._moving, self._rates = self._rates, {}
 
     def settle(self) -> None:
         """Take in what the last step tells, unless that has been done."""
         if self._pending:
             self.take_in(self._told())
 
-    def take_in(self, told: Sequence[float], newest: Row | None = None) -> bool:
-        """The same, with the values of `watched` as read, and of `newest`; true when the step was taken again in
-        pieces."""
+    def take_in(self, told: Sequence[float], newest: Sequence[float] = ()) -> bool:
+        """The same, with the values of `watched` as read, and of `newest` if they were; true when the step was taken
+        again in pieces."""
         self._pending = False
         if self._overflows(told) and self._checkpoint:
             self._again()
@@ -194,7 +197,7 @@ class Held:
         log = self._log
         return log is not None and told[len(self.extremes)] - log.count > log.ring
 
-    def _fold(self, told: Sequence[float], newest: Row | None = None) -> None:
+    def _fold(self, told: Sequence[float], newest: Sequence[float] = ()) -> None:
         state = self._state
         if state.recorded:
             state.so_far, state.recorded = told[: len(self.extremes)], False
@@ -246,16 +249,15 @@ class Held:
         values: list[float] = self._read().tolist()
         return [values[self._read.names.index(name)] for name in self.watched]
 
-    def _gather(self, log: TugLog, told: Sequence[float], newest: Row | None = None) -> None:
-        """Put down the tugs in the ring, where one is new or may have grown; `newest` as read, None to be read."""
+    def _gather(self, log: TugLog, told: Sequence[float], newest: Sequence[float] = ()) -> None:
+        """Put down the tugs in the ring, where one is new or may have grown; `newest` as read, none to be read."""
         count = int(told[len(self.extremes)])
         taut = len(told) == len(self.extremes) + 1 or bool(told[-1])
         if count and (count != log.count or taut or self._state.taut):
             if count != log.count:
-                newest = self._read_ring()
-            elif newest is None:
-                newest = self._read_newest()
-            log.update(count, newest.reshape(-1, len(TUG_FIELDS)))
+                log.update(count, self._read_ring().reshape(-1, len(TUG_FIELDS)))
+            else:
+                log.grow(newest or self._read_newest().tolist())
         self._state.taut = taut
 
     def save(self, key: str = "") -> None:
@@ -300,14 +302,16 @@ class _Row:
 
     def __init__(self, held: Held, names: Sequence[str]) -> None:
         self._held = held
-        all_there = set(held.watched) <= set(names)
-        self._reader = held.component.reader([*names, *held.newest] if all_there else names)
+        self._all_there = set(held.watched) <= set(names)
+        newest = held.newest if self._all_there else []
+        self._reader = held.component.reader([*newest, *names])
         place = {name: i for i, name in enumerate(self._reader.names)}
-        newest = set(held.newest) if all_there else set()
-        self.names = tuple(name for name in self._reader.names if name not in newest)
-        self._own = np.array([place[name] for name in self.names])
-        self._newest = np.array([place[name] for name in held.newest]) if newest else None
-        self._watched = np.array([place[name] for name in held.watched]) if all_there else None
+        self._newest = [place[name] for name in newest]
+        self._watched = [place[name] for name in held.watched] if self._all_there else []
+        own = [i for i, name in enumerate(self._reader.names) if name not in newest]
+        self.names = tuple(self._reader.names[i] for i in own)
+        together = own == list(range(own[0], own[0] + len(own)))
+        self._own = slice(own[0], own[0] + len(own)) if together else np.array(own)
         column = {name: i for i, name in enumerate(self.names)}
         self._columns = [
             (column[name], i, EXTREMES[name].choose, column.get(EXTREMES[name].of, column[name]))
@@ -318,14 +322,14 @@ class _Row:
 
     def __call__(self) -> Row:
         held = self._held
-        if self._watched is None:
+        if not self._all_there:
             held.settle()
         read = self._reader()
-        if self._watched is not None and held.pending:
-            newest = None if self._newest is None else read[self._newest]
-            if held.take_in(read[self._watched].tolist(), newest):
+        if held.pending:
+            told, newest = [read.item(i) for i in self._watched], [read.item(i) for i in self._newest]
+            if held.take_in(told, newest):
                 read = self._reader()
-        values: Row = read.take(self._own, out=self.values, mode="clip")
+        values = self.values = read[self._own]
         so_far = held.so_far
         if so_far:
             for place, i, choose, now in self._columns:

@@ -35,6 +35,7 @@ def run_scene(
     begun: Begun | None = None,
     keep: Mapping[str, Sequence[float]] = MappingProxyType({}),
     until: str = "",
+    tables: bool = True,
 ) -> RunResult:
     """Run every phase of the scene; a fault of an FMU before its first step is an `InputError`, since it is the
     parameters that it refuses, unless a phase before has handed them over.
@@ -42,6 +43,7 @@ def run_scene(
     begun    what the run goes on from, None for one from its beginning
     keep     instants at which the state of a phase is kept, by the phase's own time [s]
     until    name of the phase that is not run any more; "" to run all
+    tables   whether the rows of its phases are kept; without that it may have fewer, of which the summary is the same
     """
     run, phases = RunResult(scene) if begun is None else begun.run_of(scene), scene.phases
     before: PhaseScene | None = None
@@ -57,7 +59,7 @@ def run_scene(
         after = later[0] if later else None
         keeper = Keeper(phase.name, keep[phase.name]) if phase.name in keep else None
         here = begun if begun is not None and begun.state is not None and begun.state.phase == phase.name else None
-        _run(Stage(run, phase, before, after, instantiate, progress, keeper, here, later), adopt)
+        _run(Stage(run, phase, before, after, instantiate, progress, keeper, here, later, tables), adopt)
         before = phase
         if keeper is not None:
             run.states += keeper.kept

@@ -181,13 +181,17 @@ class TugLog:
     def update(self, count: int, latest: Row) -> None:
         """Take in those that are new, and the one before them, which may have grown.
 
-        latest   time [s], peak [N], speed [m/s] of each tug in the ring, newest first, shape (ring, 3); of the newest
-                 alone when the count has not changed
+        latest   time [s], peak [N], speed [m/s] of each tug in the ring, newest first, shape (ring, 3)
         """
         changed = min(count - self.count + 1, count, self.ring)
         self.count = count
         for place, (time, peak, speed) in enumerate(latest[:changed].tolist()):
             self.rows[count - place] = (time, peak, speed)
+
+    def grow(self, newest: Sequence[float]) -> None:
+        """The newest tug as it is by now: time [s], peak [N], speed [m/s]."""
+        time, peak, speed = newest
+        self.rows[self.count] = (time, peak, speed)
 
     def take_up(self, count: int, rows: Sequence[Sequence[float]]) -> None:
         """Hold these rows: number, time [s], peak [N], speed [m/s] of each."""

@@ -70,7 +70,8 @@ def run_shot(shot: Shot) -> Row:
     except InputError as error:
         return refused(shot.key, _in_one_line(error))
     kept = shot.ground.record if shot.number else ()
-    return run_case(Case(shot.key, scene, shot.settings, seed=shot.number), partial(_tell, kept=kept))
+    case = Case(shot.key, scene, shot.settings, seed=shot.number)
+    return run_case(case, partial(_tell, kept=kept), tables=False)
 
 
 def _in_one_line(error: InputError) -> str:

@@ -55,14 +55,20 @@ class Fleet:
         self._proved = False
         self._begun: tuple[Begins, Begun] | None = None
 
-    def row(self, case: Case, tell: Telling = tell_summary) -> Row:
-        """Run a case; whatever happens comes out as a row."""
+    def row(self, case: Case, tell: Telling = tell_summary, tables: bool | None = None) -> Row:
+        """Run a case; whatever happens comes out as a row.
+
+        tables    whether `tell` asks for more than the summary: the rows of the phases; None: unless it is
+                  `tell_summary`
+        """
+        if tables is None:
+            tables = tell is not tell_summary
         with_kept = self.get_ready(case.scene) and not self.new
-        row = self._run(case, tell)
+        row = self._run(case, tell, tables)
         if not with_kept or self._proved or not row.succeeded:
             return row
         self.shelf.clear()
-        fresh = self._run(case, tell)
+        fresh = self._run(case, tell, tables)
         self._proved = True
         if (row.figures, row.status) != (fresh.figures, fresh.status):
             self.new = True
@@ -106,13 +112,13 @@ class Fleet:
             self._proved = all(about["ours"] for about in _about(self._fmus))
         return False
 
-    def _run(self, case: Case, tell: Telling) -> Row:
+    def _run(self, case: Case, tell: Telling, tables: bool) -> Row:
         began, cpu = clock.perf_counter(), clock.process_time()
         try:
             if self._fmus is None:
                 self._fmus = SceneFmus(case.scene, Progress(), self.shelf)
             before = self._begun_of(case.begins, case.scene)
-            result = run_scene(case.scene, self._fmus.instantiate, Progress(), self._fmus.adopt, before)
+            result = run_scene(case.scene, self._fmus.instantiate, Progress(), self._fmus.adopt, before, tables=tables)
             over = () if before is None else before.over
             apart = sum(max(phase.cpu, 0.0) for name, phase in result.phases.items() if name not in over)
             spent = max(clock.process_time() - cpu, apart)
@@ -156,9 +162,9 @@ def run_beginning(beginning: Beginning) -> None:
     _own_fleet().begin(beginning)
 
 
-def run_case(case: Case, tell: Telling = tell_summary) -> Row:
-    """Run a case in this process, whose FMUs stay loaded for the next."""
-    return _own_fleet().row(case, tell)
+def run_case(case: Case, tell: Telling = tell_summary, tables: bool | None = None) -> Row:
+    """Run a case in this process, whose FMUs stay loaded for the next; `tables` as in `Fleet.row`."""
+    return _own_fleet().row(case, tell, tables)
 
 
 def _own_fleet() -> Fleet:

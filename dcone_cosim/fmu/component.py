@@ -12,10 +12,9 @@ that changes how this thread computes (see `floating`) is remarked on, and the c
 from __future__ import annotations
 
 import ctypes
-import itertools
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any
@@ -23,13 +22,12 @@ from typing import Any
 import fmpy
 import fmpy.fmi1
 import fmpy.fmi2 as fmi2
-import numpy as np
-import numpy.typing as npt
 
 from dcone_cosim.errors import FmuError
 from dcone_cosim.fmu.archive import XML, Archive
 from dcone_cosim.fmu.floating import Control
 from dcone_cosim.fmu.messages import STATUS, Messages
+from dcone_cosim.fmu.reading import Reader, straight
 from dcone_cosim.fmu.steppable import (
     NUMBERS,
     CallError,
@@ -80,7 +78,7 @@ class Component:
         self._dead = ""
         self._messages = Messages()
         self._fmu: Any = None
-        self._control = Control()
+        self.control = Control()
         place = os.getcwd()
         try:
             self._fmu = fmi2.FMU2Slave(
@@ -89,13 +87,14 @@ class Component:
                 modelIdentifier=archive.identifier,
                 instanceName=name,
             )
-            self._watch("being loaded")
+            self.watch("being loaded")
             self._fmu.instantiate(callbacks=self._messages.callbacks(), loggingOn=True)
         except Exception as error:
             os.chdir(place)  # fmpy stays in the binary's folder when that does not load
             raise self._not_instantiated(error) from None
         finally:
-            self._watch("fmi2Instantiate")
+            self.watch("fmi2Instantiate")
+        self._do_step = straight(self._fmu, "fmi2DoStep", ctypes.c_double, ctypes.c_double, ctypes.c_int)
 
     def _not_instantiated(self, error: Exception) -> FmuError:
         """Why there is no instance: the loader's words, or the FMU's own."""
@@ -190,14 +189,16 @@ class Component:
 
         Raises `Terminated` when the FMU says that this is its end.
         """
-        self._alive()
-        no_return = self._steps <= min(self._steps_of.values(), default=self._steps)
+        self.ready()
+        kept = self._steps_of
+        no_return = not kept or self._steps <= min(kept.values())
+        status = self._do_step(time, size, no_return)
         try:
-            self._fmu.fmi2DoStep(self._fmu.component, time, size, fmi2.fmi2True if no_return else fmi2.fmi2False)
-        except fmpy.fmi1.FMICallException as error:
-            raise self._refused(error, time, size) from None
+            if status > fmi2.fmi2Warning:
+                raise self._refused(fmpy.fmi1.FMICallException("fmi2DoStep", status), time, size)
         finally:
-            self._watch("fmi2DoStep")
+            if changed := self.control.changed():
+                self.remark(changed, "fmi2DoStep")
         if self._messages.late:
             raise self._asynchronous("it called stepFinished", time, size)
         self.time = time + size
@@ -205,14 +206,14 @@ class Component:
 
     def save(self, key: str = "") -> None:
         """Keep the present state, replacing the one kept before under this key."""
-        self._alive()
+        self.ready()
         state = self._states.setdefault(key, fmi2.fmi2FMUstate())
         try:
             self._fmu.fmi2GetFMUstate(self._fmu.component, ctypes.byref(state))
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
         finally:
-            self._watch("fmi2GetFMUstate")
+            self.watch("fmi2GetFMUstate")
         self._times[key], self._steps_of[key] = self.time, self._steps
 
     def restore(self, key: str = "") -> None:
@@ -270,7 +271,7 @@ class Component:
                 if self._stepping:
                     fmu.terminate()
             fmu.freeInstance()
-            self._watch("fmi2FreeInstance")
+            self.watch("fmi2FreeInstance")
         self._messages.close()
 
     def __enter__(self) -> Component:
@@ -279,7 +280,7 @@ class Component:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
 
-    def _alive(self) -> None:
+    def ready(self) -> None:
         """Before a call: forget what was said during others, and refuse any after a fatal error."""
         self._messages.forget()
         if self._dead:
@@ -288,22 +289,33 @@ class Component:
             raise FmuError(f"{self.name}: the instance is closed")
 
     def _call(self, function: str, *arguments: Any, **named: Any) -> Any:
-        self._alive()
+        self.ready()
         try:
             return getattr(self._fmu, function)(*arguments, **named)
         except fmpy.fmi1.FMICallException as error:
             raise self._error(error) from None
         finally:
-            self._watch(f"fmi2{function[0].upper()}{function[1:]}")
+            self.watch(f"fmi2{function[0].upper()}{function[1:]}")
 
-    def _watch(self, call: str) -> None:
+    def watch(self, call: str) -> None:
         """After a call: take back what it changed in how this thread computes, and remark on it."""
-        changed = self._control.changed()
-        if changed:
-            self.archive.remark(
-                f"{self.name}: {self.archive.path.name} changed {changed} in {call}; this was taken back, so that "
-                "what is computed elsewhere keeps its bits"
-            )
+        if changed := self.control.changed():
+            self.remark(changed, call)
+
+    def remark(self, changed: str, call: str) -> None:
+        """Note that a call changed how this thread computes."""
+        self.archive.remark(
+            f"{self.name}: {self.archive.path.name} changed {changed} in {call}; this was taken back, so that "
+            "what is computed elsewhere keeps its bits"
+        )
+
+    def getter(self, kind: str) -> Callable[[int, int, int], int]:
+        """fmi2GetReal or its like: of the addresses of references and of what is read, and how many between them."""
+        return straight(self._fmu, f"fmi2Get{kind}", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+
+    def refusal(self, function: str, status: int) -> CallError:
+        """What a call becomes that gave a status worse than a warning."""
+        return self._error(fmpy.fmi1.FMICallException(function, status))
 
     def _error(self, error: Any, where: str = "", reached: float | None = None, end: bool = False) -> CallError:
         """What a refused call becomes. `where`: what was asked; without it, the time stands there."""
@@ -351,71 +363,3 @@ class Component:
 def _own(info: VariableInfo, value: float) -> float:
     """An SI value as the FMU counts it."""
     return info.own.from_si(float(value))
-
-
-class Reader:
-    """Reads a fixed set of variables into one row of doubles: Reals first, then Integers, then Booleans.
-
-    The ctypes arrays are made once, so that a macro step costs a few microseconds whatever the number of variables.
-    Parameters may be infinite; anything else that is read must be a finite number.
-    """
-
-    def __init__(self, component: Component, names: Sequence[str]) -> None:
-        infos = [component.reference(name) for name in names]
-        for info in infos:
-            if info.kind not in NUMBERS:
-                raise FmuError(f"{component.name}: {info.name} is a {info.kind}; only numbers can be read")
-        component._alive()
-        self._infos = sorted(infos, key=lambda info: NUMBERS.index(info.kind))
-        self.names = tuple(info.name for info in self._infos)
-        self.values: Row = np.zeros(len(self._infos))
-        self._component = component
-        reals = [info for info in self._infos if info.kind == "Real"]
-        self._reals = self.values[: len(reals)]
-        self._to_si: tuple[Row, Row] | None = None
-        if not all(info.own.is_si for info in reals):
-            self._to_si = np.array([info.own.factor for info in reals]), np.array([info.own.offset for info in reals])
-        self._blocks: list[tuple[Any, Any, int, Any, tuple[Row, npt.NDArray[np.int32]] | None]] = []
-        begin = 0
-        for kind, group in itertools.groupby(self._infos, key=lambda info: info.kind):
-            references = [info.reference for info in group]
-            count = len(references)
-            part, into = self.values[begin : begin + count], None
-            if kind == "Real":
-                buffer: Any = (ctypes.c_double * count).from_buffer(part.data)
-            else:
-                buffer = (ctypes.c_int * count)()
-                into = part, np.frombuffer(buffer, dtype=np.int32)
-            getter = getattr(component._fmu, f"fmi2Get{kind}")
-            self._blocks.append((getter, (ctypes.c_uint * count)(*references), count, buffer, into))
-            begin += count
-        self._calls = " or ".join(f"fmi2Get{kind}" for kind in dict.fromkeys(info.kind for info in self._infos))
-
-    def __call__(self) -> Row:
-        component = self._component
-        component._alive()
-        instance = component._fmu.component
-        try:
-            for getter, references, count, buffer, into in self._blocks:
-                getter(instance, references, count, buffer)
-                if into is not None:
-                    part, view = into
-                    part[:] = view
-        except fmpy.fmi1.FMICallException as error:
-            raise component._error(error) from None
-        finally:
-            component._watch(self._calls)
-        reals = self._reals
-        # the product is no finite number if an element is none: one pass, where a look at each would take three
-        if not math.isfinite(reals.dot(reals)):
-            self._check()
-        if self._to_si is not None:
-            factors, offsets = self._to_si
-            reals *= factors
-            reals += offsets
-        return self.values
-
-    def _check(self) -> None:
-        for info, value in zip(self._infos, self._reals.tolist(), strict=False):
-            if not math.isfinite(value) and not info.causality.endswith("arameter"):
-                raise self._component.not_finite(info, value)

@@ -98,6 +98,7 @@ class Stage:
     keeper          of states on the way, None where none is to be kept
     begun           what the run goes on from, where that is a state of this phase
     later           phases that may come after it, in their order
+    tables          whether its rows are kept: without that only its figures are wanted
     """
 
     run: RunResult
@@ -109,6 +110,7 @@ class Stage:
     keeper: Keeper | None = None
     begun: Begun | None = None
     later: Sequence[PhaseScene] = ()
+    tables: bool = True
 
     def next_of(self, result: PhaseResult) -> PhaseScene | None:
         """The phase that takes over what this one came to, None for none: after a failure one that tries again."""
@@ -228,7 +230,12 @@ class Phase:
         """What steps the phase from `start`, the time that its FMU is told to begin at [s]."""
         phase = stage.phase
         origin = start if self.own_clock else 0.0
-        return PhaseLoop(component, phase.macro_step, start, phase.duration, stage.progress, origin)
+        stepped = self.stepped_by(stage, component)
+        return stepped(component, phase.macro_step, start, phase.duration, stage.progress, origin)
+
+    def stepped_by(self, stage: Stage, component: Steppable) -> type[PhaseLoop]:
+        """The kind of its loop."""
+        return PhaseLoop
 
     def judge(self, stage: Stage, result: PhaseResult) -> None:
         """Let the run fail if the phase did not come to what the next one needs."""

@@ -20,7 +20,16 @@ from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
-from dcone_cosim.phases import chaos, expended, passive, removal_criteria, removal_quantities, removal_report, tow_clip
+from dcone_cosim.phases import (
+    chaos,
+    expended,
+    hastened,
+    passive,
+    removal_criteria,
+    removal_quantities,
+    removal_report,
+    tow_clip,
+)
 from dcone_cosim.phases.phase import Document, Figure, Main, Phase, Stage
 from dcone_cosim.phases.second_shot import since_first_shot
 from dcone_cosim.phases.stepping import PhaseLoop
@@ -36,8 +45,6 @@ from dcone_cosim.scenery import Chart, Clip
 from dcone_cosim.transaction import HandoffRecord, check_before
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
-COARSE = 16
-"""Macro steps of a tow that are one of its comparison without recoil: of that, tugs and largest tension are told."""
 LINE = "tether.length"
 """Length of the line in the phase before, a capture: one and the same line."""
 EACH = tuple(f"[{i}]" for i in (1, 2, 3))
@@ -131,6 +138,11 @@ class Tow(Phase):
         if steps > 1:
             loop.thin(steps)
         return loop
+
+    def stepped_by(self, stage: Stage, component: Steppable) -> type[PhaseLoop]:
+        options = stage.phase.options
+        rows = options is not None and options.record_every > 0.0
+        return hastened.Hastened if not rows and hastened.possible(stage, component) else PhaseLoop
 
     def foresee(self, stage: Stage) -> None:
         """Say beforehand that the propellant may not last."""
@@ -344,7 +356,7 @@ class Removal(Tow):
         name = f"{self.name} without recoil"
         if phase.main.fmu is None and not phase.others:
             # of ours the tugs have the same bits whatever the macro step, and a step with too many of them is halved
-            stage = replace(stage, phase=replace(phase, macro_step=COARSE * phase.macro_step))
+            stage = replace(stage, phase=replace(phase, macro_step=hastened.COARSE * phase.macro_step), tables=True)
         try:
             component = stage.instantiate(self.name, name)
             try:

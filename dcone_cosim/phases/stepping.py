@@ -127,6 +127,7 @@ class PhaseLoop:
         self.keeper: Keeper | None = None
         self._next = 0
         self._every = 1
+        self._many, self._until = 1, 0
         self.read = self.component.row(
             output_names(component.variables, without=(NODE_PREFIX, THREAD_PREFIX, TUG_PREFIX))
         )
@@ -163,25 +164,27 @@ class PhaseLoop:
             self._record(start)
             self._offer(0, start)
         interrupts.arm()
-        for i in range(self._next, steps):
+        done = self._next
+        while done < steps:
+            i, done = done, done + (self._many if done < self._until else 1)
             try:
                 interrupts.check(result.name, start + i * self.macro_step)
             except Interrupted:
                 if i % self._every:
                     self._record(start + i * self.macro_step)
                 raise
-            end = start + (self.duration if i == steps - 1 else (i + 1) * self.macro_step)
+            end = start + (self.duration if done == steps else done * self.macro_step)
             begun = origin + (start + i * self.macro_step)
             try:
                 component.step(begun, length_of((origin + end) - begun, component, self.macro_step))
             except Terminated as own:
                 self._record_end(own.time)
                 raise
-            result.steps += 1
-            if (i + 1) % self._every == 0 or i == steps - 1:
+            result.steps += done - i
+            if done % self._every == 0 or done == steps:
                 self._record(end)
-                if end == start + (i + 1) * self.macro_step:
-                    self._offer(i + 1, end)
+                if end == start + done * self.macro_step:
+                    self._offer(done, end)
             self.progress.at(end)
         result.outcome = COMPLETED
 

@@ -15,7 +15,7 @@ from dcone_cosim.cases.beginnings import FOLDER, kept_of, key_of_beginning, shar
 from dcone_cosim.cases.case import Case, key_of
 from dcone_cosim.cases.work import Fleet
 from dcone_cosim.loading import load
-from dcone_cosim.phases import removal
+from dcone_cosim.phases import hastened
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
 from tests.cases.conftest import dcone
@@ -154,7 +154,7 @@ def test_the_comparison_without_recoil_is_that_of_fine_steps(fmus: Fmus, monkeyp
     """Its macro steps are sixteen times as long, and no bit of what is told of it changes."""
     own = case(load("mission", COARSE), fmus)
     coarse = Fleet().row(own)
-    monkeypatch.setattr(removal, "COARSE", 1)
+    monkeypatch.setattr(hastened, "COARSE", 1)
     fine = Fleet().row(own)
     assert fine.figures == coarse.figures
     assert any("without_recoil" in name for name in fine.figures)

@@ -271,8 +271,9 @@ class TestComponent:
             read = component.reader(["separation"])
             component.save()
             calls: list[str] = []
-            call = component._fmu._call
+            call, step = component._fmu._call, component._do_step
             component._fmu._call = lambda name, *rest: (calls.append(name), call(name, *rest))[1]
+            component._do_step = lambda *rest: (calls.append("fmi2DoStep"), step(*rest))[1]
             with pytest.raises(CallError, match="in ruins") as caught:
                 component.step(45.0, 10.0)
             assert caught.value.status == "Fatal"

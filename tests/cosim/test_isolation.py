@@ -31,6 +31,8 @@ from tests.cosim.fmus.build import build
 
 Fmu = Callable[..., Archive]
 ROOT = Path(__file__).parents[2]
+FOR_READERS = {"reference", "ready", "watch", "remark", "getter", "refusal", "not_finite"}
+"""What a component has for its readers alone."""
 
 
 @pytest.fixture
@@ -351,6 +353,6 @@ def test_one_that_cannot_be_instantiated(fmu: Fmu) -> None:
 
 def test_both_offer_the_same(fmu: Fmu) -> None:
     with IsolatedComponent(fmu(), "tow") as component:
-        offered = {name for name in vars(Component) if not name.startswith("_")} - {"reference", "not_finite"}
+        offered = {name for name in vars(Component) if not name.startswith("_")} - FOR_READERS
         assert offered <= set(dir(component))
         assert (component.can_save, component.can_interpolate) == (True, False)

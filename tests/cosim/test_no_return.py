@@ -37,13 +37,13 @@ def unreported(xml: str) -> str:
 def told(component: Component) -> list[tuple[float, bool]]:
     """The begin of every step, and the word that nobody goes back to before it."""
     words: list[tuple[float, bool]] = []
-    call = component._fmu.fmi2DoStep
+    call = component._do_step
 
-    def step(instance: object, time: float, size: float, no_return: int) -> object:
+    def step(time: float, size: float, no_return: int) -> int:
         words.append((time, bool(no_return)))
-        return call(instance, time, size, no_return)
+        return call(time, size, no_return)
 
-    component._fmu.fmi2DoStep = step
+    component._do_step = step
     return words
 
 
