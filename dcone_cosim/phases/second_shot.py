@@ -27,7 +27,6 @@ from dcone_cosim.scene.expected import TEXT, Expected
 from dcone_cosim.scene.mistakes import Mistake, shown
 from dcone_cosim.scene.toml_lines import given_at
 from orbital.manoeuvres import flown, two_impulses
-from orbital.tumbling import turned_freely
 
 MASS = "chaser.mass"
 INERTIA = tuple(f"target.inertia[{i}]" for i in (1, 2, 3))
@@ -86,6 +85,8 @@ class ShotHandover:
     failure: str = ""
 
     def parameters(self, component: Steppable) -> dict[str, float]:
+        from orbital.tumbling import turned_freely  # takes scipy, which other runs do without
+
         attitude = np.array([self.left[f"target.attitude[{i}]"] for i in (1, 2, 3, 4)])
         rate, inertia = vector(self.left, "target.rate"), np.array([self.left[name] for name in INERTIA])
         turned, rate = turned_freely(attitude, rate, inertia, self.rate, self.reload)

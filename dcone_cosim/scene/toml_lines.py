@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import tomllib
 from contextlib import suppress
+from functools import lru_cache
 from typing import Any
 
 Path = tuple[str | int, ...]
@@ -152,8 +153,10 @@ def deep_key(text: str) -> int | None:
     return None if match is None else text.count("\n", 0, match.start()) + 1
 
 
+@lru_cache(maxsize=4)
 def key_lines(text: str) -> Lines:
-    """Line of every table, key and element of a list, counted from 1, by path; as far as the text is valid TOML."""
+    """Line of every table, key and element of a list, counted from 1, by path; as far as the text is valid TOML. Many
+    scenes of one text have one table of them, which nobody changes."""
     walk = _Walk(text)
     with suppress(_Lost, RecursionError, tomllib.TOMLDecodeError):
         walk.document()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from dcone_cosim import build
@@ -208,7 +209,8 @@ def key_of(row: build.Variable) -> Key:
     return Key(tuple(row.element_names()), expected_of(row), starts, row.description)
 
 
-def orbit_keys() -> dict[str, Key]:
+@cache
+def orbit_keys() -> Mapping[str, Key]:
     """Every key the shared orbit may have, whatever phases and terms a scene has."""
     models = dict.fromkeys(kind.model for kind in kinds().values())
     return {

@@ -94,7 +94,7 @@ def setting(path: Path, value: Any) -> str:
 
 def name_changes(text: str, document: dict[str, Any], overrides: Sequence[Override]) -> None:
     """Let the document's title say what the overrides changed of the text."""
-    before = tomllib.loads(text)
+    before = _as_told(text)
     told = [
         change.path for change in overrides if change.path != ("title",) and not set(change.path[1:2]) & set(RECORDED)
     ]
@@ -103,6 +103,12 @@ def name_changes(text: str, document: dict[str, Any], overrides: Sequence[Overri
     title = document.get("title", "")
     if changes and isinstance(title, str):
         document["title"] = titled(title, changes)
+
+
+@lru_cache(maxsize=4)
+def _as_told(text: str) -> dict[str, Any]:
+    """What a text says, to be looked at only."""
+    return tomllib.loads(text)
 
 
 def as_run(
