@@ -6,7 +6,7 @@ loaded, and sends back what the campaign asks for. So whoever hands out cases do
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -21,6 +21,9 @@ from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import SceneError
 from dcone_cosim.scenes.reading import parse
+
+WITHOUT = "without_recoil"
+"""In the names of the figures of that tow."""
 
 
 @dataclass(frozen=True)
@@ -70,8 +73,19 @@ def run_shot(shot: Shot) -> Row:
     except InputError as error:
         return refused(shot.key, _in_one_line(error))
     kept = shot.ground.record if shot.number else ()
-    case = Case(shot.key, scene, shot.settings, seed=shot.number)
+    case = Case(shot.key, spared(scene, kept), shot.settings, seed=shot.number)
     return run_case(case, partial(_tell, kept=kept), tables=False)
+
+
+def spared(scene: Scene, kept: Collection[str]) -> Scene:
+    """The scene without the tow that is made beside it as if the shot had no recoil, where none of these figures, of
+    which none means all, is of that.
+
+    Checked  tests/campaign/test_spared.py
+    """
+    if not kept or any(WITHOUT in name for name in kept):
+        return scene
+    return replace(scene, handoff=replace(scene.handoff, compare_without_recoil=False))
 
 
 def _in_one_line(error: InputError) -> str:

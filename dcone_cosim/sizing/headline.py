@@ -62,10 +62,10 @@ def _about_tumbling(study: Study) -> Iterator[str]:
     if points:
         worst = max(points, key=lambda point: point.peak)
         bad = sum(point.verdict != "admissible" for point in points)
+        told = f"{bad} of {len(points)} points tried {'is' if bad == 1 else 'are'} not admissible"
         yield (
             f"a debris that tumbles: up to {worst.peak:.4g} N, at {math.degrees(worst.rate):g} deg/s with the line "
-            f"{worst.offset:g} m off the middle of its face; {bad or 'none'} of {len(points)} points tried "
-            f"{'is' if bad == 1 else 'are'} not admissible"
+            f"{worst.offset:g} m off the middle of its face; {told if bad else 'all points tried are admissible'}"
         )
 
 
@@ -81,8 +81,7 @@ def _about_damping(study: Study) -> Iterator[str]:
     if zeta >= DASHPOT_GOVERNS:
         yield (
             f"with a damping ratio of {zeta:g}, above {DASHPOT_GOVERNS:g}, the largest tension is the dashpot's jump "
-            f"as the "
-            "line goes taut: that is the model's, which damps by the rate of stretch, and no line's"
+            "as the line goes taut: that is the model's, which damps by the rate of stretch, and no line's"
         )
 
 

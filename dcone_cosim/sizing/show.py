@@ -1,4 +1,4 @@
-"""A sizing on the terminal: the answer, then a table for each part."""
+"""A sizing on the terminal: the answer, then for each part what its numbers are for, and its table."""
 
 from __future__ import annotations
 
@@ -38,7 +38,9 @@ def _show(section: Section, console: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(section.title, style="table.title"), title_justify="left", box=None, pad_edge=False)
+    console.print(Text(section.title, style="bold"))
+    console.print(Text(section.purpose, style="italic"), highlight=False)
+    table = Table(box=None, pad_edge=False)
     shown = [i for i, head in enumerate(section.heads) if console.width >= WIDE or head.key not in ASIDE]
     for head in (section.heads[i] for i in shown):
         side: Literal["left", "right"] = "left" if not head.unit else "right"
