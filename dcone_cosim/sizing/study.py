@@ -35,6 +35,7 @@ INPUTS = (
     ("start.separation", "separation at the start", "m"),
     ("thrust.level", "thrust", "N"),
 )
+AT_THE_START = tuple(f"start.relative_position[{i}]" for i in (1, 2, 3))
 FAR_BELOW = 0.05
 """Share of the hardest tug below which a tug is not held against its closed form [1]."""
 
@@ -106,10 +107,9 @@ class Study:
     def inputs(self) -> list[chaser.Asked]:
         """What is sized: the values of the scene from which all else follows, SI."""
         values = self.ground.values
-        told = [chaser.Asked(what, values[name], unit, name) for name, what, unit in INPUTS if name in values]
         ends = self.nominal.figure("simulated")
         return [
-            *told,
+            *asked_of(self.ground),
             chaser.Asked("stiffness of the line", stiffness(values), "N/m", "E A / l"),
             chaser.Asked("reduced mass", reduced(values), "kg", "of chaser and debris"),
             *([] if ends is None else [chaser.Asked("duration of a run", ends, "s", "of the scene")]),
@@ -118,6 +118,20 @@ class Study:
     @property
     def worst(self) -> tuple[Sample, Found]:
         return max(self.all, key=lambda one: one[1].peak)
+
+
+def asked_of(ground: Ground) -> list[chaser.Asked]:
+    """What the scene asks for; of a tow that another phase hands over to, the distance that it begins at.
+
+    Checked  tests/sizing/test_ground.py
+    """
+    values = ground.values
+    told = [chaser.Asked(what, values[name], unit, name) for name, what, unit in INPUTS if name in values]
+    apart = [values[name] for name in AT_THE_START if name in values]
+    if not ground.handed_over or not apart:
+        return told
+    begun = chaser.Asked("separation at the start", math.hypot(*apart), "m", "the hand-over")
+    return [begun if row.how == "start.separation" else row for row in told]
 
 
 def study(

@@ -11,6 +11,7 @@ from dcone_cosim.cases.rows import Row
 from dcone_cosim.errors import InputError
 from dcone_cosim.progress import Progress
 from dcone_cosim.sizing.ground import Found, Ground, preload, reduced, steady, stiffness
+from dcone_cosim.sizing.study import asked_of
 from dcone_cosim.sizing.uncertain import uncertain
 
 N = math.sqrt(3.986004418e14 / 7178137.0**3)
@@ -66,6 +67,15 @@ def test_what_is_pinned_stays_in_every_run(ground: Ground) -> None:
     other.pin({"break.strength": 1e12})
     assert other.scene_with({}).phases[0].main.parameters["break.strength"] == 1e12
     assert ground.case({}).key == before
+
+
+def test_a_tow_that_is_handed_over_begins_where_that_left_it(ground: Ground) -> None:
+    """Its own separation, a default, counts for nothing."""
+    tow = Ground(Alone("mission", (), None), Progress())
+    tow.pin({f"start.relative_position[{i}]": x for i, x in ((1, 3.0), (2, 4.0), (3, 12.0))})
+    for of, expected in ((tow, (13.0, "the hand-over")), (ground, (10.0, "start.separation"))):
+        (row,) = (row for row in asked_of(of) if row.what == "separation at the start")
+        assert (row.value, row.how) == expected
 
 
 def test_the_second_of_two_tows() -> None:

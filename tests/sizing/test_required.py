@@ -29,12 +29,12 @@ OWN = {
     "tether.damping_ratio": 0.05,
 }
 SAMPLE = {
-    "tether.diameter": 2e-3,
+    "tether.diameter": 3e-3,
     "tether.youngs_modulus": 30e9,
     "tether.rest_length": 20.0,
     "tether.damping_ratio": 0.2,
 }
-"""Twice the diameter and half the modulus of the scene's own line."""
+"""Three times the diameter and half the modulus of the scene's own line."""
 TUG = (5.0, 300.0, -0.4)
 
 
@@ -66,16 +66,16 @@ class TestClosedForm:
         """Put back into the law with the run's own line, it gives the peak that it is from."""
         zeta = 0.2
         share = math.exp(-zeta * (3.0 * math.acos(zeta) - math.pi) / math.sqrt(1.0 - zeta**2))
-        stiffness = 30e9 * area(2e-3) / 20.0
+        stiffness = 30e9 * area(3e-3) / 20.0
         back = self.P + math.sqrt(self.P**2 + share**2 * stiffness * snap.mass * 0.4**2)
         assert back == pytest.approx(300.0, rel=1e-12)
         assert snap.share == pytest.approx(share, rel=1e-12)
         assert (snap.run, snap.speed, snap.preload, snap.length) == ("a run", 0.4, self.P, 20.0)
 
     def test_line_of_that_diameter_bears_its_own_snap(self, snap: Snap) -> None:
-        """With the sample's shares: the run's line is twice as thick as the one that is sought, and half as stiff."""
-        assert snap.youngs_modulus == pytest.approx(0.5 * 4.0 * E, rel=1e-12)
-        stiffness = (0.5 * E) * area(2.0 * snap.diameter) / 20.0
+        """With the sample's shares: the run's line is three times as thick as the one that is sought, of half its E."""
+        assert snap.youngs_modulus == pytest.approx(0.5 * 9.0 * E, rel=1e-12)
+        stiffness = (0.5 * E) * area(3.0 * snap.diameter) / 20.0
         peak = self.P + math.sqrt(self.P**2 + snap.share**2 * stiffness * snap.mass * snap.speed**2)
         assert self.F * peak == pytest.approx(SIGMA * area(snap.diameter), rel=1e-12)
 
@@ -128,6 +128,10 @@ class TestNext:
         found = self.search((1e-3, below), (2e-3, above), 2).next()
         assert math.log(found / 1e-3) / math.log(2.0) == pytest.approx(share, rel=1e-12)
 
+    def test_as_near_to_both_ends_it_goes_to_the_thin_one(self) -> None:
+        found = self.search((1e-3, -0.2), (2e-3, 0.2), 2).next()
+        assert math.log(found / 1e-3) / math.log(2.0) == pytest.approx(0.5 - 0.3 * 0.005 / math.log(2.0), rel=1e-12)
+
     def test_what_it_goes_beyond_is_a_quarter_at_most(self) -> None:
         narrow = 1.0055
         found = self.search((1e-3, -0.1), (1e-3 * narrow, 0.1 + 1e-9), 2).next()
@@ -173,6 +177,9 @@ class TestTake:
         self.take(one, 5e-3, 2.0)
         self.take(one, 0.5e-3, 0.5)
         assert (one.thin, one.thick, one.peak) == ((1e-3, -0.3), (4e-3, 0.3), 7.0)
+        self.take(one, 4e-3, 2.0)
+        self.take(one, 1e-3, 0.5)
+        assert (one.thin, one.thick, one.peak) == ((1e-3, -0.3), (4e-3, 0.3), 7.0)
         self.take(one, 3e-3, 2.0)
         self.take(one, 2e-3, 0.5)
         assert (one.thin[0], one.thick[0]) == (2e-3, 3e-3)  # type: ignore[index]
@@ -204,6 +211,8 @@ class TestTake:
         one = Search(FIBRE, [{}], 1e-3)
         one.take(1e-3, 0.0, SAFETY)
         assert one.thick == (1e-3, math.inf)
+        one.take(0.9e-3, 0.5, SAFETY)
+        assert one.thick == (0.9e-3, pytest.approx(math.log(SIGMA * area(0.9e-3) / (SAFETY * 0.5))))
 
     @pytest.mark.parametrize(
         ("diameter", "failed"), [(1e-6, True), (1.01e-6, False), (0.199, False), (0.2, True), (0.3, True)]
@@ -246,6 +255,20 @@ class TestSearch:
         assert expected <= one.thick[0] <= expected * 1.005
         assert ground.said[0] == "diameters, round 1"
         assert len(ground.said) <= required.ROUNDS
+
+    def test_a_share_of_the_modulus_applies_to_the_material(self) -> None:
+        ground: Any = FakeGround(self.law)
+        (one,) = required.search(ground, [(FIBRE, 1e-4)], [{"tether.youngs_modulus": 15e9}], SAFETY)
+        expected = self.expected(E / 4.0, 1.0, 1.0)
+        assert one.thick is not None
+        assert expected <= one.thick[0] <= expected * 1.005
+
+    def test_what_does_not_close_in_is_given_up(self) -> None:
+        """Every line bears a hair less than it has to: it goes on outwards for so many rounds, and is not found."""
+        ground: Any = FakeGround(lambda values: SIGMA * area(values["tether.diameter"]) / SAFETY * (1.0 + 1e-9))
+        (one,) = required.search(ground, [(FIBRE, 1e-5)], [{}], SAFETY)
+        assert len(one.tried) == 14
+        assert required.result(one, None, 1e-3, 12.0, SAFETY).note == "not found"
 
     def test_materials_are_sought_side_by_side(self) -> None:
         stiff = Material("stiff", 4.0 * E, RHO, SIGMA, 0.03, None)
