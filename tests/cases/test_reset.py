@@ -225,7 +225,7 @@ def test_failures_are_rows(drift: Path, tmp_path: Path) -> None:
 
 
 def test_a_fault_of_ours_is_a_row_too(drift: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fault(*_: object) -> None:
+    def fault(*_: object, **__: object) -> None:
         raise ZeroDivisionError("of all things")
 
     monkeypatch.setattr("dcone_cosim.cases.work.run_scene", fault)
