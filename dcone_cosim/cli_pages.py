@@ -40,6 +40,9 @@ def report(
     accuracy: Annotated[Path | None, typer.Option("--accuracy", help="The same of `dcone accuracy`.")] = None,
     stability: Annotated[Path | None, typer.Option("--stability", help="The same of `dcone stability`.")] = None,
     pdf: Annotated[bool, typer.Option("--pdf", help="Print it too, with a Chromium that is installed.")] = False,
+    csv: Annotated[
+        bool, typer.Option("--csv", help="Write the histories and tugs beside it as CSV, every column with all digits.")
+    ] = False,
     live: Annotated[
         bool, typer.Option("--live/--no-live", help="Put the model of the tow into it, to move its values there.")
     ] = True,
@@ -56,7 +59,7 @@ def report(
     from dcone_cosim.report.commands import linked, write_page
 
     with at_work() as progress:
-        paths = write_page(run, out, progress, linked(sizing, accuracy, stability), pdf=pdf, live=live)
+        paths = write_page(run, out, progress, linked(sizing, accuracy, stability), pdf=pdf, live=live, csv=csv)
     _told(paths, show)
 
 

@@ -71,7 +71,7 @@ def spoken(value: float, spread: float = 0.0, most: int = PAGE) -> str:
         return "not known"
     if not value:
         return "0"
-    mark = SAMPLE if spread else ""
+    mark = (SAMPLE if value > 0.0 else f"{SAMPLE}\u00a0") if spread else ""
     leading = math.floor(math.log10(abs(float(f"{value:.{most - 1}e}"))))
     place = leading - most + 1
     if spread:

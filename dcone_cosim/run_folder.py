@@ -49,6 +49,8 @@ NODES = "nodes"
 """Name of the table of the net's knots."""
 REPLAY_NODES, REPLAY_THREADS = "replay_nodes", "replay_threads"
 """Names of the tables of a replay."""
+OF_KNOTS = (NODES, REPLAY_THREADS)
+"""How the names of tables end that have a row for each knot or thread and instant."""
 
 
 def default_folder(scene: str) -> Path:
@@ -65,15 +67,13 @@ def fill(
     draw: Callable[[Path], Any] | None = None,
 ) -> None:
     """Put everything into the folder, and what the run was made from, so that it can be made again."""
-    import pyarrow.csv
     import pyarrow.parquet
 
     keep(run.scene, folder)
     for name, table in tables_of(run):
         pyarrow.parquet.write_table(table, folder / f"{name}.parquet")
         if with_csv:
-            headed = table.rename_columns([csv_head(f) for f in table.schema])
-            pyarrow.csv.write_csv(headed, folder / f"{name}.csv")
+            _write_csv(table, folder / f"{name}.csv")
     for place, (name, handover) in enumerate(run.handovers.items()):
         _write_ledger(handover, folder / ledger_file(place, name))
     states = [_write_state(state, folder) for state in run.states]
@@ -90,6 +90,25 @@ def _write_state(state: KeptState, folder: Path) -> dict[str, Any]:
     (folder / name).parent.mkdir(exist_ok=True)
     about = {"phase": state.phase, "asked": state.asked, "time": state.time, "rows": state.rows}
     return {"file": name, "sha256": state_file.write(state, folder / name), **about}
+
+
+def histories_as_csv(run: Path, place: Path) -> list[str]:
+    """The tables of a run's folder as CSV too, but for those with a row for each knot or thread; their names.
+
+    Checked  tests/report/test_page.py
+    """
+    import pyarrow.parquet
+
+    names = sorted(path.stem for path in run.glob("*.parquet") if not path.stem.endswith(OF_KNOTS))
+    for name in names:
+        _write_csv(pyarrow.parquet.read_table(run / f"{name}.parquet"), place / f"{name}.csv")
+    return [f"{name}.csv" for name in names]
+
+
+def _write_csv(table: pa.Table, path: Path) -> None:
+    import pyarrow.csv
+
+    pyarrow.csv.write_csv(table.rename_columns([csv_head(f) for f in table.schema]), path)
 
 
 def csv_head(field: pa.Field) -> str:

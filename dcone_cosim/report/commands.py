@@ -14,6 +14,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.redrawing import list_files
 from dcone_cosim.report.links import COMMANDS, REPLAY, REPORT, Linked
 from dcone_cosim.report.page import of_folder
+from dcone_cosim.run_folder import histories_as_csv
 from dcone_cosim.scratch import Scratch
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
@@ -37,12 +38,14 @@ def write_page(
     pdf: bool = False,
     live: bool = False,
     up: str = "",
+    csv: bool = False,
 ) -> list[Path]:
     """Write the page of the run of a folder, and print it if asked; where both are.
 
     out      the file; in the folder of the run if not given, and then a file of that run
     whole    all of it, otherwise the replay alone
     up       address of the index that the page is of
+    csv      the histories as CSV beside it
     live     with the model in it, whose library is built if it is not in the cache
     """
     name = REPORT if whole else REPLAY
@@ -61,6 +64,9 @@ def write_page(
             if pdf:
                 progress.say("printing")
                 files.append(_print(browser, draft / path.name).name)
+            if csv:
+                progress.say("writing the histories as CSV")
+                files += histories_as_csv(run, draft)
             if path.parent.samefile(run):
                 list_files(run, files, draft / PROVENANCE)
             return [placed.put(draft / one, path.parent / one) for one in files]

@@ -41,8 +41,8 @@ PER_SECOND = 25.0
 """Frames of a shot."""
 SPREADS = {"tugs": "tugs", "first": "first_tug", "peak": "first_tug_peak", "largest": "largest_tug_peak"}
 """Figures of the tow, and what tells how far they are one sample of many."""
-FIGURES = ("mouth.area", "thread.tension_max", "t_capture")
-"""What is told of a shot, where its FMU tells it."""
+FIGURES = ("mouth.area", "t_capture")
+"""What is told of a shot, where its FMU tells it, beside what each of its lines bore."""
 WORKER = Path(__file__).parents[1] / "templates" / "worker"
 SCRIPTS = {"tow": ("fmu", "tow", "tower"), "shot": ("fmu", "net", "shooter")}
 """Of each worker, in order: they are one script there, since an import map does not reach into a worker."""
@@ -57,6 +57,7 @@ class Live:
     knobs      what may be moved
     duration   that is simulated, in words;  whole   whether that is all of it
     sizing     the command that tells what else sizes the line
+    lines      of a shot: each line of the net, by the output that tells its largest tension, and its label
     """
 
     phase: str
@@ -65,6 +66,7 @@ class Live:
     duration: str
     whole: bool
     sizing: str = ""
+    lines: tuple[tuple[str, str], ...] = ()
 
 
 def of_tow(folder: Path, run: RunResult, progress: Progress) -> Live | str:
@@ -101,7 +103,8 @@ def of_shot(folder: Path, run: RunResult, progress: Progress) -> Live | str:
     knobs = tuple(knobs_of_shot(carried.phase, carried.bounds))
     plan, told = _shot(carried, run)
     told["knobs"] = [knob.told() for knob in knobs]
-    return Live(name, told, knobs, *_lasting(plan, carried.phase))
+    lines = tuple((line["output"], line["label"]) for line in told["lines"])
+    return Live(name, told, knobs, *_lasting(plan, carried.phase), lines=lines)
 
 
 def _of(run: RunResult, model: str) -> str:
@@ -176,13 +179,20 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
     taut = frames is not None and len(frames.ends) > 0
     ends = frames.ends - 1 if frames is not None and taut else drawn_threads(drawing, nodes)
     bodies = _bodies(references)
+    lines = [
+        {"output": output, "label": load.line.label, "breaksAt": load.breaks_at}
+        for load in loads.of_phase(run, phase.name)
+        for output in load.line.tension[:1]
+        if output in references
+    ]
+    shown = [name for name in FIGURES if name in references] + [str(line["output"]) for line in lines]
     plan = {
         "start": phase.start,
         "step": phase.macro_step,
         "duration": phase.duration,
         "every": max(phase.macro_step, 1.0 / PER_SECOND),
         "bodies": [name for part in bodies.values() for name in part],
-        "figures": [name for name in FIGURES if name in references],
+        "figures": shown,
         "nodes": [references[f"{NODE_PREFIX}{n}].position[{i}]"][0] for n in range(1, nodes + 1) for i in (1, 2, 3)],
         "threads": [references[f"{THREAD_PREFIX}{n}].tension"][0] for n in range(1, len(ends) + 1)] if taut else [],
         "stop": _ends_with(carried, run),
@@ -190,7 +200,7 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
         "outcomes": list(OUTCOMES),
         "failed": [number for number, outcome in enumerate(OUTCOMES) if outcome in FAILED_OUTCOMES],
     }
-    wanted = {"captured", "settled", "outcome", *FIGURES, *(name for part in bodies.values() for name in part)}
+    wanted = {"captured", "settled", "outcome", *shown, *(name for part in bodies.values() for name in part)}
     return plan, {
         "phase": phase.name,
         "model": carried.told(lambda name: name in wanted or name in carried.bounds),
@@ -200,9 +210,10 @@ def _shot(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, A
         "most": float(max(map(np.max, frames.tensions))) if frames is not None and taut else 0.0,
         "floor": packing.FLOOR,
         "ends": packing.wholes(ends),
-        "spreads": {name: spreads[name] for name in FIGURES if name in spreads}
+        "lines": lines,
+        "spreads": {name: spreads[name] for name in shown if name in spreads}
         | ({"mouth.area": spreads["mouth.area_max"]} if "mouth.area_max" in spreads else {}),
-        "run": {name: float(np.max(result.recorder[name])) for name in FIGURES if name in result.recorder},
+        "run": {name: float(np.max(result.recorder[name])) for name in shown if name in result.recorder},
         "native": {"cpu": result.cpu, "duration": result.end - result.start},
     }
 

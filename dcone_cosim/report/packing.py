@@ -116,9 +116,10 @@ def _net(net: Net, keep: Array) -> dict[str, Any]:
 
 def chart(one: Chart) -> dict[str, Any]:
     """A chart for `chart.js`."""
-    series = []
+    series, fewer = [], False
     for row in one.series:
         x, y = (row.x, row.y) if row.kind == "stems" else thinned(row.x, row.y)
+        fewer |= len(x) < len(row.x)
         series.append(
             {"name": row.name, "kind": row.kind, "faint": row.faint, "hue": row.hue, "x": doubles(x), "y": singles(y)}
         )
@@ -129,6 +130,7 @@ def chart(one: Chart) -> dict[str, Any]:
         "unit": one.unit,
         "xUnit": one.x_unit,
         "log": one.log,
+        "thinned": fewer,
         "marks": [{"time": time, "what": what} for time, what in one.marks],
         "series": series,
     }

@@ -11,7 +11,7 @@ from typing import Any
 from dcone_cosim.findings import spoken
 from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
-from dcone_cosim.report import links, live, packing, scripts, tiles, told
+from dcone_cosim.report import links, live, packing, scripts, tiles, told, turning
 from dcone_cosim.report.forces import PICTURE, ForceMap
 from dcone_cosim.report.links import Linked
 from dcone_cosim.report.live import Live
@@ -60,6 +60,7 @@ def of_folder(
     for name, chart in charts:
         chart["key"] = f"{name}-{chart['key']}"
     data = {"clips": clips, "charts": [chart for _, chart in charts], "colours": colours()}
+    pointed = turning.of_run(folder, run, progress) if whole else None
     models: dict[str, Live | str] = {}
     if whole and progress is not None:
         models = {"live": live.of_tow(folder, run, progress), "shot": live.of_shot(folder, run, progress)}
@@ -72,7 +73,10 @@ def of_folder(
         "up": up,
         "good": run.exit_code == 0,
         "whole": whole,
-        "chief": [*tiles.chief(run), *([governs] if (governs := links.tile(linked)) else [])],
+        "chief": [
+            *tiles.chief(run, {} if pointed is None else pointed.share),
+            *([governs] if (governs := links.tile(linked)) else []),
+        ],
         "warnings": [one for one in warnings(run) if one not in tiles.said(run)],
         "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
@@ -89,7 +93,7 @@ def of_folder(
             "handovers": list(told.handovers(run)),
             "events": list(told.events(run)),
             "figures": list(told.figures(run)),
-            "trust": told.trust(run),
+            "trust": [*told.trust(run), *([] if pointed is None else [pointed.said])],
             "linked": [links.shown(kind, linked, place, f"{here}/scene.toml") for kind in links.COMMANDS],
             "governs": links.governing(linked),
             "live": _shown(models, [_head(clip) for clip in clips]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 from dcone_cosim import loads
 from dcone_cosim.contract import FAILED_OUTCOMES, FLOWN
@@ -56,8 +57,11 @@ def cells(row: Finding) -> tuple[str, str]:
     return spoken(value, row.spread), SHOWN_AS.get(unit, unit)
 
 
-def chief(run: RunResult) -> list[Tile]:
-    """The answer: label, value, unit, and in small what it counts from or comes with."""
+def chief(run: RunResult, pointed: Mapping[str, float] = MappingProxyType({})) -> list[Tile]:
+    """The answer: label, value, unit, and in small what it counts from or comes with.
+
+    pointed    by key of a figure, how far a target that is taken for a point is off in it, where that was computed [1]
+    """
     rows = summary.findings(run)
     known = {row.key: row for row in rows}
     phases = list(dict.fromkeys(row.phase for row in rows))
@@ -66,7 +70,7 @@ def chief(run: RunResult) -> list[Tile]:
         return phases.index(row.phase), CHIEF.index(row.key) if row.key in CHIEF else 0
 
     several = len({row.phase for row in rows if row.key in ("first_tug", "largest_tug_peak")}) > 1
-    found = [_tile(run, row, known, several) for row in sorted(rows, key=order) if row.key in CHIEF]
+    found = [_tile(run, row, known, several, pointed) for row in sorted(rows, key=order) if row.key in CHIEF]
     held = [load for load in loads.of_run(run) if load.line.name != TETHER]
     for phase in dict.fromkeys(load.phase for load in held):
         found.append(_held(run, phase, [load for load in held if load.phase == phase]))
@@ -86,7 +90,9 @@ def spoken_phase(name: str) -> str:
     return name.replace("_", " ").replace("hand-off", "hand-over")
 
 
-def _tile(run: RunResult, row: Finding, known: Mapping[str, Finding], several: bool) -> Tile:
+def _tile(
+    run: RunResult, row: Finding, known: Mapping[str, Finding], several: bool, pointed: Mapping[str, float]
+) -> Tile:
     value, unit = cells(row)
     label = LABELS.get(row.key, row.label)
     since = ""
@@ -104,7 +110,9 @@ def _tile(run: RunResult, row: Finding, known: Mapping[str, Finding], several: b
     bound = known.get(BOUNDS.get(row.key, ""))
     if bound is not None and bound.phase == "hand-off" and _is_point(known):
         share = spoken(100.0 * float(bound.value), most=2)
-        since += f"{'; ' if since else ''}taking the target for a point changes it by at most {share} %"
+        off = pointed.get(row.key)
+        by = f"at most {share} %" if off is None else f"{spoken(100.0 * abs(off), most=2)} %, bounded by {share} %"
+        since += f"{'; ' if since else ''}off by {by}, as the target is a point"
     if several:
         since = f"{spoken_phase(row.phase)}{', ' + since if since else ''}"
     return {"label": label, "value": value, "unit": unit, "since": since}
@@ -131,7 +139,9 @@ def _held(run: RunResult, phase: str, held: list[loads.Load]) -> Tile:
         told = (f"{spoken(load.margin or 0.0, load.margin_spread)} of {load.line.label}" for load in known)
         unknown = ", ".join(load.line.label for load in held if load.breaks_at is None)
         result = run.phases[phase]
-        since = f"in the {spoken(result.end - result.start)} s of the {spoken_phase(phase)}; margin {', '.join(told)}"
+        lasted = result.end - result.start
+        spread = next((row.spread for row in summary.findings(run) if row.value == lasted), 0.0)
+        since = f"in the {spoken(lasted, spread)} s of the {spoken_phase(phase)}; margin {', '.join(told)}"
         since += f"; not known of {unknown}" if unknown else ""
     return {"label": "did the net hold", "value": value, "unit": "", "since": since}
 
@@ -206,12 +216,16 @@ def inputs(run: RunResult) -> Iterator[tuple[str, str]]:
             value = values.get(name)
             if value is not None and (value or name == THRUST):
                 told = f"{label}, {signed(phase.main.terms)}" if name == THRUST else label
+                if name == MASS and phase.name in run.handovers:
+                    told = TOGETHER
                 yield f"{spoken_phase(phase.name)}: {told}", f"{spoken(value / factor)} {unit}".strip()
 
 
+MASS, TOGETHER = "target.mass", "mass of target and net together"
+"""Parameter of the target's mass, and what it is of a tow that a net was handed over to."""
 INPUTS = (
     ("chaser.mass", "mass of the chaser", "kg", 1.0),
-    ("target.mass", "mass of the target, with its net once caught", "kg", 1.0),
+    (MASS, "mass of the target", "kg", 1.0),
     ("orbit.altitude", "altitude of the orbit", "km", 1e3),
     ("net.side", "side of the net", "m", 1.0),
     ("net.mesh", "mesh of the net", "m", 1.0),

@@ -107,9 +107,10 @@ def handovers(run: RunResult) -> Iterator[dict[str, Any]]:
             for row in handover.rows
         ]
         worst = max((row.closure for row in handover.rows), default=math.nan)
-        left = [
-            f"{row['quantity']} {row['accounted']} {row['unit']} ({row['account']})" for row in rows if row["account"]
-        ]
+        left: dict[str, list[str]] = {}
+        for row in rows:
+            if row["account"]:
+                left.setdefault(row["account"], []).append(f"{row['quantity']} {row['accounted']} {row['unit']}")
         yield {"to": name, "rows": rows, "failure": handover.failure, "worst": spoken(worst, most=2), "left": left}
 
 
@@ -129,7 +130,7 @@ def events(run: RunResult) -> Iterator[dict[str, Any]]:
             )
             for event in told
         ]
-        yield {"phase": name, "clock": kind.clock(run), "rows": rows, "more": max(len(tugs) - 1, 0)}
+        yield {"phase": name, "clock": kind.clock(run).partition(",")[0], "rows": rows, "more": max(len(tugs) - 1, 0)}
 
 
 def trust(run: RunResult) -> list[str]:

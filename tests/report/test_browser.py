@@ -140,10 +140,96 @@ def test_a_chart_is_zoomed_by_keys_and_shows_all_again(browser: Browser) -> None
     browser.key("+")
     low, high = browser.ask(f"{chart}.shown")
     assert high - low == pytest.approx(0.7 * (all_of_it[1] - all_of_it[0]))
-    browser.key("Home")
+    browser.key("0")
     assert browser.ask(f"{chart}.shown") == all_of_it
     tugs = browser.ask(f"{chart}.svg.querySelectorAll('.stems:not(.faint) circle').length")
     assert tugs == browser.ask(f"{chart}.series.find((row) => row.name === 'tugs').x.length") > 0
+
+
+def test_values_of_a_chart_are_read_by_keys_and_said(browser: Browser, kept: Path) -> None:
+    """Every tug of the table in its turn, in a live region; a curve by rows seen apart; in sight when zoomed."""
+    chart = "window.dcone.charts['removal-tension']"
+    browser.ask(f"{chart}.show(...{chart}.all); {chart}.plot.focus()")
+    said = f"{chart}.readout.value"
+    assert browser.ask(f"[{chart}.readout.getAttribute('aria-live'), {chart}.plot.getAttribute('role')]") == [
+        "polite",
+        "application",
+    ]
+    browser.key("Home")
+    assert browser.ask(said).startswith("tension at the communication steps: 0 N at 0 min")
+    browser.key("ArrowDown")
+    tugs = pd.read_parquet(kept / "tugs.parquet")
+    for n, row in tugs.iterrows():
+        told = f"tugs, {n + 1} of {len(tugs)}: {spoken(row['peak'])} N at {spoken(row['time'] / 60.0, most=5)} min"
+        assert browser.ask(said).startswith(told)
+        browser.key("ArrowRight")
+    mouth = "window.dcone.charts['capture-mouth']"
+    browser.ask(f"{mouth}.plot.focus()")
+    rows = pd.read_parquet(kept / "capture.parquet")
+    for _ in range(3):
+        browser.key("ArrowRight", shift=True)
+    place = browser.ask(f"{mouth}.cursor.index")
+    assert place >= 20
+    assert browser.ask(f"[{mouth}.cursor.time, {mouth}.cursor.value]") == pytest.approx(
+        rows.iloc[place][["time", "mouth.area"]].tolist(), rel=1e-6
+    )
+    for _ in range(12):
+        browser.key("+")
+    low, high = browser.ask(f"{mouth}.shown")
+    assert low <= browser.ask(f"{mouth}.cursor.time") <= high
+    browser.key("End")
+    assert browser.ask(f"{mouth}.shown[1]") == browser.ask(f"{mouth}.all[1]")
+    assert browser.ask(f"{mouth}.readout.value").endswith("; captured, hand-over condition met")
+    browser.key("0")
+
+
+def test_a_chart_gives_its_values_as_csv(browser: Browser, kept: Path) -> None:
+    told = browser.ask("import('dcone/csv').then((m) => m.csvOf(window.dcone.charts['removal-tension']))")
+    head, *lines = told.strip().split("\n")
+    assert head.startswith("time since the hand-over [min],tension at the communication steps [N],tugs [N]")
+    columns = [line.split(",") for line in lines]
+    rows, tugs = (pd.read_parquet(kept / f"{name}.parquet") for name in ("removal", "tugs"))
+    for n, table, value in ((1, rows, "tether.tension"), (2, tugs, "peak")):
+        own = np.array([(row[0], row[n]) for row in columns if row[n]], dtype=float)
+        np.testing.assert_allclose(own[:, 0] * 60.0, table["time"], rtol=1e-12)
+        assert (own[:, 1].astype(np.float32) == table[value].to_numpy(np.float32)).all()
+    twice = "{ data: { clock: 't', xUnit: 's', unit: 'N' }, series: [{ name: 'a,b', x: [0, 1, 1], y: [1, 2, 3] }] }"
+    assert browser.ask(f"import('dcone/csv').then((m) => m.csvOf({twice}))") == 't [s],"a,b [N]"\n0,1\n1,2\n1,3\n'
+
+
+def test_letters_of_marks_stand_over_the_curves_and_apart(browser: Browser) -> None:
+    chart = "window.dcone.charts['capture-energies']"
+    letters = f"[...{chart}.svg.querySelectorAll('.mark text')]"
+    places = browser.ask(f"{letters}.map((one) => ['x', 'y'].map((name) => +one.getAttribute(name)))")
+    assert len(places) == browser.ask(f"{chart}.data.marks.length") > 3
+    assert all(y < browser.ask(f"{chart}.margin.top") for _, y in places)
+    assert np.diff([x for x, _ in places]).min() >= 10.99
+    key = browser.ask(f"{chart}.key_of_marks.textContent")
+    assert key.startswith("a mouth widest, ")
+
+
+def test_no_table_hides_a_column(browser: Browser) -> None:
+    """On a narrow screen rows become cards, values beside their heads; else a table slides, and says so."""
+    over = "one.scrollWidth > one.clientWidth + 1 && !one.classList.contains('slides')"
+    heads = "[...document.querySelectorAll('.stacked td')].map((one) => [one.dataset.head, shown(one)])"
+    size = {"height": 900, "deviceScaleFactor": 1, "mobile": False}
+    try:
+        for width, kinds in ((NARROW, (True, False)), (640, (False, True)), (WIDE, (False, False))):
+            browser.call("Emulation.setDeviceMetricsOverride", width=width, **size)
+            browser.ask("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+            browser.ask("new Promise((done) => setTimeout(done, 100))")
+            assert browser.ask(f"[...document.querySelectorAll('.wide')].filter((one) => {over}).length") == 0
+            cards, slide = browser.ask("['.stacked', '.slides'].map((name) => document.querySelectorAll(name).length)")
+            assert (cards > 1, slide > 0) == kinds
+            if cards:
+                shown = "const shown = (one) => getComputedStyle(one, '::before').content"
+                told = browser.ask(f"(() => {{ {shown}; return {heads}; }})()")
+                assert ["margin of safety", '"margin of safety"'] in told
+            if slide:
+                assert browser.ask("document.querySelector('.cue:not([hidden])').textContent").startswith("→ ")
+                assert browser.ask("document.querySelector('.slides').tabIndex") == 0
+    finally:
+        browser.call("Emulation.setDeviceMetricsOverride", width=WIDE, **size)
 
 
 @pytest.mark.parametrize("width", [WIDE, NARROW])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 import time
 from collections.abc import Iterator
@@ -16,7 +17,9 @@ import pytest
 from dcone_cosim import build
 from dcone_cosim.commands import run_and_write
 from dcone_cosim.errors import FmuError
+from dcone_cosim.findings import spoken
 from dcone_cosim.loading import load
+from dcone_cosim.phases.chaos import CAPTURE
 from dcone_cosim.progress import Progress
 from dcone_cosim.report import carried, live, packing
 from dcone_cosim.report.page import of_folder
@@ -276,10 +279,19 @@ def test_another_shot_is_that_of_the_run_with_its_values(asked: Asked, kept: Pat
     asked.wait("document.getElementById('live-shot').dataset.done")
     assert "bit for bit" not in asked.said("status", "live-shot")
     figures = asked.browser.ask(f"{SHOT}.over.figures")
-    last = pd.read_parquet(put(kept, tmp_path / "moved", words[-3:-2]) / "capture.parquet").iloc[-1]
+    moved = put(kept, tmp_path / "moved", words[-3:-2])
+    last = pd.read_parquet(moved / "capture.parquet").iloc[-1]
     own = pd.read_parquet(kept / "capture.parquet").iloc[-1]
-    for name in ("t_capture", "thread.tension_max", "mouth.area"):
+    for name in ("t_capture", "thread.tension_max", "cord.tension_max", "mouth.area"):
         assert figures[name] == last[name]
+    summaries = [json.loads((folder / "summary.json").read_text())["capture"] for folder in (kept, moved)]
+    for line in ("thread", "cord"):
+        cells = f"""[...document.querySelectorAll('[data-figure="margin of {line}.tension_max"] [data-of]')]"""
+        own_spread = CAPTURE[f"{line}.tension_max"]
+        margins = [one[f"{line}.margin_of_safety"]["value"] for one in summaries]
+        wanted = [spoken(margin, own_spread * (1.0 + margin) / margin) for margin in margins]
+        assert asked.browser.ask(f"{cells}.map((one) => one.textContent)") == wanted
+        assert margins[0] != margins[1]
     assert figures["thread.tension_max"] != own["thread.tension_max"]
 
 

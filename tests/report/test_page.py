@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow.csv
 import pytest
 
 from dcone_cosim.errors import InputError
@@ -108,6 +109,8 @@ def test_it_asks_nobody_and_scripts_are_all_in_it(page: Page) -> None:
                 "bytes",
                 "camera",
                 "chart",
+                "csv",
+                "cursor",
                 "knob",
                 "lines",
                 "live",
@@ -168,6 +171,14 @@ def test_commands_write_whole_files_and_refuse_what_is_no_run(kept: Path, tmp_pa
     assert (code, out.strip()) == (0, str(kept / "report.html"))
     assert "report.html" in json.loads((kept / "provenance.json").read_text())["files"]
     assert dcone("report", str(tmp_path))[0] == 2
+    assert dcone("report", str(kept), "-o", str(tmp_path / "mine.html"), "--csv", "--no-live")[0] == 0
+    names = {path.stem for path in tmp_path.glob("*.csv")}
+    assert names == {"capture", "removal", "removal_without_recoil_tugs", "tugs"}
+    for name in names:
+        told = pyarrow.csv.read_csv(tmp_path / f"{name}.csv").to_pandas()
+        table = pd.read_parquet(kept / f"{name}.parquet")
+        assert "time [s]" in told
+        assert np.array_equal(told.to_numpy(float), table.to_numpy(float), equal_nan=True), "to the bit"
     code, _, error = dcone("report", str(kept), "-o", str(tmp_path / "mine.txt"))
     assert code == 2
     assert "ends in .html" in error

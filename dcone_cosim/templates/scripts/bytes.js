@@ -66,7 +66,7 @@ const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 export function spoken(value, digits = 4, spread = 0) {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
-  const size = Math.abs(value), mark = spread ? "~" : "";
+  const size = Math.abs(value), mark = !spread ? "" : value > 0 ? "~" : "~\u00a0";
   const leading = Number(size.toExponential(digits - 1).split("e")[1]);
   let place = leading - digits + 1;
   if (spread) place = Math.max(place, Math.min(Math.floor(Math.log10(2 * spread * size)), leading));

@@ -1,9 +1,15 @@
 // A chart to zoom into: drag over a stretch, or use the buttons and keys; nothing moves by itself.
 
 import { spoken, unpack } from "dcone/bytes";
+import { csvOf, keep } from "dcone/csv";
+import { Cursor, before, nearest } from "dcone/cursor";
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = { left: 62, right: 14, top: 10, bottom: 42 };
+/** Room over a chart that has letters there [px]. */
+const OVER = 24;
+/** Between two letters over the chart [px]. */
+const APART = 11;
 const DASHES = ["", "6 3", "2 3", "9 3 2 3", "12 4", "1 4"];
 
 function node(name, attributes = {}, text = "") {
@@ -31,20 +37,17 @@ function decades(low, high) {
   return found.length >= 2 ? found : ticks(low, high, 4);
 }
 
-function before(x, value) {
-  let low = 0, high = x.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (x[middle] < value) low = middle + 1; else high = middle;
-  }
-  return low;
-}
+/** Letters of marks: a to z, then aa. */
+const lettered = (n) => (n < 26 ? String.fromCharCode(97 + n) : lettered(Math.floor(n / 26) - 1) + lettered(n % 26));
 
 export class Chart {
   constructor(root, data) {
     this.root = root;
     this.data = data;
     this.log = data.log;
+    this.cursor = new Cursor(this);
+    this.marks = [...data.marks].sort((a, b) => a.time - b.time).map((mark, n) => ({ ...mark, letter: lettered(n) }));
+    this.margin = this.marks.length ? { ...MARGIN, top: OVER } : MARGIN;
     this.take(data.series);
     this.furnish();
     new ResizeObserver(() => this.draw()).observe(this.plot);
@@ -62,6 +65,7 @@ export class Chart {
     if (this.data.range) this.all = [...this.data.range];
     if (this.all[0] === this.all[1]) this.all[1] = this.all[0] + 1;
     this.shown = [...this.all];
+    this.cursor.clear();
   }
 
   /** Other series in their place; the stretch in sight stays. */
@@ -93,21 +97,31 @@ export class Chart {
       label.append(box, " logarithmic");
       bar.append(label);
     }
+    button("CSV", `Values as CSV${this.data.thinned ? ": of each stretch the least and the largest" : ""}`, () => keep(csvOf(this), `${this.data.key}.csv`));
     this.readout = Object.assign(document.createElement("output"), { className: "readout" });
+    this.readout.setAttribute("aria-live", "polite");
+    this.readout.setAttribute("aria-atomic", "true");
     bar.append(this.readout);
     this.legend = document.createElement("div");
     this.legend.className = "legend";
     this.legend.append(...this.entries());
+    this.key_of_marks = Object.assign(document.createElement("p"), { className: "legend marked" });
+    this.key_of_marks.append(...this.marks.map(({ letter, what, time }) => {
+      const item = document.createElement("span");
+      item.append(Object.assign(document.createElement("b"), { textContent: letter }), ` ${what}, ${spoken(time)} ${this.data.xUnit}`);
+      return item;
+    }));
     this.plot = document.createElement("div");
     this.plot.className = "plot";
     this.plot.tabIndex = 0;
-    this.plot.setAttribute("role", "group");
-    this.plot.setAttribute("aria-label", `${this.data.title} [${this.data.unit}] over ${this.data.clock}: arrows to move, plus and minus to zoom, Home for all`);
-    this.root.append(this.legend, this.plot, bar);
+    this.plot.setAttribute("role", "application");
+    this.plot.setAttribute("aria-roledescription", "chart");
+    this.plot.setAttribute("aria-label", `${this.data.title} [${this.data.unit}] over ${this.data.clock}: left and right read its values, up and down go to another curve, plus and minus zoom, Home and End go to its ends, 0 shows all`);
+    this.root.append(this.legend, this.plot, ...(this.marks.length ? [this.key_of_marks] : []), bar);
     this.plot.addEventListener("keydown", (event) => this.key(event));
     this.plot.addEventListener("pointerdown", (event) => this.grab(event));
     this.plot.addEventListener("pointermove", (event) => this.hover(event));
-    this.plot.addEventListener("pointerleave", () => { this.readout.value = ""; this.cross?.remove(); });
+    this.plot.addEventListener("pointerleave", () => { this.readout.value = ""; this.point(); });
     this.plot.addEventListener("dblclick", () => this.show(...this.all));
     this.plot.addEventListener("wheel", (event) => {
       if (document.activeElement !== this.plot && !event.ctrlKey) return;
@@ -129,12 +143,47 @@ export class Chart {
   }
 
   key(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const { cursor } = this, far = event.shiftKey ? 10 : 1, about = () => (cursor.on ? cursor.time : undefined);
+    const read = (act) => () => { act(); this.follow(); this.point(true); };
     const acts = {
-      ArrowLeft: () => this.pan(-0.2), ArrowRight: () => this.pan(0.2), ArrowUp: () => this.zoom(0.7), ArrowDown: () => this.zoom(1.4),
-      "+": () => this.zoom(0.7), "=": () => this.zoom(0.7), "-": () => this.zoom(1.4), Home: () => this.show(...this.all),
-      End: () => this.show(this.all[1] - (this.shown[1] - this.shown[0]), this.all[1]),
+      ArrowLeft: read(() => cursor.walk(-far)), ArrowRight: read(() => cursor.walk(far)),
+      ArrowUp: read(() => cursor.turn(-1)), ArrowDown: read(() => cursor.turn(1)),
+      Home: read(() => cursor.end(false)), End: read(() => cursor.end(true)),
+      PageUp: () => this.pan(-0.5), PageDown: () => this.pan(0.5),
+      "+": () => this.zoom(0.7, about()), "=": () => this.zoom(0.7, about()), "-": () => this.zoom(1.4, about()),
+      0: () => this.show(...this.all),
     };
     if (acts[event.key]) { event.preventDefault(); acts[event.key](); }
+  }
+
+  /** Have the cursor in sight. */
+  follow() {
+    if (!this.cursor.on) return;
+    const { time } = this.cursor, [low, high] = this.shown;
+    if (time < low || time > high) this.show(time - 0.5 * (high - low), time + 0.5 * (high - low));
+  }
+
+  /** Draw the cursor, and say what stands there. */
+  point(aloud = false) {
+    this.cross?.remove();
+    const { cursor } = this;
+    if (!cursor.on || cursor.time < this.shown[0] || cursor.time > this.shown[1]) return;
+    const { row, index, time, value } = cursor, x = this.toX(time), y = this.toY(value);
+    this.cross = this.line(x);
+    this.cross.append(node("circle", { cx: x, cy: y, r: 5, class: "here", style: `stroke:${row.colour}` }));
+    this.svg.append(this.cross);
+    if (!aloud) return;
+    const which = row.kind === "stems" ? `, ${index + 1} of ${row.x.length}` : "";
+    const at = this.marks.filter((mark) => Math.abs(this.toX(mark.time) - x) < 1).map((mark) => mark.what);
+    this.readout.value = `${row.name}${which}: ${spoken(value)} ${this.data.unit} at ${spoken(time, 5)} ${this.data.xUnit}${at.length ? `; ${at.join(", ")}` : ""}`;
+  }
+
+  /** A line from top to foot, in a group. */
+  line(x) {
+    const group = node("g", { class: "cross" });
+    group.append(node("line", { x1: x, x2: x, y1: this.margin.top, y2: this.margin.top + this.inner.height }));
+    return group;
   }
 
   show(low, high) {
@@ -174,47 +223,43 @@ export class Chart {
 
   draw() {
     const width = Math.max(this.plot.clientWidth, 260), height = Math.min(320, Math.max(220, width * 0.42));
-    this.inner = { width: width - MARGIN.left - MARGIN.right, height: height - MARGIN.top - MARGIN.bottom };
+    this.inner = { width: width - this.margin.left - this.margin.right, height: height - this.margin.top - this.margin.bottom };
     const [low, high] = this.range();
     this.log_now = this.log && low > 0;
-    this.toX = (x) => MARGIN.left + ((x - this.shown[0]) / (this.shown[1] - this.shown[0])) * this.inner.width;
+    this.toX = (x) => this.margin.left + ((x - this.shown[0]) / (this.shown[1] - this.shown[0])) * this.inner.width;
     const lift = this.log_now ? (y) => Math.log(Math.max(y, low)) : (y) => y;
-    this.toY = (y) => MARGIN.top + (1 - (lift(y) - lift(low)) / (lift(high) - lift(low))) * this.inner.height;
+    this.toY = (y) => this.margin.top + (1 - (lift(y) - lift(low)) / (lift(high) - lift(low))) * this.inner.height;
     const svg = node("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": `${this.data.title} over ${this.data.clock}` });
     const clip = `clip-${this.data.key}`;
     const defs = node("defs");
     const area = node("clipPath", { id: clip });
-    area.append(node("rect", { x: MARGIN.left, y: 0, width: this.inner.width, height: MARGIN.top + this.inner.height }));
+    area.append(node("rect", { x: this.margin.left, y: 0, width: this.inner.width, height: this.margin.top + this.inner.height }));
     defs.append(area);
     svg.append(defs, this.axes(low, high));
     const body = node("g", { "clip-path": `url(#${clip})` });
     for (const row of this.series) body.append(row.kind === "stems" ? this.stems(row) : this.curve(row));
-    let last = -Infinity;
-    for (const mark of this.together()) {
-      body.append(this.mark(mark, this.toX(mark.time) - last < 15));
-      last = this.toX(mark.time);
-    }
-    svg.append(body);
+    svg.append(body, ...this.marked());
     this.svg = svg;
     this.plot.replaceChildren(svg);
+    this.point();
   }
 
   axes(low, high) {
     const group = node("g", { class: "axes" });
-    const right = MARGIN.left + this.inner.width, foot = MARGIN.top + this.inner.height;
+    const right = this.margin.left + this.inner.width, foot = this.margin.top + this.inner.height;
     for (const value of this.log_now ? decades(low, high) : ticks(low, high, 5)) {
       const y = this.toY(value);
-      group.append(node("line", { x1: MARGIN.left, x2: right, y1: y, y2: y, class: "grid" }));
-      group.append(node("text", { x: MARGIN.left - 6, y: y + 4, "text-anchor": "end" }, spoken(value)));
+      group.append(node("line", { x1: this.margin.left, x2: right, y1: y, y2: y, class: "grid" }));
+      group.append(node("text", { x: this.margin.left - 6, y: y + 4, "text-anchor": "end" }, spoken(value)));
     }
     for (const value of ticks(...this.shown, this.inner.width / 90)) {
       const x = this.toX(value);
-      group.append(node("line", { x1: x, x2: x, y1: MARGIN.top, y2: foot, class: "grid" }));
+      group.append(node("line", { x1: x, x2: x, y1: this.margin.top, y2: foot, class: "grid" }));
       group.append(node("text", { x, y: foot + 16, "text-anchor": "middle" }, spoken(value, 6)));
     }
-    group.append(node("line", { x1: MARGIN.left, x2: right, y1: foot, y2: foot }));
-    group.append(node("text", { x: MARGIN.left + this.inner.width / 2, y: foot + 34, "text-anchor": "middle" }, `${this.data.clock} [${this.data.xUnit}]`));
-    group.append(node("text", { x: 12, y: MARGIN.top + this.inner.height / 2, "text-anchor": "middle", transform: `rotate(-90 12 ${MARGIN.top + this.inner.height / 2})` }, `${this.data.title.split(",")[0]} [${this.data.unit}]`));
+    group.append(node("line", { x1: this.margin.left, x2: right, y1: foot, y2: foot }));
+    group.append(node("text", { x: this.margin.left + this.inner.width / 2, y: foot + 34, "text-anchor": "middle" }, `${this.data.clock} [${this.data.xUnit}]`));
+    group.append(node("text", { x: 12, y: this.margin.top + this.inner.height / 2, "text-anchor": "middle", transform: `rotate(-90 12 ${this.margin.top + this.inner.height / 2})` }, `${this.data.title.split(",")[0]} [${this.data.unit}]`));
     return group;
   }
 
@@ -240,7 +285,7 @@ export class Chart {
 
   stems(row) {
     const group = node("g", { class: row.faint ? "stems faint" : "stems", style: `stroke:${row.colour};fill:${row.faint ? "var(--paper)" : row.colour}` });
-    const foot = MARGIN.top + this.inner.height;
+    const foot = this.margin.top + this.inner.height;
     for (let i = before(row.x, this.shown[0]); i < row.x.length && row.x[i] <= this.shown[1]; i++) {
       const x = this.toX(row.x[i]), y = this.toY(row.y[i]);
       group.append(node("line", { x1: x, x2: x, y1: foot, y2: y }), node("circle", { cx: x, cy: y, r: 3 }));
@@ -248,28 +293,22 @@ export class Chart {
     return group;
   }
 
-  /** Marks in sight, in order; of those of one instant the first. */
-  together() {
-    const found = [];
-    for (const mark of [...this.data.marks].sort((a, b) => a.time - b.time)) {
-      if (mark.time < this.shown[0] || mark.time > this.shown[1]) continue;
-      const before = found[found.length - 1];
-      if (!before || this.toX(mark.time) - this.toX(before.time) >= 2) found.push(mark);
-    }
-    return found;
-  }
-
-  /** A line with what it is, at its left and from the top, or at its right and from the foot. */
-  mark({ time, what }, other) {
-    const x = this.toX(time), group = node("g", { class: "mark" });
-    group.append(node("line", { x1: x, x2: x, y1: MARGIN.top, y2: MARGIN.top + this.inner.height }));
-    const [tx, ty, anchor] = other ? [x + 11, MARGIN.top + this.inner.height - 4, "start"] : [x - 4, MARGIN.top + 4, "end"];
-    group.append(node("text", { x: tx, y: ty, transform: `rotate(-90 ${tx} ${ty})`, "text-anchor": anchor }, what));
-    return group;
+  /** Marks in sight: a line each, and over the chart the letter that the key below has, aside where they are many. */
+  marked() {
+    const seen = this.marks.filter(({ time }) => time >= this.shown[0] && time <= this.shown[1]);
+    const places = [], right = this.margin.left + this.inner.width + this.margin.right - 5;
+    for (const { time } of seen) places.push(Math.max(this.toX(time), (places.at(-1) ?? -Infinity) + APART));
+    for (let n = places.length - 1, most = right; n >= 0; n--, most -= APART) places[n] = Math.min(places[n], most);
+    return seen.map(({ time, letter }, n) => {
+      const x = this.toX(time), group = node("g", { class: "mark" });
+      group.append(node("path", { d: `M${places[n]} 14 L${x} ${this.margin.top} V${this.margin.top + this.inner.height}` }));
+      group.append(node("text", { x: places[n], y: 11, "text-anchor": "middle" }, letter));
+      return group;
+    });
   }
 
   timeAt(event) {
-    const x = event.clientX - this.svg.getBoundingClientRect().left - MARGIN.left;
+    const x = event.clientX - this.svg.getBoundingClientRect().left - this.margin.left;
     return this.shown[0] + (Math.min(Math.max(x, 0), this.inner.width) / this.inner.width) * (this.shown[1] - this.shown[0]);
   }
 
@@ -278,22 +317,20 @@ export class Chart {
     const told = [];
     for (const row of this.series) {
       if (!row.x.length) continue;
-      let i = Math.min(before(row.x, time), row.x.length - 1);
-      if (i > 0 && time - row.x[i - 1] < row.x[i] - time) i--;
+      const i = nearest(row.x, time);
       if (row.kind === "stems" && Math.abs(this.toX(row.x[i]) - this.toX(time)) > 8) continue;
       told.push(`${row.name} ${spoken(row.y[i])} ${this.data.unit}` + (row.kind === "stems" ? ` at ${spoken(row.x[i], 6)} ${this.data.xUnit}` : ""));
     }
     this.readout.value = `${spoken(time, 5)} ${this.data.xUnit}: ${told.join("; ")}`;
     this.cross?.remove();
-    const x = this.toX(time);
-    this.cross = node("line", { x1: x, x2: x, y1: MARGIN.top, y2: MARGIN.top + this.inner.height, class: "cross" });
+    this.cross = this.line(this.toX(time));
     this.svg.append(this.cross);
   }
 
   /** A drag with the mouse or pen shows the stretch that it goes over. */
   grab(event) {
     if (event.pointerType === "touch" || event.button !== 0) return;
-    const begin = this.timeAt(event), box = node("rect", { y: MARGIN.top, height: this.inner.height, class: "brush" });
+    const begin = this.timeAt(event), box = node("rect", { y: this.margin.top, height: this.inner.height, class: "brush" });
     const move = (e) => {
       const [a, b] = [this.toX(begin), this.toX(this.timeAt(e))].sort((p, q) => p - q);
       box.setAttribute("x", a); box.setAttribute("width", b - a);

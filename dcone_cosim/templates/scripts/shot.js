@@ -6,9 +6,6 @@ import { Replay } from "dcone/replay";
 
 const LARGEST = 255;
 
-/** A figure in two columns. */
-const FIGURES = { "mouth.area": "mouth.area", "thread.tension_max": "thread.tension_max", t_capture: "t_capture" };
-
 export class ShotView extends Panel {
   /** `box` is what the run's own replay shows, `surface` its target. */
   constructor(root, told, colours, box, surface) {
@@ -106,16 +103,28 @@ export class ShotView extends Panel {
     this.held += 1;
   }
 
+  /** Strength over stress, less one, of a line that bore so much [N]; `none` where nothing is known of that. */
+  margin({ output, breaksAt }, which, bore, none) {
+    const cell = this.root.querySelector(`[data-figure="margin of ${output}"] [data-of="${which}"]`);
+    const value = breaksAt / bore - 1, own = this.told.spreads[output] ?? 0;
+    const known = breaksAt !== null && bore > 0;
+    cell.textContent = breaksAt === null ? "strength not known" : known ? `${spoken(value, 4, value ? (own * (1 + value)) / Math.abs(value) : own)}${value < 0 ? ": breaks" : ""}` : none;
+    cell.classList.toggle("bad", known && value < 0);
+  }
+
   tell() {
     const { run, spreads } = this.told, over = this.over, settings = this.settings;
     const stale = this.held > 0 && this.shotWith !== undefined && this.shotWith !== settings.join(" ");
-    for (const name of Object.keys(FIGURES)) {
+    for (const name of this.told.plan.figures) {
       const row = this.root.querySelector(`[data-figure="${name}"]`);
-      if (!row) continue;
       const found = over ? (name === "mouth.area" ? this.most : over.figures[name]) : NaN;
       const shown = (value) => (Number.isFinite(value) && (name !== "t_capture" || value > 0) ? spoken(value, 4, spreads[name] ?? 0) : "–");
       row.querySelector('[data-of="run"]').textContent = shown(run[name]);
       row.querySelector('[data-of="moved"]').textContent = stale || this.failed ? "" : over ? shown(found) : this.held ? "…" : "";
+    }
+    for (const line of this.told.lines) {
+      this.margin(line, "run", run[line.output], "");
+      this.margin(line, "moved", over && !stale && !this.failed ? over.figures[line.output] : NaN, stale || this.failed || !this.held ? "" : over ? "–" : "…");
     }
     const here = this.held ? this.replay.times[this.held - 1] : 0;
     const same = over && !this.shot && this.told.plan.figures.filter((name) => name !== "mouth.area").every((name) => over.figures[name] === run[name]);
