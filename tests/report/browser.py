@@ -41,6 +41,7 @@ def chromium() -> str:
 class Browser:
     """One tab: `open` a page, `ask` it for a value, press `key`s, take a `picture`.
 
+    process    Chromium's first one
     said    what the console said, errors that nobody caught among them
     """
 
@@ -55,7 +56,7 @@ class Browser:
             os.dup2(low, 3)
             os.dup2(high, 4)
 
-        self._process = subprocess.Popen(
+        self.process = subprocess.Popen(
             [chromium(), *FLAGS, f"--user-data-dir={folder}", "about:blank"],
             close_fds=False,
             preexec_fn=place,
@@ -137,7 +138,7 @@ class Browser:
         path.write_bytes(base64.b64decode(shot["data"]))
 
     def close(self) -> None:
-        self._process.kill()
-        self._process.wait()
+        self.process.kill()
+        self.process.wait()
         os.close(self._write)
         os.close(self._read)
