@@ -60,6 +60,13 @@ def run(
     ] = False,
     json: Json = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw pictures.")] = True,
+    replays: Annotated[
+        bool,
+        typer.Option(
+            "--replays",
+            help="Run the cases worth looking at again once all are there, each with a page and its replay.",
+        ),
+    ] = False,
     isolate: Annotated[
         bool | None, typer.Option("--isolate/--no-isolate", help="As for dcone run.", show_default=False)
     ] = None,
@@ -84,7 +91,7 @@ def run(
         answer(json, content, lambda console: show.show(content["title"], said, {}, console), [], None)
         return
     with at_work() as progress:
-        done = commands.campaign(path, out, progress, scheduler, jobs, isolate, figures)
+        done = commands.campaign(path, out, progress, scheduler, jobs, isolate, figures, replays=replays)
 
     def shown(console: Console) -> None:
         show.show(done.title, done.said, done.content["figures"], console)

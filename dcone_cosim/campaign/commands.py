@@ -36,7 +36,7 @@ from dcone_cosim.cases.table import Entry, as_arrow, timings
 from dcone_cosim.cases.work import make_ready
 from dcone_cosim.cases.workers import cores
 from dcone_cosim.commands import Written, run_and_write
-from dcone_cosim.errors import CASES_FAILED, SUCCESS
+from dcone_cosim.errors import CASES_FAILED, SUCCESS, DconeError
 from dcone_cosim.progress import Progress
 from dcone_cosim.report.commands import write_page
 from dcone_cosim.run_folder import default_folder
@@ -154,11 +154,13 @@ def campaign(
     isolate: bool | None = None,
     with_figures: bool = True,
     work: Work = run_shot,
+    replays: bool = False,
 ) -> Done:
     """Run a campaign and write its folder. Bad input raises and leaves nothing; the same command goes on there.
 
     scheduler, jobs    see `cluster.opened`
     work               what makes the row of a case, a function of a module
+    replays            run the cases worth looking at again, with a page of each
     """
     started = datetime.now(UTC)
     cluster.check(scheduler)
@@ -183,7 +185,9 @@ def campaign(
         found = _run(engine, coordinates, count)
         store.gather_if_many()
         command = f"dcone campaign {shlex.quote(path.name)}"
-        return _written(plan, engine, nominal, found, folder, started, command, with_figures)
+        return _written(
+            plan, engine, nominal, found, folder, started, command, with_figures, progress if replays else None
+        )
 
 
 def _run(engine: Engine, coordinates: Sequence[Sequence[float]], count: int | None) -> Mapping[str, Any]:
@@ -222,7 +226,9 @@ def _written(
     started: datetime,
     command: str,
     with_figures: bool,
+    replays: Progress | None,
 ) -> Done:
+    """Write all of it; `replays` is told of the cases that are run again for their pages, None for none."""
     spec, made = plan.spec, engine.made
     derived = required_diameters(spec, plan.base, plan.inputs.names, made)
     told, spread = answers(spec, made, derived), explained.explained(spec, plan.inputs, made)
@@ -251,11 +257,25 @@ def _written(
 
         pyarrow.parquet.write_table(as_arrow(timings([Entry(one.row) for one in made])), draft / TIMINGS)
         pictures = plot.draw(spec, plan.inputs, made, told, spread, draft) if with_figures else []
+        there = {one.number for one in worth if (folder / one.page).is_file()}
         page.write(
-            spec.title, said, plan.inputs, told, spread, worth, pictures, plan.text, bounded, notes, about, draft
+            spec.title, said, plan.inputs, told, spread, worth, there, pictures, plan.text, bounded, notes, about, draft
         )
 
-    write_report(folder, [plan.base], columns, content_of, draw, started, done.exit_code, command)
+    def publish() -> None:
+        write_report(folder, [plan.base], columns, content_of, draw, started, done.exit_code, command)
+
+    publish()
+    if replays is not None:
+        for one in worth:
+            if (folder / one.page).is_file():
+                continue
+            replays.say(f"case {one.number} again, for its replay")
+            try:
+                rerun(folder, one.number, None, replays)
+            except DconeError as error:
+                notes.append(f"case {one.number} has no page: {error}")
+        publish()
     return done
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ def write(
     found: Answers,
     spread: Explained,
     worth: Sequence[Worth],
+    there: Collection[int],
     pictures: Sequence[tuple[str, str]],
     text: str,
     bounded: bool,
@@ -34,6 +35,7 @@ def write(
 ) -> None:
     """`report.html`, with the pictures that are in the folder.
 
+    there     numbers of those worth looking at that have a page
     text      of the campaign's file
     bounded   whether percentiles have intervals
     """
@@ -52,6 +54,7 @@ def write(
         indices=[(one.figure, one.samples, [_index(index) for index in one.inputs]) for one in spread.indices],
         surrogates=list(_surrogates(spread)),
         worth=worth,
+        there=there,
         campaign=text,
         notes=notes,
         about=about,

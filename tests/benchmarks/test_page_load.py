@@ -100,7 +100,7 @@ def test_a_page_with_a_replay_of_ten_megabytes(kept: Path, tmp_path: Path, capsy
         print()
         for name, (length, ready, busy, cpu) in rows.items():
             print(
-                f"page {name}, {length / 1e6:.1f} MB: ready after {ready:.2f} s; CPU time of its main thread {busy:.2f} s, "
-                f"of all of Chromium, which draws without a GPU, {cpu:.2f} s"
+                f"page {name}, {length / 1e6:.1f} MB: ready after {ready:.2f} s; CPU time of its main thread "
+                f"{busy:.2f} s, of all of Chromium, which draws without a GPU, {cpu:.2f} s"
             )
         print(f"the replay has {frames} frames, {size / 1e6:.1f} MB; median of {TIMES}")

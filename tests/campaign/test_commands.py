@@ -123,6 +123,21 @@ def test_a_figure_that_there_is_not(drift: Path, dcone: Dcone) -> None:
     assert "line 1: record[1]" in err
 
 
+def test_cases_worth_looking_at_are_one_click_from_their_replay(drift: Path, tmp_path: Path) -> None:
+    """Without their pages no link leads nowhere; the same command with `--replays` makes and links them."""
+    file, out = put_campaign(drift.parent, DRIFT.replace("n = 60", "n = 6")), tmp_path / "out"
+    linked = re.compile(r'href="(cases/\d+/report\.html)"')
+    commands.campaign(file, out, Progress(), "processes", jobs=1, with_figures=False)
+    before = (out / "report.html").read_text()
+    assert linked.findall(before) == []
+    worth = [int(number) for number in re.findall(r"dcone campaign rerun \S+ (\d+)", before)]
+    assert worth
+    commands.campaign(file, out, Progress(), "processes", jobs=1, with_figures=False, replays=True)
+    pages = linked.findall((out / "report.html").read_text())
+    assert pages == [f"cases/{number}/report.html" for number in worth]
+    assert all("Replay of the removal" in (out / page).read_text() for page in pages)
+
+
 def test_show_and_rerun(once: Path, dcone: Dcone) -> None:
     code, out, err = dcone("campaign", "show", str(once))
     assert (code, "removal.separation below 10.12563103 m" in out) == (0, True), err
