@@ -129,7 +129,8 @@ def _map(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, sprea
         ):
             chosen = [n for n, v in enumerate(verdicts) if v is verdict]
             if chosen:
-                axes.plot([x[n] for n in chosen], [y[n] for n in chosen], mark, color=colour, ms=3.5, label=label)
+                places = [x[n] for n in chosen], [y[n] for n in chosen]
+                axes.plot(*places, mark, color=colour, ms=3.5, label=label, clip_on=False, zorder=3)
         for place, put in ((i, axes.set_xlabel), (j, axes.set_ylabel)):
             one = inputs.inputs[place]
             axes.locator_params(nbins=5)

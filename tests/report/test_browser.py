@@ -248,6 +248,12 @@ def test_it_fits_and_is_drawn(browser: Browser, place: Path, tmp_path: Path, wid
     assert browser.said == []
 
 
+def test_what_is_folded_is_printed(browser: Browser) -> None:
+    browser.ask("document.querySelectorAll('details').forEach((one) => { one.open = false; })")
+    browser.ask("dispatchEvent(new Event('beforeprint'))")
+    assert browser.ask("[...document.querySelectorAll('details.given')].map((one) => one.open)") == [True, True]
+
+
 def test_the_switch_overrides_the_system(browser: Browser) -> None:
     browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
     seen = []

@@ -1,4 +1,5 @@
-// Tables that do not fit: on a narrow screen each row becomes a card, on a wide one the table slides and says so.
+// Tables that do not fit: on a narrow screen each row becomes a card, on a wide one the table slides and says so. A
+// picture slides on a narrow screen, where its words would be too small.
 
 (() => {
   const NARROW = matchMedia("(max-width: 600px)");
@@ -21,34 +22,36 @@
     }
   }
 
-  function fit(box, table, cue) {
+  function fit(box, what, cue) {
     if (!box.clientWidth) return;
-    table.classList.remove("stacked");
-    const over = table.offsetWidth > box.clientWidth + 1, stacked = over && NARROW.matches, slides = over && !stacked;
-    table.classList.toggle("stacked", stacked);
+    const table = what.localName === "table";
+    what.classList.remove("stacked");
+    const over = what.offsetWidth > box.clientWidth + 1, stacked = over && table && NARROW.matches, slides = over && !stacked;
+    what.classList.toggle("stacked", stacked);
     box.classList.toggle("slides", slides);
     cue.hidden = !slides;
     if (slides) {
-      const hidden = [...table.querySelectorAll("thead th")].filter((head) => head.offsetLeft + head.offsetWidth > box.clientWidth + 1).length;
-      cue.textContent = `→ ${hidden} more column${hidden === 1 ? "" : "s"}: scroll sideways, or with the arrow keys`;
+      const hidden = [...what.querySelectorAll("thead th")].filter((head) => head.offsetLeft + head.offsetWidth > box.clientWidth + 1).length;
+      const more = table ? `${hidden} more column${hidden === 1 ? "" : "s"}` : "the picture goes on";
+      cue.textContent = `→ ${more}: scroll sideways, or with the arrow keys`;
       box.tabIndex = 0;
       box.setAttribute("role", "region");
-      box.setAttribute("aria-label", "Table, to scroll sideways");
+      box.setAttribute("aria-label", `${table ? "Table" : "Picture"}, to scroll sideways`);
     } else for (const name of ["tabindex", "role", "aria-label"]) box.removeAttribute(name);
   }
 
   addEventListener("DOMContentLoaded", () => {
     for (const box of document.querySelectorAll(".wide")) {
-      const table = box.querySelector("table"), cue = Object.assign(document.createElement("p"), { className: "cue", hidden: true });
+      const what = box.querySelector("table, img"), cue = Object.assign(document.createElement("p"), { className: "cue", hidden: true });
       let width = 0;
-      label(table);
+      if (what.localName === "table") label(what);
       box.before(cue);
       new ResizeObserver(() => {
         if (box.clientWidth === width) return;
         width = box.clientWidth;
-        fit(box, table, cue);
+        fit(box, what, cue);
       }).observe(box);
-      fit(box, table, cue);
+      fit(box, what, cue);
     }
   });
 })();

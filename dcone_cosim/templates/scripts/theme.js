@@ -11,6 +11,7 @@
   };
   let now = kept();
   set(now);
+  addEventListener("beforeprint", () => { for (const one of document.querySelectorAll("details.given")) one.open = true; });
   addEventListener("DOMContentLoaded", () => {
     set(now);
     document.getElementById("theme").addEventListener("click", () => { now = names[(names.indexOf(now) + 1) % names.length]; set(now); });
