@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -217,8 +218,11 @@ def test_no_table_hides_a_column(browser: Browser) -> None:
         for width, kinds in ((NARROW, (True, False)), (640, (False, True)), (WIDE, (False, False))):
             browser.call("Emulation.setDeviceMetricsOverride", width=width, **size)
             browser.ask("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
-            browser.ask("new Promise((done) => setTimeout(done, 100))")
-            assert browser.ask(f"[...document.querySelectorAll('.wide')].filter((one) => {over}).length") == 0
+            settled = f"[...document.querySelectorAll('.wide')].filter((one) => {over}).length"
+            began = time.perf_counter()
+            while browser.ask(settled) and time.perf_counter() - began < 10.0:
+                time.sleep(0.05)
+            assert browser.ask(settled) == 0
             cards, slide = browser.ask("['.stacked', '.slides'].map((name) => document.querySelectorAll(name).length)")
             assert (cards > 1, slide > 0) == kinds
             if cards:

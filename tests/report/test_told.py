@@ -99,7 +99,7 @@ def test_the_tiles_of_a_run_do_not_contradict_one_another(bare: Path) -> None:
     run.fail("capture failed", "slipped off", CAPTURE_FAILED)
     shown = {tile["label"]: tile for tile in tiles.chief(run)}
     assert shown["did the net hold"]["value"] == "no: the closing cord would have broken"
-    assert shown["least margin of safety"]["value"].startswith("~-")
+    assert shown["least margin of safety"]["value"].startswith("~\N{NO-BREAK SPACE}-")
     assert shown["least margin of safety"]["since"].startswith("the closing cord, capture")
     assert tiles.badges(run) == ["capture failed", "overloaded"]
     assert any(one.startswith("OVERLOADED: capture: the closing cord") for one in tiles.said(run))
@@ -127,7 +127,7 @@ def test_a_figure_is_rounded_in_one_way_all_over_a_page(kept: Path, page: Page) 
     ("value", "spread", "shown"),
     [
         (23.828, 9e-5, "~23.83"), (38.4957, 3e-4, "~38.50"), (61.47, 0.31, "~60"), (8.78, 0.05, "~8.8"),
-        (-0.1068, 1.4, "~-0.1"), (86400.0, 0.0, "86,400"), (360155.0, 0.0, "360,200"),
+        (-0.1068, 1.4, "~\N{NO-BREAK SPACE}-0.1"), (86400.0, 0.0, "86,400"), (360155.0, 0.0, "360,200"),
         (5.74155e-6, 0.0, "5.742 · 10⁻⁶"),
         (3.15576e7, 0.0, "3.156 · 10⁷"), (999.96, 0.0, "1000"), (0.0, 0.3, "0"), (12718.0, 0.0, "12,720"),
         (float("nan"), 0.0, "not known"), (14.0, 0.0, "14"), (100.0, 0.0, "100"), (123456.0, 0.3, "~120,000"),

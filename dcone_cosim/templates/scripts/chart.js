@@ -6,6 +6,8 @@ import { Cursor, before, nearest } from "dcone/cursor";
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = { left: 62, right: 14, top: 10, bottom: 42 };
+/** Of a digit on an axis, and of what else stands beside it [px]. */
+const DIGIT = 6.4, BESIDE = 26;
 /** Room over a chart that has letters there [px]. */
 const OVER = 24;
 /** Between two letters over the chart [px]. */
@@ -47,7 +49,7 @@ export class Chart {
     this.log = data.log;
     this.cursor = new Cursor(this);
     this.marks = [...data.marks].sort((a, b) => a.time - b.time).map((mark, n) => ({ ...mark, letter: lettered(n) }));
-    this.margin = this.marks.length ? { ...MARGIN, top: OVER } : MARGIN;
+    this.margin = { ...MARGIN, ...(this.marks.length ? { top: OVER } : {}) };
     this.take(data.series);
     this.furnish();
     new ResizeObserver(() => this.draw()).observe(this.plot);
@@ -223,9 +225,11 @@ export class Chart {
 
   draw() {
     const width = Math.max(this.plot.clientWidth, 260), height = Math.min(320, Math.max(220, width * 0.42));
-    this.inner = { width: width - this.margin.left - this.margin.right, height: height - this.margin.top - this.margin.bottom };
     const [low, high] = this.range();
     this.log_now = this.log && low > 0;
+    const levels = (this.log_now ? decades(low, high) : ticks(low, high, 5)).map((value) => [value, spoken(value)]);
+    this.margin.left = Math.max(MARGIN.left, BESIDE + DIGIT * Math.max(...levels.map(([, text]) => text.length)));
+    this.inner = { width: width - this.margin.left - this.margin.right, height: height - this.margin.top - this.margin.bottom };
     this.toX = (x) => this.margin.left + ((x - this.shown[0]) / (this.shown[1] - this.shown[0])) * this.inner.width;
     const lift = this.log_now ? (y) => Math.log(Math.max(y, low)) : (y) => y;
     this.toY = (y) => this.margin.top + (1 - (lift(y) - lift(low)) / (lift(high) - lift(low))) * this.inner.height;
@@ -235,7 +239,7 @@ export class Chart {
     const area = node("clipPath", { id: clip });
     area.append(node("rect", { x: this.margin.left, y: 0, width: this.inner.width, height: this.margin.top + this.inner.height }));
     defs.append(area);
-    svg.append(defs, this.axes(low, high));
+    svg.append(defs, this.axes(levels));
     const body = node("g", { "clip-path": `url(#${clip})` });
     for (const row of this.series) body.append(row.kind === "stems" ? this.stems(row) : this.curve(row));
     svg.append(body, ...this.marked());
@@ -244,13 +248,13 @@ export class Chart {
     this.point();
   }
 
-  axes(low, high) {
+  axes(levels) {
     const group = node("g", { class: "axes" });
     const right = this.margin.left + this.inner.width, foot = this.margin.top + this.inner.height;
-    for (const value of this.log_now ? decades(low, high) : ticks(low, high, 5)) {
+    for (const [value, text] of levels) {
       const y = this.toY(value);
       group.append(node("line", { x1: this.margin.left, x2: right, y1: y, y2: y, class: "grid" }));
-      group.append(node("text", { x: this.margin.left - 6, y: y + 4, "text-anchor": "end" }, spoken(value)));
+      group.append(node("text", { x: this.margin.left - 6, y: y + 4, "text-anchor": "end" }, text));
     }
     for (const value of ticks(...this.shown, this.inner.width / 90)) {
       const x = this.toX(value);

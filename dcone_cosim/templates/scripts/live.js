@@ -161,6 +161,10 @@ export class Live extends Panel {
     const length = this.si("tether.rest_length"), { reach } = this.told.line;
     if (now.length && reach && length && length < reach) notes.push(`a tether of ${spoken(length)} m is shorter than the ${spoken(reach)} m that it has to span at the start: it is stretched from 0 s on, and that tension is of the stretch, not of a tug`);
     if (told?.jumps) notes.push("least diameter: the peak jumps there");
+    if (told && told.largest > 0 && !told.sought && !told.why && Number.isNaN(told.required)) {
+      const reason = !this.told.line.strength ? "nothing tells its strength" : !this.si("tether.diameter") ? "its diameter cannot be moved" : "the tow ends early";
+      notes.push(`least diameter of the tether: not sought, since ${reason}`);
+    }
     if (told?.why) notes.push(`least diameter: ${told.why}`);
     this.note.textContent = notes.length ? `${notes.join("; ")}.` : "";
   }
