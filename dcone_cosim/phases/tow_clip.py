@@ -15,6 +15,8 @@ from dcone_cosim.scenery import Array, Chart, Clip, Series
 MOST_FRAMES = 3000
 SEVERAL = 2
 """Frames that make a clip."""
+FAR = 70.0
+"""Distance of the bodies from which on the chaser is drawn larger than it is [m]."""
 FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 """Of a box whose corners are counted in binary."""
 Surface = tuple[Array, list[list[int]]]
@@ -60,6 +62,11 @@ def clip(
                 f"the tether is made fast {spoken(reach)} m from the centre of mass; that piece, of net and target, "
                 "is drawn in the colour of the target"
             )
+    if "lumped.deflection" in recorder:
+        aside = float(np.max(recorder["lumped.deflection"]))
+        notes.append(f"the tether is drawn straight: its nodes are at most {spoken(aside)} m beside that line")
+    if float(np.max(np.linalg.norm(chaser, axis=1))) > FAR:
+        notes.append("the chaser is drawn larger than it is, so that it is seen")
     if len(rows) < len(recorder):
         notes.append(f"{len(rows):,} of {len(recorder):,} steps are shown")
     return Clip(

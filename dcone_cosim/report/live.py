@@ -35,7 +35,7 @@ LONGEST = 86400.0
 FACTOR = 2.0
 """Factor of safety where the scene has none [1]."""
 DRAWN = ("tether.tension", "separation")
-LARGEST = ("tether.tension_peak", "tether.tension")
+LARGEST = ("lumped.peak_tension", "tether.tension_peak", "tether.tension")
 """Outputs of which the first that there is tells the largest tension."""
 PER_SECOND = 25.0
 """Frames of a shot."""
@@ -159,6 +159,7 @@ def _tow(carried: Carried, run: RunResult) -> tuple[dict[str, Any], dict[str, An
             "strength": None if load is None else load.strength,
             "factor": FACTOR if given is None else float(given),
             "dashpot": DASHPOT_GOVERNS,
+            "nodes": plan["largest"] == LARGEST[0],
             "reach": float(result.recorder["tether.length"][0]) if "tether.length" in result.recorder else None,
         },
         "spreads": {name: spreads[key] for name, key in SPREADS.items() if key in spreads},

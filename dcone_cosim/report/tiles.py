@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
+import numpy as np
+
 from dcone_cosim import loads
 from dcone_cosim.contract import FAILED_OUTCOMES, FLOWN
 from dcone_cosim.findings import SHOWN_IN, Finding, spoken
@@ -14,7 +16,7 @@ from dcone_cosim.report.knobs import THRUST, signed
 from dcone_cosim.reports import summary
 from dcone_cosim.results import RunResult
 
-CHIEF = ("outcome", "t_capture", "lasted", "first_tug", "first_tug_peak", "largest_tug_peak", "lowered")
+CHIEF = ("outcome", "t_capture", "lasted", "pull_off", "first_tug", "first_tug_peak", "largest_tug_peak", "lowered")
 """Figures that are told at the top of a page, as far as a run has them."""
 LABELS = {"outcome": "capture", "first_tug": "first tug"}
 """What they are called there, where that is not their label in the summary."""
@@ -26,6 +28,8 @@ OUTCOMES = {
 """Outcomes of a capture that need more words than their names."""
 BOUNDS = {"first_tug": "point_bound_time", "first_tug_peak": "point_bound_peak"}
 """What tells how far a target that is taken for a point may be off in a figure."""
+ALONG = "lumped.peak_tension"
+"""Output that tells the largest tension along a tether that has nodes."""
 TETHER = "line"
 """Name of the line of a tow in the table of lines; all others are of a net."""
 SHOWN_AS = {"m2": "m²", "m3": "m³"}
@@ -177,6 +181,10 @@ def governing(run: RunResult, load: loads.Load) -> str:
     if log is None or not log.rows:
         return "largest tension of the phase"
     number, (time, peak, _) = max(log.rows.items(), key=lambda item: item[1][1])
+    recorder = run.phases[load.phase].recorder
+    if ALONG in recorder and peak < load.tension:
+        at = float(recorder["time"][int(np.argmax(recorder[ALONG]))])
+        return f"largest along its nodes, in the step up to {spoken(at)} s"
     if peak < (1.0 - 1e-9) * load.tension:
         return "largest tension of the phase, not a tug"
     taut = run.phases[load.phase].is_taut_from_start

@@ -252,6 +252,21 @@ def test_it_fits_and_is_drawn(browser: Browser, place: Path, tmp_path: Path, wid
     assert browser.said == []
 
 
+def test_both_ends_of_a_long_tether_are_in_sight(browser: Browser) -> None:
+    """A kilometre upright, across and along the view: none of its ends is beyond the edge, and one comes near to it."""
+    camera = "window.dcone.replays.removal.camera"
+    for turned, raised in ((0.65, 0.38), (0.0, 0.12), (0.0, 1.5)):
+        for axis in ("500, 0, 0", "0, 500, 0", "0, 0, 500", "300, 400, 0"):
+            seen = browser.ask(
+                f"(() => {{ const c = {camera}, v = c.about.clone().set({axis}), ends = [v, v.clone().negate()];"
+                f" c.look(v.clone().set(0, 0, 0), 100, {turned}, {raised}, ends); c.place();"
+                " return ends.map((one) => one.project(c.eye).toArray()); })()"
+            )
+            edge = np.abs(np.array(seen)[:, :2]).max()
+            assert 0.6 < edge < 0.95 or (axis == "0, 0, 500" and edge < 0.95), "along the view it is seen short"
+    browser.ask("window.dcone.replays.removal.look('slanting')")
+
+
 def test_what_is_folded_is_printed(browser: Browser) -> None:
     browser.ask("document.querySelectorAll('details').forEach((one) => { one.open = false; })")
     browser.ask("dispatchEvent(new Event('beforeprint'))")

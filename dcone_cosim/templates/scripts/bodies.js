@@ -29,6 +29,9 @@ function solid({ corners, faces }) {
 
 const ball = (radius, color) => new THREE.Mesh(new THREE.SphereGeometry(radius, 20, 14), new THREE.MeshLambertMaterial({ color }));
 
+/** Of a chaser that would be too small to be seen, over the radius of a ball. */
+const LARGER = 2.5;
+
 export class Bodies {
   constructor(clip, colours, scene) {
     this.clip = clip;
@@ -40,6 +43,7 @@ export class Bodies {
     this.box = clip.box ?? this.bounds();
     const size = 0.012 * this.reach();
     this.ship = new THREE.Mesh(new THREE.BoxGeometry(1.4, 1.1, 1.1), new THREE.MeshLambertMaterial({ color: COLOURS.chaser }));
+    this.ship.scale.setScalar(Math.max(1, LARGER * size));
     scene.add(this.ship);
     if (this.target) {
       this.body = clip.surface ? solid(clip.surface) : ball(2.2 * size, COLOURS.target);
@@ -88,15 +92,17 @@ export class Bodies {
     this.body.add(this.cells);
   }
 
-  /** Everything that is ever shown lies in it. */
+  /** Everything that is ever shown lies in it; `ends` are places of chaser and target. */
   bounds() {
     const box = new THREE.Box3(), point = new THREE.Vector3();
     const parts = [this.chaser, this.target, this.line, this.bullets, this.clip.net ? new Places(this.clip.net.nodes) : null].filter(Boolean);
     const every = Math.max(1, Math.floor(this.times.length / 60));
+    this.ends = [];
     for (const part of parts) {
       for (let frame = 0; frame < this.times.length; frame += every) {
         const points = part.at(frame);
         for (let i = 0; i < part.count; i++) box.expandByPoint(point.fromArray(points, 3 * i));
+        if (part === this.chaser || part === this.target) this.ends.push(point.clone());
       }
     }
     if (this.clip.surface) {

@@ -4,6 +4,9 @@ import * as THREE from "three";
 
 const STEEP = Math.PI / 2 - 0.02;
 
+/** How much wider than what is to be in sight the view is. */
+const ROOM = 1.12;
+
 export class Camera {
   constructor(stage, changed) {
     this.eye = new THREE.PerspectiveCamera(38, 1, 0.05, 5000);
@@ -54,11 +57,18 @@ export class Camera {
     this.changed();
   }
 
-  /** Look from a direction so that a box about `about` is all in sight. */
-  look(about, reach, turned, raised) {
+  /** Look from a direction so that what is about `about` is in sight, and all of some points. */
+  look(about, reach, turned, raised, points = []) {
     this.about.copy(about);
     Object.assign(this, { turned, raised });
-    this.distance = (reach / Math.tan((this.eye.fov * Math.PI) / 360)) / Math.min(1, this.eye.aspect);
+    const open = Math.tan((this.eye.fov * Math.PI) / 360), wide = open * this.eye.aspect;
+    const [s, c, S, C] = [Math.sin(turned), Math.cos(turned), Math.sin(raised), Math.cos(raised)];
+    const [back, right, up] = [[C * s, S, C * c], [c, 0, -s], [-S * s, C, -S * c]].map((axis) => new THREE.Vector3(...axis));
+    this.distance = reach / open / Math.min(1, this.eye.aspect);
+    for (const point of points) {
+      const from = point.clone().sub(about), aside = Math.max(Math.abs(from.dot(up)) / open, Math.abs(from.dot(right)) / wide);
+      this.distance = Math.max(this.distance, from.dot(back) + ROOM * aside);
+    }
     this.changed();
   }
 

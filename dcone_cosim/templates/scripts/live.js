@@ -127,6 +127,7 @@ export class Live extends Panel {
       const load = told.damping >= this.told.line.dashpot ? "dashpot" : "snap";
       if (told.taut && told.governing === 1) return "the stretch it has at 0 s: it is taut from the start";
       if (told.governing) return `${load}: tug ${told.governing - told.taut} of ${told.tugs.length - told.taut}, at ${spoken(told.tugs[told.governing - 1][0])} s`;
+      if (this.told.line.nodes && told.largest > 0) return `the largest along it, in the step up to ${spoken(told.largestAt)} s`;
       return told.largest > 0 ? `steady load, at ${spoken(told.largestAt)} s` : "none: the tether stays slack";
     };
     for (const which of ["run", "moved"]) {
