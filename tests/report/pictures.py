@@ -31,7 +31,7 @@ FIGURES: Mapping[str, str] = {
 PAGE = "mission-page.png"
 MOVED = "2"
 """Diameter of the line that the picture of the page shows [mm]."""
-PATIENCE = 60.0
+PATIENCE = 300.0
 """[s]"""
 
 

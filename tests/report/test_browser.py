@@ -164,6 +164,10 @@ def test_values_of_a_chart_are_read_by_keys_and_said(browser: Browser, kept: Pat
         told = f"tugs, {n + 1} of {len(tugs)}: {spoken(row['peak'])} N at {spoken(row['time'] / 60.0, most=5)} min"
         assert browser.ask(said).startswith(told)
         browser.key("ArrowRight")
+    chart = "shown: [0, 1], inner: { width: 100 }, series: [{ kind, x: [0, 1e-6, 2e-6], y: [1, 2, 3] }]"
+    walk = "(kind) => { const c = new m.Cursor({ " + chart + " }); return [1, 1, 1].map((n) => (c.walk(n), c.index)); }"
+    told = browser.ask(f"import('dcone/cursor').then((m) => ['stems', 'line'].map({walk}))")
+    assert told == [[0, 1, 2], [0, 2, 2]], "no tug is left out, of a curve what falls together is"
     mouth = "window.dcone.charts['capture-mouth']"
     browser.ask(f"{mouth}.plot.focus()")
     rows = pd.read_parquet(kept / "capture.parquet")

@@ -92,17 +92,17 @@ export class Bodies {
     this.body.add(this.cells);
   }
 
-  /** Everything that is ever shown lies in it; `ends` are places of chaser and target. */
+  /** Everything that is ever shown lies in it; `far` are places of chaser and target. */
   bounds() {
     const box = new THREE.Box3(), point = new THREE.Vector3();
     const parts = [this.chaser, this.target, this.line, this.bullets, this.clip.net ? new Places(this.clip.net.nodes) : null].filter(Boolean);
     const every = Math.max(1, Math.floor(this.times.length / 60));
-    this.ends = [];
+    this.far = [];
     for (const part of parts) {
       for (let frame = 0; frame < this.times.length; frame += every) {
         const points = part.at(frame);
         for (let i = 0; i < part.count; i++) box.expandByPoint(point.fromArray(points, 3 * i));
-        if (part === this.chaser || part === this.target) this.ends.push(point.clone());
+        if (part === this.chaser || part === this.target) this.far.push(point.clone());
       }
     }
     if (this.clip.surface) {

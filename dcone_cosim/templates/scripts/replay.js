@@ -129,7 +129,7 @@ export class Replay {
       return;
     }
     const [turned, raised] = VIEWS[name];
-    this.camera.look(this.bodies.box.getCenter(new THREE.Vector3()), 0.82 * this.bodies.reach(), turned, raised, this.bodies.ends);
+    this.camera.look(this.bodies.box.getCenter(new THREE.Vector3()), 0.82 * this.bodies.reach(), turned, raised, this.bodies.far);
   }
 
   toggle() {
