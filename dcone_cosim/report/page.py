@@ -49,8 +49,12 @@ def of_folder(
     for name, result in run.phases.items():
         kind = kind_of(name)
         one = kind.clip(run, result)
-        clips += [] if one is None else [packing.clip(one)]
-        charts += [(name, packing.chart(chart)) for chart in kind.charts(run, result)]
+        title = tiles.spoken_phase(name)
+        clips += [] if one is None else [{**packing.clip(one), "key": name, "title": title.capitalize()}]
+        alike = sum(kind_of(other).model == kind.model for other in run.phases) > 1
+        for shown in kind.charts(run, result):
+            named = {"title": f"{shown.title}, {title}"} if alike else {}
+            charts.append((name, packing.chart(shown) | named))
     forces = ForceMap.read(folder)
     for packed_clip in clips:
         if forces is not None and "surface" in packed_clip and "net" in packed_clip:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
@@ -73,8 +74,10 @@ def chief(run: RunResult, pointed: Mapping[str, float] = MappingProxyType({})) -
     def order(row: Finding) -> tuple[int, int]:
         return phases.index(row.phase), CHIEF.index(row.key) if row.key in CHIEF else 0
 
-    several = len({row.phase for row in rows if row.key in ("first_tug", "largest_tug_peak")}) > 1
-    found = [_tile(run, row, known, several, pointed) for row in sorted(rows, key=order) if row.key in CHIEF]
+    counts = Counter(row.key for row in rows)
+    found = [
+        _tile(run, row, known, counts[row.key] > 1, pointed) for row in sorted(rows, key=order) if row.key in CHIEF
+    ]
     held = [load for load in loads.of_run(run) if load.line.name != TETHER]
     for phase in dict.fromkeys(load.phase for load in held):
         found.append(_held(run, phase, [load for load in held if load.phase == phase]))
