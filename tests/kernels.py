@@ -2,7 +2,8 @@
 
 What costs is numba's typing, half a minute for a net. Its result, the IR that goes into an FMU, is kept in a folder
 that all processes of the run share. An `Instance` loads its entry from a library made of that IR, and a build takes the
-IR as it is. A test that judges compiling asks for `compiled_anew`, or puts `instance.compiled` back.
+IR as it is. What compiles has numba loaded already: see `tests.emitting`. A test that judges compiling asks for
+`compiled_anew`, or puts `instance.compiled` back.
 
 Checked  tests/packaging/test_fmu.py: the library's bits are those of the entry compiled in the process
 """
@@ -27,6 +28,7 @@ from fmu_src import instance
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import Model
 from fmu_src.packaging import builds, compile, link, platforms
+from tests import emitting
 
 OTHER_CODE = ("NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT")
 """Environment variables under which kernels are other code than an FMU's."""
@@ -34,7 +36,9 @@ V3 = {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}
 """What a processor of the second code path has, by LLVM's names."""
 
 emit = compile.emit
-"""What compiles, whatever the run has already."""
+"""What compiles, whatever the run has already, in a process that begins with nothing."""
+emit_quickly = emitting.emit
+"""The same text, sooner."""
 
 
 def compiled_where_run() -> bool:
@@ -95,7 +99,7 @@ class Shared:
         def make(path: Path) -> None:
             known = builds.kernels(cache_folder(), name, builds.fingerprint(interface))
             if known is None:
-                emit(interface.model, interface.terms, path, cache_folder() / builds.COMMON)
+                emit_quickly(interface.model, interface.terms, path, cache_folder() / builds.COMMON)
             else:
                 path.write_bytes(known)
 

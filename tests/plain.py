@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping, Sequence
+import inspect
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pytest
+from numba.core.extending import _Intrinsic
+from numba.np.numpy_support import as_dtype
 
 from fmu_src import instance
 from fmu_src.instance import Instance
@@ -22,8 +25,54 @@ def _entry(model: Model, terms: Mapping[str, str]) -> Any:
 @pytest.fixture
 def plain(monkeypatch: pytest.MonkeyPatch) -> None:
     """As long as the test runs, every kernel is the function it was written as."""
-    monkeypatch.setattr(Kernel, "dispatcher", property(lambda kernel: kernel.py_func))
+    _patched(monkeypatch)
     monkeypatch.setattr(instance, "entry_of", _entry)
+
+
+PLAIN = property(lambda kernel: kernel.py_func)
+
+
+class _Words(np.ndarray):
+    """Numbers of which a whole one may be given as 64 bits without a sign."""
+
+    def __setitem__(self, where: Any, value: Any) -> None:
+        if isinstance(value, int) and self.dtype == np.int64 and value >= 1 << 63:
+            value -= 1 << 64
+        super().__setitem__(where, value)
+
+
+def _written_out(made: _Intrinsic, *arguments: Any) -> Any:
+    """What an intrinsic of `fmu_src.lanes` for single numbers and whole arrays does."""
+    name = made._name
+    if name == "viewed":
+        kind = inspect.getclosurevars(made._defn).nonlocals["kind"]
+        return arguments[0].view(as_dtype(kind)).view(_Words)
+    return INTRINSICS[name](*arguments)
+
+
+INTRINSICS: dict[str, Callable[..., Any]] = {
+    "peek": lambda array, index: array[index],
+    "poke": lambda array, index, value: array.__setitem__(index, value),
+    "lowest": lambda bits: (int(bits) & -int(bits)).bit_length() - 1,
+    "highest": lambda bits: int(bits).bit_length() - 1,
+    "population": lambda bits: int(bits).bit_count(),
+}
+
+
+def _patched(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(Kernel, "dispatcher", PLAIN)
+    patch.setattr(_Intrinsic, "__call__", _written_out)
+
+
+def plainly(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A kernel that is run as it was written, with all that it calls."""
+
+    def run(*arguments: Any) -> Any:
+        with pytest.MonkeyPatch.context() as patch:
+            _patched(patch)
+            return function(*arguments)
+
+    return run
 
 
 class PlainInstance(Instance):

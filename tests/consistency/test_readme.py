@@ -1,7 +1,8 @@
 """The READMEs' commands do what they say, each run as it stands; and what a README points to is there.
 
 The blocks marked `sh` and `python` of one README run in the order of the page, in a folder of their own that is empty
-at first: a command may use what one above it has written.
+at first: a command may use what one above it has written. The first command of each page is run as it is typed, and
+Python too; the other commands run in this process, which has loaded already what a command loads.
 """
 
 import os
@@ -13,10 +14,13 @@ from pathlib import Path
 
 import pytest
 
+from dcone_cosim import cli
+
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 PLACES = (".readme", "dcone_cosim", "fmu_src", "orbital", "tests")
 PAGES = [README, *sorted(page for place in PLACES for page in (ROOT / place).rglob("*.md"))]
+HERE = "dcone in this process"
 LONGEST = 200
 """Lines that a newcomer is asked to read."""
 
@@ -28,6 +32,7 @@ def blocks(text, language):
 
 def steps(text):
     """Commands by line and pieces of Python, in the order of the page."""
+    first = True
     for language, block in re.findall(r"^```(sh|python)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
         if language == "python":
             yield [sys.executable, "-c", block]
@@ -35,7 +40,8 @@ def steps(text):
         for line in filter(str.strip, block.splitlines()):
             program, *arguments = shlex.split(line)
             assert program == "dcone", f"{line}: only dcone is run here"
-            yield [str(Path(sys.executable).with_name("dcone")), *arguments]
+            yield [str(Path(sys.executable).with_name("dcone")) if first else HERE, *arguments]
+            first = False
 
 
 def named(page):
@@ -90,7 +96,14 @@ STEPS = [
 
 
 @pytest.mark.parametrize(("page", "command"), STEPS)
-def test_command_runs(page, command, folders):
+def test_command_runs(page, command, folders, monkeypatch, capfd):
+    if command[0] == HERE:
+        monkeypatch.chdir(folders[page])
+        monkeypatch.setattr(sys, "argv", ["dcone", *command[1:]])
+        with pytest.raises(SystemExit) as stop:
+            cli.main()
+        assert not stop.value.code, "".join(capfd.readouterr())
+        return
     done = subprocess.run(
         command,
         cwd=folders[page],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,13 @@ def begun(origin: str) -> str:
     return new_scene(find(origin).read_text(), origin, "mine.toml")
 
 
+@cache
+def validator() -> jsonschema.Draft7Validator:
+    return jsonschema.Draft7Validator(schema())
+
+
 def valid(document: dict[str, Any]) -> None:
-    jsonschema.validate(document, schema(), jsonschema.Draft7Validator)
+    validator().validate(document)
 
 
 class TestNew:

@@ -77,7 +77,7 @@ def test_the_scene_kept_runs_again_to_the_same(dcone: Dcone, tmp_path: Path) -> 
     ("switch", "isolate", "timeout", "told"),
     [
         ("CRASH", True, "", "ended by SIGSEGV"),
-        ("HANG", True, "5 s", "did not answer within 5 s and was killed"),
+        ("HANG", True, "3 s", "did not answer within 3 s and was killed"),
         ("EXIT=3", True, "", "ended itself with exit code 3"),
         ("NOT_A_NUMBER=SEPARATION", False, "", "its output separation is nan"),
         ("ERROR", False, "", "the winch jammed"),

@@ -6,6 +6,7 @@ later the last bits of the times differ; both move the tugs by as much, and with
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,14 @@ from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.ssp.export import export_scene
-from tests.interop.packages import in_tool, own
+from tests.interop import packages
+from tests.interop.packages import in_tool
 
 pytestmark = pytest.mark.interop
 
 TOOLS = ("ecos", "libcosim", "fmpy")
+own = cache(packages.own)
+"""Each run of our master is made once, for all tools."""
 
 
 def spread(found: dict, own: Recorder, rows: int) -> float:

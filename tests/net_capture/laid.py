@@ -1,4 +1,10 @@
-"""A net laid out by its kernels alone, before it is folded."""
+"""A net laid out by its kernels alone, before it is folded.
+
+The kernels run as they were written: to lay out a net once takes Python less time than numba to compile what does it.
+
+Checked  tests/net_capture/test_laid.py: compiled they give the same bits; tests/net_capture/test_own_net.py has a
+         slice of it, a net of tables, compiled, beside one of ours
+"""
 
 from collections.abc import Mapping
 
@@ -12,17 +18,20 @@ from fmu_src.net_capture.stepping import make_choose_substep
 from orbital.kernel import kernel
 from tests.conftest import FREE
 from tests.net_capture.memory import graph_of, planes_of
+from tests.plain import plainly
 
 
 class Layer:
     """What lays nets of one shape out: its kernels, for a record and work memory.
 
-    tables    of a net of one's own, by name
+    tables      of a net of one's own, by name
+    compiled    as it must be where a net has tables, which Python does not read from memory
     """
 
     tables: Mapping[str, np.ndarray] = {}
 
-    def __init__(self, shape: str, **rigged: str) -> None:
+    def __init__(self, shape: str, *, compiled: bool = False, **rigged: str) -> None:
+        self.compiled = compiled or shape == "table"
         self.terms = MODEL.interface(FREE | {"net": shape} | rigged).terms
         parts = self.parts = Composition(MODEL, self.terms)
         graph, shot = parts.graph, make_shot(parts)
@@ -60,12 +69,16 @@ class Layer:
             fault = choose(record[0])
             return record[0].solver_stability_bound if fault == 0 else -1.0
 
-        self._count, self.lay_out, self.load, self.thread, self.bound = count, lay_out, load, thread, bound
-        self.check, self._fold = check, fold
+        kernels = (count, lay_out, load, thread, bound, check, fold)
+        self._count, self.lay_out, self.load, self.thread, self.bound, self.check, self._fold = (
+            kernels if self.compiled else map(plainly, kernels)
+        )
 
     def record(self, values: Mapping[str, float]):
         interface = MODEL.interface(self.terms).with_tables(self.tables)
         record = interface.make_record()
+        if not self.compiled:
+            record = record.view(np.recarray)
         self._block = interface.table_block
         record["tables_at"] = self._block.ctypes.data
         for name, value in values.items():

@@ -18,6 +18,7 @@ from fmu_src.net_capture.planes import (
     work_size,
 )
 from fmu_src.net_capture.schemes.asleep import ROW_WORDS
+from tests.plain import plainly
 
 
 def planes(net):
@@ -48,9 +49,13 @@ def shown(net, first=SHOWN):
 
 
 class Bench:
-    """Parts of a model without the model: a record with its start values, and the memory of a net laid out in it."""
+    """Parts of a model without the model: a record with its start values, and the memory of a net laid out in it, by
+    kernels as they were written: see `tests.net_capture.laid`."""
 
     def __init__(self, terms):
+        plainly(self._lay_out)(terms)
+
+    def _lay_out(self, terms):
         interface = MODEL.interface(terms)
         self.parts = Composition(MODEL, interface.terms)
         self.record = interface.make_record().view(np.recarray)

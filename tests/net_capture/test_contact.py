@@ -207,7 +207,7 @@ def test_failed_shots_say_why(shoot, change, outcome):
 @pytest.mark.parametrize("trigger", ["first_contact", "distance", "command"])
 def test_every_trigger_closes_the_mouth(shoot, trigger):
     net = shoot({"closing.trigger": ("time", "first_contact", "distance", "command").index(trigger)}, CAPTURE)
-    while net.time < 22.0:
+    while net.time < 22.0 and not net["captured"]:
         if trigger == "command" and net.time > 11.0:
             net["close.command"] = True
         net.step(0.25)

@@ -7,6 +7,9 @@ from fmu_src.net_capture.contact import inelastic
 from fmu_src.net_capture.planes import INVERSE_MASS, MASS, P, U, X
 from orbital.kernel import kernel
 from tests.net_capture.memory import Bench, planes_of
+from tests.plain import plain
+
+__all__ = ["plain"]
 
 TERMS = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic"}
 STEP, NODE = 1e-3, 0.5
@@ -21,8 +24,8 @@ def corner_distance(p, normal, point):
     return point[axis]
 
 
-@pytest.fixture(scope="module", params=[True, False], ids=["hollow", "convex"])
-def touched(request):
+@pytest.fixture(params=[True, False], ids=["hollow", "convex"])
+def touched(request, plain):
     """Place and velocity after a substep, momentum and angular momentum of the target, and the loss."""
     bench, patch = Bench(TERMS), pytest.MonkeyPatch()
     parts, p = bench.parts, bench.p

@@ -6,7 +6,9 @@ import pytest
 from fmu_src.net_capture.contact.search import HASTE, make_search
 from fmu_src.net_capture.planes import INVERSE_MASS, MASS, P, X
 from tests.net_capture.memory import Bench, graph_of, planes_of
+from tests.plain import plain
 
+__all__ = ["plain"]
 TERMS = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic"}
 RADIUS, STEP, LONGEST = 3.0, 1e-4, 2000
 CENTRE = np.array([1.0, -2.0, 0.5])
@@ -66,6 +68,7 @@ def test_a_node_within_reach_is_looked_at_in_every_substep(bench):
     assert bench.search.clear_steps(bench.p, bench.work, 0, False) == 0
 
 
+@pytest.mark.usefixtures("plain")
 def test_the_largest_pull_is_that_of_a_node_where_most_threads_meet(bench):
     """As many threads as meet at a node at most, over the lightest mass."""
     memory = planes_of(bench.p, bench.work, bench.parts.terms)
@@ -76,6 +79,7 @@ def test_the_largest_pull_is_that_of_a_node_where_most_threads_meet(bench):
     assert bench.search.largest_pull(bench.p, bench.work) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.usefixtures("plain")
 def test_rows_are_looked_at_again_when_the_target_or_a_thread_gains(bench):
     p, hurries = bench.p, bench.search.hurries
     p.contact_haste = p.contact_force = p.contact_reckoned = 0.0
@@ -92,6 +96,7 @@ def test_rows_are_looked_at_again_when_the_target_or_a_thread_gains(bench):
     assert not hurries(p)
 
 
+@pytest.mark.usefixtures("plain")
 def test_rows_are_looked_at_again_when_the_winches_or_the_tether_begin_to_pull():
     """Of what pulls besides threads nothing was reckoned: once when it begins, and after a rest again."""
     bench = Bench(TERMS | {"closing": "winches", "tether": "slack"})
@@ -110,6 +115,7 @@ def test_rows_are_looked_at_again_when_the_winches_or_the_tether_begin_to_pull()
     assert not hurries(p)
 
 
+@pytest.mark.usefixtures("plain")
 def test_rows_are_looked_at_again_when_a_tether_that_drags_begins_to_pull():
     bench = Bench(TERMS | {"tether": "dragging"})
     p, hurries = bench.p, make_search(bench.parts, LONGEST).hurries

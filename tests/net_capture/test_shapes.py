@@ -60,10 +60,13 @@ def directions(count):
     return np.column_stack([np.sqrt(1.0 - z * z) * np.cos(turn), np.sqrt(1.0 - z * z) * np.sin(turn), z])
 
 
+DIRECTIONS = directions(4000)
+
+
 def far_plane(shape, size, point):
     """Signed distance of a point from a convex body, and its normal: the largest n . x - h(n) over all planes that
     touch the body, h its support function."""
-    start = directions(4000)
+    start = DIRECTIONS
     axes = np.vstack([np.eye(3), -np.eye(3)])
     beyond = start @ point - support(shape, size, start)
 
@@ -158,7 +161,7 @@ def body(request):
     return made
 
 
-def points(body, count=25):
+def points(body, count=15):
     """Random points in and around it, and some on its axes."""
     rng = np.random.default_rng(5)
     half = np.array(body.checks.half(body.values))
@@ -184,7 +187,7 @@ def test_distance_and_normal_are_those_of_the_farthest_plane(body):
 
 def test_normal_is_the_gradient_of_the_distance(body):
     step = 1e-5
-    for point in points(body)[:25]:
+    for point in points(body, 25)[:25]:
         _, normal = body.distance(point)
         slope = [(body.distance(point + d)[0] - body.distance(point - d)[0]) / (2.0 * step) for d in step * np.eye(3)]
         np.testing.assert_allclose(slope, normal, atol=1e-4)

@@ -8,6 +8,7 @@ from fmu_src.net_capture.planes import LANES, SHOWN, SHOWN_RATE, STRIP_WORDS
 from fmu_src.net_capture.tensions import make_tensions
 from orbital.kernel import kernel
 from tests.net_capture.laid import Layer
+from tests.plain import plainly
 
 SHAPES = {
     "square": {"net.side": 8.0, "net.mesh": 2.0, "net.segments": 2},
@@ -41,8 +42,8 @@ def strung():
     random = np.random.default_rng(3)
     laid.planes[SHOWN : SHOWN + 3] += 0.3 * random.standard_normal(laid.planes[SHOWN : SHOWN + 3].shape)
     laid.planes[SHOWN_RATE : SHOWN_RATE + 3] = random.standard_normal(laid.planes[:3].shape)
-    shown(laid.record, laid.work)
-    return laid, again, count
+    plainly(shown)(laid.record, laid.work)
+    return laid, plainly(again), count
 
 
 def settled(shape, values, **rigged):

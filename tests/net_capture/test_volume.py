@@ -13,6 +13,7 @@ from orbital.kernel import kernel
 from tests.conftest import FREE
 from tests.net_capture.laid import Layer
 from tests.net_capture.memory import graph, nodes, shown
+from tests.plain import plainly
 
 
 def watcher(shape):
@@ -26,7 +27,7 @@ def watcher(shape):
 
     def as_meant(values):
         laid = layer.lay(values)
-        look(laid.record, laid.work)
+        plainly(look)(laid.record, laid.work)
         return laid, float(laid.p["net_volume"]), float(laid.p["net_surface"])
 
     return as_meant

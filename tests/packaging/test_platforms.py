@@ -216,21 +216,29 @@ def run_entry(entry, model, case):
 
 
 @pytest.mark.slow
-def test_two_builds_give_the_same_bytes(cache, compiled_anew, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("model", "terms", "others"),
+    [
+        ("reel_control", {}, {"motor": "lag"}),
+        pytest.param(SMALL, CASES[SMALL].terms, {**CASES[SMALL].terms, "reel": "linear"}, marks=pytest.mark.evidence),
+    ],
+)
+def test_two_builds_give_the_same_bytes(model, terms, others, cache, compiled_anew, tmp_path, monkeypatch):
     """Another folder, another cache, another order of hashes: the same FMU; other terms: another."""
-    first = platform_cases.build(SMALL, platforms.LINUX64, cache)
+    interface = MODELS[model].interface(terms)
+    first = builds.build(interface, cache, platform=platforms.LINUX64)
     monkeypatch.setenv("PYTHONHASHSEED", "12345")
-    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "zig"))
+    if model == SMALL:  # whose C library is then built anew
+        monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "zig"))
     monkeypatch.chdir(tmp_path)
     # the package is found from the project's folder, in a child process too
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
-    second = platform_cases.build(SMALL, platforms.LINUX64, tmp_path / "deeper" / "cache")
+    second = builds.build(interface, tmp_path / "deeper" / "cache", platform=platforms.LINUX64)
     assert second.read_bytes() == first.read_bytes()
     with zipfile.ZipFile(second) as content:
         everything = b"".join(content.read(n) for n in content.namelist())
     assert str(tmp_path).encode() not in everything
-    other = MODELS[SMALL].interface({**CASES[SMALL].terms, "reel": "linear"})
-    assert builds.fingerprint(other) != builds.fingerprint(MODELS[SMALL].interface(CASES[SMALL].terms))
+    assert builds.fingerprint(MODELS[model].interface(others)) != builds.fingerprint(interface)
 
 
 def small_fmu(path, **files):

@@ -9,8 +9,9 @@ import pytest
 from fmu_src import instance
 from fmu_src.catalogue import MODELS
 from fmu_src.instance import Instance
-from fmu_src.packaging import compile
+from fmu_src.packaging import compile, tools
 from tests import kernels
+from tests.conftest import CAPTURE, FREE
 
 MODEL = MODELS["reel_control"]
 
@@ -44,10 +45,12 @@ def test_what_could_not_be_made_is_made_by_the_next(tmp_path):
 @pytest.fixture
 def asked(monkeypatch, tmp_path):
     """Terms that were compiled since the start of a run of its own, which finds nothing in the user's cache."""
-    emit, asked = kernels.emit, []
+    emit, asked = kernels.emit_quickly, []
     for module, name in ((compile, "emit"), (instance, "entry_of")):
         monkeypatch.setattr(module, name, getattr(module, name))  # put back afterwards
-    monkeypatch.setattr(kernels, "emit", lambda model, terms, *to: (asked.append(dict(terms)), emit(model, terms, *to)))
+    monkeypatch.setattr(
+        kernels, "emit_quickly", lambda model, terms, *to: (asked.append(dict(terms)), emit(model, terms, *to))
+    )
     monkeypatch.setattr(kernels.builds, "kernels", lambda *_: None)
     kernels.share(tmp_path)
     return asked
@@ -64,6 +67,35 @@ def test_each_choice_of_terms_is_compiled_once(asked, tmp_path):
         assert (made["tension"] == 2.5) == (terms == {})
         compile.emit(MODEL, made.interface.terms, tmp_path / "model.ll", tmp_path / "kernels")
     assert asked == [{}, {"motor": "lag"}]
+
+
+@pytest.mark.parametrize(
+    ("model", "before", "terms"),
+    [
+        ("reel_control", {"motor": "lag"}, {}),
+        # in its text are numbers that numba gave to types
+        pytest.param("net_capture", FREE, CAPTURE, marks=pytest.mark.evidence),
+    ],
+)
+def test_the_text_is_that_of_a_process_that_begins_with_nothing(model, before, terms, tmp_path):
+    """Whatever the one that compiled it has compiled before."""
+    made = []
+    quickly = kernels.emit_quickly
+    for k, (emit, chosen) in enumerate(((quickly, before), (quickly, terms), (kernels.emit, terms))):
+        interface = MODELS[model].interface(chosen)
+        emit(interface.model, interface.terms, tmp_path / f"{k}.ll", tmp_path / "kernels")
+        made.append((tmp_path / f"{k}.ll").read_text())
+    assert made[1] == made[2]
+    assert made[0] != made[1]
+
+
+def test_what_cannot_be_compiled_says_why(tmp_path):
+    with pytest.raises(
+        tools.BuildError,
+        match=r"compiling the kernels of reel_control failed:(.|\n)*no kernel implements motor = 'none such'",
+    ):
+        kernels.emit_quickly(MODEL, {"motor": "none such"}, tmp_path / "x.ll", tmp_path / "kernels")
+    kernels.emit_quickly(MODEL, MODEL.interface({}).terms, tmp_path / "x.ll", tmp_path / "kernels")
 
 
 def test_a_model_of_a_tests_own_is_compiled_where_it_is(asked):

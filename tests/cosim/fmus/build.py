@@ -13,9 +13,12 @@ from pathlib import Path
 import fmpy
 
 from dcone_cosim.interface_kit import write_template
+from fmu_src.packaging.platforms import host
 
 SOURCE = Path(__file__).with_name("misbehaving.c")
 HEADERS = Path(fmpy.__file__).parent / "c-code"
+TARGET = host().places[0].targets[0].triple
+"""That of our own FMUs, as they are linked: for another zig would first build another C library."""
 FLUSHED = '    if (s->start + s->time < flushed - 1e-9) return refuse(i, "that state has been thrown away");\n'
 SHIM = {
     "IGNORES_STATE": [("    memcpy(i->m.values, s + 1, block());\n", "")],  # it restores nothing
@@ -90,7 +93,8 @@ def _compiled(phase: str, switches: tuple[str, ...]) -> tuple[str, bytes]:
         binary = source / "it.so"
         subprocess.run(
             [
-                *(sys.executable, "-m", "ziglang", "cc", "-std=c99", "-O1", "-fno-sanitize=undefined", "-shared"),
+                *(sys.executable, "-m", "ziglang", "cc", "-target", TARGET, "-std=c99", "-O1", "-s", "-shared"),
+                "-fno-sanitize=undefined",
                 *("-fPIC", "-Wall", "-Wextra", "-D_POSIX_C_SOURCE=200809L", f"-I{HEADERS}", f"-I{source}"),
                 *(f"-D{switch}" for switch in switches),
                 *(str(SOURCE), str(source / "fmu.c"), "-lm", "-o", str(binary)),
