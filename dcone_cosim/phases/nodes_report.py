@@ -27,4 +27,9 @@ def of_nodes(phase: str, result: PhaseResult) -> Iterator[Finding]:
     yield Finding(phase, "line_target_tension", "largest tension at the target (of rows)", at_target, "N")
     bowed = float(np.max(recorder["lumped.deflection"]))
     yield Finding(phase, "line_deflection", "farthest node from the straight line (of rows)", bowed, "m")
-    yield Finding(phase, "line_heat", "heat of the line's dashpots", recorder.last()["lumped.heat"], "J")
+    last = recorder.last()
+    if parted := int(last.get("lumped.parted_piece", 0)):
+        yield Finding(phase, "line_parted", "parted in the piece, counted from the chaser", parted)
+        lost = last["lumped.parted_energy"]
+        yield Finding(phase, "line_parted_energy", "energy lost that this piece had stored", lost, "J")
+    yield Finding(phase, "line_heat", "heat of the line's dashpots", last["lumped.heat"], "J")

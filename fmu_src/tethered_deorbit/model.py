@@ -12,7 +12,7 @@ from fmu_src.tethered_deorbit.acting import IDLE, together
 from fmu_src.tethered_deorbit.aocs import make_aocs
 from fmu_src.tethered_deorbit.appendage import make_appendage
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
-from fmu_src.tethered_deorbit.breaking import breakable
+from fmu_src.tethered_deorbit.breaking import ONE_PIECE, breakable
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.ends import ENDS, make_ends
 from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
@@ -96,13 +96,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     bodies = make_bodies(terms, environment.place, environment.gradient, layout.size, interface)
     spin = PAIR + ATTITUDE - 3 if terms["target"] != "point" else -1
     sights = Sights(layout.reel, spin, bodies.line, environment.frame)
-    reel = breakable(make_reel(terms["reel"], interface, sights), terms, bodies.line)
-    reel = releasable(reel, terms, interface)
-    watch = Watch()
+    reel, watch, parting = make_reel(terms["reel"], interface, sights), Watch(), ONE_PIECE
     if "lumped" in terms:
         for group, _, carried in MODEL.unfit(terms):
             raise ValueError(f"{MODEL.name}: nodes go with {group} = {' or '.join(carried)}, not {terms[group]!r}")
-        reel, bodies, watch = make_nodes(reel, bodies, environment, layout, interface)
+        reel, bodies, watch, parting = make_nodes(reel, bodies, environment, perturbing.beside, layout, interface)
+    reel = releasable(breakable(reel, terms, bodies.line, parting), terms, interface, parting.cut)
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)

@@ -40,6 +40,7 @@ class Perturbing(NamedTuple):
                                               centre, at a time since the start of the instance [s]
     differentiate(record, center, velocity)   the part of the potential in the rate of that
     acting                                    where light comes and goes
+    beside(record, state, offset, parting, rate)   as of `Disturbing`, after `add`
     """
 
     begin: Callable[..., Any] = nothing
@@ -47,6 +48,7 @@ class Perturbing(NamedTuple):
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
     acting: Acting = IDLE
+    beside: Callable[..., Any] = nothing
 
 
 @kernel
@@ -133,4 +135,4 @@ def make_perturbing(interface: Interface) -> Perturbing:
 
     begin = sky.forget_sky if looks else nothing
     told = differentiate if all_of_them.differentiate is not nothing else nothing
-    return Perturbing(begin, add, publish, told, acting)
+    return Perturbing(begin, add, publish, told, acting, all_of_them.beside)
