@@ -1,4 +1,4 @@
-"""What a tow whose line is of lumped nodes found along it: its lines of the summary."""
+"""What a tow whose line is of lumped nodes found along it, and one on a table: their lines of the summary."""
 
 from __future__ import annotations
 
@@ -10,6 +10,13 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.results import PhaseResult
 
 TOLD = {"lumped.peak_tension", "lumped.peak_piece", "lumped.target_tension", "lumped.deflection", "lumped.heat"}
+
+
+def of_table(phase: str, result: PhaseResult) -> Iterator[Finding]:
+    """What the friction of a table has taken."""
+    if "friction.loss" in result.recorder.names:
+        lost = result.recorder.last()["friction.loss"]
+        yield Finding(phase, "friction_loss", "energy that friction on the table has taken", lost, "J")
 
 
 def of_nodes(phase: str, result: PhaseResult) -> Iterator[Finding]:
