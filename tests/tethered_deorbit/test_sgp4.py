@@ -1,4 +1,4 @@
-"""The Earth's field against SGP4, an independent analytical theory, where its package is installed (`pip install sgp4`)."""
+"""The Earth's field against SGP4, an independent analytical theory, where that is installed (`pip install sgp4`)."""
 
 import math
 from typing import Any
