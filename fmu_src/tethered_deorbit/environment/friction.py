@@ -41,7 +41,7 @@ def rub(out: Array, velocity: Array, most: float, creep: float) -> float:
     factor = most / math.sqrt(square + creep * creep)
     for i in range(3):
         out[i] = -factor * velocity[i]
-    return factor * square
+    return float(factor * square)
 
 
 def make_friction(interface: Interface, layout: StateLayout) -> Rubbing:
