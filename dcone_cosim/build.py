@@ -470,6 +470,13 @@ def masses_after(capture: Mapping[str, float], terms: Mapping[str, str]) -> dict
     return {"chaser.mass": capture["chaser.mass"], "target.mass": capture["target.mass"] + catch_mass(capture, terms)}
 
 
+def line_mass(removal: Mapping[str, float], terms: Mapping[str, str]) -> float:
+    """Mass of the nodes of a tow's line [kg]; 0 of a massless one."""
+    from fmu_src.tethered_deorbit.nodes.cost import cost
+
+    return cost({"reel.length_offset": 0.0, **removal}).mass if "lumped" in terms else 0.0
+
+
 def shared_with_template() -> dict[str, str]:
     """The files of our own FMI interface that an FMU from the C template has as well, by name."""
     return {name: (SHIM / name).read_text(encoding="utf-8") for name in ("fmi2_log.h", "fmi2_absent.h")}

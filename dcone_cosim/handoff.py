@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -71,8 +71,8 @@ class Body:
 @dataclass(frozen=True)
 class Handoff:
     """What is handed over: the bodies before, the joined body, where the line is made fast on it [m] (3,), how far the
-    target reaches from its centre of mass [m], the removal's parameters, and the target's attitude, a unit quaternion
-    from body to orbital axes (4,)."""
+    target reaches from its centre of mass [m], the removal's parameters, the target's attitude, a unit quaternion
+    from body to orbital axes (4,), and the mass of a line that the chaser has no more in it [kg]."""
 
     chaser: Body
     target: Body
@@ -84,6 +84,7 @@ class Handoff:
     turning: Vector
     parameters: dict[str, float]
     attitude: Vector
+    drawn: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -194,6 +195,15 @@ def prepare(capture: Values, frame_rate: float) -> Handoff:
     vertex = _vector(capture, "vertex.position")
     parameters = pair_parameters(chaser, joint)
     return Handoff(chaser, target, catch, inner, joint, vertex, capture["target.reach"], turning, parameters, attitude)
+
+
+def line_drawn(handed: Handoff, mass: float) -> Handoff:
+    """The same with this mass [kg] taken from the chaser: of the nodes of its line, which no capture has apart.
+
+    Places and velocities stay; the removal lays the line out between its attachments.
+    """
+    chaser = replace(handed.chaser, mass=handed.chaser.mass - mass)
+    return replace(handed, chaser=chaser, parameters=pair_parameters(chaser, handed.joint), drawn=mass)
 
 
 def held_bodies(removal: Values) -> tuple[Body, Body]:

@@ -13,11 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dcone_cosim.fmu.component import Steppable
 from dcone_cosim.handoff import Handoff
 from dcone_cosim.ledger import LedgerRow
 
 ATTACHMENT = "target.attachment_distance"
 REST_LENGTH = "tether.rest_length"
+MASS = "lumped.mass"
+"""Output of a removal whose line has mass."""
 LINE_HELD = (ATTACHMENT, REST_LENGTH)
 """Parameters of a removal that say what line it has, as far as it has them."""
 
@@ -105,6 +108,20 @@ def attached_rows(line: Line, held: Mapping[str, float], attachment: np.ndarray,
         LedgerRow(LENGTH, "m", line.length, held[REST_LENGTH], 0.0, "", size),
         LedgerRow(SLACK, "m", line.length - line.reach, held[REST_LENGTH] - reach, 0.0, "", size),
     ]
+
+
+def drawn_rows(handed: Handoff, component: Steppable) -> list[LedgerRow]:
+    """The mass of the line's nodes, as the removal computes it; none where its line is massless.
+
+    An FMU of which only that is known has it beside what it was handed, which is told.
+    """
+    held = component.get([MASS])[MASS] if MASS in component.variables else 0.0
+    drawn, total = handed.drawn, handed.chaser.mass + handed.joint.mass + handed.drawn
+    if not (drawn > 0.0 or held > 0.0):
+        return []
+    name, added = "mass, nodes of the line, from the chaser", 0.0 if drawn > 0.0 else held
+    account = "added: the line of this FMU has mass, and the chaser keeps its own" if added else ""
+    return [LedgerRow(name, "kg", drawn, held, -added, account, total)]
 
 
 def line_rows(line: Line, given: Mapping[str, float], held: Mapping[str, float], distance: float) -> list[LedgerRow]:

@@ -47,6 +47,7 @@ from dcone_cosim.line import (
     SLACK,
     Line,
     attached_rows,
+    drawn_rows,
     line_parameters,
     line_rows,
 )
@@ -266,14 +267,12 @@ def close_ledger(record: HandoffRecord, component: Steppable) -> None:
         of_line = line_rows(record.line, record.line_parameters, held, float(np.linalg.norm(apart)))
     else:
         of_line = attached_rows(record.line, held, turning.attachment, apart)
+    of_line += drawn_rows(record.handed, component)
     record.rows = ledger(record.handed, held, turning, record.appendage) + of_line
     record.checks = _cross_check(record, component)
-    differing = [
-        f"{c.quantity}: handed over {c.given:.12g} {c.unit}, the removal computes {c.found:.12g} {c.unit}"
-        for c in record.checks
-        if not abs(c.found - c.given) <= c.tolerance
-    ]
-    require_closed(record.rows, differing)
+    wrong = (c for c in record.checks if not abs(c.found - c.given) <= c.tolerance)
+    text = "{0.quantity}: handed over {0.given:.12g} {0.unit}, the removal computes {0.found:.12g} {0.unit}"
+    require_closed(record.rows, [text.format(check) for check in wrong])
 
 
 def _cross_check(record: HandoffRecord, component: Steppable) -> list[Check]:

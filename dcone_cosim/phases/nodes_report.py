@@ -1,4 +1,4 @@
-"""What a tow whose line is of lumped nodes found along it: its lines of the summary."""
+"""What a tow whose line is of lumped nodes found along it, and one on a table: their lines of the summary."""
 
 from __future__ import annotations
 
@@ -10,6 +10,13 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.results import PhaseResult
 
 TOLD = {"lumped.peak_tension", "lumped.peak_piece", "lumped.target_tension", "lumped.deflection", "lumped.heat"}
+
+
+def of_table(phase: str, result: PhaseResult) -> Iterator[Finding]:
+    """What the friction of a table has taken."""
+    if "friction.loss" in result.recorder.names:
+        lost = result.recorder.last()["friction.loss"]
+        yield Finding(phase, "friction_loss", "energy that friction on the table has taken", lost, "J")
 
 
 def of_nodes(phase: str, result: PhaseResult) -> Iterator[Finding]:
@@ -27,4 +34,9 @@ def of_nodes(phase: str, result: PhaseResult) -> Iterator[Finding]:
     yield Finding(phase, "line_target_tension", "largest tension at the target (of rows)", at_target, "N")
     bowed = float(np.max(recorder["lumped.deflection"]))
     yield Finding(phase, "line_deflection", "farthest node from the straight line (of rows)", bowed, "m")
-    yield Finding(phase, "line_heat", "heat of the line's dashpots", recorder.last()["lumped.heat"], "J")
+    last = recorder.last()
+    if parted := int(last.get("lumped.parted_piece", 0)):
+        yield Finding(phase, "line_parted", "parted in the piece, counted from the chaser", parted)
+        lost = last["lumped.parted_energy"]
+        yield Finding(phase, "line_parted_energy", "energy lost that this piece had stored", lost, "J")
+    yield Finding(phase, "line_heat", "heat of the line's dashpots", last["lumped.heat"], "J")

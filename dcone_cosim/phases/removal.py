@@ -17,7 +17,15 @@ from dcone_cosim.errors import HANDOFF_FAILED, DconeError, FmuError, Interrupted
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, REMOVAL_SETS, mean_motion, prepare, without_recoil
+from dcone_cosim.handoff import (
+    CAPTURE_OUTPUTS,
+    CAPTURE_PARAMETERS,
+    REMOVAL_SETS,
+    line_drawn,
+    mean_motion,
+    prepare,
+    without_recoil,
+)
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
 from dcone_cosim.phases import (
@@ -326,6 +334,8 @@ class Removal(Tow):
         assert altitude is not None, "the contract asks for it"
         assert capture.located is not None, "it has handed over"
         handed = prepare(left, mean_motion(altitude))
+        if drawn := build.line_mass(phase.main.values, phase.main.terms):
+            handed = line_drawn(handed, drawn)  # it was on the reel
         line = line_of(handed, left.get(LINE, phase.setting(REST_LENGTH)))
         start = capture.origin + capture.located
         earlier = since_first_shot(run, stage.before.name)

@@ -299,7 +299,7 @@ def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
     rate = EARTH_MU / (EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"]) ** 3
     size = 1.5 * rate * reduced * float(columns["separation"].max()) ** 2
     along = columns["separation"] if evidence.terms.get("thrust") == "tether" else columns["relative.position[2]"]
-    heat = columns["lumped.heat"] if "lumped" in evidence.terms else 0.0
+    heat = columns["lumped.heat"] + columns["lumped.parted_energy"] if "lumped" in evidence.terms else 0.0
     energy = (columns["energy.relative"] + heat + reduced / chaser * force(evidence) * along) / size
     yield Criterion("jacobi", "integral of the relative motion above what it was", rise(energy), "1", ACCURATE, STABLE)
     if values["tether.damping_ratio"] == 0.0 or "lumped" in evidence.terms:

@@ -15,7 +15,7 @@ from dcone_cosim.findings import Finding
 from dcone_cosim.phases import lowering, passive, released
 from dcone_cosim.phases.chaser_report import of_chaser
 from dcone_cosim.phases.end import of_end
-from dcone_cosim.phases.nodes_report import of_nodes
+from dcone_cosim.phases.nodes_report import of_nodes, of_table
 from dcone_cosim.phases.tension import last_orbit
 from dcone_cosim.results import PhaseResult, RunResult
 
@@ -75,6 +75,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
     if not len(recorder):
         return
     yield from _of_tension(phase, result)
+    yield from of_table(phase, result)
     yield from of_nodes(phase, result)
     last = recorder.last()
     if last.get("break.broken"):

@@ -39,6 +39,8 @@ from dcone_cosim.phases.phase import Stage
 from dcone_cosim.phases.removal import EACH, RELATIVE, Tow
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
+from dcone_cosim.scene.mistakes import Mistake
+from dcone_cosim.scene.toml_lines import given_at
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.rotations import from_matrix, multiply
 
@@ -46,6 +48,7 @@ BODIES = ("chaser", "target")
 AXES = ("x", "y", "z")
 TENSION = "tether.tension"
 EPOCH = "orbit.epoch"
+NODES = "lumped"
 SPIN = tuple(f"target.spin{each}" for each in EACH)
 TURNED = (*(f"target.attitude[{i}]" for i in (1, 2, 3, 4)), *(f"target.rate{each}" for each in EACH))
 ROUNDING = 8.0 * 2.0**-52
@@ -218,6 +221,14 @@ class SecondTow(Tow):
     takes_too = (ATTACHMENT, EPOCH, *TURNING_SETS, *CENTER, *SHAPE.values(), *SPIN, *TURNED)
     tugs_file = "second_tow_tugs"
     figure_names = ("second_tow_orbital_radius.png", "second_tow_tether_tension.png")
+
+    def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
+        """Those of every tow; the mass of a line of nodes would come from nowhere, or be gone."""
+        yield from super().value_faults(before, own, tables)
+        for phase in (before, own):
+            if phase is not None and NODES in phase.main.terms:
+                text = "has mass, which is not handed over from one tow to the next; leave it out"
+                yield Mistake((phase.name, NODES), given_at(tables, (phase.name, NODES)), text)
 
     def values_taken(self, before: PhaseScene) -> dict[str, float]:
         return {name: value for body in BODIES if (value := before.setting(name := f"{body}.mass")) is not None}

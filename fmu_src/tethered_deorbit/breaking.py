@@ -10,18 +10,22 @@ from fmu_src.tethered_deorbit.acting import Acting, together
 from fmu_src.tethered_deorbit.faults import blame
 from fmu_src.tethered_deorbit.interface import BROKE
 from fmu_src.tethered_deorbit.law import Reel
+from fmu_src.tethered_deorbit.nodes.parting import Parting
 from fmu_src.tethered_deorbit.parted import make_parted
 from orbital.kernel import kernel
 from orbital.vectors import Array
 
+ONE_PIECE = Parting()
 REACHED = 1.0 - 1.0e-6
 """Share of the strength from which on it is exceeded, to the accuracy with which that instant is located."""
 
 
-def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) -> Reel:
+def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any], parting: Parting = ONE_PIECE) -> Reel:
     """The law of a line that breaks, if the scene says so; else the law as it is.
 
     line          kernel of `Bodies`
+    parting       of a line of nodes: it breaks where the piece that pulls hardest exceeds the strength, taut or not,
+                  and a peak within a step that the ends of the step do not show is missed
 
     The instant is found within the step, also where only a peak exceeds the strength. A broken line has no onset and is
     never taut, whatever the inputs.
@@ -31,6 +35,7 @@ def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) ->
     """
     if "break" not in terms:
         return reel
+    bears, pieces = parting.bears, parting.pieces
 
     @kernel
     def begin(record: Any, state: Array) -> int:
@@ -43,6 +48,14 @@ def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) ->
         r.break_broken = 0
         r.break_time = 0.0
         return 0
+
+    @kernel
+    def bears_still(record: Any, state: Array, since: float) -> bool:
+        """Whether a line of nodes has broken, or bears its load.
+
+        Checked  tests/tethered_deorbit/test_nodes_parted.py
+        """
+        return bool(record[0].state_broken) or bool(bears(record, state, since))
 
     @kernel
     def limit(record: Any) -> float:
@@ -60,18 +73,23 @@ def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) ->
         Checked  tests/tethered_deorbit/test_ends.py
         """
         r = record[0]
-        if r.state_broken or not (by_state and r.state_taut):
-            return 0
         # it may be another part that is concerned
-        reel.see(record, state)
-        _, length, speed = line(record, state)
-        if not reel.tension(record, length, speed, 0.0) >= REACHED * r.break_strength:
-            return 0
+        if pieces:
+            if bears_still(record, state, 0.0):
+                return 0
+        else:
+            if r.state_broken or not (by_state and r.state_taut):
+                return 0
+            reel.see(record, state)
+            _, length, speed = line(record, state)
+            if not reel.tension(record, length, speed, 0.0) >= REACHED * r.break_strength:
+                return 0
         r.break_broken = 1
         r.break_time = time
         if not r.break_flies_on:
             return blame(record, BROKE, 0, r.break_strength)
         r.state_broken = 1
+        parting.tear(record, state)
         return 0
 
     @kernel
@@ -82,5 +100,5 @@ def breakable(reel: Reel, terms: Mapping[str, str], line: Callable[..., Any]) ->
         """
         return bool(record[0].state_broken != 0)
 
-    breaking = Acting(begin=begin, limit=limit, act=act)
+    breaking = Acting(begin=begin, holds=bears_still, act=act) if pieces else Acting(begin=begin, limit=limit, act=act)
     return make_parted(reel, parted)._replace(acting=together((breaking, reel.acting)))

@@ -27,7 +27,16 @@ from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import APPENDAGE, ATTACHED, NOT_OF_A_BODY, POINT_TARGET, THRUSTER, rigid_body
 from fmu_src.tethered_deorbit.node_rows import NODES
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, RELEASE, SCHEMES
-from fmu_src.tethered_deorbit.orbit_rows import AIR, ELECTRODYNAMIC, OBLATENESS, POWER, SHADOW, SUNLIGHT, THIRD_BODIES
+from fmu_src.tethered_deorbit.orbit_rows import (
+    AIR,
+    ELECTRODYNAMIC,
+    FRICTION,
+    OBLATENESS,
+    POWER,
+    SHADOW,
+    SUNLIGHT,
+    THIRD_BODIES,
+)
 from fmu_src.tethered_deorbit.reel_rows import REELS
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.surface import NO_BODY
@@ -375,6 +384,7 @@ MODEL = Model(
         "engine": ENGINES,
         "plume": PLUME,
         "environment": ENVIRONMENTS,
+        "friction": FRICTION,
         "oblateness": OBLATENESS,
         "air": AIR,
         "third_bodies": THIRD_BODIES,

@@ -66,6 +66,7 @@ def layout_of(terms: Mapping[str, str], moved: int, gathered: int) -> StateLayou
     turning = sum(terms[role] != "point" for role in ("target", "chaser"))
     if "lumped" in terms:
         moved, gathered = moved + MOVED, gathered + GATHERED
+    gathered += "friction" in terms
     return state_layout(turning, "aocs" in terms, "burn" in terms or "engine" in terms, moved, gathered)
 
 

@@ -12,10 +12,11 @@ from fmu_src.tethered_deorbit.acting import IDLE, together
 from fmu_src.tethered_deorbit.aocs import make_aocs
 from fmu_src.tethered_deorbit.appendage import make_appendage
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
-from fmu_src.tethered_deorbit.breaking import breakable
+from fmu_src.tethered_deorbit.breaking import ONE_PIECE, breakable
 from fmu_src.tethered_deorbit.derivatives import make_differentiate
 from fmu_src.tethered_deorbit.ends import ENDS, make_ends
 from fmu_src.tethered_deorbit.environment import FIELDS, make_environment
+from fmu_src.tethered_deorbit.environment.friction import telling
 from fmu_src.tethered_deorbit.environment.perturbed import make_perturbing
 from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
@@ -67,6 +68,7 @@ IMPLEMENTED = {
     "break": ("breaks",),
     "release": ("time", "altitude", "perigee"),
     "level": ("settled", "event_map", "averaged"),
+    "friction": ("coulomb",),
     "oblateness": ("J2", "J4"),
     "air": ("exponential", "nrlmsis"),
     "third_bodies": ("sun_and_moon", "sun", "moon"),
@@ -89,20 +91,22 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     interface = MODEL.interface(terms)
     terms = interface.terms
     check_implemented(MODEL, IMPLEMENTED, terms)
-    environment, perturbing = make_environment(terms["environment"], interface), make_perturbing(interface)
+    environment = make_environment(terms["environment"], interface)
     command_slot = next(interface.references[name] for name in INPUTS if name in interface.references)
     limits = make_limits(interface, *LIMITED)
     layout = layout_of(terms, *components(terms["reel"]))
+    perturbing = make_perturbing(interface, layout)
     bodies = make_bodies(terms, environment.place, environment.gradient, layout.size, interface)
     spin = PAIR + ATTITUDE - 3 if terms["target"] != "point" else -1
     sights = Sights(layout.reel, spin, bodies.line, environment.frame)
-    reel = breakable(make_reel(terms["reel"], interface, sights), terms, bodies.line)
-    reel = releasable(reel, terms, interface)
-    watch = Watch()
+    reel, watch, parting = make_reel(terms["reel"], interface, sights), Watch(), ONE_PIECE
     if "lumped" in terms:
         for group, _, carried in MODEL.unfit(terms):
             raise ValueError(f"{MODEL.name}: nodes go with {group} = {' or '.join(carried)}, not {terms[group]!r}")
-        reel, bodies, watch = make_nodes(reel, bodies, environment, layout, interface)
+        reel, bodies, watch, parting = make_nodes(reel, bodies, environment, perturbing.beside, layout, interface)
+    reel = releasable(
+        breakable(telling(reel, terms, layout), terms, bodies.line, parting), terms, interface, parting.cut
+    )
     thrust = make_thrust(terms, environment.place, environment.along_track, bodies.along, layout, interface)
 
     aocs = make_aocs(terms, environment.frame, bodies.along, layout, interface)

@@ -14,15 +14,10 @@ DAMPED_AS = ("pair", "node")
 AS_PAIR, AS_NODE = range(2)
 
 NOT_WITH = (
-    "oblateness",
-    "air",
-    "third_bodies",
     "sunlight",
     "electrodynamic",
     "plume",
     "appendage",
-    "break",
-    "release",
     "level",
 )
 """Groups that know one massless piece alone."""
@@ -54,6 +49,9 @@ NODES = Group(
                      "integrator's steps end", 1.0),
                 Variable("lumped.peak_piece", "1", "output", "the piece that had it, counted from the chaser", 0,
                          kind="Integer", minimum=0, maximum=CAPACITY + 1),
+                Variable("lumped.parted_piece", "1", "output", "which has broken, or was cut, counted from the chaser; "
+                         "zero while the line is whole", 0, kind="Integer", minimum=0, maximum=CAPACITY + 1),
+                peak("lumped.parted_energy", "J", "that it had stored, and is lost"),
                 output("lumped.length", "m", "of the line along its pieces, stretched or slack", 10.0),
                 output("lumped.deflection", "m", "largest distance of a node from the straight line between the "
                        "attachments", 1.0),

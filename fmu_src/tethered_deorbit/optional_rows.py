@@ -349,8 +349,8 @@ LEVELS = Group(
             (
                 _now(4, "3: rigid dumbbell; 4: many revolutions at once"),
                 *_MAPPED,
-                parameter("level.average_tolerance", "1", "swing that the eccentricity forces, and square of the angle "
-                          "across the orbit's plane, up to which there are leaps", 1e-3, 0.0, 0.1),
+                parameter("level.average_tolerance", "1", "what a leap may err by, square of the angle across the "
+                          "orbit's plane included, up to which there are leaps", 1e-3, 0.0, 0.1),
                 output("level.averaged", "s", "time over which many revolutions were taken at once", 1000.0),
                 peak("level.average_error", "1", "largest of that at a leap so far"),
                 output("level.revolutions", "1", "so taken", 10.0),

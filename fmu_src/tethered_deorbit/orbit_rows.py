@@ -211,3 +211,26 @@ ELECTRODYNAMIC = Group(
     optional=True,
     follows=lambda terms, values: "dipole",
 )  # fmt: skip
+
+FRICTION = Group(
+    {
+        "coulomb": Term(
+            "a level table on which both bodies slide, and the nodes of a line that has any, with friction",
+            (
+                at_least_zero("friction.coefficient", "1", "of friction: ours, of air bearings", 1e-4, 10.0),
+                at_least_zero("friction.gravity", "m/s2", "that presses them on the table", 9.80665, 1e3),
+                positive("friction.creep", "m/s", "speed over which friction comes to its full value: what would stick "
+                         "creeps, more slowly than this at 0.7 of it", 1e-4, 10.0),
+                output("friction.chaser_force", "N", "on the chaser", 0.01),
+                output("friction.target_force", "N", "on the target", 0.01),
+                output("friction.loss", "J", "that friction has taken, since the start", 0.01),
+                state("state.rubbing[#][#]", "1", "room for vectors", shape=(4, 3)),
+            ),
+            excludes=("level",),
+            carries={"environment": ("none",), "target": ("point",), "chaser": ("point",)},
+            extremes=stress.FRICTION,
+        ),
+    },
+    optional=True,
+    follows=lambda terms, values: "coulomb",
+)  # fmt: skip

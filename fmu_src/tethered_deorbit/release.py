@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fmu_src.interface import Interface
 from fmu_src.tethered_deorbit.acting import Acting, together
 from fmu_src.tethered_deorbit.faults import blame
-from fmu_src.tethered_deorbit.idle import always, no_end
+from fmu_src.tethered_deorbit.idle import always, no_end, nothing
 from fmu_src.tethered_deorbit.interface import RELEASED_AT_START
 from fmu_src.tethered_deorbit.kinematics import perigee_radius
 from fmu_src.tethered_deorbit.law import Reel
@@ -19,8 +19,10 @@ from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
 
-def releasable(reel: Reel, terms: Mapping[str, str], interface: Interface) -> Reel:
+def releasable(reel: Reel, terms: Mapping[str, str], interface: Interface, cut: Callable[..., Any] = nothing) -> Reel:
     """The law of a line that is cut, if the scene says so; else the law as it is.
+
+    cut           kernel of `Parting`
 
     A line that is cut has no onset and is never taut, whatever the inputs; what it had stored is lost, as it is drawn
     out between two bodies that it no longer holds.
@@ -97,6 +99,7 @@ def releasable(reel: Reel, terms: Mapping[str, str], interface: Interface) -> Re
         r.state_released = 1
         r.release_released = 1
         r.release_time = time
+        cut(record, state)
         if r.release_stops_thrust:
             stop_thrust(record)
         return 0

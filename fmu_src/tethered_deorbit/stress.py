@@ -162,6 +162,10 @@ AIR = (
     Extreme("one body as thin as air", "it is blown away from the other", "longer",
             {"orbit.altitude": 400e3, "air.target_area": 1e4}, duration=HOUR),
 )  # fmt: skip
+FRICTION = (
+    Extreme("friction of rubber", "both stop within the line's slack, and creep", "pushes",
+            {"friction.coefficient": 1.0}, duration=5.0, macro_step=0.1),
+)  # fmt: skip
 MSIS = (
     Extreme("below the table of the air", "at 95 km, for a moment", "longer",
             {"orbit.altitude": 101e3, "air.chaser_area": 100.0}, duration=60.0, macro_step=5.0),

@@ -30,7 +30,8 @@ class Removal:
         self.variables = Instance(MODEL, terms).interface.references
         component: Any = self
         given: dict[str, Any] = dict(record.phase.main.parameters) | record.parameters(component)
-        given["appendage.rate"] += spoiled
+        if spoiled:
+            given["appendage.rate"] += spoiled
         self.instance = PlainInstance(MODEL, terms, given)
 
     def get(self, names: list[str]) -> dict[str, float]:

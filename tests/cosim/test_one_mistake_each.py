@@ -14,7 +14,7 @@ OF_LEVEL = "removal.lumped = a table: cannot go together with [removal.level]"
     ("scene", "setting", "told"),
     [
         ("lumped-tether", 'removal.level.detail="event_map"', OF_LEVEL),
-        ("lumped-tether", 'removal.break.strength="100 N"', OF_LEVEL.replace("level", "break")),
+        ("lumped-tether", 'removal.plume.face="4 m"', OF_LEVEL.replace("level", "plume")),
         (
             "lumped-tether",
             'removal.reel.law="linear"',

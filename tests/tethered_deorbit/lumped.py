@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from fmu_src.tethered_deorbit.bodies import make_bodies
 from fmu_src.tethered_deorbit.environment import make_environment
+from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from fmu_src.tethered_deorbit.layout import WIDTH, StateLayout, layout_of
 from fmu_src.tethered_deorbit.nodes.chain import Noded, make_nodes
@@ -73,16 +74,16 @@ def kernels() -> Noded:
     environment, where = make_environment("none", interface), layout()
     bodies = make_bodies(interface.terms, environment.place, environment.gradient, where.size, interface)
     reel = make_reel("locked", interface, Sights(where.reel, -1, bodies.line, environment.frame))
-    return make_nodes(reel, bodies, environment, where, interface)
+    return make_nodes(reel, bodies, environment, nothing, where, interface)
 
 
-def put_nodes(i: PlainInstance, places: Floats) -> None:
-    """Nodes elsewhere at the start, at rest relative to the target; places from there (N, 3) [m]."""
+def put_nodes(i: PlainInstance, places: Floats, rates: Floats | float = 0.0) -> None:
+    """Nodes elsewhere at the start; places and velocities from the target (N, 3) [m], [m/s]."""
     where, size = layout(), layout().size
     for row in range(3):
         state = i.work[row * size : (row + 1) * size]
         nodes = state[where.reel : where.reel + WIDTH * len(places)].reshape(-1, WIDTH)
-        nodes[:, :3], nodes[:, 3:] = places, 0.0
+        nodes[:, :3], nodes[:, 3:] = places, rates
 
 
 def momenta(i: PlainInstance) -> tuple[Floats, Floats]:

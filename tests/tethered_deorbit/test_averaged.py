@@ -97,7 +97,7 @@ def test_a_month_at_once_is_that_which_is_stepped() -> None:
     assert leaping["tether.impulse"] == pytest.approx(stepping["tether.impulse"], rel=5e-6)
     apart = leaping.array("center_position") - stepping.array("center_position")
     assert np.linalg.norm(apart) < 1e-7 * 29.0 * DAY * RATE * AXIS
-    assert leaping["level.average_error"] < 1e-5
+    assert leaping["level.average_error"] < 1e-4
 
 
 def eccentricity(i: Instance) -> np.ndarray:
@@ -108,7 +108,7 @@ def eccentricity(i: Instance) -> np.ndarray:
 def test_eccentricity_of_a_spiral() -> None:
     """Under a thrust along the track it grows as v^1.5 and stays where it points."""
     ends, before = [], 0.0
-    for allowed in (1e-2, 0.0):
+    for allowed in (0.1, 0.0):
         loose = {"solver.tolerance_orbit": 1e-3, "solver.tolerance_separation": 1e-6, "solver.tolerance_stretch": 1e-7}
         values = (
             TABLE_2 | loose | {"thrust.level": -0.03, "orbit.eccentricity": 5e-4, "level.average_tolerance": allowed}

@@ -1,10 +1,21 @@
 """A line of lumped nodes in orbit, against an integration of its own: absolute places in long double, by RK4."""
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 import pytest
 
-from orbital.constants import EARTH_MU
+from fmu_src.tethered_deorbit.environment.perturbed import make_perturbing
+from orbital.constants import (
+    EARTH_EQUATORIAL_RADIUS,
+    EARTH_J2,
+    EARTH_J3,
+    EARTH_J4,
+    EARTH_MU,
+    EARTH_ROTATION_RATE,
+    SUN_MU,
+)
 from tests.plain import PlainInstance, plain
 from tests.tethered_deorbit import lumped as pair
 from tests.validation import Validated, other_code
@@ -26,7 +37,8 @@ START = {
 class Independent:
     """Chaser, nodes and target as point masses at absolute places, chained by springs that pull and never push."""
 
-    def __init__(self, i: PlainInstance) -> None:
+    def __init__(self, i: PlainInstance, disturbed: Callable[[Longs, Longs], Longs] | None = None) -> None:
+        self.disturbed = disturbed
         state, (places, rates) = pair.state_of(i).astype(np.longdouble), pair.nodes_of(i)
         center, velocity, apart_by, parting = state[:12].reshape(4, 3)
         share = np.longdouble(pair.CHASER) / np.longdouble(pair.CHASER + pair.TARGET)
@@ -45,6 +57,8 @@ class Independent:
         pull = (tension / length)[:, None] * span
         a[:-1] += pull / self.mass[:-1]
         a[1:] -= pull / self.mass[1:]
+        if self.disturbed is not None:
+            a += self.disturbed(x, v)
         along = v[0] - x[0] * (x[0] @ v[0]) / (x[0] @ x[0])
         a[0] += THRUST * along / np.sqrt(along @ along) / self.mass[0]
         return a
@@ -82,3 +96,79 @@ def test_gravity_and_pull_in_orbit(validated: Validated) -> None:
             "m",
             abs=allowed,
         )
+
+
+AIR = {
+    "air.base_density": 1e-9,
+    "air.base_altitude": 800e3,
+    "air.scale_height": 50.0,
+    "air.chaser_area": 2.0,
+    "air.target_area": 1.0,
+}
+"""Air so dense, and thinning so fast over the line, that its difference between two nodes counts [SI]."""
+
+
+def harmonic(x: Longs, degree: int, strength: float) -> Longs:
+    """Acceleration by one zonal harmonic at places along rows [m/s^2], by the derivatives of Legendre's polynomials."""
+    r = np.sqrt((x * x).sum(axis=1))[:, None]
+    s = x[:, 2:] / r
+    legendre = np.polynomial.legendre.Legendre.basis
+    factor = EARTH_MU * np.longdouble(strength) * np.longdouble(EARTH_EQUATORIAL_RADIUS) ** degree / r ** (degree + 2)
+    above, own = (legendre(n).deriv().convert(kind=np.polynomial.Polynomial) for n in (degree + 1, degree))
+    pole = np.array([[0, 0, 1]], dtype=np.longdouble)
+    return factor * (above(s) * x / r - own(s) * pole)
+
+
+def dragged(x: Longs, v: Longs) -> Longs:
+    """Acceleration of chaser, nodes and target by the air of `AIR` [m/s^2], rows as of `Independent`."""
+    u = v - EARTH_ROTATION_RATE * np.column_stack([-x[:, 1], x[:, 0], 0 * x[:, 0]])
+    altitude = np.sqrt((x * x).sum(axis=1)) - EARTH_EQUATORIAL_RADIUS
+    density = AIR["air.base_density"] * np.exp((AIR["air.base_altitude"] - altitude) / AIR["air.scale_height"])
+    piece = LENGTH / (COUNT + 1)
+    of_node = [pair.DIAMETER * piece / (DENSITY * pair.SECTION * piece)] * COUNT
+    shown = np.array([AIR["air.chaser_area"] / pair.CHASER, *of_node, AIR["air.target_area"] / pair.TARGET])
+    speed = np.sqrt((u * u).sum(axis=1))
+    found: Longs = -(1.1 * shown * density * speed)[:, None] * u
+    return found
+
+
+def test_a_flattened_earth_and_the_air_act_on_nodes(validated: Validated) -> None:
+    """The same line on an orbit that both disturb; without either it would be off by micrometres and more."""
+    terms = {"oblateness": "J2", "air": "exponential", "thrust": "along_track"}
+    i = pair.lumped(COUNT, DENSITY, START | AIR, environment="central", **terms)
+    both, neither = Independent(i, lambda x, v: harmonic(x, 2, EARTH_J2) + dragged(x, v)), Independent(i)
+    only_air, only_flattened = Independent(i, dragged), Independent(i, lambda x, v: harmonic(x, 2, EARTH_J2))
+    i.step(6.0)
+    (places, _), off = pair.nodes_of(i), []
+    for peer in (both, only_air, only_flattened, neither):
+        peer.step(6)
+        off.append(np.abs(places - (peer.x[1:-1] - peer.x[-1]).astype(float)).max())
+    source = other_code("RK4 in long double, absolute places")
+    what = "three nodes in orbit over a flattened Earth, in air: places from the target"
+    validated(source, what, off[0], 0.0, "m", abs=1e-10)
+    assert min(off[1:]) > 1e-6
+
+
+@pytest.mark.parametrize(
+    ("group", "term"), [("oblateness", "J2"), ("oblateness", "J4"), ("air", "exponential"), ("third_bodies", "sun")]
+)
+def test_what_disturbs_a_node_against_long_double(group: str, term: str) -> None:
+    """What acts on a node less what acts on the target, by the difference of both in long double."""
+    values = START | (AIR if group == "air" else {})
+    i = pair.lumped(COUNT, DENSITY, values, environment="central", thrust="along_track", **{group: term})
+    state, (places, rates) = pair.state_of(i), pair.nodes_of(i)
+    found = np.zeros(3)
+    make_perturbing(i.interface).beside(i.record, state, places[1], rates[1], found)
+    both = Independent(i)
+    x = both.x[[0, 2, 4]]
+    if group == "oblateness":
+        a = harmonic(x, 2, EARTH_J2)
+        if term == "J4":
+            a += harmonic(x, 3, EARTH_J3) + harmonic(x, 4, EARTH_J4)
+    elif group == "air":
+        a = dragged(both.x, both.v)[[0, 2, 4]]
+    else:
+        apart = x - i.record[0].state_sun.astype(np.longdouble)
+        a = -np.longdouble(SUN_MU) * apart / np.sqrt((apart * apart).sum(axis=1))[:, None] ** 3
+    expected = (a[1] - a[2]).astype(float)
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-7 * np.abs(expected).max())

@@ -17,11 +17,15 @@ class Disturbing(NamedTuple):
     add(record, state, rate)                  to the rate under gravity; the Earth's axis, Sun and Moon are pointed to
     publish(record, time)                     outputs, from those of bodies and centre; the same
     differentiate(record, center, velocity)   its potential's part in the rate of `energy.orbital`
+    beside(record, state, offset, parting, rate)   to the acceleration of a node of the line from the target [m/s^2]
+                                              what acts on it less what acts on the target, after `add` of the same
+                                              state; its place and velocity from the target [m], [m/s], (3,) each
     """
 
     add: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
+    beside: Callable[..., Any] = nothing
 
 
 def together(parts: list[Disturbing]) -> Disturbing:
@@ -35,6 +39,7 @@ def _both(first: Disturbing, second: Disturbing) -> Disturbing:
         _in_turn(first.add, second.add),
         _published(first.publish, second.publish),
         _in_turn(first.differentiate, second.differentiate),
+        _beside(first.beside, second.beside),
     )
 
 
@@ -53,6 +58,23 @@ def _in_turn(first: Callable[..., Any], second: Callable[..., Any]) -> Callable[
         second(record, a, b)
 
     return in_turn
+
+
+def _beside(first: Callable[..., Any], second: Callable[..., Any]) -> Callable[..., Any]:
+    """Two kernels of a record and four vectors, one after the other."""
+    if first is nothing or second is nothing:
+        return second if first is nothing else first
+
+    @kernel
+    def both_beside(record: Any, state: Array, offset: Array, parting: Array, rate: Array) -> None:
+        """Both.
+
+        Checked  tests/tethered_deorbit/test_nodes_in_orbit.py
+        """
+        first(record, state, offset, parting, rate)
+        second(record, state, offset, parting, rate)
+
+    return both_beside
 
 
 def _published(first: Callable[..., Any], second: Callable[..., Any]) -> Callable[..., Any]:

@@ -16,7 +16,9 @@ from fmu_src.tethered_deorbit.acting import IDLE, Acting
 from fmu_src.tethered_deorbit.air_table import NAME
 from fmu_src.tethered_deorbit.environment import air, electrodynamic, msis, sky, sunlight, zonals
 from fmu_src.tethered_deorbit.environment.disturbing import Disturbing, together
+from fmu_src.tethered_deorbit.environment.friction import make_friction
 from fmu_src.tethered_deorbit.idle import nothing
+from fmu_src.tethered_deorbit.layout import StateLayout
 from fmu_src.tethered_deorbit.turning import turn_vectors_back
 from orbital.kernel import kernel
 from orbital.vectors import Array
@@ -40,6 +42,7 @@ class Perturbing(NamedTuple):
                                               centre, at a time since the start of the instance [s]
     differentiate(record, center, velocity)   the part of the potential in the rate of that
     acting                                    where light comes and goes
+    beside(record, state, offset, parting, rate)   as of `Disturbing`, after `add`
     """
 
     begin: Callable[..., Any] = nothing
@@ -47,6 +50,7 @@ class Perturbing(NamedTuple):
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
     acting: Acting = IDLE
+    beside: Callable[..., Any] = nothing
 
 
 @kernel
@@ -64,9 +68,23 @@ def point_axis(record: Any, elapsed: float) -> None:
     turn_vectors_back(record, -elapsed, pole, 3)
 
 
-def make_perturbing(interface: Interface) -> Perturbing:
-    """The kernels of what is named among `GROUPS`; ValueError where there is no orbit to disturb."""
+def make_perturbing(interface: Interface, layout: StateLayout | None = None) -> Perturbing:
+    """The kernels of a table, which asks for the layout, or of what is named among `GROUPS`; ValueError where there is
+    no orbit to disturb."""
     terms = interface.terms
+    if "friction" in terms and layout is not None:
+        rubbing = make_friction(interface, layout)
+        add_friction = rubbing.disturbing.add
+
+        @kernel
+        def slide(record: Any, state: Array, rate: Array, since: float, elapsed: float) -> None:
+            """See `Perturbing`.
+
+            Checked  tests/tethered_deorbit/test_friction.py
+            """
+            add_friction(record, state, rate)
+
+        return Perturbing(add=slide, acting=rubbing.acting, beside=rubbing.disturbing.beside)
     named = [group for group in GROUPS if group in terms]
     if not named:
         return Perturbing()
@@ -133,4 +151,4 @@ def make_perturbing(interface: Interface) -> Perturbing:
 
     begin = sky.forget_sky if looks else nothing
     told = differentiate if all_of_them.differentiate is not nothing else nothing
-    return Perturbing(begin, add, publish, told, acting)
+    return Perturbing(begin, add, publish, told, acting, all_of_them.beside)

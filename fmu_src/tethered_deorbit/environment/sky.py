@@ -117,6 +117,25 @@ def add_attraction(record: Any, state: Array, rate: Array, body: Array, mu: floa
         rate[9 + i] += target[i] - chaser[i]
 
 
+@kernel
+def attraction_beside(record: Any, state: Array, offset: Array, rate: Array, body: Array, mu: float) -> None:
+    """Add that of a distant body on a node less that on the target [m/s^2], without cancellation: see `Disturbing`.
+
+    body          its place                                      [m]        (3,)
+    mu            its gravitational parameter                    [m^3/s^2]
+
+    Source   `orbital.twobody.differential_gravity`
+    Checked  tests/tethered_deorbit/test_nodes_in_orbit.py
+    """
+    r = record[0]
+    found, place = r.state_perturbing[0], r.state_perturbing[3]
+    for i in range(3):
+        place[i] = state[i] + r.state_chaser_share * state[6 + i] - body[i]
+    differential_gravity(found, place, offset, mu)
+    for i in range(3):
+        rate[i] += found[i]
+
+
 def make_attraction(which: str) -> Disturbing:
     """The gravity of `sun`, `moon`, or `sun_and_moon`; after `point_sky`."""
     sun, moon = which != "moon", which != "sun"
@@ -133,4 +152,16 @@ def make_attraction(which: str) -> Disturbing:
         if moon:
             add_attraction(record, state, rate, r.state_moon, MOON_MU)
 
-    return Disturbing(add=add)
+    @kernel
+    def beside(record: Any, state: Array, offset: Array, parting: Array, rate: Array) -> None:
+        """See `Disturbing`.
+
+        Checked  tests/tethered_deorbit/test_nodes_in_orbit.py
+        """
+        r = record[0]
+        if sun:
+            attraction_beside(record, state, offset, rate, r.state_sun, SUN_MU)
+        if moon:
+            attraction_beside(record, state, offset, rate, r.state_moon, MOON_MU)
+
+    return Disturbing(add=add, beside=beside)

@@ -120,7 +120,21 @@ def make_zonals(acceleration: Any, difference: Any, energy: Any) -> Disturbing:
         acceleration(own, center, r.state_pole)
         r.rate_energy_orbital -= r.state_total_mass * dot(velocity, own)
 
-    return Disturbing(add, publish, differentiate)
+    @kernel
+    def beside(record: Any, state: Array, distance: Array, parting: Array, rate: Array) -> None:
+        """See `Disturbing`.
+
+        Checked  tests/tethered_deorbit/test_nodes_in_orbit.py
+        """
+        r = record[0]
+        target, found = r.state_perturbing[0], r.state_perturbing[1]
+        for i in range(3):
+            target[i] = state[i] + r.state_chaser_share * state[6 + i]
+        difference(found, target, distance, r.state_pole)
+        for i in range(3):
+            rate[i] += found[i]
+
+    return Disturbing(add, publish, differentiate, beside)
 
 
 J2 = make_zonals(flattening, flattening_difference, energy_of_flattening)

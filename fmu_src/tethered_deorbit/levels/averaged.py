@@ -10,10 +10,15 @@ lambda the mean longitude, u the true one, e the vector of the eccentricity; and
 action stays while its angle goes on by 2 pi dt/P. Rate, period and mean tension are summed over the leap by Simpson's
 rule, the leap being short enough that n changes by `CHANGE` at most.
 
-What is given up, and told as `level.average_error`: what the eccentricity does to the swing, which it forces once a
-revolution to 2 e/((2 pi/(P n))^2 - 1); what swings across the plane, by the square of its angle. Where that exceeds
-`level.average_tolerance`, where the tension comes near zero within a swing, where an end is within the leap, or a tank
-runs dry in it, there is no leap.
+What is given up, and told as `level.average_error`: what the eccentricity does to the swing,
+
+    phi'' = ... + e n^2 (2 sin u - (9/2) cos u sin 2 phi)
+
+which forces it once a revolution to d = (2 + (9/2) sin 2 phi) e/|(2 pi/(P n))^2 - 1| at most; a leap begins and ends
+anywhere in that, a tension changes by up to 1.4 of a swing's angle, and as much again is left to what the swing's own
+time does meanwhile: 6 d. And what swings across the plane, by the square of its angle. Where that exceeds
+`level.average_tolerance`, where a swing comes to take as long as a revolution, where the tension comes near zero within
+a swing, where an end is within the leap, or a tank runs dry in it, there is no leap.
 
 Source   Gauss's equations for a thrust along the track of a circle; `libration`
 Checked  tests/tethered_deorbit/test_averaged.py
@@ -51,6 +56,8 @@ from orbital.vectors import Array, cross, dot, norm
 
 CHANGE = 0.02
 """Share by which the orbit's rate changes in a leap at most."""
+FORCED = 6.0
+"""By how much a leap may err, over what is forced: see above."""
 MARGIN = 0.1
 """Least tension within a swing over its mean, below which a tug is taken to be near."""
 
@@ -189,10 +196,16 @@ def make_leap(derivative: Callable[..., Any], engine: bool, layout: StateLayout)
         least, largest = min(least, table[2, 6] * out[LEAST]), max(largest, table[2, 6] * out[LARGEST])
         period2, mean2, reduced = out[PERIOD], table[2, 6] * out[MEAN], table[2, 6]
         # the eccentricity forces the swing once a revolution, the more the nearer that is to a swing's own time
+        widest = min(abs(out[MIDDLE]) + out[WIDTH], 0.25 * math.pi)
+        forcing, side = 2.0 + 4.5 * math.sin(2.0 * widest), 0.0
         for place in range(3):
             period = period0 if place == 0 else period1 if place == 1 else period2
             ratio = 2.0 * math.pi / (period * table[place, 1])
-            error = max(error, 2.0 * eccentric / max(abs(ratio * ratio - 1.0), 1e-9) + across)
+            apart_from = ratio * ratio - 1.0
+            if apart_from * side < 0.0:
+                return now
+            side = apart_from
+            error = max(error, FORCED * forcing * eccentric / max(abs(apart_from), 1e-9) + across)
         if error > r.level_average_tolerance:
             return now
         swung = span / 6.0 * (1.0 / period0 + 4.0 / period1 + 1.0 / period2)

@@ -29,12 +29,14 @@ class Watch(NamedTuple):
 class Books(NamedTuple):
     """Kernels; see `Bodies` for the last two.
 
+    hardest(record, state, since) -> (tension, piece)   that pulls hardest, after the attachments are found [N]
     publish(record, state)                      outputs of the line; the attachments are in `state.ends`
     energy(record, state, turning) -> E         [J]
     differentiate(record, state, rate, turning, change) -> E'   rates of its outputs; power [W]
     """
 
     watch: Watch
+    hardest: Callable[..., Any]
     publish: Callable[..., Any]
     energy: Callable[..., Any]
     differentiate: Callable[..., Any]
@@ -231,4 +233,4 @@ def make_books(
                 mean_change[i] += mass * moving[i] / whole
         return float(total - whole * power_of(mean_of, mean_change, turning, change))
 
-    return Books(Watch(begin, note), publish, energy, differentiate)
+    return Books(Watch(begin, note), hardest, publish, energy, differentiate)

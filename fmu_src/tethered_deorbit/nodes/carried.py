@@ -10,7 +10,7 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.layout import WIDTH
 from fmu_src.tethered_deorbit.nodes.books import Books
-from fmu_src.tethered_deorbit.nodes.pieces import unloaded
+from fmu_src.tethered_deorbit.nodes.pieces import unloaded, whole
 from fmu_src.tethered_deorbit.tolerances import ROUNDING
 from fmu_src.tethered_deorbit.turning import add_turning_to, turn_vectors_back
 from orbital.kernel import kernel
@@ -78,6 +78,8 @@ def carried_by(
         there = seen(record, state, 0.0)
         find_ends(record, there)
         for piece in range(r.lumped_nodes + 1):
+            if not whole(record, piece):
+                continue
             length, _ = span(record, there, piece)
             rest, _ = unloaded(record, piece, r.state_since)
             if not length < rest:

@@ -10,6 +10,7 @@ target. Gravity differences are formed without cancellation. The bodies feel the
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.integrators.dop853 import reach
@@ -25,6 +26,7 @@ from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import GATHERED, MOVED, WIDTH, StateLayout
 from fmu_src.tethered_deorbit.nodes.books import Watch, make_books
 from fmu_src.tethered_deorbit.nodes.carried import carried_by
+from fmu_src.tethered_deorbit.nodes.parting import Parting, make_parting
 from fmu_src.tethered_deorbit.nodes.pieces import fastest, pull, slopes, stored_by_length, tune, unloaded
 from fmu_src.tethered_deorbit.nodes.places import make_lay, make_span
 from orbital.kernel import kernel
@@ -32,17 +34,25 @@ from orbital.vectors import Array, norm
 
 
 class Noded(NamedTuple):
-    """Law and bodies of a line of nodes, and what is noted of it."""
+    """Law and bodies of a line of nodes, what is noted of it, and how it parts."""
 
     reel: Reel
     bodies: Bodies
     watch: Watch
+    parting: Parting
 
 
 def make_nodes(
-    reel: Reel, bodies: Bodies, environment: Environment, layout: StateLayout, interface: Interface
+    reel: Reel,
+    bodies: Bodies,
+    environment: Environment,
+    beside: Callable[..., Any],
+    layout: StateLayout,
+    interface: Interface,
 ) -> Noded:
     """The kernels for a locked reel.
+
+    beside        kernel of `Perturbing`
 
     Checked  tests/tethered_deorbit/test_nodes.py
     """
@@ -189,6 +199,7 @@ def make_nodes(
             for i in range(3):
                 rate[at + i] = state[at + 3 + i]
             gravity(center, state[at : at + 3], rate[at + 3 : at + 6])
+            beside(record, state, state[at : at + 3], state[at + 3 : at + 6], rate[at + 3 : at + 6])
         rate[heat] = 0.0
         lightness = 1.0 / r.state_node_mass
         chaser_mass = r.state_chaser_share * r.state_total_mass
@@ -243,6 +254,8 @@ def make_nodes(
         state[heat] = 0.0
         find_ends(record, state)
         environment.frame(record, state[0:3], state[3:6])
+        record[0].lumped_parted_piece = 0
+        record[0].lumped_parted_energy = 0.0
         lay(record, state)
         return 0
 
@@ -263,4 +276,5 @@ def make_nodes(
         publish=publish,
         by_length=True,
     )
-    return Noded(law, carried_by(bodies, place, heat, span, find_ends, books), books.watch)
+    parts = make_parting(span, find_ends, books.hardest)
+    return Noded(law, carried_by(bodies, place, heat, span, find_ends, books), books.watch, parts)

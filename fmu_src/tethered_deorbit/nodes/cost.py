@@ -12,7 +12,7 @@ from fmu_src.tethered_deorbit.nodes import pieces
 from orbital import oscillators
 
 HOUR = 3600.0
-PER_STEP, PER_NODE = 3e-6, 1e-6
+PER_STEP, PER_NODE = 3.5e-6, 0.5e-6
 """Processor time of a step [s], and what a node adds."""
 
 reduced_mass = formula(oscillators.reduced_mass)

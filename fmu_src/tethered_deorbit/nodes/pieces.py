@@ -51,6 +51,26 @@ def unloaded(record: Any, piece: int, since: float) -> tuple[float, float]:
 
 
 @kernel
+def whole(record: Any, piece: int) -> bool:
+    """Whether a piece has neither broken nor been cut.
+
+    Checked  tests/tethered_deorbit/test_nodes_parted.py
+    """
+    return bool(record[0].lumped_parted_piece != piece + 1)
+
+
+@kernel
+def part(record: Any, piece: int, length: float, since: float) -> None:
+    """A piece of this length [m] pulls no more from now on; what it had stored is gone, and booked.
+
+    Checked  tests/tethered_deorbit/test_nodes_parted.py: energy
+    """
+    r = record[0]
+    r.lumped_parted_energy = stored(record, piece, length, since)
+    r.lumped_parted_piece = piece + 1
+
+
+@kernel
 def stiffness(record: Any, piece: int, length: float) -> float:
     """Stiffness [N/m] of a piece of an unloaded length [m].
 
@@ -72,7 +92,7 @@ def pull(record: Any, piece: int, length: float, rate: float, since: float) -> t
 
         T = max(0, f + tau f' (dl/dt - dl_0/dt))   f = k x^2/(2 t) up to a stretch of t, and from there k (x - t/2)
 
-    x is the stretch, t its part in the toe. Zero where x is not above zero.
+    x is the stretch, t its part in the toe. Zero where x is not above zero, and where the piece is not whole.
 
     length, rate  of the piece                                   [m], [m/s]
 
@@ -82,7 +102,7 @@ def pull(record: Any, piece: int, length: float, rate: float, since: float) -> t
     """
     rest, moving = unloaded(record, piece, since)
     stretch = length - rest
-    if not stretch > 0.0:
+    if not (stretch > 0.0 and whole(record, piece)):
         return 0.0, 0.0, 0.0
     toe = record[0].lumped_toe_strain * rest
     slope = stiffness(record, piece, rest)
@@ -133,7 +153,7 @@ def stored(record: Any, piece: int, length: float, since: float) -> float:
     """
     rest, _ = unloaded(record, piece, since)
     stretch = length - rest
-    if not stretch > 0.0:
+    if not (stretch > 0.0 and whole(record, piece)):
         return 0.0
     toe = record[0].lumped_toe_strain * rest
     firm = stiffness(record, piece, rest)

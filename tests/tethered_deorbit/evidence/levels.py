@@ -2,7 +2,8 @@
 
     python -m tests.tethered_deorbit.evidence.levels
 
-makes `levels.json` again, in some ten minutes on one core. Of each scene and level it holds: processor time in seconds
+makes `levels.json` again, in some ten minutes on one core; with names of scenes behind it, the rows of these alone, and
+`remade` says by which version. Of each scene and level it holds: processor time in seconds
 and over that of the followed tow; the largest error of times and peaks of tugs above 1 N, as far as they can
 be told one by one; errors of the impulse (that of the mean tension) and of what the axis fell by; the share of the
 time spent in each way, and the bounds that the level tells. Undamped tugs are compared as distributions: mean and 90th
@@ -16,6 +17,7 @@ speed       each level and each macro step of a damped day, over the followed on
 from __future__ import annotations
 
 import json
+import sys
 import time
 from collections.abc import Mapping
 from importlib.metadata import version
@@ -197,6 +199,13 @@ def speed() -> dict[str, Any]:
 
 
 def main() -> None:
+    if names := sys.argv[1:]:
+        stored = json.loads(RESULT.read_text(encoding="utf-8"))
+        for name in names:
+            stored["scenes"][name] = of_scene(name)
+            stored["remade"][name] = version("dcone-cosim")
+        RESULT.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
+        return
     result = {
         "command": COMMAND,
         "dcone-cosim": version("dcone-cosim"),
@@ -204,6 +213,7 @@ def main() -> None:
         "axis": axis_drift(),
         "arrivals": arrivals(),
         "scenes": {name: of_scene(name) for name in SCENES},
+        "remade": {},
     }
     RESULT.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
 
