@@ -53,7 +53,7 @@ it."""
 
 
 def make_settled(
-    derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places, sways: bool
+    derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places, sways: bool = False
 ) -> Level:
     """The kernels of the level for one set of equations, whose rate of the impulse is the tension.
 
