@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from fmu_src.interface import Group, Term, Variable
 from fmu_src.rows import choice, output, parameter, positive, rate, state, vector
+from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.layout import state_layout
 
 LARGEST = state_layout(2, wheels=True, spends=True, moved=2, gathered=2).size
@@ -107,6 +108,7 @@ APPENDAGE = Group(
                 state("state.appendage[#][#]", "1", "room for vectors", shape=(4, 3)),
                 state("state.appendage_inertia[#][#]", "kg.m2", "matrix of its inertia", shape=(3, 3)),
             ),
+            extremes=stress.APPENDAGE,
         ),
     },
     optional=True,

@@ -51,6 +51,7 @@ class Held(NamedTuple):
     bounces(record) -> bool                      whether such a line goes slack at the end of the step
     beyond(record, elapsed) -> J                 impulse of that vibration since the begin of the step [N s]
     span(record, first, last) -> (least, largest)   tension between two instants of the step [N]
+    sways                                        whether it is made fast on a body that turns
     """
 
     settled: Callable[..., Any] = never
@@ -60,6 +61,7 @@ class Held(NamedTuple):
     bounces: Callable[..., Any] = never
     beyond: Callable[..., Any] = zero
     span: Callable[..., Any] = no_place
+    sways: bool = False
 
 
 class Level(NamedTuple):
@@ -78,6 +80,7 @@ class Level(NamedTuple):
     put(record, settled)               whether the line is held
     publish(record)                    outputs of its own
     book(record)                       a step has been taken
+    sways                              whether what is missed falls with the sixth power of a step, else with the fourth
     """
 
     begin: Callable[..., Any] = nothing
@@ -90,6 +93,7 @@ class Level(NamedTuple):
     put: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
     book: Callable[..., Any] = nothing
+    sways: bool = False
 
 
 RESOLVED, UNHELD = Level(), Held()

@@ -277,8 +277,9 @@ _SETTLED = (
     state("state.settled_since", "s", "when it last settled"),
     state("state.times_settled", "1", "how often it has", kind="Integer"),
     state("state.next_look", "s", "when it may have settled, at the earliest"),
-    state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(4,)),
+    state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(6,)),
     state("state.course_span", "s", "over which that is drawn"),
+    state("state.course_bend[#]", "1", "second and third derivative of the last course, where it ended", shape=(2,)),
     state("state.moved_mass", "kg", "that the line moves at the begin of a settled step"),
 )  # fmt: skip
 

@@ -151,6 +151,18 @@ TURNING = (
 )  # fmt: skip
 """Of a target that turns."""
 
+APPENDAGE = (
+    Extreme("an appendage stopped from 60 deg/s", "what it had becomes spin of the whole", "longer",
+            {"appendage.rate": 1.047}, duration=600.0),
+    Extreme("an appendage of a gramme", "hardly there, at the end of a long boom", "longer",
+            {"appendage.mass": 1e-3, "appendage.inertia": (1e-6, 1e-6, 1e-6, 0.0, 0.0, 0.0),
+             "appendage.center": (30.0, 0.0, 0.0), "appendage.rate": 0.1}, duration=HOUR),
+    Extreme("an appendage that outweighs the rest", "nine tenths of the target's mass hang on its hinge", "longer",
+            {"appendage.mass": lambda values: 0.9 * values["target.mass"], "appendage.center": (0.1, 0.0, 0.0),
+             "appendage.hinge": (0.0, 0.0, 0.0), "appendage.rate": 0.1}, duration=HOUR),
+)  # fmt: skip
+"""Of an appendage that is held fast."""
+
 OBLATENESS = (
     Extreme("flattened, over the poles", "what the flattening's potential gives the orbit has to come back", "longer",
             {"orbit.inclination": 0.5 * math.pi}),

@@ -14,16 +14,20 @@ from orbital.vectors import Array, dot, norm
 
 ROUNDING = 4.0 * 2.220446049250313e-16
 """Share of what is bounded below which no tolerance goes."""
+SETTLED_SHARE = 0.01
+"""Square of the share of their errors with which attitudes count in a settled step: no vibration is shaken by them."""
 
 
 def make_squared_error(bodies: Bodies, held: Held) -> Callable[..., Any]:
     """Size of an error of the state in units of the tolerances."""
+    sways = held.sways
 
     @kernel
     def squared_error(record: Any, state: Array, error: Array) -> float:
         """Square of the error's size [-].
 
             sum of (e_R/tol_o)^2, (e_V/(tol_o n))^2, (e_rho/tol_s)^2, (e_rho'/(tol_s n))^2,
+            once a line that sways has settled, over a step h, (e_rho'/(tol_s max(p, 1/h)))^2 in place of the latter,
             and while taut, unless it is held, of the parts along the line, (e.u/tol_t)^2, (e'.u/(tol_t omega))^2,
             that of what the bodies count of e_rho' across it by their pace p, (e'_x/(tol_s p))^2,
             and what the bodies add for their attitudes
@@ -55,8 +59,14 @@ def make_squared_error(bodies: Bodies, held: Held) -> Callable[..., Any]:
             apart_rate = r.solver_tolerance_separation * bodies.pace(record, state) + ROUNDING * norm(state[9:12])
             square += max(0.0, across) / (apart_rate * apart_rate)
         else:
+            if r.state_taut:
+                pace = bodies.pace(record, state)
+                if sways:
+                    pace = max(pace, 1.0 / r.state_step)
+                apart_rate = r.solver_tolerance_separation * pace + ROUNDING * norm(state[9:12])
             square += dot(error[9:12], error[9:12]) / (apart_rate * apart_rate)
-        return float(square + bodies.squared_error(record, state, error))
+        of_attitudes = bodies.squared_error(record, state, error)
+        return float(square + (SETTLED_SHARE * of_attitudes if held.settled(record) else of_attitudes))
 
     return squared_error
 

@@ -31,7 +31,8 @@ FIRST_FREE_STEP = 0.05
 WIDEST_TURN = 0.25
 """Greatest angle by which the axes of a step may turn [rad]: inside the series of `turn_back`."""
 CAREFUL = 0.9
-"""Share of the growth that what a settled step has missed allows, which falls with its fourth power."""
+"""Share of the growth that what a settled step has missed allows: it falls with its fourth power, of bodies that turn
+with its sixth (taken as the eighth)."""
 SHORTEST = 32.0 * ROUNDING
 """Shortest step asked for, as a share of the time; half of it can no longer be told from rounding."""
 
@@ -73,6 +74,7 @@ def make_trajectory(
 
     longest_taut_step = make_longest_taut_step(scheme.reach, bodies.further)
     acts = acting is not IDLE
+    sways = level.sways
     moving, seen, last_seen = places.moving, bodies.seen, bodies.last_seen
 
     @kernel
@@ -197,7 +199,8 @@ def make_trajectory(
             step = level.leave(record, work, scheme.shorter_step(step, error), cap)
         r.state_next_step = scheme.next_step(step, error, r.state_error if math.isfinite(r.state_error) else 1.0)
         if missed > 0.0:
-            grown = max(1.0, CAREFUL / math.sqrt(math.sqrt(missed)))
+            root = math.sqrt(math.sqrt(missed))
+            grown = max(1.0, CAREFUL / (math.sqrt(root) if sways else root))
             r.state_next_step = min(r.state_next_step, grown * step)
         r.state_error = error
         stop(record, work, longest)

@@ -98,3 +98,11 @@ def test_another_rate_in_the_removal_is_seen(plain: None) -> None:
     component: Any = Removal(record, spoiled=1e-3)
     with pytest.raises(HandoffError, match=r"spin part(.|\n)*kinetic energy(.|\n)*appendage\.momentum"):
         close_ledger(record, component)
+
+
+def test_the_scene_that_is_shipped() -> None:
+    scene = load("held-panel")
+    assert not scene.cautions
+    main = scene.phases[1].main
+    assert main.terms["appendage"] == "frozen"
+    assert main.parameters["appendage.rate"] == pytest.approx(np.radians(4.0))

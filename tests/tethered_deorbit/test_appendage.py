@@ -5,7 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fmu_src.extremes import Extreme
 from fmu_src.instance import ModelFault
+from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.interface import EQUAL_VELOCITY, MODEL
 from tests.cosim.raw_world import Points
 from tests.plain import PlainInstance, plain
@@ -102,3 +104,22 @@ def test_a_point_has_none() -> None:
 
     with pytest.raises(ValueError, match="appendage needs a target that turns"):
         make_entry({"reel": "locked", "appendage": "frozen"})
+
+
+@pytest.mark.parametrize("extreme", stress.APPENDAGE, ids=lambda extreme: extreme.name)
+def test_at_its_extremes_the_motion_becomes_spin(plain: None, extreme: Extreme) -> None:
+    """What a stability report tries of it: the spin of all is that of the appendage about the target's centre."""
+    usual: dict[str, Any] = {"target.mass": 1000.0, "start.condition": EQUAL_VELOCITY}
+    given = {
+        name.replace(".", "_") if isinstance(value, tuple) else name: value
+        for name, value in extreme.given(usual).items()
+    }
+    i = PlainInstance(MODEL, FREE, usual | {"target_start_rate": (0.0, 0.0, 0.0)} | given)
+    inertia = i.array("appendage_inertia")
+    center, hinge = i.array("appendage_center"), i.array("appendage_hinge")
+    axis = i.array("appendage_axis") / np.linalg.norm(i.array("appendage_axis"))
+    speed = i["appendage.rate"] * np.cross(axis, center - hinge)
+    spin = i["appendage.rate"] * inertia[:3] * axis + i["appendage.mass"] * np.cross(center, speed)
+    assert i.array("target_spin") == pytest.approx(spin, rel=1e-12, abs=1e-15)
+    assert np.linalg.norm(spin) > 0.0
+    assert i["appendage.energy"] > 0.0

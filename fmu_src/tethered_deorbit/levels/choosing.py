@@ -12,8 +12,9 @@ from fmu_src.tethered_deorbit.layout import Places, StateLayout
 from fmu_src.tethered_deorbit.level import RESOLVED, UNHELD, Held, Level
 from fmu_src.tethered_deorbit.levels.averaged import make_averaged, make_leap
 from fmu_src.tethered_deorbit.levels.counted import counted
-from fmu_src.tethered_deorbit.levels.course import make_held
+from fmu_src.tethered_deorbit.levels.course import course, make_held
 from fmu_src.tethered_deorbit.levels.event_map import make_event_map, mapping
+from fmu_src.tethered_deorbit.levels.quintic import quintic_course
 from fmu_src.tethered_deorbit.levels.settled import make_settled
 from fmu_src.tethered_deorbit.optional_rows import POINTS_ONLY, SETTLING_LAWS, SETTLING_SCHEMES, not_mapped
 
@@ -33,11 +34,16 @@ def _settles(terms: Mapping[str, str]) -> bool:
     return "level" in terms and terms["solver"] in SETTLING_SCHEMES
 
 
+def _sways(terms: Mapping[str, str]) -> bool:
+    return any(terms[role] != "point" for role in ("target", "chaser"))
+
+
 def make_held_of(terms: Mapping[str, str], reel: Reel, bodies: Bodies) -> Held:
     """What a line is held by."""
     if not _settles(terms):
         return UNHELD
-    held = make_held(reel, bodies)
+    sways = _sways(terms)
+    held = make_held(reel, bodies, quintic_course if sways else course, sways)
     return mapping(held) if terms["level"] in POINTS_ONLY else held
 
 
@@ -55,7 +61,7 @@ def make_level(
     if not _settles(terms):
         return (counted(RESOLVED) if named in POINTS_ONLY else RESOLVED), never
     if named not in POINTS_ONLY:
-        return make_settled(derivative, reel, bodies, held, places), never
+        return make_settled(derivative, reel, bodies, held, places, _sways(terms)), never
     level = make_event_map(derivative, reel, bodies, held, places)
     if named != "averaged":
         return level, never

@@ -62,8 +62,8 @@ def slow_solution(
     out[3] = turn / stiffness
 
 
-def make_held(reel: Reel, bodies: Bodies) -> Held:
-    """The kernels for one elastic law of the line, `reel.at_rest`, and two bodies.
+def make_held(reel: Reel, bodies: Bodies, course: Callable[..., Any], sways: bool) -> Held:
+    """The kernels for one elastic law of the line, `reel.at_rest`, two bodies, and a course, of one that turns or not.
 
     Checked  tests/tethered_deorbit/test_settled.py
     """
@@ -99,7 +99,7 @@ def make_held(reel: Reel, bodies: Bodies) -> Held:
         _, speed, bend = course(record, elapsed)
         return rest + (tension - damping * speed) / stiffness, speed, bend
 
-    return Held(settled, tension, along)
+    return Held(settled, tension, along, sways=sways)
 
 
 def make_draw(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, places: Places) -> Callable[..., Any]:

@@ -105,7 +105,7 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
     here_state, slope_state, low = places.here, places.slope, places.low
     impulse = places.impulse
     settled = make_settled(derivative, reel, bodies, held, places)
-    draw, _, neglected, tolerance, off_course, _ = make_slow(derivative, reel, bodies, places)
+    draw, _, _, neglected, _, tolerance, off_course, _ = make_slow(derivative, reel, bodies, places)
 
     @kernel
     def pushes(record: Any, work: Array) -> float:

@@ -35,32 +35,60 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
 from fmu_src.tethered_deorbit.level import Held, Level
-from fmu_src.tethered_deorbit.levels.course import course
 from fmu_src.tethered_deorbit.levels.slow import make_slow
 from fmu_src.tethered_deorbit.tolerances import ROUNDING
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
-GAIN = 8.0
-"""A settled step is at least so many times as long as a resolved one, or it is not worth its preparation."""
+GAIN, SWAYING_GAIN = 8.0, 4.0
+"""A settled step is at least so many times as long as a resolved one, or it is not worth its preparation: of points,
+and of bodies that turn, whose vibration comes back before a longer one has paid."""
 SURE = 0.25
 """Share of what may be neglected that a line neglects at most as it settles, so that it does not go to and fro."""
 NEXT_LOOK = 30.0
 """Radians of the vibration after which the line is looked at, at the earliest."""
-LEFT_BY_CUBIC = 0.004
-"""What a cubic through four even points leaves of a smooth curve, over its own cubic term: 6 (1/81)/24, and a third
-more, where the curve does not turn within the step."""
+DRAWN_AGAIN = 1e4
+"""Tolerances up to which a line that seems to vibrate is looked at along the course just drawn, as its load hangs on
+it."""
 
 
-def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places) -> Level:
+def make_settled(
+    derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places, sways: bool = False
+) -> Level:
     """The kernels of the level for one set of equations, whose rate of the impulse is the tension.
+
+    sways         whether the load sways with a body that turns
 
     Checked  tests/tethered_deorbit/test_settled.py
     """
     begin_state, end_state = places.begin, places.end
     stages, size, last, impulse = places.stages, places.size, places.last, places.impulse
     line, seen = reel.at_rest, bodies.seen
-    draw, span_of, neglected, tolerance, off_course, shift = make_slow(derivative, reel, bodies, places)
+    slow = make_slow(derivative, reel, bodies, places, sways)
+    draw, course, span_of, neglected, left_over, tolerance, off_course, shift = slow
+    gain = SWAYING_GAIN if sways else GAIN
+
+    @kernel
+    def unbend(record: Any) -> None:
+        """The next course is drawn from a straight one.
+
+        Checked  tests/tethered_deorbit/test_settled_turning.py
+        """
+        record[0].state_course_bend[0] = 0.0
+        record[0].state_course_bend[1] = 0.0
+
+    @kernel
+    def bend(record: Any, elapsed: float) -> None:
+        """The next course is drawn from one with the bend that the present one has there.
+
+        elapsed       since the begin of the step                [s]
+
+        Checked  tests/tethered_deorbit/test_settled_turning.py
+        """
+        r = record[0]
+        c = r.state_course
+        _, _, r.state_course_bend[0] = course(record, elapsed)
+        r.state_course_bend[1] = 6.0 * c[3] + (24.0 * c[4] + 60.0 * c[5] * elapsed) * elapsed
 
     @kernel
     def put(record: Any, on: bool) -> None:
@@ -91,6 +119,8 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
         r = record[0]
         r.state_settled = 0
         r.state_next_look = time + NEXT_LOOK / r.state_frequency if r.state_taut else time
+        if sways:
+            unbend(record)
 
     @kernel
     def publish(record: Any) -> None:
@@ -123,16 +153,21 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
         _, _, _, stiffness, damping = line(record, 0.0)
         soonest = r.state_begin + NEXT_LOOK / r.state_frequency
         r.state_next_look = soonest if damping > 0.0 else math.inf
-        if limit < GAIN * cap or not damping > 0.0:
+        if limit < gain * cap or not damping > 0.0:
             return step
-        mass = draw(record, work, span_of(record, GAIN * cap))
+        mass = draw(record, work, span_of(record, gain * cap))
         longer, faster = off_course(record, work)
         amplitude = math.sqrt(longer * longer + mass / stiffness * faster * faster)
         least = tolerance(record)
+        if sways and least < amplitude <= DRAWN_AGAIN * least:
+            bend(record, 0.0)
+            mass = draw(record, work, span_of(record, gain * cap))
+            longer, faster = off_course(record, work)
+            amplitude = math.sqrt(longer * longer + mass / stiffness * faster * faster)
         if amplitude <= least and neglected(record, mass) <= SURE * least:
             r.state_settled_since = r.state_begin
             r.state_times_settled += 1
-            return float(GAIN * cap)
+            return float(gain * cap)
         r.state_settled = 0
         if amplitude > least:
             rate = min(0.5 * damping / mass, stiffness / damping)
@@ -151,7 +186,7 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
         Checked  tests/tethered_deorbit/test_settled.py: a load that sways
         """
         r = record[0]
-        if r.state_settled == 0 or step >= GAIN * cap:
+        if r.state_settled == 0 or step >= gain * cap:
             return step
         restart(record, r.state_begin)
         derivative(record, work[begin_state:end_state], work[stages : stages + size], 0.0)
@@ -195,8 +230,7 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
         rest, _, _, _, _ = line(record, 0.0)
         length, _, _ = held.along(record, work[last + impulse], r.state_step)
         stretch, _, _ = course(record, r.state_step)
-        span = r.state_course_span
-        left = abs(length - rest - stretch) + LEFT_BY_CUBIC * abs(r.state_course[3]) * span * span * span
+        left = abs(length - rest - stretch) + left_over(record)
         apart = r.solver_tolerance_separation + ROUNDING * norm(work[end_state + 6 : end_state + 9])
         return float(left / apart)
 
@@ -216,4 +250,17 @@ def make_settled(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, hel
         shift(state, x, y, z, length - there, speed - rate)
         return there, rate
 
-    return Level(begin, restart, look, prepare, missed, leave, place, put, publish)
+    @kernel
+    def book(record: Any) -> None:
+        """The next course begins with the bend with which this one ends, that of a line that vibrates with none.
+
+        Checked  tests/tethered_deorbit/test_settled_turning.py
+        """
+        r = record[0]
+        if r.state_settled == 1:
+            bend(record, r.state_step)
+        else:
+            unbend(record)
+
+    level = Level(begin, restart, look, prepare, missed, leave, place, put, publish)
+    return level._replace(book=book, sways=True) if sways else level
