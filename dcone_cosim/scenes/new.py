@@ -13,16 +13,21 @@ from contextlib import suppress
 from typing import Any
 
 from dcone_cosim import build
+from dcone_cosim.errors import InputError
 from dcone_cosim.phases import kind_of, kinds
 from dcone_cosim.scene.data import SHARED
 from dcone_cosim.scene.expected import ANY, Expected
-from dcone_cosim.scene.toml_lines import dotted
+from dcone_cosim.scene.toml_lines import Path, dotted, given_at
 from dcone_cosim.scenes.alike import filled
 from dcone_cosim.scenes.components import term_named
 from dcone_cosim.scenes.keys import (
+    COMPONENT_KEYS,
     COUPLING_KEYS,
     MEANING,
     OWN_MATERIALS,
+    RANGES,
+    SIZING,
+    SIZING_KEYS,
     SOLVER,
     SOLVER_KEYS,
     Key,
@@ -33,9 +38,11 @@ from dcone_cosim.scenes.keys import (
 )
 from dcone_cosim.scenes.lines import LINE_MEANING, OWN_KEYS, OWN_MEANING, keys_of
 from dcone_cosim.scenes.tables import EXAMPLE, entry_keys
+from dcone_cosim.scenes.text import put
 
 WIDTH = 120
-RESERVED = ("components", "coupling", "parameters")
+PARAMETERS = "parameters"
+RESERVED = ("components", "coupling", PARAMETERS)
 """Tables of a phase that are none of its model's."""
 INPUT = "an input, held at this value"
 SCHEMA = "dcone-schema.json"
@@ -45,13 +52,18 @@ SCHEMA = "dcone-schema.json"
 def new_scene(text: str, origin: str, name: str, schema: str = "", comments: Sequence[str] = ()) -> str:
     """Text of a scene begun from another.
 
+    What its table `parameters` says of a variable stands in the variable's own table here.
+
     text      of that other, which has passed every check
     origin    its name
     name      of the file this will be, for the advice at its top
     schema    path of a JSON schema for editors, "" for none
     comments  what else is to be known of it
+    Raises    `InputError` for a key of it that would be lost
     """
-    document = filled(tomllib.loads(text), [])
+    document = {
+        key: _in_place(table) if key in kinds() else table for key, table in filled(tomllib.loads(text), []).items()
+    }
     lines = [f"#:schema {schema}"] if schema else []
     lines += [
         f"# A scene begun from {origin!r}. Check it with `dcone validate {name}`, run it with `dcone run {name}`.",
@@ -65,20 +77,67 @@ def new_scene(text: str, origin: str, name: str, schema: str = "", comments: Seq
     ]
     present = [phase for phase in kinds() if phase in document]
     lines.append(_line("phases", _toml(document.get("phases", present)), MEANING["phases"]))
-    orbit = {key: known for key, known in orbit_keys().items() if _somewhere(document, f"{SHARED}.{key}")}
-    lines += ["", f"[{SHARED}]", *_table(document.get(SHARED, {}), orbit)]
-    given = document.get(SOLVER, {})
-    mark = "" if given else "# "
-    lines += ["", f"{mark}[{SOLVER}]"]
-    lines += [_option(key, given.get(key), known) for key, known in SOLVER_KEYS.items() if known.size != ANY]
+    given = document.get(SHARED, {})
+    orbit = {k: known for k, known in orbit_keys().items() if k in given or _somewhere(document, f"{SHARED}.{k}")}
+    lines += ["", f"[{SHARED}]", *_table(given, orbit)]
+    lines += _top(SOLVER, document, SOLVER_KEYS)
     lines += _materials(document.get(OWN_MATERIALS, {}))
+    lines += [*_top(SIZING, document, SIZING_KEYS), *_ranges(document.get(SIZING, {}).get(RANGES))]
     for place, phase in enumerate(present):
         lines += ["", *_phase(phase, document[phase], skip=kind_of(phase).taken_over if place else ())]
-    keys = handoff_keys(present[1:])
+    given = document.get("handoff", {})
+    keys = {**handoff_keys(present[1:]), **{key: known for key, known in handoff_keys().items() if key in given}}
     if keys:
-        given = document.get("handoff", {})
         lines += ["", "[handoff]", *(_option(key, given.get(key), known) for key, known in keys.items())]
-    return "\n".join(line.rstrip() for line in lines) + "\n"
+    text = "\n".join(line.rstrip() for line in lines) + "\n"
+    lost = sorted(dotted(path) for path in {*_leaves(document)} - {*_leaves(tomllib.loads(text))})
+    if lost:
+        raise InputError(f"{origin}: a scene begun from it would lose {', '.join(lost)}; copy the file instead")
+    return text
+
+
+def _leaves(table: Mapping[str, Any], above: Path = ()) -> Iterator[Path]:
+    """Paths of all that a table says. One that is empty says that a part is there, unless it is none of a model's."""
+    for key, value in table.items():
+        if isinstance(value, dict) and value:
+            yield from _leaves(value, (*above, key))
+        elif value not in ({}, []) or (above and key not in (*RESERVED, "connections", RANGES)):
+            yield (*above, key)
+
+
+def _in_place(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """A component's tables, with what its table `parameters` says put into the tables that have these keys; what it
+    says of the shared orbit holds for this component alone, and stays."""
+    found = {name: dict(table) if isinstance(table, dict) else table for name, table in tables.items()}
+    for name, inner in found.get("components", {}).items():
+        found["components"][name] = _in_place(inner)
+    told = found.pop(PARAMETERS, {})
+    for path in _leaves(told):
+        name = ".".join(map(str, path))
+        of_orbit = name.startswith(f"{SHARED}.")
+        put(found, (PARAMETERS, name) if of_orbit else tuple(name.split(".")), given_at(told, path))
+    return found
+
+
+def _top(name: str, document: Mapping[str, Any], keys: Mapping[str, Expected]) -> Iterator[str]:
+    """A table at the top; a comment where the scene does not have it."""
+    given, mark = document.get(name, {}), "" if name in document else "# "
+    yield from ("", f"{mark}[{name}]")
+    for key, known in keys.items():
+        if known.size != ANY:
+            yield _option(key, given.get(key), known)
+        elif key in given:
+            yield _line(key, _toml(given[key]), MEANING[key])
+
+
+def _ranges(given: Mapping[str, Any] | None) -> Iterator[str]:
+    if given is not None:
+        yield from ("", f"# {MEANING[RANGES]}", f"[{SIZING}.{RANGES}]", *_plain(given))
+
+
+def _plain(given: Mapping[str, Any]) -> Iterator[str]:
+    """Keys that no table describes."""
+    yield from (f"{dotted((key,))} = {_toml(value)}" for key, value in given.items())
 
 
 def _materials(given: Mapping[str, Any]) -> Iterator[str]:
@@ -157,11 +216,14 @@ def _component(
 ) -> Iterator[str]:
     """What a component of our models can be told, under the header of its table."""
     above, terms = dotted(path), _terms(model, tables)
+    yield from (_option(key, tables[key], known) for key, known in COMPONENT_KEYS.items() if key in tables)
     interface = model.interface(terms)
     rows = [row for row in build.settable(interface) if row.section != SHARED and row.name not in interface.follows]
-    rows = [row for row in rows if not build.scene_name(row).startswith(tuple(skip) or ("\0",))]
+    rows = [row for row in rows if _given(tables, row) or not build.scene_name(row).startswith(tuple(skip) or ("\0",))]
     own = {build.scene_name(row): _described(row) for row in rows if not row.key}
     yield from _table(tables, own)
+    if PARAMETERS in tables:
+        yield from ("", f"# {MEANING[PARAMETERS]}", f"[{above}.{PARAMETERS}]", *_plain(tables[PARAMETERS]))
     tables = {name: table for name, table in tables.items() if isinstance(table, dict) and name not in RESERVED}
     homes = {name: model.groups[name].table or name for name in terms}
     made = {
@@ -185,6 +247,10 @@ def _component(
     for name, group in model.groups.items():
         if name not in terms and name not in tables:
             yield from ("", *_left_out(above, name, group))
+
+
+def _given(tables: Mapping[str, Any], row: build.Variable) -> bool:
+    return given_at(tables, tuple(build.scene_name(row).split("."))) is not None
 
 
 def _selection(group: build.Group, term: str, mark: str = "") -> str:

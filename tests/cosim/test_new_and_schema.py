@@ -61,6 +61,50 @@ class TestNew:
                 }
         assert tried > (2 if origin == "deployment" else 5)  # it says nearly all that it has
 
+    def test_what_parameters_say_is_not_lost(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        """They were dropped, and the scene begun from that one shot at another speed without a word."""
+        text = find("table1-capture").read_text()
+        without = text.replace('\nspeed = "3 m/s"\n', "\n", 1)
+        assert without != text
+        told = '[capture.parameters]\n"bullets.speed" = "2.5 m/s"\nshot.roll = "5 deg"\n'
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / "theirs.toml").write_text(without + told)
+        path, _ = write_scene("mine", "theirs.toml")
+        mine, theirs = load(str(path)), load("theirs.toml")
+        assert mine.phases[0].main.parameters == theirs.phases[0].main.parameters
+        assert mine.phases[0].main.parameters["bullets.speed"] == 2.5
+        assert mine.phases == theirs.phases
+        assert path.read_text().count("\nspeed = ") == text.count("\nspeed = ")
+
+    def test_what_a_component_is_told_is_not_lost(self) -> None:
+        text = (
+            find("reel-control")
+            .read_text()
+            .replace('model = "reel_control"\n', 'model = "reel_control"\nisolate = true\n')
+        )
+        text += '\n[removal.components.controller.parameters]\nfeed_forward = "0.125 N"\n'
+        mine, theirs = (parse(one, "a", "a").phases[0] for one in (new_scene(text, "theirs", "mine.toml"), text))
+        assert mine == theirs
+        assert mine.others[0].parameters["feed_forward"] == 0.125
+
+    def test_what_stands_at_the_top_is_not_lost(self) -> None:
+        text = find("table2-deorbit").read_text() + (
+            '[solver]\naccuracy = "1 %"\nquantities = ["first_tug"]\n[handoff]\ncompare_without_recoil = false\n'
+            '[sizing]\nfactor_of_safety = 3.0\nflux_sizes = ["0.1 mm", "1 mm"]\n'
+            'flux_values = ["0.3 /(m2 yr)", "0.003 /(m2 yr)"]\n'
+            '[sizing.ranges]\n"removal.thrust.level" = ["0.01 N", "0.03 N"]\n'
+        )
+        mine, theirs = (parse(one, "a", "a", choose=False) for one in (new_scene(text, "theirs", "mine.toml"), text))
+        assert mine.sizing == theirs.sizing
+        assert mine.sizing["factor_of_safety"] == 3.0
+        assert list(mine.sizing["ranges"]) == ["removal.thrust.level"]
+        assert (mine.accuracy, mine.handoff) == (theirs.accuracy, theirs.handoff)
+
+    def test_a_key_that_would_be_lost_is_told(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("dcone_cosim.scenes.new.SIZING_KEYS", {})
+        with pytest.raises(InputError, match=r"theirs: .* would lose sizing\.factor_of_safety"):
+            new_scene(find("mission").read_text() + "[sizing]\nfactor_of_safety = 3.0\n", "theirs", "mine.toml")
+
     def test_what_a_target_asks_beyond_the_bounds_is_told(self) -> None:
         """0 and 90 deg lie within the bounds of the FMU, and no net ever reaches a target with them."""
         text = begun("table1-capture")
