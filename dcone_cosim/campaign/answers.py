@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
@@ -62,6 +63,7 @@ class Answers:
     outcomes     of the cases that give an answer
     at_capture   the same, judged as the target was caught; empty where the campaign names no later instant
     unanswered   statuses of the others, and how many there are
+    by           the same of the cases with each combination of the values that the campaign names
     """
 
     confidence: float
@@ -73,15 +75,39 @@ class Answers:
     at_capture: Mapping[str, Share] = field(default_factory=dict)
     unanswered: Mapping[str, int] = field(default_factory=dict)
     figures: Mapping[str, Distribution] = field(default_factory=dict)
+    by: Mapping[tuple[str, ...], Answers] = field(default_factory=dict)
 
 
-def answers(spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[float]]) -> Answers:
+def answers(
+    spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[float]], names: Sequence[str] = ()
+) -> Answers:
     """What the cases come to.
 
     derived    figures that follow from a case's others, one for each case, in m
+    names      of the values that the cases have
 
     Checked  tests/campaign/test_answers.py
     """
+    found = _answers(spec, made, derived)
+    if spec.by and names:
+        found.by = dict(_by(spec, made, derived, names))
+    return found
+
+
+def _by(
+    spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[float]], names: Sequence[str]
+) -> Iterator[tuple[tuple[str, ...], Answers]]:
+    """Answers of the cases with each combination of values: cases that are independent are so among these, too."""
+    texts = [next(one.values for one in spec.dispersions if one.key == key) for key in spec.by]
+    places = [names.index(key) for key in spec.by]
+    for chosen in product(*(range(len(one)) for one in texts)):
+        of = [at for at, one in enumerate(made) if tuple(int(one.values[place]) for place in places) == chosen]
+        some = {name: [column[at] for at in of] for name, column in derived.items()}
+        words = tuple(one[place] for one, place in zip(texts, chosen, strict=True))
+        yield words, _answers(spec, [made[at] for at in of], some)
+
+
+def _answers(spec: Spec, made: Sequence[Made], derived: Mapping[str, Sequence[float]]) -> Answers:
     confidence = spec.confidence
     verdicts = [succeeded(one.row, spec.success) for one in made]
     known = [verdict for verdict in verdicts if verdict is not None]

@@ -6,6 +6,7 @@ line: a campaign whose dispersions are never applied would look as good as any o
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load, shipped
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene.mistakes import Mistake, Mistakes, SceneError, unknown
+from dcone_cosim.scene.toml_lines import dotted, given_at
 from dcone_cosim.scenes.reading import parse
 
 SEEDS = 2**31 - 1
@@ -42,18 +44,27 @@ def base_of(spec: Spec, kept: Path | None = None) -> Scene:
     if name.lower().endswith(".ssp"):
         raise _wrong(spec, [Mistake(("scene",), spec.scene, "expected a scene in TOML; a package has no campaign")])
     try:
-        load(name)
+        plain = load(name)
     except SceneError:
         raise
     except InputError as error:
         raise _wrong(spec, [Mistake(("scene",), spec.scene, str(error))]) from None
     try:
-        return load(name, spec.settings)
+        return load(name, list(_needed(spec.settings, plain.text)))
     except SceneError as error:
         found = [Mistake(("set", *one.path), one.given, one.expected) for one in error.mistakes]
         raise _wrong(spec, found) from None
     except InputError as error:
         raise _wrong(spec, [Mistake(("set",), None, str(error))]) from None
+
+
+def _needed(settings: Sequence[str], text: str) -> Iterator[str]:
+    """Settings without empty tables that the scene has already: they bring a part in, and take nothing away."""
+    document = tomllib.loads(text)
+    for one in settings:
+        key, _, value = one.partition("=")
+        if value != "{}" or given_at(document, tuple(key.split("."))) is None:
+            yield one
 
 
 def _wrong(spec: Spec, mistakes: Sequence[Mistake]) -> SceneError:
@@ -74,11 +85,12 @@ def inputs_of(spec: Spec, base: Scene, isolate: bool | None = None) -> Inputs:
     elements: dict[str, dict[int, int]] = {}
     matrix: dict[tuple[int, int], float] = {}
     for one in spec.dispersions:
-        other = next((key for key in taken if _overlap(key, one.key)), None)
+        keys = one.keys or (one.key,)
+        other = next((key for key in taken if any(_overlap(key, own) for own in keys)), None)
         if other is not None:
             wrong.append(Mistake((*one.path, "key"), one.key, f"{other} is dispersed above; expected each key once"))
             continue
-        taken[one.key] = one
+        taken |= dict.fromkeys(keys, one)
         try:
             maker = Maker(spec, base, one)
             made, write = maker.made()
@@ -151,9 +163,10 @@ def _all_count(base: Scene, found: Inputs) -> Iterator[Mistake]:
 
 
 def _overlap(one: str, other: str) -> bool:
-    """Whether two keys set the same: a vector and an element of it, or twice the same."""
+    """Whether two keys set the same: a vector and an element of it, a table and a key in it, or twice the same."""
     plain = [key.partition("[")[0] for key in (one, other)]
-    return one == other or (plain[0] == plain[1] and ("[" not in one or "[" not in other))
+    within = any(a.startswith(f"{b}.") for a, b in (plain, reversed(plain)))
+    return within or one == other or (plain[0] == plain[1] and ("[" not in one or "[" not in other))
 
 
 def _contradicting(spec: Spec) -> Mistake:
@@ -180,7 +193,7 @@ def _factor(size: int, matrix: Mapping[tuple[int, int], float]) -> npt.NDArray[n
 def reach(scene: Scene) -> Any:
     """All of a scene that reaches an FMU, as plain data: parameters, inputs, terms, tables, texts."""
     told = content(scene)["phases"]
-    parts = ("model", "terms", "fmu", "parameters", "texts", "tables", "tolerance")
+    parts = ("model", "terms", "fmu", "parameters", "texts", "tables", "sources", "tolerance")
     return [
         [{name: part.get(name) for name in parts} for part in (phase["main"], *phase.get("others", []))]
         for phase in told
@@ -217,8 +230,9 @@ def _refusal(base: Scene, one: Dispersion, told: str, error: InputError) -> Mist
     if not isinstance(error, SceneError):
         return Mistake((*one.path, "key"), one.key, f"{base.name} does not take {told}: {error}")
     first = error.mistakes[0]
-    known = [f"{one.key.rpartition('.')[0]}.{name}" for name in first.known] if first.name else []
+    where = dotted(first.path)
+    key, place = (where, "keys") if one.keys else (one.key, "key")
     if first.name:
-        return unknown((*one.path, "key"), one.key, f"{base.name} has no such key", one.key, known)
-    where = ".".join(map(str, first.path))
-    return Mistake((*one.path, "key"), one.key, f"{base.name} does not take {told}: {where} {first.expected}")
+        known = [f"{key.rpartition('.')[0]}.{name}" for name in first.known]
+        return unknown((*one.path, place), key, f"{base.name} has no such key", key, known)
+    return Mistake((*one.path, place), one.key, f"{base.name} does not take {told}: {where} {first.expected}")

@@ -231,7 +231,7 @@ def _written(
     """Write all of it; `replays` is told of the cases that are run again for their pages, None for none."""
     spec, made = plan.spec, engine.made
     derived = required_diameters(spec, plan.base, plan.inputs.names, made)
-    told, spread = answers(spec, made, derived), explained.explained(spec, plan.inputs, made)
+    told, spread = answers(spec, made, derived, plan.inputs.names), explained.explained(spec, plan.inputs, made)
     said = [*show.sentences(spec, told), *_of_sampler(spec, found), *explained.sentences(spread), *_of_cost(made)]
     content_of = {
         "campaign": spec.name,
@@ -314,7 +314,7 @@ def shown(folder: Path) -> tuple[str, list[str], Mapping[str, Any], dict[str, An
         identity = [content(found.base), study["fmus"], study["code"], list(spec.record)]
         if spec.sampler not in (ADAPTIVE, SUBSET):
             made = list(_there(found, identity, store))
-    so_far = answers(spec, made, {})
+    so_far = answers(spec, made, {}, found.inputs.names)
     said = ["it has not come to its end: its command goes on with the rest", *show.sentences(spec, so_far)]
     content_of = {"title": spec.title, **show.as_dict(spec, so_far), "said": said}
     return spec.title, said, content_of["figures"], content_of

@@ -71,7 +71,7 @@ class Maker:
         ends = np.cumsum([0.0, *one.weights]) / math.fsum(one.weights)
         points = tuple((0.5 * (ends[1:] + ends[:-1])).tolist())
         found = Input(one.key, lambda u: float(choose(u)), "1", tuple(one.values), points)
-        return [found], lambda values: (f"{one.key}={one.values[int(values[0])]}",)
+        return [found], lambda values: one.settings_of(int(values[0]))
 
     def writer(self, elements: Sequence[int], unit: str) -> Callable[[Sequence[float]], tuple[str, ...]]:
         """Settings from values, SI; `elements` of a vector, counted from 1, the others as the scene has them."""

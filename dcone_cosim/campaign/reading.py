@@ -42,9 +42,10 @@ from dcone_cosim.units import by_name, named
 
 KEYS = (
     *("title", "scene", "seed", "sampler", "n", "until", "most", "jitter", "record", "success", "set"),
-    *("dispersion", "correlation", "indices", "factor_of_safety", "too_near", "judged_after"),
+    *("dispersion", "correlation", "indices", "factor_of_safety", "too_near", "judged_after", "by"),
 )
 OF_DISPERSION = ("key", "distribution", "values", "weights", "points", "together", "within")
+OF_DISCRETE = ("key", "keys", "name", "names", "distribution", "values", "weights", "together")
 OF_CORRELATION = ("between", "coefficient")
 OF_SUCCESS = ("figure", "above", "below")
 MOST = 1_000_000
@@ -91,6 +92,7 @@ class Reader:
             settings=tuple(self._settings(document.get("set", {}))),
             indices=self._texts(("indices",), document.get("indices", [])),
             factor_of_safety=self._factor(document.get("factor_of_safety", 2.0)),
+            by=self._texts(("by",), document.get("by", [])),
         )
         self._together(spec)
         self.end()
@@ -114,6 +116,12 @@ class Reader:
         if spec.sampler == SUBSET and not spec.success.figure:
             text = 'expected success = { figure = "capture.enclosure.at_capture", above = 0.9 }: '
             self._miss(("success",), text + f'sampler = "{SUBSET}" needs a figure with a bound')
+        discrete = [one.key for one in spec.dispersions if one.distribution == distributions.DISCRETE]
+        for place, key in enumerate(spec.by):
+            if key not in discrete:
+                self._unknown(("by", place), key, "expected the key, or the name, of a discrete dispersion", discrete)
+        if spec.by and spec.sampler != MONTE_CARLO:
+            self._say(("by",), list(spec.by), f'needs sampler = "{MONTE_CARLO}": its cases alone are independent')
         if spec.sampler in (ADAPTIVE, SUBSET) and spec.jitter and spec.sampler == ADAPTIVE:
             self._say(("jitter",), True, f'sampler = "{ADAPTIVE}" maps two or three values; leave it out')
 
@@ -176,8 +184,9 @@ class Reader:
     def _dispersions(self, given: Any) -> Iterator[Dispersion]:
         for place, table in self._tables("dispersion", given):
             path: KeyPath = ("dispersion", place)
-            key = self._text((*path, "key"), table.get("key"))
             word = table.get("distribution")
+            own = "name" if word == distributions.DISCRETE and "keys" in table else "key"
+            key = self._text((*path, own), table.get(own))
             if not isinstance(word, str):
                 self._missing(
                     (*path, "distribution"), word, f"expected one of {', '.join(distributions.KINDS)}, discrete"
@@ -202,7 +211,8 @@ class Reader:
             yield Dispersion(path, key, word, told, points=points, together=together)
 
     def _discrete(self, path: KeyPath, key: str, table: Mapping[str, Any]) -> Dispersion:
-        self._known(path, table, OF_DISPERSION)
+        self._known(path, table, OF_DISCRETE)
+        keys = self._texts((*path, "keys"), table.get("keys", []))
         values = table.get("values")
         if not isinstance(values, list) or len(values) < 2:
             self._missing((*path, "values"), values, "expected a list of two values or more")
@@ -220,8 +230,32 @@ class Reader:
         except distributions.Unfit as error:
             self._say((*path, "weights"), table.get("weights"), str(error))
         together = self._number((*path, "together"), table.get("together", 0.0))
-        texts = [as_toml(value) for value in values]
-        return Dispersion(path, key, distributions.DISCRETE, {}, texts, [float(w) for w in weights], 0, together)
+        texts, settings = self._values(path, table, key, keys, values)
+        weights = [float(w) for w in weights]
+        return Dispersion(path, key, distributions.DISCRETE, {}, texts, weights, 0, together, keys, settings)
+
+    def _values(
+        self, path: KeyPath, table: Mapping[str, Any], key: str, keys: Sequence[str], values: Sequence[Any]
+    ) -> tuple[list[str], list[tuple[str, ...]]]:
+        """What the values of a discrete dispersion are called, and the settings that they mean; none where those follow
+        from key and text."""
+        if "name" in table and not keys:
+            self._say((*path, "name"), table["name"], "goes with keys: several keys have one name")
+        names = list(self._texts((*path, "names"), table.get("names", [])))
+        if names and (len(names) != len(values) or len({*names}) < len(names)):
+            self._say((*path, "names"), names, "expected a name for each value, each once")
+        if not keys:
+            texts = [as_toml(value) for value in values]
+            return (names, [(f"{key}={text}",) for text in texts]) if names else (texts, [])
+        if len(names) != len(values):
+            self._say((*path, "names"), names, "expected a name for each value, each once: several keys have no text")
+        settings = []
+        for place, value in enumerate(values):
+            if not isinstance(value, list) or len(value) != len(keys):
+                self._say((*path, "values", place), value, f"expected a list with a value for each of {len(keys)} keys")
+                continue
+            settings.append(tuple(f"{one}={as_toml(each)}" for one, each in zip(keys, value, strict=True)))
+        return names, settings
 
     def _correlations(self, given: Any) -> Iterator[Correlation]:
         for place, table in self._tables("correlation", given):
@@ -317,20 +351,36 @@ class Reader:
 
 
 def flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, str]]:
-    """Every value of nested tables by its dotted key, as TOML."""
+    """Every value of nested tables by its dotted key, as TOML; an empty table is a value."""
     for key, value in table.items():
         bare = key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else f'"{key}"'
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and value:
             yield from flat(value, f"{above}{bare}.")
         else:
             yield f"{above}{bare}", as_toml(value)
 
 
 def as_toml(value: Any) -> str:
-    """A value of a TOML document as it is written there."""
+    """A value of a TOML document as it is written there, tables within a line."""
     import tomlkit
 
-    return str(tomlkit.item(value).as_string())
+    return str(tomlkit.item(_within_a_line(value)).as_string())
+
+
+def _within_a_line(value: Any) -> Any:
+    import tomlkit
+
+    if isinstance(value, Mapping):
+        table = tomlkit.inline_table()
+        for key, inner in value.items():
+            table[key] = _within_a_line(inner)
+        return table
+    if isinstance(value, list):
+        array = tomlkit.array()
+        for inner in value:
+            array.append(_within_a_line(inner))
+        return array
+    return value
 
 
 def read(path: Path) -> Spec:

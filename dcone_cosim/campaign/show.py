@@ -47,6 +47,8 @@ def sentences(spec: Spec, found: Answers) -> Iterator[str]:
         for word, one in outcomes.items():
             said = f"{word}{f', {when}' if found.at_capture else ''}: {one.count} cases"
             yield said + (f", {probability(one)}" if found.success is not None else "")
+    for words, one_of in found.by.items():
+        yield f"{', '.join(words)}: {_of_some(spec, one_of)}"
     if found.unanswered:
         told = ", ".join(f"{count} {status}" for status, count in found.unanswered.items())
         yield f"no answer from {sum(found.unanswered.values())} of {found.cases} cases: {told}"
@@ -57,6 +59,15 @@ def sentences(spec: Spec, found: Answers) -> Iterator[str]:
     if judged < found.cases:
         low, high = found.bounds
         yield f"had all of them failed, the share were {low:.4g}, had all succeeded {high:.4g}"
+
+
+def _of_some(spec: Spec, found: Answers) -> str:
+    """Of the cases with certain values."""
+    if found.success is None:
+        return f"{found.cases} cases, none that gives an answer" if found.cases else "no case"
+    others = [f"{one.count} {word}" for word, one in found.outcomes.items() if word != spec.success.text]
+    said = f"{found.success.count} of {found.success.of}, {probability(found.success)}"
+    return "; ".join([said, *([", ".join(others)] if others else [])])
 
 
 def show(title: str, said: Sequence[str], figures: Mapping[str, Mapping[str, Any]], console: Console) -> None:
@@ -118,7 +129,14 @@ def as_dict(spec: Spec, found: Answers) -> dict[str, Any]:
         "outcomes_at_capture": {word: _share(one) for word, one in found.at_capture.items()},
         "no_answer": dict(found.unanswered),
         "figures": {name: _distribution(one) for name, one in found.figures.items()},
+        **({"by": [_of_values(spec, words, one) for words, one in found.by.items()]} if found.by else {}),
     }
+
+
+def _of_values(spec: Spec, words: Sequence[str], found: Answers) -> dict[str, Any]:
+    told = as_dict(spec, found)
+    kept = ("cases", "succeeded", "probability", "outcomes", "no_answer", "figures")
+    return {"values": dict(zip(spec.by, words, strict=True)), **{name: told[name] for name in kept}}
 
 
 def _share(one: Share) -> dict[str, Any]:

@@ -31,10 +31,12 @@ class Dispersion:
     """A key whose value is uncertain.
 
     path           of its table in the file
-    key            of the scene, perhaps with an element behind it: `capture.ejection.delay[2]`
+    key            of the scene, perhaps with an element behind it, `capture.ejection.delay[2]`; or name of several keys
     distribution   a word of `distributions`
     told           its parameters as the file has them
-    values         of a discrete one, as settings take them;  weights of these
+    values         of a discrete one, as settings take them, or what they are called;  weights of these
+    keys           that go together, each value having one for every key; none for `key` alone
+    settings       of each value, where they are not those of `key` and its text
     points         of a grid
     together       correlation of the elements of a vector with one another [1]
     """
@@ -47,6 +49,17 @@ class Dispersion:
     weights: Sequence[float] = ()
     points: int = 0
     together: float = 0.0
+    keys: tuple[str, ...] = ()
+    settings: Sequence[tuple[str, ...]] = ()
+
+    def settings_of(self, place: int) -> tuple[str, ...]:
+        """What the command line would set for a value of a discrete one."""
+        return self.settings[place] if self.settings else (f"{self.key}={self.values[place]}",)
+
+    def design(self) -> list[Any]:
+        """All that settles its numbers; plain data."""
+        told = [self.key, self.distribution, dict(self.told), list(self.values), list(self.weights), self.points]
+        return [*told, self.together, *([list(self.settings)] if self.settings else [])]
 
 
 @dataclass(frozen=True)
@@ -121,6 +134,7 @@ class Spec:
     jitter      whether the solver's jitter is one of the inputs
     record      figures that are kept; empty: all of them. One that ends in "?" may be missing
     indices     figures whose sensitivities are told
+    by          discrete dispersions for whose values, each combination of them, the answers are told as well
     factor_of_safety    of the diameter that a line would have to have
     """
 
@@ -141,6 +155,7 @@ class Spec:
     settings: tuple[str, ...]
     indices: tuple[str, ...]
     factor_of_safety: float
+    by: tuple[str, ...] = ()
 
     @property
     def confidence(self) -> float:
@@ -153,10 +168,7 @@ class Spec:
 
     def design(self) -> dict[str, Any]:
         """All that settles which numbers a case of a certain number has; plain data."""
-        told = [
-            [one.key, one.distribution, dict(one.told), list(one.values), list(one.weights), one.points, one.together]
-            for one in self.dispersions
-        ]
+        told = [one.design() for one in self.dispersions]
         found: dict[str, Any] = {
             "sampler": self.sampler,
             "seed": self.seed,

@@ -17,6 +17,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from dcone_cosim.scene.data import ComponentScene, Scene
 
 WORDS = frozenset({"name", "title", "text", "source", "places", "notes", "cautions", "sizing"})
@@ -68,7 +70,8 @@ def content(scene: Scene) -> Any:
 def _plain(value: Any) -> Any:
     if isinstance(value, ComponentScene):
         fields = {name: _plain(inner) for name, inner in _fields(value).items() if name not in PLACES}
-        return fields | {"parameters": {**value.defaults, **value.parameters}}
+        read = {name: _of_table(table) for name, table in value.sources.items()}
+        return fields | {"parameters": {**value.defaults, **value.parameters}} | ({"sources": read} if read else {})
     if dataclasses.is_dataclass(value):
         return {name: _plain(inner) for name, inner in _fields(value).items()}
     if isinstance(value, Mapping):
@@ -78,6 +81,11 @@ def _plain(value: Any) -> Any:
     if isinstance(value, int | str) or value is None:
         return value
     return float(value)
+
+
+def _of_table(numbers: Any) -> str:
+    """A table that the scene gives entry by entry, or that a file has: the SHA-256 of its numbers."""
+    return hashlib.sha256(np.ascontiguousarray(numbers, dtype=float).tobytes()).hexdigest()
 
 
 def _fields(value: Any) -> dict[str, Any]:

@@ -59,6 +59,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
             whole = not unit and math.isfinite(last[name])
             value = int(last[name]) if whole else last[name]
             yield Finding(result.name, name, label, value, unit)
+    yield from _at_the_touch(last, result)
     yield from _of_hardest(last, result)
     yield from _of_catch(last, result)
     yield from _of_approach(result)
@@ -68,6 +69,24 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))
         yield Finding(result.name, "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+
+
+_OPEN_ROWS = (
+    ("mouth.area", "mouth.area_at_touch", "mouth area at the first touch of the target", "m2"),
+    ("net.volume", "net.volume_at_touch", "volume between net and mouth at the first touch of the target", "m3"),
+)
+
+
+def _at_the_touch(last: Mapping[str, float], result: PhaseResult) -> Iterator[Finding]:
+    """How far the net was open as it met the target, on a straight line between the rows before and after.
+
+    Checked  tests/cosim/test_at_the_touch.py
+    """
+    touch, recorder = last.get("contact.first_time", -1.0), result.recorder
+    for name, key, label, unit in _OPEN_ROWS:
+        if touch >= 0.0 and name in recorder and len(recorder) > 1:
+            value = float(np.interp(touch, recorder["time"], recorder[name]))
+            yield Finding(result.name, key, label, value, unit)
 
 
 def _of_hardest(last: Mapping[str, float], result: PhaseResult) -> Iterator[Finding]:

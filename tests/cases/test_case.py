@@ -11,8 +11,9 @@ import pytest
 from dcone_cosim.cases import case
 from dcone_cosim.cases.case import Case, content, digest, identities, key_of
 from dcone_cosim.loading import load, shipped
+from dcone_cosim.resume.differences import differences
 from dcone_cosim.scene.data import Scene, TableFile
-from dcone_cosim.scenes.reading import read_text
+from dcone_cosim.scenes.reading import parse, read_text
 
 FMUS = {"removal": "{1}"}
 
@@ -91,6 +92,20 @@ def test_a_table_counts_by_what_is_in_it() -> None:
     here, there, other = (with_table(scene, *about) for about in (("a.csv", "1"), ("b/a.csv", "1"), ("a.csv", "2")))
     assert digest(content(here)) == digest(content(there))
     assert len({digest(content(one)) for one in (scene, here, other)}) == 3
+
+
+@pytest.mark.parametrize("change", ['radius = "1.1 m"', 'mass = "801 kg"', 'position = ["0 m", "0 m", "2.21 m"]'])
+def test_what_is_told_entry_by_entry_counts(change: str) -> None:
+    """Parts of a target reach the FMU as a table of numbers. They were left out, and a folder of cases gave the rows of
+    the target before for another one."""
+    text = read_text(shipped()["upper-stage"])
+    before = {"radius": 'radius = "1.2 m"', "mass": 'mass = "800 kg"', "position": 'position = ["0 m", "0 m", "2.2 m"]'}
+    other = text.replace(before[change.split()[0]], change, 1)
+    assert other != text
+    one, two, same = (parse(each, "a", "a") for each in (text, other, f"# mine\n{text}"))
+    assert digest(content(one)) == digest(content(same))
+    assert digest(content(one)) != digest(content(two))
+    assert "sources.target.parts" in [row.name for row in differences(one, two)]
 
 
 def test_our_fmus_are_known_by_their_guid_and_others_by_their_bytes() -> None:

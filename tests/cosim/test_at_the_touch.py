@@ -1,0 +1,36 @@
+"""How far a net was open as it met its target: between two rows, on a straight line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dcone_cosim.findings import Finding
+from dcone_cosim.phases.capture_report import findings
+from dcone_cosim.recorder import Recorder
+from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.scene.data import Scene
+
+
+def told(touch: float, volume: bool = True) -> dict[str, Finding]:
+    """Figures of a mouth that opens by 3 m2/s and a volume that grows by 5 m3/s, rows every 2 s."""
+    time = np.arange(0.0, 9.0, 2.0)
+    columns = {"mouth.area": ("m2", "Real", 3.0 * time), "net.volume": ("m3", "Real", 5.0 * time)}
+    columns["contact.first_time"] = ("s", "Real", np.where(time > touch, touch, -1.0))
+    if not volume:
+        del columns["net.volume"]
+    result = PhaseResult("capture", 0.0, Recorder.of({"time": ("s", "Real", time), **columns}))
+    run = RunResult(scene=Scene("one", "", "", ()))
+    return {one.key: one for one in findings(run, result)}
+
+
+def test_between_two_rows() -> None:
+    figures = told(4.6)
+    assert figures["mouth.area_at_touch"].value == pytest.approx(13.8)
+    assert figures["net.volume_at_touch"].value == pytest.approx(23.0)
+    assert (figures["mouth.area_at_touch"].unit, figures["net.volume_at_touch"].unit) == ("m2", "m3")
+
+
+def test_no_touch_and_no_volume_have_none() -> None:
+    assert not {"mouth.area_at_touch", "net.volume_at_touch"} & told(9.0).keys()
+    assert "net.volume_at_touch" not in told(4.6, volume=False)
