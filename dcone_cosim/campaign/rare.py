@@ -5,6 +5,9 @@ takes four levels, and not some millions of cases.
 
     P = p_0^(m - 1) P_m,   failure: the margin of `success` is below 0
 
+A figure that takes few values, such as a share of points, has many cases of one margin: none is nearer to failure than
+the tenth that a level would start from, and the walk comes to a halt. Then there is no probability.
+
 Source   S.-K. Au and J. L. Beck, Probabilistic Engineering Mechanics 16 (2001) 263; OpenTURNS computes it
 """
 
@@ -21,7 +24,7 @@ from dcone_cosim.campaign.engine import Engine
 from dcone_cosim.campaign.outcomes import margin
 from dcone_cosim.campaign.sampling import inside
 from dcone_cosim.campaign.sensitivity import openturns
-from dcone_cosim.campaign.spec import Spec
+from dcone_cosim.campaign.spec import MONTE_CARLO, Spec
 
 FAR = -1e9
 """Margin of a case that has none: it did not come to have the figure, and counts as failed."""
@@ -35,12 +38,13 @@ Margins = Callable[[npt.NDArray[np.float64]], Sequence[float]]
 
 
 def subset(margins: Margins, size: int, count: int, seed: int) -> dict[str, Any]:
-    """Probability that a margin is below 0, with its coefficient of variation.
+    """Probability that a margin is below 0, with its coefficient of variation; None for both if no level came so far.
 
     margins    of points (k, size) of the unit cube
     count      cases of each level
 
-    Checked  tests/campaign/test_rare.py: against a closed form, its coefficient of variation over repetitions
+    Checked  tests/campaign/test_rare.py: against a closed form, its coefficient of variation over repetitions; margins
+             of few values
     """
     from scipy.special import ndtr
 
@@ -60,11 +64,13 @@ def subset(margins: Margins, size: int, count: int, seed: int) -> dict[str, Any]
     algorithm.run()
     found = algorithm.getResult()
     probability, variation = float(found.getProbabilityEstimate()), float(found.getCoefficientOfVariation())
+    thresholds = [float(one) for one in algorithm.getThresholdPerStep()]
+    came = thresholds[-1] == 0.0 and probability > 0.0  # else it is the share of a level before
     return {
-        "failure": probability,
-        "coefficient_of_variation": variation,
+        "failure": probability if came else None,
+        "coefficient_of_variation": variation if came else None,
         "levels": int(algorithm.getStepsNumber()),
-        "thresholds": [float(one) for one in algorithm.getThresholdPerStep()],
+        "thresholds": thresholds,
     }
 
 
@@ -81,6 +87,13 @@ def run_subset(engine: Engine) -> Mapping[str, Any]:
 
 def sentences(spec: Spec, told: Mapping[str, Any]) -> list[str]:
     """What it found, in words."""
+    if told["failure"] is None:
+        least = told["thresholds"][-1]
+        return [
+            f"no probability of failing ({spec.success.text} is success): after {told['levels']} levels the walk came "
+            f"to a halt {least:.3g} short of failure, where too many cases are alike; take a figure that differs from "
+            f"case to case, or more cases by {MONTE_CARLO}"
+        ]
     return [
         f"probability of failing ({spec.success.text} is success): {told['failure']:.3g}, coefficient of variation "
         f"{told['coefficient_of_variation']:.2g}, by subset sampling over {told['levels']} levels"

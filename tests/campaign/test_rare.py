@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from scipy.special import ndtr, ndtri
 
-from dcone_cosim.campaign.rare import subset
+from dcone_cosim.campaign.rare import sentences, subset
+from tests.campaign.conftest import spec_of
 
 pytest.importorskip("openturns")
 SIZE = 4
+DRAWN = '[[dispersion]]\nkey = "removal.thrust.level"\ndistribution = "normal"\ndeviation = "5 %"\n'
 BOUND = float(ndtri(1e-4))
 
 
@@ -31,6 +33,21 @@ def test_one_in_ten_thousand() -> None:
     width = np.array([1.96 * one["coefficient_of_variation"] for one in told])
     assert 85 <= int(np.sum(np.abs(logs) <= width)) <= 100
     assert {one["levels"] for one in told} <= {3, 4, 5}
+
+
+@pytest.mark.parametrize(("steps", "fails"), [(0.1, 0.0), (0.5, 0.0), (0.02, 0.001)])
+def test_margins_of_few_values_have_no_probability(steps: float, fails: float) -> None:
+    """Where one in a thousand fails, or none, and the rest are of two margins, 0.02 to 0.1 was told: the share of the
+    nearer margin."""
+
+    def margins_of(points: np.ndarray) -> list[float]:
+        return [-0.1 if u < fails else 0.389 if u < steps else 0.5 for u in points[:, 0]]
+
+    told = subset(margins_of, 3, 300, 2031)
+    assert (told["failure"], told["coefficient_of_variation"]) == (None, None)
+    assert told["thresholds"][-1] > 0.0
+    (said,) = sentences(spec_of('success = { figure = "removal.largest_tug_peak", below = "50 N" }\n' + DRAWN), told)
+    assert said.startswith("no probability of failing (removal.largest_tug_peak below 50 N is success): after ")
 
 
 def test_the_same_again_and_what_has_no_figure() -> None:

@@ -71,9 +71,16 @@ def _of_cases(one: Mapping[str, Any]) -> Iterator[str]:
         yield f"{one['success']} {share:.3f}{bounds}"
         yield from (f"{word} {of['count']}" for word, of in one["outcomes"].items() if word != one["success"])
     elif "rare" in one:
-        yield one["said"][0]
+        yield rare(one["rare"])
     else:
         yield ", ".join(f"{word} {of['count']}" for word, of in one["outcomes"].items())
+
+
+def rare(found: Mapping[str, Any]) -> str:
+    """A rare failure in a line; never a probability without its coefficient of variation."""
+    if found["failure"] is None:
+        return "no probability: the walk came to a halt before failure"
+    return f"failing {found['failure']:.2g}, coefficient of variation {found['coefficient_of_variation']:.2g}"
 
 
 def rows() -> list[dict[str, str]]:
