@@ -100,10 +100,10 @@ def test_tables_within_a_line() -> None:
 
 def test_an_empty_table_brings_its_part_in() -> None:
     """It was dropped without a word. One that the scene has keeps what it says."""
-    spec = spec_of("[set.capture.volume]\n[set.capture.bullets]\n" + SIZES, NET)
+    spec = spec_of("[set.capture.volume]\n[set.capture.closing]\n" + SIZES, NET)
     main = base_of(spec).phases[0].main
     assert "volume" in main.terms
-    assert main.values["bullets.mass"] == 0.5
+    assert main.values["closing.time"] == 11.2
 
 
 def test_answers_for_each_value() -> None:
@@ -117,12 +117,13 @@ def test_answers_for_each_value() -> None:
         for place, verdicts in enumerate(caught)
         for good in verdicts
     ]
-    found = answers(spec, cases, {}, ["size"])
+    found = answers(spec, cases, {"capture.derived": [3.0] * 30 + [4.0] * 30}, ["size"])
     assert {words: one.success for words, one in found.by.items()} == {
         ("small",): share(20, 30),
         ("large",): share(6, 30),
     }
     assert [one.figures["capture.peak"].mean for one in found.by.values()] == [1.0, 2.0]
+    assert [one.figures["capture.derived"].mean for one in found.by.values()] == [3.0, 4.0]
     assert found.success == share(26, 60)
     assert "small: 20 of 30, 0.6667 (0.4878 to 0.8077); 10 missed" in list(sentences(spec, found))
     told = as_dict(spec, found)["by"]

@@ -22,8 +22,13 @@ PAGE = ROOT / "dcone_cosim" / "campaign" / "README.md"
 ANSWERS = ROOT / "dcone_cosim" / "campaigns" / "answers.json"
 BEGIN, END = "<!-- answers: python -m tests.campaign.evidence -->", "<!-- end of answers -->"
 MAP = "map.png"
-FIGURES = (".largest_tug_peak", ".first_tug_peak", "thread.tension_max", ".t_capture", "line.diameter_required")
+FIGURES = (
+    *(".largest_tug_peak", ".first_tug_peak", "thread.tension_max", ".t_capture", "line.diameter_required"),
+    *("pull_off.drawn_max", "mouth.area_at_touch", "net.volume_at_touch"),
+)
 """Figures of which the table tells median and 95th percentile, by the ends of their names."""
+OPEN = (("mouth.area_at_touch", "m²"), ("net.volume_at_touch", "m³"))
+"""Figures of which a table by values tells the median."""
 OWN = "thousand"
 """Evidence that is of no campaign."""
 HOUR = 3600.0
@@ -34,18 +39,25 @@ def taken_in(folder: Path) -> dict[str, Any]:
     told = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     made = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
     study = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    by = [{**row, "figures": _kept(row["figures"])} for row in told.get("by", [])]
     kept = ("campaign", "title", "scene", "sampler", "seed", "cases", "confidence", "success", "succeeded")
     return {
         **{name: told[name] for name in kept},
         **{
             name: told[name] for name in ("probability", "outcomes", "no_answer", "map", "rare", "said") if name in told
         },
-        "figures": {name: one for name, one in told["figures"].items() if name.endswith(FIGURES)},
+        **({"by": by} if by else {}),
+        **({"indices": told["indices"]} if told.get("indices") else {}),
+        "figures": _kept(told["figures"]),
         "cost": told["cost"],
         "file": study["campaign"],
         "stamp": {name: made[name] for name in ("scene_sha256", "code", "started", "finished", "packages", "machine")},
         "fmus": study["fmus"],
     }
+
+
+def _kept(figures: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: one for name, one in figures.items() if name.endswith(FIGURES)}
 
 
 def stored() -> dict[str, dict[str, Any]]:
@@ -65,7 +77,11 @@ def answer(one: Mapping[str, Any]) -> str:
 
 
 def _of_cases(one: Mapping[str, Any]) -> Iterator[str]:
-    if one["probability"] is not None:
+    if "by" in one:
+        yield "; ".join(
+            f"{', '.join(row['values'].values())}: {row['succeeded']} of {row['cases']}" for row in one["by"]
+        )
+    elif one["probability"] is not None:
         share, (low, high) = one["probability"]["share"], one["probability"]["interval"]
         bounds = "" if low is None else f" ({low:.3f} to {high:.3f})"
         yield f"{one['success']} {share:.3f}{bounds}"
@@ -74,6 +90,9 @@ def _of_cases(one: Mapping[str, Any]) -> Iterator[str]:
         yield rare(one["rare"])
     else:
         yield ", ".join(f"{word} {of['count']}" for word, of in one["outcomes"].items())
+    for name, found in one.get("indices", {}).items():
+        told = ", ".join(f"{key} {of['total']:.2f} ± {of['total_error']:.2f}" for key, of in found["inputs"].items())
+        yield f"total indices of {name}: {told}"
 
 
 def rare(found: Mapping[str, Any]) -> str:
@@ -96,6 +115,36 @@ def rows() -> list[dict[str, str]]:
     ]
 
 
+def by_values() -> Iterator[str]:
+    """A table for all campaigns that tell their answers for the same values, one column each."""
+    groups: dict[tuple[str, ...], dict[str, dict[tuple[str, ...], Any]]] = {}
+    for name, one in stored().items():
+        rows_of = {tuple(row["values"].values()): row for row in one.get("by", [])}
+        if rows_of:
+            groups.setdefault((*one["by"][0]["values"], *map(str, rows_of)), {})[name] = rows_of
+    for campaigns in groups.values():
+        first = next(iter(campaigns.values()))
+        keys = list(next(iter(first.values()))["values"])
+        yield "\n| " + " | ".join([*(f"`{key}`" for key in keys), *(f"`{name}`" for name in campaigns)]) + " |"
+        yield "| " + " | ".join(["---"] * (len(keys) + len(campaigns))) + " |"
+        for words in first:
+            cells = [_cell(rows_of[words]) for rows_of in campaigns.values()]
+            yield "| " + " | ".join([*words, *cells]) + " |"
+
+
+def _cell(row: Mapping[str, Any]) -> str:
+    """Successes with their interval, and how far the net was open as it met the debris."""
+    if row["probability"] is None:
+        return f"none of {row['cases']} answers"
+    low, high = row["probability"]["interval"]
+    parts = [f"{row['succeeded']} of {row['probability']['of']} ({low:.2f} to {high:.2f})"]
+    for ending, unit in OPEN:
+        found = next((one for name, one in row["figures"].items() if name.endswith(ending)), None)
+        if found is not None:
+            parts.append(f"{found['percentiles']['50']['value']:.3g} {unit}")
+    return "; ".join(parts)
+
+
 def table() -> str:
     """As the page has it."""
     lines = ["| campaign | cases | came to | cost |", "| --- | --- | --- | --- |"]
@@ -103,7 +152,7 @@ def table() -> str:
         f"| `{row['name']}`: {row['title']} | {row['cases']} | {row['answer']} | {row['cost']} |" for row in rows()
     ]
     pictures = [f"![{path.stem}](../../tests/campaign/evidence/{path.name})" for path in sorted(HERE.glob("*.png"))]
-    return "\n".join([*lines, *([""] if pictures else []), *pictures])
+    return "\n".join([*lines, *by_values(), *([""] if pictures else []), *pictures])
 
 
 def with_table(page: str) -> str:
