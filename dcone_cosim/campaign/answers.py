@@ -16,6 +16,7 @@ from dcone_cosim.campaign.figures import OPTIONAL
 from dcone_cosim.campaign.outcomes import TOLD_BY, answered, outcome, succeeded
 from dcone_cosim.campaign.spec import RANDOM, Spec
 from dcone_cosim.cases.statistics import Share
+from dcone_cosim.cases.vary import in_si
 from dcone_cosim.scene.data import Scene
 
 PERCENTS = (5.0, 50.0, 95.0, 99.0)
@@ -103,7 +104,7 @@ def _by(
     for chosen in product(*(range(len(one)) for one in texts)):
         of = [at for at, one in enumerate(made) if tuple(int(one.values[place]) for place in places) == chosen]
         some = {name: [column[at] for at in of] for name, column in derived.items()}
-        words = tuple(one[place] for one, place in zip(texts, chosen, strict=True))
+        words = tuple(in_si(one[place]).given for one, place in zip(texts, chosen, strict=True))
         yield words, _answers(spec, [made[at] for at in of], some)
 
 

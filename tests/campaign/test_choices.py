@@ -40,6 +40,13 @@ names = ["small", "large"]
 values = [["12 m", "0.5 m", "0.3 kg"], ["24 m", "1 m", "0.5 kg"]]
 """
 
+LEADING = """
+[[dispersion]]
+key = "removal.start.leading"
+distribution = "discrete"
+values = ["target", "chaser"]
+"""
+
 
 def made(text: str) -> Inputs:
     spec = spec_of(text, NET)
@@ -127,6 +134,9 @@ def test_answers_for_each_value() -> None:
     assert found.success == share(26, 60)
     assert "small: 20 of 30, 0.6667 (0.4878 to 0.8077); 10 missed" in list(sentences(spec, found))
     told = as_dict(spec, found)["by"]
+    quoted = spec_of('by = ["removal.start.leading"]\n' + LEADING)
+    one = Made(1, (0.0,), Row("", "completed", 0, "", {}, {}))
+    assert [*answers(quoted, [one], {}, ["removal.start.leading"]).by] == [("target",), ("chaser",)]
     assert [(row["values"], row["succeeded"]) for row in told] == [({"size": "small"}, 20), ({"size": "large"}, 6)]
 
 

@@ -12,9 +12,11 @@ from __future__ import annotations
 import json
 import shutil
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+from dcone_cosim.cases.statistics import share
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[2]
@@ -39,7 +41,10 @@ def taken_in(folder: Path) -> dict[str, Any]:
     told = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     made = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
     study = json.loads((folder / "study.json").read_text(encoding="utf-8"))
-    by = [{**row, "figures": _kept(row["figures"])} for row in told.get("by", [])]
+    by = [
+        {**row, "values": {k: v.strip('"') for k, v in row["values"].items()}, "figures": _kept(row["figures"])}
+        for row in told.get("by", [])
+    ]
     kept = ("campaign", "title", "scene", "sampler", "seed", "cases", "confidence", "success", "succeeded")
     return {
         **{name: told[name] for name in kept},
@@ -130,6 +135,16 @@ def by_values() -> Iterator[str]:
         for words in first:
             cells = [_cell(rows_of[words]) for rows_of in campaigns.values()]
             yield "| " + " | ".join([*words, *cells]) + " |"
+        for place, word in dict.fromkeys((place, words[place]) for place in range(len(keys)) for words in first):
+            cells = [_of_all([row for words, row in one.items() if words[place] == word]) for one in campaigns.values()]
+            yield "| " + " | ".join([*(word if at == place else "all" for at in range(len(keys))), *cells]) + " |"
+
+
+def _of_all(rows_of: Sequence[Mapping[str, Any]]) -> str:
+    """The cases of several rows of a table taken together."""
+    found = [row["probability"] for row in rows_of if row["probability"] is not None]
+    one = share(sum(row["count"] for row in found), sum(row["of"] for row in found))
+    return f"{one.count} of {one.of} ({one.interval[0]:.2f} to {one.interval[1]:.2f})"
 
 
 def _cell(row: Mapping[str, Any]) -> str:
