@@ -69,7 +69,7 @@ def settled(spec: Spec, base: Scene) -> Spec:
     """
     words, success = possible(base), spec.success
     _followed(spec, base)
-    if success.figure:
+    if success.figure and not success.outcome:
         return spec
     if not success.said:
         return replace(spec, success=Success(words[0], text=words[0], judged=success.judged))
@@ -138,16 +138,17 @@ def _number(row: Row, name: str, otherwise: float) -> float:
 
 
 def succeeded(row: Row, success: Success) -> bool | None:
-    """Whether it came out as is wanted; None where the case gives no answer.
+    """Whether it came out as is wanted; None where the case gives no answer, or has not the figure that is asked for.
 
     Checked  tests/campaign/test_outcomes.py
     """
     if not answered(row):
         return None
-    if success.figure:
+    came = not success.outcome or outcome(row, success.judged) == success.outcome
+    if success.figure and came:
         value = margin(row, success)
         return None if math.isnan(value) else value > 0.0
-    return outcome(row, success.judged) == success.outcome
+    return came
 
 
 def margin(row: Row, success: Success) -> float:

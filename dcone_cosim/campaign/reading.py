@@ -47,7 +47,7 @@ KEYS = (
 OF_DISPERSION = ("key", "distribution", "values", "weights", "points", "together", "within")
 OF_DISCRETE = ("key", "keys", "name", "names", "distribution", "values", "weights", "together")
 OF_CORRELATION = ("between", "coefficient")
-OF_SUCCESS = ("figure", "above", "below")
+OF_SUCCESS = ("figure", "above", "below", "outcome")
 MOST = 1_000_000
 """Cases of a campaign."""
 MOST_FACTOR = 100.0
@@ -122,6 +122,8 @@ class Reader:
                 self._unknown(("by", place), key, "expected the key, or the name, of a discrete dispersion", discrete)
         if spec.by and spec.sampler != MONTE_CARLO:
             self._say(("by",), list(spec.by), f'needs sampler = "{MONTE_CARLO}": its cases alone are independent')
+        if spec.sampler == SUBSET and spec.success.figure and spec.success.outcome:
+            self._say(("success", "outcome"), spec.success.outcome, f'sampler = "{SUBSET}" goes by the figure alone')
         if spec.sampler in (ADAPTIVE, SUBSET) and spec.jitter and spec.sampler == ADAPTIVE:
             self._say(("jitter",), True, f'sampler = "{ADAPTIVE}" maps two or three values; leave it out')
 
@@ -158,9 +160,11 @@ class Reader:
             return Success()
         side = "above" if "above" in given else "below"
         bound, unit = self._quantity(("success", side), given[side])
-        return Success(
-            "", figure, bound, side == "above", f"{figure} {side} {given[side]}", unit, given[side], said=True
-        )
+        outcome = given.get("outcome", "")
+        if "outcome" in given and outcome not in WORDS:
+            self._unknown(("success", "outcome"), outcome, "expected an outcome", WORDS)
+        text = f"{figure} {side} {given[side]}{f', {outcome}' if outcome else ''}"
+        return Success(outcome, figure, bound, side == "above", text, unit, given[side], said=True)
 
     def _judged(self) -> Judged:
         """When an outcome is judged, and what is too near."""

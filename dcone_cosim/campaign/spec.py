@@ -101,7 +101,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class Success:
-    """What counts as success: an outcome by its word, or a figure above or below a bound, SI.
+    """What counts as success: an outcome by its word, or a figure above or below a bound, SI, or both.
 
     unit       that the bound was given in; "1" for a bare number
     given      the bound as the file has it

@@ -21,6 +21,7 @@ def row(exit_code: int = 0, status: str = "completed", **figures: Any) -> Row:
     return Row("k", status, exit_code, "", {name.replace("__", "."): value for name, value in figures.items()})
 
 
+DRAWN = '[[dispersion]]\nkey = "removal.thrust.level"\ndistribution = "normal"\ndeviation = "5 %"\n'
 SEEN = "yes, for the 5 s to the end of the phase"
 
 
@@ -168,3 +169,30 @@ def test_an_outcome_that_no_case_can_have(scene: str, word: str, good: bool) -> 
         return
     with pytest.raises(SceneError, match=f'line 7: success = "{word}": no case of {scene} can come out so: expected'):
         settled(spec, load(scene))
+
+
+def test_a_figure_and_an_outcome() -> None:
+    """A net that has slipped off does not hold, however little its vertex gave way; by the figure alone it did."""
+    both = spec_of(
+        f'success = {{ figure = "removal.largest_tug_peak", below = "50 N", outcome = "completed" }}\n{DRAWN}'
+    )
+    figure = replace(both.success, figure="capture.drawn", bound=10.0, outcome="flown", unit="1")
+    flown, slipped, far = (
+        row(capture__outcome=word, capture__drawn=way)
+        for word, way in (("flown", 6.0), ("slipped off", 2.0), ("flown", 12.0))
+    )
+    assert [succeeded(one, figure) for one in (flown, slipped, far)] == [True, False, False]
+    assert succeeded(slipped, replace(figure, outcome="")) is True
+    assert succeeded(row(capture__outcome="flown"), figure) is None
+    assert succeeded(row(5, "FMU failed"), figure) is None
+    assert both.success.text == "removal.largest_tug_peak below 50 N, completed"
+    assert settled(both, load("table2-deorbit")) == both
+    wrong = spec_of(f'success = {{ figure = "removal.largest_tug_peak", below = "50 N", outcome = "missed" }}\n{DRAWN}')
+    with pytest.raises(SceneError, match="no case of table2-deorbit can come out so"):
+        settled(wrong, load("table2-deorbit"))
+
+
+def test_a_rare_failure_goes_by_the_figure_alone() -> None:
+    success = 'success = { figure = "removal.largest_tug_peak", below = "50 N", outcome = "completed" }'
+    with pytest.raises(SceneError, match="goes by the figure alone"):
+        spec_of(f'sampler = "subset"\n{success}\n{DRAWN}')
