@@ -18,6 +18,8 @@ from dcone_cosim.campaign.spec import RANDOM, SALTELLI, Spec
 
 NOTHING = 0.9
 """Error of a surrogate from which on it explains nothing [1]."""
+VAGUE = 0.5
+"""Half the width of a total index's interval from which on it says nothing [1]."""
 SUCCESS = "success"
 """Name of the figure that is 1 where a case came out as is wanted, else 0."""
 
@@ -77,10 +79,16 @@ def _column(spec: Spec, made: Sequence[Made], name: str) -> list[float]:
 
 
 def sentences(found: Explained) -> Iterator[str]:
-    """What explains most, in words."""
+    """What explains most, in words.
+
+    Checked  tests/campaign/test_sensitivity.py
+    """
     for one in found.indices:
         first = max(one.inputs, key=lambda index: index.total)
         share, error = 100.0 * first.total, 100.0 * first.total_error
+        if not first.total_error < VAGUE:
+            yield f"{one.figure}: {one.samples} base samples are too few to tell what its variance comes from"
+            continue
         yield f"{one.figure}: {first.name} takes part in {share:.0f} % of its variance (+- {error:.0f} %)"
     for name, fitted in found.surrogates.items():
         best = min(fitted, key=lambda surrogate: surrogate.error)

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from dcone_cosim.campaign.explained import Explained, sentences
 from dcone_cosim.campaign.sampling import hypercube, monte_carlo, saltelli
-from dcone_cosim.campaign.sensitivity import sobol_indices, surrogates
+from dcone_cosim.campaign.sensitivity import Index, Indices, sobol_indices, surrogates
 
 A, B = 7.0, 0.1
 V1, V2, V13 = 0.5 * (1.0 + B * math.pi**4 / 5.0) ** 2, A**2 / 8.0, B**2 * math.pi**8 * 8.0 / 225.0
@@ -71,6 +72,16 @@ def test_surrogates(cases: int, off: float, most: float) -> None:
     for place, name in enumerate(NAMES):
         assert chaos.indices[name] == pytest.approx((FIRST[place], TOTAL[place]), abs=off)
     assert process.error < most
+
+
+def test_indices_that_say_nothing_are_told_so() -> None:
+    """Of eight base samples "149 % of its variance (+- 321 %)" was told."""
+    few, many = (
+        Indices("t", n, 0, (Index("a", 0.2, 0.1, 1.2, error), Index("b", 0.1, 0.1, 0.3, 0.1)))
+        for n, error in ((8, 3.21), (512, 0.04))
+    )
+    assert list(sentences(Explained([few]))) == ["t: 8 base samples are too few to tell what its variance comes from"]
+    assert list(sentences(Explained([many]))) == ["t: a takes part in 120 % of its variance (+- 4 %)"]
 
 
 def test_noise_is_not_explained() -> None:
