@@ -150,7 +150,7 @@ def _of_all(rows_of: Sequence[Mapping[str, Any]]) -> str:
 def _cell(row: Mapping[str, Any]) -> str:
     """Successes with their interval, and how far the net was open as it met the debris."""
     if row["probability"] is None:
-        return f"none of {row['cases']} answers"
+        return f"none of {row['cases']} answers" if row["cases"] else "no case"
     low, high = row["probability"]["interval"]
     parts = [f"{row['succeeded']} of {row['probability']['of']} ({low:.2f} to {high:.2f})"]
     for ending, unit in OPEN:
