@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
 from fmu_src.net_capture import (
     air,
+    bending,
     breaking,
     capture_index,
     force_map,
@@ -307,6 +308,7 @@ GROUPS = {
     "jam": _plain(jam.PART),
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
     "air": Group({"quadratic": air.PART}, selector="drag", optional=True, follows=lambda terms, values: "quadratic"),
+    "bending": _plain(bending.PART),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "volume": _plain(volume.PART),

@@ -27,6 +27,7 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     pull_off, has_load = parts.pull_off, parts.pull_off is not None
     hardest, has_hardest = parts.hardest, parts.hardest is not None
     has_nodes, has_threads, has_air = "nodes" in parts.terms, tensions is not None, parts.air is not None
+    has_bending = parts.bending is not None
     has_wrap, follows = parts.wrap is not None, parts.pace is not None
     has_ejection, has_spin, ejection = parts.ejection is not None, parts.spin is not None, parts.ejection
     gravity, scheme, peaks = parts.gravity, parts.scheme, parts.peaks
@@ -58,6 +59,9 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
             ejection.show(p, work)
         if has_air:
             p.air_dissipated = p.air_loss + late * p.air_power
+        if has_bending:
+            elastic += p.bending_energy
+            p.bending_dissipated = p.bending_loss + late * p.bending_power
         measures.measure_net(p, work)
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic
