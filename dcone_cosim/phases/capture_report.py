@@ -39,6 +39,8 @@ _CAPTURE_ROWS = (
     ("closing.spring_energy", "energy left in the reels' springs", "J"),
     ("closing.braked", "energy taken by the reels' brakes, and by slack taken in", "J"),
     ("air.dissipated", "energy taken by the air", "J"),
+    ("wall.friction_loss", "energy taken by friction in the canister", "J"),
+    ("wall.emptied", "the last of the net out of its canister at", "s"),
     ("bending.dissipated", "energy taken by the damping of bending", "J"),
     ("gravity.work", "energy given by the change of gravity", "J"),
     ("energy.remainder", "energy that the book does not account for", "J"),

@@ -30,7 +30,7 @@ def make_balance(composition: Any) -> Any:
     has_wrap = composition.wrap is not None
     rubs = composition.terms.get("wrap") == "friction"
     has_air, has_load = composition.air is not None, composition.pull_off is not None
-    has_bending = composition.bending is not None
+    has_bending, has_wall = composition.bending is not None, composition.wall is not None
     node_plane = composition.memory.node_plane
 
     @kernel
@@ -93,6 +93,8 @@ def make_balance(composition: Any) -> Any:
             energy += p.air_dissipated
         if has_bending:
             energy += p.bending_dissipated
+        if has_wall:
+            energy += p.wall_friction_loss
         return energy
 
     return energy_balance

@@ -42,11 +42,12 @@ class Composition:
     everywhere(p)    half the stiffness over mass [1/s2], and dashpots over mass [1/s], that contact and bending may add
                      at any node
     scratch_plane            the first of the node planes that the convex hull may scribble on, where there are any
+    wall_plane       the node plane of what lies in the canister, where its wall holds on to it
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
     gravity, net, rigging, graph, peaks, folding, target, force_map, contact, jam, closing, tether, air, wrap, spin,
-    ejection, volume, index, pull_off, hardest, bending, pulls, pace, breaking, scheme
+    ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -67,7 +68,8 @@ class Composition:
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
         scratch = SCRATCH_PLANES * self.per_double if "quality" in terms else 0
-        self.planes = self.scratch_plane + scratch
+        self.wall_plane = self.scratch_plane + scratch
+        self.planes = self.wall_plane + (1 if "wall" in terms else 0)
         self.memory = make_memory(terms["precision"])
         self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
@@ -86,8 +88,9 @@ class Composition:
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
         self.wrap, self.bending = self._make("wrap"), self._make("bending")
+        self.wall = self._make("wall")
         self.pulls = _make_pulls(
-            self.closing, self.tether, self.ejection, self.air, self.bending, self.pull_off, self.wrap
+            (self.ejection, self.wall), self.closing, self.tether, self.air, self.bending, self.pull_off, self.wrap
         )
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
@@ -154,15 +157,14 @@ def _both(first: Any, second: Any) -> Any:
     return both
 
 
-def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, bending: Any, *others: Any) -> Pulls:
-    """Pulls of cord, tether, air, bending and others together, and bullets that are held; None for those left out."""
+def _make_pulls(holding: tuple[Any, ...], closing: Any, tether: Any, air: Any, bending: Any, *others: Any) -> Pulls:
+    """Pulls of cord, tether, air, bending and others together, and what is held; None for those left out."""
     has_closing, has_tether, has_air = closing is not None, tether is not None, air is not None
     has_bending = bending is not None
     book_impulse = tether.book if has_tether else None
     parts = [part for part in (closing, tether, air, bending, *others) if part is not None]
     pulls = [part.pull for part in parts]
-    if ejection is not None:
-        pulls.insert(0, ejection.wake)
+    pulls = [part.wake for part in holding if part is not None] + pulls
 
     @kernel
     def book(p, duration):

@@ -17,6 +17,7 @@ from fmu_src.net_capture import (
     shot,
     tether,
     volume,
+    wall,
     wrapping,
 )
 from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES, MOST_THREADS
@@ -309,6 +310,7 @@ GROUPS = {
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
     "air": Group({"quadratic": air.PART}, selector="drag", optional=True, follows=lambda terms, values: "quadratic"),
     "bending": _plain(bending.PART),
+    "wall": _plain(wall.PART),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "volume": _plain(volume.PART),

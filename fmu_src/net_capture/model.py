@@ -47,13 +47,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     hold, has_volume = parts.volume, parts.volume is not None
     index, has_index = parts.index, parts.index is not None
     pull_off, has_load = parts.pull_off, parts.pull_off is not None
-    has_nodes, has_air = "nodes" in terms, parts.air is not None
+    has_nodes, has_threads, has_air = "nodes" in terms, "threads" in terms, parts.air is not None
     capacity = int(terms["nodes"]) if has_nodes else 0
-    has_threads = "threads" in terms
     thread_capacity = int(terms["threads"]) if has_threads else 0
     tensions = make_tensions(parts) if has_threads else None
     has_hardest, hardest = parts.hardest is not None, parts.hardest
-    has_bending, bending = parts.bending is not None, parts.bending
+    has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
     per_double = parts.per_double
     properties = parts.memory.properties
 
@@ -127,6 +126,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         for axis in range(3):
             before[axis] = p.chaser_drift[axis]
         gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, h)
+        if has_wall:
+            wall.rub(p, work)
         if has_ejection:
             ejection.hold(p, work, before)
         for axis in range(3):
@@ -232,6 +233,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         folding.fold(p, work)
         shot.jitter(p, work)
         shot.shoot(p, work)
+        if has_wall:
+            wall.start(p, work)
         for axis in range(3):
             p.pull[axis] = 0.0
             p.rest[axis] = 0.0
