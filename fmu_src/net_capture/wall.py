@@ -243,7 +243,7 @@ PART = Term(
             "wall.pressing",
             "N/m",
             "force with which each metre of thread is pressed on them in the canister: how hard the net is packed",
-            1.0,
+            0.1,
         ),
         count("wall.stowed", "nodes that are still in the canister"),
         peak("wall.emptied", "s", "when the last node left it, since the shot; -1 before"),
