@@ -14,6 +14,7 @@ from fmu_src.net_capture import (
     force_map,
     hardest,
     pull_off,
+    section,
     shot,
     tether,
     volume,
@@ -286,6 +287,7 @@ NETS, RIGGINGS, TARGETS, CONTACTS, CLOSINGS = nets(), riggings(), shapes(), cont
 
 GROUPS = {
     "net": Group(NETS, selector="shape"),
+    "section": _plain(section.PART),
     **{name: _plain(part) for name, part in RIGGINGS.items()},
     "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of, early=True),
     "ejection": Group(ejection.PARTS, selector="number", optional=True, follows=each_bullet, early=True),
