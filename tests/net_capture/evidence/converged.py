@@ -28,7 +28,7 @@ CLOSED = 20.0
 """By when every mouth has fallen below 80 % for good [s]: how long it was open is asked then."""
 SHARES = (1.0, 0.5, 0.25)
 """Of the default substep."""
-PIECES = (1, 2, 4, 8, 16)
+PIECES = (1, 2, 4, 8)
 PARTS = {
     "substeps": (2.0, 8, [(1, share) for share in SHARES]),
     "pieces": (4.0, 4, [(pieces, 1.0) for pieces in PIECES]),
@@ -87,7 +87,7 @@ def main(parts: list[str]) -> None:
         for one in found:
             cells = (f"{mean:.4g} +- {error:.1g} |" for mean, error in zip(one["mean"], one["error"], strict=True))
             print(f"| {one['pieces']} | {one['share']:g} |", *cells, flush=True)
-    RESULT.write_text(json.dumps({"command": COMMAND} | kept, indent=1) + "\n")
+        RESULT.write_text(json.dumps({"command": COMMAND} | kept, indent=1) + "\n")
 
 
 if __name__ == "__main__":
