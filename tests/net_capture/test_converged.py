@@ -7,7 +7,6 @@ import pytest
 
 from tests.net_capture.evidence.converged import AGGREGATES, CLOSED, OPEN_FOR, PIECES, RESULT, limit
 
-
 LIMITS = {
     "largest mouth area over the flat net's": (0.919, 1.0),
     "80 % open from [s]": (9.38, 0.8),
