@@ -254,7 +254,7 @@ NETS = {
 }
 
 
-@pytest.mark.parametrize("shape", NETS)
+@pytest.mark.parametrize("shape", ["square", pytest.param("cone", marks=pytest.mark.evidence)])
 def test_no_joint_is_stiffer_than_the_step_allows(square, shape):
     """Twice what bending is said to add bounds every swing of it; of the lengths and masses that a scene tells."""
     joined = square if shape == "square" else Joined(shape)
