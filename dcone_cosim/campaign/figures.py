@@ -37,14 +37,14 @@ Pa   *.stress *.strength
 _OF_CAPTURE = """
      outcome located_by lasted thread.tension_max_node pull_off pull_off.slip pull_off.threads
 s    handed_over_at thread.tension_max_time contact.first_time mouth.t80 mouth.t_max closing.t_start t_capture
-s    pull_off.t_start lost_after followed
+s    wall.emptied pull_off.t_start lost_after followed
 m    approach mouth.cord_length mouth.girth mouth.margin_at_capture contact.depth tether.paid_out
 m    quality.length quality.offset pull_off.drawn_max
 m2   mouth.area_max mouth.area_at_touch quality.hull_surface
 m3   net.volume_at_touch quality.hull_volume
 N    thread.tension_max cord.tension_max pull_off.tension_max
 J    contact.loss contact.friction_loss closing.work closing.spring_energy closing.braked thread.dissipated
-J    cord.dissipated air.dissipated gravity.work energy.remainder pull_off.work
+J    cord.dissipated air.dissipated bending.dissipated wall.friction_loss gravity.work energy.remainder pull_off.work
 N s  recoil
 1    net.nodes net.threads enclosure.at_capture enclosure.least quality.at_capture quality.index
 """

@@ -30,6 +30,7 @@ def make_balance(composition: Any) -> Any:
     has_wrap = composition.wrap is not None
     rubs = composition.terms.get("wrap") == "friction"
     has_air, has_load = composition.air is not None, composition.pull_off is not None
+    has_bending, has_wall = composition.bending is not None, composition.wall is not None
     node_plane = composition.memory.node_plane
 
     @kernel
@@ -50,8 +51,8 @@ def make_balance(composition: Any) -> Any:
 
     @kernel
     def energy_balance(p, work):
-        """Energy of all bodies now [J], with what contact, dashpots, air and breaks took and without what the winches
-        gave, or gravity as it changed.
+        """Energy of all bodies now [J], with what contact, dashpots, air, bending and breaks took and without what the
+        winches gave, or gravity as it changed.
 
         Checked  tests/net_capture/test_energy_book.py
         """
@@ -90,6 +91,10 @@ def make_balance(composition: Any) -> Any:
             energy -= given(p, work)
         if has_air:
             energy += p.air_dissipated
+        if has_bending:
+            energy += p.bending_dissipated
+        if has_wall:
+            energy += p.wall_friction_loss
         return energy
 
     return energy_balance

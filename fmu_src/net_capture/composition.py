@@ -39,12 +39,15 @@ class Composition:
     memory       kernels that find what lies in the work memory
     bullets      how many there are
     rouse        of the scheme, see `schemes.Needs`
+    everywhere(p)    half the stiffness over mass [1/s2], and dashpots over mass [1/s], that contact and bending may add
+                     at any node
     scratch_plane            the first of the node planes that the convex hull may scribble on, where there are any
+    wall_plane       the node plane of what lies in the canister, where its wall holds on to it
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
     gravity, net, rigging, graph, peaks, folding, target, force_map, contact, jam, closing, tether, air, wrap, spin,
-    ejection, volume, index, pull_off, hardest, pulls, pace, breaking, scheme
+    ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -59,12 +62,14 @@ class Composition:
         self.clock = traits.clock
         law = self._term("contact").checks if "contact" in terms else None
         self.presses = law is not None and law.stiffening is not None
+        self.everywhere = _make_everywhere(self.presses, "bending" in terms)
         self.contact_planes = NODE_PLANES + needs.planes + traits.planes
         self.scratch_plane = self.contact_planes + (law.planes if law is not None else 0)
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
         scratch = SCRATCH_PLANES * self.per_double if "quality" in terms else 0
-        self.planes = self.scratch_plane + scratch
+        self.wall_plane = self.scratch_plane + scratch
+        self.planes = self.wall_plane + (1 if "wall" in terms else 0)
         self.memory = make_memory(terms["precision"])
         self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
@@ -82,8 +87,11 @@ class Composition:
         self.hardest = self._make("tensions")
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
-        self.wrap = self._make("wrap")
-        self.pulls = _make_pulls(self.closing, self.tether, self.ejection, self.air, self.pull_off, self.wrap)
+        self.wrap, self.bending = self._make("wrap"), self._make("bending")
+        self.wall = self._make("wall")
+        self.pulls = _make_pulls(
+            (self.ejection, self.wall), self.closing, self.tether, self.air, self.bending, self.pull_off, self.wrap
+        )
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
 
@@ -115,6 +123,25 @@ def _nothing(p, work):
     """
 
 
+def _make_everywhere(presses: bool, resists: bool) -> Any:
+    """Kernel `everywhere`, of contact that presses and threads that resist bending."""
+
+    @kernel
+    def everywhere(p):
+        """What may be added at any node: half the stiffness over mass [1/s2], dashpots over mass [1/s].
+
+        Checked  tests/net_capture/test_bending.py
+        """
+        stiffness = p.contact_stiffening if presses else 0.0
+        damping = 0.0
+        if resists:
+            stiffness += p.bending_stiffening
+            damping = p.bending_damping_time * p.bending_stiffening
+        return stiffness, damping
+
+    return everywhere
+
+
 def _both(first: Any, second: Any) -> Any:
     """Kernel that calls two, one after the other."""
 
@@ -130,18 +157,18 @@ def _both(first: Any, second: Any) -> Any:
     return both
 
 
-def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, *others: Any) -> Pulls:
-    """The pulls of cord, tether, air and others together, and bullets that are held; None for what is left out."""
+def _make_pulls(holding: tuple[Any, ...], closing: Any, tether: Any, air: Any, bending: Any, *others: Any) -> Pulls:
+    """Pulls of cord, tether, air, bending and others together, and what is held; None for those left out."""
     has_closing, has_tether, has_air = closing is not None, tether is not None, air is not None
+    has_bending = bending is not None
     book_impulse = tether.book if has_tether else None
-    parts = [part for part in (closing, tether, air, *others) if part is not None]
+    parts = [part for part in (closing, tether, air, bending, *others) if part is not None]
     pulls = [part.pull for part in parts]
-    if ejection is not None:
-        pulls.insert(0, ejection.wake)
+    pulls = [part.wake for part in holding if part is not None] + pulls
 
     @kernel
     def book(p, duration):
-        """What the cord's dashpots and the air took in a time at their present power [J], and the tether's impulse.
+        """What the cord's dashpots, air and bending took in a time at their present power [J]; the tether's impulse.
 
         Checked  tests/net_capture/test_closing.py
         """
@@ -151,5 +178,7 @@ def _make_pulls(closing: Any, tether: Any, ejection: Any, air: Any, *others: Any
             book_impulse(p, duration)
         if has_air:
             p.air_loss += duration * p.air_power
+        if has_bending:
+            p.bending_loss += duration * p.bending_power
 
     return Pulls(reduce(_both, pulls, _nothing), reduce(_both, (part.pull_shown for part in parts), _nothing), book)

@@ -177,6 +177,7 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
         rings: int,
         pressing: float,
         apart: int = 0,
+        resisting: float = 0.0,
     ) -> tuple[float, float]:
         """Stability bound of a net and the step that is accurate [s], the least of an inner node's, a bullet's and a
         ring's.
@@ -186,8 +187,9 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
         cord, cord_dashpot   of a closing cord at its lock length; 0 without one     [N/m], [N s/m]
         bullet_mass          of each, without the thread that hangs on it            [kg]
         rings                that each pair's cord runs through                      [1]
-        pressing             what a surface adds at every node, see `longest_step`; 0 without one   [1/s2]
+        pressing             what a surface and bending add at every node, see `longest_step`; 0 without   [1/s2]
         apart                stretches of the cord from a bullet to its reel; 0: reels at the bullets   [1]
+        resisting            dashpots that bending adds at every node, over its mass; 0 without it   [1/s]
 
         A cord of way s pulls its knots along ds/dx, of length 1 at a bullet and up to 2 at a ring, so through n rings a
         row of its matrix sums to 2 (n + 1) k at a bullet and twice that at a ring; half of it counts here. A stretch
@@ -197,14 +199,14 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
 
         Checked  tests/net_capture/test_formulas.py
         """
-        stiffness_rate, damping_rate = 4.0 * thread / node_mass + pressing, 4.0 * dashpot / node_mass
+        stiffness_rate, damping_rate = 4.0 * thread / node_mass + pressing, 4.0 * dashpot / node_mass + resisting
         bound, enough = longest(stiffness_rate, damping_rate), accurate(stiffness_rate, damping_rate)
         corner = bullet_mass + 0.5 * node_mass
         held = (rings + 1) * cord
         turning = held * BREAKING_STRAIN / RINGS_SHARE if rings > 0 else 0.0
         damped = (rings + 1) * cord_dashpot
         stiffness_rate = 2.0 * (thread + held + turning) / corner + pressing
-        damping_rate = 2.0 * (dashpot + damped) / corner
+        damping_rate = 2.0 * (dashpot + damped) / corner + resisting
         bound = min(bound, longest(stiffness_rate, damping_rate))
         enough = min(enough, accurate(stiffness_rate, damping_rate))
         if rings > 0 and cord > 0.0:
@@ -212,12 +214,12 @@ def make_substep_limits(longest: Limit, accurate: Limit) -> Callable[..., tuple[
             stiffness_rate = (
                 3.0 * thread + 2.0 * held + (2 if apart > 0 else min(rings, 2)) * turning
             ) / edge + pressing
-            damping_rate = (3.0 * dashpot + 2.0 * damped) / edge
+            damping_rate = (3.0 * dashpot + 2.0 * damped) / edge + resisting
             bound = min(bound, longest(stiffness_rate, damping_rate))
             enough = min(enough, accurate(stiffness_rate, damping_rate))
         if pressing > 0.0:
-            # a node that nothing but the surface holds
-            enough = min(enough, accurate(pressing, 0.0))
+            # a node that nothing else holds
+            enough = min(enough, accurate(pressing, resisting))
         return bound, enough
 
     return substep_limits

@@ -8,14 +8,17 @@ from collections.abc import Iterator, Mapping
 from fmu_src.interface import Fault, Group, Model, Term, Variable, fault, numbered
 from fmu_src.net_capture import (
     air,
+    bending,
     breaking,
     capture_index,
     force_map,
     hardest,
     pull_off,
+    section,
     shot,
     tether,
     volume,
+    wall,
     wrapping,
 )
 from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES, MOST_THREADS
@@ -284,6 +287,7 @@ NETS, RIGGINGS, TARGETS, CONTACTS, CLOSINGS = nets(), riggings(), shapes(), cont
 
 GROUPS = {
     "net": Group(NETS, selector="shape"),
+    "section": _plain(section.PART),
     **{name: _plain(part) for name, part in RIGGINGS.items()},
     "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of, early=True),
     "ejection": Group(ejection.PARTS, selector="number", optional=True, follows=each_bullet, early=True),
@@ -307,6 +311,8 @@ GROUPS = {
     "jam": _plain(jam.PART),
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
     "air": Group({"quadratic": air.PART}, selector="drag", optional=True, follows=lambda terms, values: "quadratic"),
+    "bending": _plain(bending.PART),
+    "wall": _plain(wall.PART),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),
     "settling": Group(SETTLING, selector="by", optional=True),
     "volume": _plain(volume.PART),

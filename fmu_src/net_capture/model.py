@@ -47,12 +47,12 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     hold, has_volume = parts.volume, parts.volume is not None
     index, has_index = parts.index, parts.index is not None
     pull_off, has_load = parts.pull_off, parts.pull_off is not None
-    has_nodes, has_air = "nodes" in terms, parts.air is not None
+    has_nodes, has_threads, has_air = "nodes" in terms, "threads" in terms, parts.air is not None
     capacity = int(terms["nodes"]) if has_nodes else 0
-    has_threads = "threads" in terms
     thread_capacity = int(terms["threads"]) if has_threads else 0
     tensions = make_tensions(parts) if has_threads else None
     has_hardest, hardest = parts.hardest is not None, parts.hardest
+    has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
     per_double = parts.per_double
     properties = parts.memory.properties
 
@@ -105,6 +105,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         words = scheme.own_words(p) + masks * p.strips
         if has_wrap:
             words += wrap.words(p)
+        if has_bending:
+            words += bending.words(p)
         p.work_size = work_size(p, per_double, words)
         return 0
 
@@ -124,6 +126,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         for axis in range(3):
             before[axis] = p.chaser_drift[axis]
         gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, h)
+        if has_wall:
+            wall.rub(p, work)
         if has_ejection:
             ejection.hold(p, work, before)
         for axis in range(3):
@@ -199,6 +203,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         p.thread_loss = 0.0
         if presses:
             p.contact_stiffening = 0.0
+        if has_bending:
+            p.bending_stiffening = 0.0
         fault = choose_substep(p)
         if fault != 0:
             return fault
@@ -212,17 +218,23 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         graph.lay_out(p, work)
         complete_strips(p, properties(p, work))
         shot.load(p, work)
+        if has_bending:
+            bending.find(p, work)
         if presses:
             contact.weigh(p, work)
+        if presses or has_bending:
             fault = choose_substep(p)
             if fault != 0:
                 return fault
-            limit_way(p)
+            if has_contact:
+                limit_way(p)
         if has_threads:
             tensions.list_threads(p, work)
         folding.fold(p, work)
         shot.jitter(p, work)
         shot.shoot(p, work)
+        if has_wall:
+            wall.start(p, work)
         for axis in range(3):
             p.pull[axis] = 0.0
             p.rest[axis] = 0.0
@@ -253,6 +265,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         if has_air:
             p.air_loss = -lag * p.solver_substep * p.air_power
+        if has_bending:
+            p.bending_loss = -lag * p.solver_substep * p.bending_power
         start_bodies(p, work)
         if watches:
             watch(p, work)
@@ -307,6 +321,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
                 p.cord_loss += later * p.cord_power
             if has_air:
                 p.air_loss += later * p.air_power
+            if has_bending:
+                p.bending_loss += later * p.bending_power
             if has_tether:
                 tether.pull_chaser(p)
             gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, later)

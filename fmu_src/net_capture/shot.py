@@ -86,6 +86,7 @@ def make_shot(composition: Any) -> Shot:
     memory = composition.memory
     node_plane, bullets, apex = memory.node_plane, memory.bullets, memory.apex
     has_ejection, has_spin = composition.ejection is not None, composition.spin is not None
+    has_wall = composition.wall is not None
     aim_each = composition.ejection.aim if has_ejection else None
     turn = composition.spin.turn if has_spin else None
 
@@ -134,7 +135,7 @@ def make_shot(composition: Any) -> Shot:
             velocity = node_plane(p, work, U + axis)
             for i in range(p.node_slots):
                 velocity[i] = p.chaser_start_velocity[axis] if mass[i] > 0.0 else 0.0
-        if has_ejection or has_spin:
+        if has_ejection or has_spin or has_wall:
             for axis in range(3):
                 p.chaser_turned[axis] = 0.0
         if has_spin:

@@ -27,8 +27,10 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     pull_off, has_load = parts.pull_off, parts.pull_off is not None
     hardest, has_hardest = parts.hardest, parts.hardest is not None
     has_nodes, has_threads, has_air = "nodes" in parts.terms, tensions is not None, parts.air is not None
+    has_bending, has_wall, wall = parts.bending is not None, parts.wall is not None, parts.wall
+    books_turn = parts.ejection is not None or parts.spin is not None or has_wall
     has_wrap, follows = parts.wrap is not None, parts.pace is not None
-    has_ejection, has_spin, ejection = parts.ejection is not None, parts.spin is not None, parts.ejection
+    has_ejection, ejection = parts.ejection is not None, parts.ejection
     gravity, scheme, peaks = parts.gravity, parts.scheme, parts.peaks
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
     lag, frame_rate, now, node_plane = scheme.lag, gravity.rate, parts.clock.now, parts.memory.node_plane
@@ -51,18 +53,23 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
             p.cord_dissipated = p.cord_loss + late * p.cord_power
             p.closed = 1 if p.mouth_locked_pairs == p.net_corners else 0
         place_bodies(p, ahead)
-        if has_ejection or has_spin:
+        if books_turn:
             for axis in range(3):
                 p.chaser_spin[axis] = p.chaser_turned[axis]
+        if has_wall:
+            wall.show(p, work)
         if has_ejection:
             ejection.show(p, work)
         if has_air:
             p.air_dissipated = p.air_loss + late * p.air_power
+        if has_bending:
+            elastic += p.bending_energy
+            p.bending_dissipated = p.bending_loss + late * p.bending_power
         measures.measure_net(p, work)
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic
         quality.add_body_momenta(p, p.chaser_mass, p.chaser_position, p.chaser_velocity)
-        if has_ejection or has_spin:
+        if books_turn:
             for axis in range(3):
                 p.angular_momentum[axis] += p.chaser_spin[axis]
         if has_target:

@@ -32,8 +32,8 @@ def make_choose_substep(composition: Any) -> Any:
     Checked  tests/net_capture/test_step.py, tests/net_capture/test_formulas.py
     """
     has_closing = "closing" in composition.terms
-    presses = composition.presses
     thread, needs, rates = composition.net.thread, composition.needs, composition.graph.rates
+    everywhere = composition.everywhere
     has_rig, longest, accurate = rates is not None, needs.longest_step, needs.accurate_step
     substep_limits = formulas.make_substep_limits(needs.longest_step, needs.accurate_step)
     step_too_small = composition.code(STEP_TOO_SMALL.name)
@@ -55,13 +55,15 @@ def make_choose_substep(composition: Any) -> Any:
             p.cord_mass = formulas.cord_mass(p.bullets_mass, 0.75 * node, rings, apart)
             cord = formulas.cord_stiffness(p.closing_axial_stiffness, p.closing_lock_length)
             dashpot = formulas.cord_damping(p.closing_damping_ratio, cord, p.cord_mass)
-        pressing = p.contact_stiffening if presses else 0.0
-        bound, step = substep_limits(stiffness, damping, node, cord, dashpot, p.bullets_mass, rings, pressing, apart)
+        pressing, resisting = everywhere(p)
+        bound, step = substep_limits(
+            stiffness, damping, node, cord, dashpot, p.bullets_mass, rings, pressing, apart, resisting
+        )
         if has_rig:
             stiff, damped = rates(p, stiffness, damping, node)
             if stiff > 0.0:
-                bound = min(bound, longest(stiff + pressing, damped))
-                step = min(step, accurate(stiff + pressing, damped))
+                bound = min(bound, longest(stiff + pressing, damped + resisting))
+                step = min(step, accurate(stiff + pressing, damped + resisting))
         if p.solver_step_ratio > 0.0:
             step = p.solver_step_ratio * bound
         p.solver_stability_bound = bound

@@ -7,10 +7,11 @@ from typing import Any
 
 from fmu_src.implied import formula
 from fmu_src.net_capture import formulas
+from fmu_src.net_capture.bending import stiffening_of
 from fmu_src.net_capture.rigging import riggings
 
 Values = Mapping[str, float]
-COUNT = ("net", *riggings(), "solver", "closing", "target", "contact")
+COUNT = ("net", *riggings(), "solver", "closing", "target", "contact", "bending")
 """Groups on which a substep hangs."""
 
 
@@ -29,7 +30,8 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
         moved = formula(formulas.cord_mass)(values["bullets.mass"], 0.75 * node, rings, apart)
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
         cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, moved)
-    pressing = _pressing(values, parts, node)
+    bent, resisting = stiffening_of(values, net) if "bending" in parts else (0.0, 0.0)
+    pressing = _pressing(values, parts, node) + bent
     needs = parts["solver"].checks
     longest, accurate = formula(needs.longest_step), formula(needs.accurate_step)
     limits = formulas.make_substep_limits(longest, accurate)
@@ -41,11 +43,13 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
         rings,
         pressing,
         apart,
+        resisting,
     )
     rigged = [parts[name].checks.rates(values, net, *of_net) for name in riggings() if name in parts]
     stiff, damped = (max(rates) for rates in zip((0.0, 0.0), *rigged, strict=True))
     if stiff > 0.0:
-        found = min(found[0], longest(stiff + pressing, damped)), min(found[1], accurate(stiff + pressing, damped))
+        stiff, damped = stiff + pressing, damped + resisting
+        found = min(found[0], longest(stiff, damped)), min(found[1], accurate(stiff, damped))
     return found
 
 

@@ -35,6 +35,7 @@ def planes_of(p, work, terms):
     reals = work.view(np.float32 if terms["precision"] == "single" else np.float64)
     if "quality" in terms:
         count += SCRATCH_PLANES * 8 // reals.itemsize
+    count += 1 if "wall" in terms else 0
     return reals[: count * slots].reshape(count, slots)
 
 

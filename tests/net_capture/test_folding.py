@@ -26,13 +26,21 @@ NETS = {
     "square": {"net.side": 12.0, "net.mesh": 0.5, "net.segments": 2},
     "cone": {"net.radius": 3.0, "net.depth": 4.0, "net.top_radius": 0.8, "net.mesh": 0.25},
     "hexagon": {"net.radius": 4.0, "net.mesh": 0.5},
+    "led": {"net.side": 12.0, "net.mesh": 0.5, "leads.length": 3.0, "leads.segments": 7},
 }
-CASES = [("square", "accordion"), ("hexagon", "accordion"), ("square", "rolled"), ("cone", "rolled")]
+CASES = [
+    ("square", "accordion"),
+    ("hexagon", "accordion"),
+    ("square", "rolled"),
+    ("cone", "rolled"),
+    ("led", "accordion"),
+]
 
 
 @cache
 def layer_of(shape, pattern):
-    return Layer(shape, folding=pattern, **({"bullets": "6"} if shape == "hexagon" else {}))
+    rigged = {"hexagon": {"bullets": "6"}, "led": {"leads": "plain"}}.get(shape, {})
+    return Layer("square" if shape == "led" else shape, folding=pattern, **rigged)
 
 
 LAID = [pytest.param(c, marks=pytest.mark.evidence if c == ("square", "accordion") else ()) for c in CASES]

@@ -16,7 +16,16 @@ from typing import Any
 
 from fmu_src.interface import Term
 from fmu_src.net_capture.folding import Checks, Folding, Values
-from fmu_src.net_capture.folding.zigzag import DEPTH, GOLDEN, TOO_DEEP, TOO_WIDE, extremes, fold_width, zigzag
+from fmu_src.net_capture.folding.zigzag import (
+    DEPTH,
+    GOLDEN,
+    TOO_DEEP,
+    TOO_WIDE,
+    extremes,
+    fold_width,
+    make_spans,
+    zigzag,
+)
 from fmu_src.net_capture.planes import SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import positive
@@ -30,7 +39,7 @@ KEPT = 1.0 - 1e-6
 
 def make(composition: Any) -> Folding:
     """Kernels for the composition's net."""
-    node_plane = composition.memory.node_plane
+    node_plane, spans = composition.memory.node_plane, make_spans(composition)
     too_deep, too_wide = composition.code(TOO_DEEP.name), composition.code(TOO_WIDE.name)
     first, second = SHARES
 
@@ -55,13 +64,14 @@ def make(composition: Any) -> Folding:
 
         Checked  tests/net_capture/test_folding.py
         """
-        a = p.canister_depth * first / p.mouth_width[0]
-        b = p.canister_depth * second / p.mouth_width[1]
+        along, across = spans(p, work)
+        a = p.canister_depth * first / along
+        b = p.canister_depth * second / across
         kept = KEPT * math.sqrt(1.0 - a * a - b * b)
         width = fold_width(p.canister_width, kept * p.rim_mesh)
         for i in range(p.node_slots):
-            x = node_plane(p, work, SHOWN)[i] + 0.5 * p.mouth_width[0]
-            y = node_plane(p, work, SHOWN + 1)[i] + 0.5 * p.mouth_width[1]
+            x = node_plane(p, work, SHOWN)[i] + 0.5 * along
+            y = node_plane(p, work, SHOWN + 1)[i] + 0.5 * across
             u = zigzag(kept * x, width)
             v = zigzag(kept * y, width)
             w = a * x + b * y - p.canister_depth

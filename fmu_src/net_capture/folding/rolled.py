@@ -18,7 +18,7 @@ from typing import Any
 from fmu_src.implied import formula
 from fmu_src.interface import Term, fault
 from fmu_src.net_capture.folding import Checks, Folding, Values
-from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, extremes, fold_width, zigzag
+from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, extremes, fold_width, make_spans, zigzag
 from fmu_src.net_capture.planes import SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import positive
@@ -72,7 +72,7 @@ def turned(length):
 
 def make(composition: Any) -> Folding:
     """Kernels for the composition's net."""
-    node_plane = composition.memory.node_plane
+    node_plane, spans = composition.memory.node_plane, make_spans(composition)
     too_deep, too_roomy = composition.code(TOO_DEEP.name), composition.code(TOO_ROOMY.name)
 
     @kernel
@@ -95,16 +95,17 @@ def make(composition: Any) -> Folding:
 
         Checked  tests/net_capture/test_folding.py
         """
-        step = pitch(p.canister_radius, p.mouth_width[1])
+        along, across = spans(p, work)
+        step = pitch(p.canister_radius, across)
         c = step / (2.0 * math.pi)
-        slope = FILLED * step / p.mouth_width[0]
+        slope = FILLED * step / along
         folded = KEPT * math.sqrt(1.0 - slope - slope * slope)
         wound = KEPT / math.sqrt(1.0 + slope)
         core = spiral_length(CORE * p.canister_radius / c)
         width = fold_width(p.canister_depth, folded * p.rim_mesh)
         for i in range(p.node_slots):
-            x = node_plane(p, work, SHOWN)[i] + 0.5 * p.mouth_width[0]
-            y = node_plane(p, work, SHOWN + 1)[i] + 0.5 * p.mouth_width[1]
+            x = node_plane(p, work, SHOWN)[i] + 0.5 * along
+            y = node_plane(p, work, SHOWN + 1)[i] + 0.5 * across
             angle = turned(core + wound * max(y, 0.0) / c)
             radius = c * angle - slope * x
             w = zigzag(folded * x, width) - 0.5 * p.canister_depth

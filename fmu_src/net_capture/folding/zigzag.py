@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from fmu_src.extremes import Extreme, times
 from fmu_src.interface import fault
+from fmu_src.net_capture.planes import MASS, SHOWN
 from orbital.kernel import kernel
 
 DEPTH = "canister.depth"
@@ -65,3 +67,35 @@ def zigzag(way, width):
     """
     on = abs(way) % (2.0 * width)
     return (on if on < width else 2.0 * width - on) - 0.5 * width
+
+
+def make_spans(composition: Any) -> Any:
+    """Kernel `spans(p, work) -> (along, across)`: widths [m] of what is to be folded, along both axes of the mouth.
+
+    With leads, which reach out beyond it, they are those of all nodes; otherwise of the mouth.
+    """
+    node_plane, has_leads = composition.memory.node_plane, "leads" in composition.terms
+
+    @kernel
+    def span(p, work, axis):
+        """Width along one axis [m].
+
+        Checked  tests/net_capture/test_folding.py
+        """
+        found = p.mouth_width[axis]
+        if has_leads:
+            mass, place = node_plane(p, work, MASS), node_plane(p, work, SHOWN + axis)
+            for node in range(p.node_slots):
+                if mass[node] > 0.0:
+                    found = max(found, 2.0 * abs(place[node]))
+        return found
+
+    @kernel
+    def spans(p, work):
+        """Widths along both [m].
+
+        Checked  tests/net_capture/test_folding.py
+        """
+        return span(p, work, 0), span(p, work, 1)
+
+    return spans

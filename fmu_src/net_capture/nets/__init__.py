@@ -82,6 +82,7 @@ class Checks(NamedTuple):
     thread(values)     what they are
     piece(values)      stiffness [N/m], dashpot [N s/m] and mass [kg] of the kernel `Net.thread`
     hanging(values)    what hangs on its knots
+    finest(values)     length of the shortest thread [m] and mass of the lightest [kg], from knot to knot
     nodes(values)      with the inner nodes of all threads; 1 where there is no such net             [1]
     drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
                        count them
@@ -100,6 +101,7 @@ class Checks(NamedTuple):
     thread: Callable[[Values], Thread]
     piece: Callable[[Values], tuple[float, float, float]]
     hanging: Callable[[Values], Hanging]
+    finest: Callable[[Values], tuple[float, float]]
     nodes: Callable[[Values], int]
     drawing: Callable[[Values], tuple[list[list[int]], list[int]]]
     bullets: Callable[[Values], int] = lambda values: USUAL_BULLETS

@@ -107,6 +107,7 @@ CHECKS = Checks(
     thread=_thread,
     piece=_piece,
     hanging=_hanging,
+    finest=lambda values: (float(own_graph(values).lengths.min()), float(_threads(values)[:, 2].min())),
     nodes=_nodes,
     drawing=_drawing,
     bullets=lambda values: len(own_graph(values).corners) if sound(values) else USUAL_BULLETS,

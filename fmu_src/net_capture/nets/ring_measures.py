@@ -229,6 +229,13 @@ def make_checks(profile: Profile) -> Checks:
             inside = max(inside, 0.5 * meet * measures.inward_of(p, last))
         return inside, edge, edge
 
+    def least(values: Values) -> float:
+        p = record_of(profile, values)
+        rings, tip = range(p.grid_rows), written.has_tip(p)
+        along = [measures.along_of(p, i, measures.every_of(p, i)) for i in rings]
+        inward = [measures.inward_of(p, i) for i in rings if i + 1 < p.grid_rows or tip]
+        return float(min(along + inward))
+
     def nodes(values: Values) -> int:
         if not sound(profile, values):
             return 1
@@ -261,6 +268,7 @@ def make_checks(profile: Profile) -> Checks:
         total=lambda values: float(measures.total(record_of(profile, values))),
         shortest=lambda values: float(measures.shortest(record_of(profile, values))),
         lengths=lengths,
+        least=least,
         nodes=nodes,
         drawing=drawing,
     )

@@ -17,6 +17,7 @@ def uniform(
     total: Callable[[Values], float],
     shortest: Callable[[Values], float],
     lengths: Callable[[Values], Lengths],
+    least: Callable[[Values], float] | None = None,
     even: bool = False,
     **others: Any,
 ) -> Checks:
@@ -27,6 +28,7 @@ def uniform(
                stiffest: the square root of the least sum of l over sum of 1/l at a knot                     [m]
     lengths    of thread that hangs on a knot inside, on the edge, and where a bullet is made fast, the most of each:
                half of every thread that ends there                                                          [m]
+    least      length of the shortest thread, where that is not `shortest`                                   [m]
     even       whether all threads are as long, and all knots inside hold as much
     others     of `Checks`
     """
@@ -60,11 +62,16 @@ def uniform(
         inside, edge, corner = (line * length for length in lengths(values))
         return Hanging(inside, edge, corner, even)
 
+    def finest(values: Values) -> tuple[float, float]:
+        length = (least or shortest)(values)
+        return length, values["net.density"] * section(values) * length
+
     return Checks(
         total=total,
         mass=lambda values: values["net.mass"],
         thread=thread,
         piece=piece,
         hanging=hanging,
+        finest=finest,
         **others,
     )

@@ -148,7 +148,7 @@ def make(composition: Any) -> Pace:
     allow, longest_step, meet_strip = composition.meeting.allow, needs.longest_step, composition.meeting.meet_strip
     first_plane = NODE_PLANES + needs.planes
     has_contact, has_closing = composition.contact is not None, composition.closing is not None
-    presses = composition.presses
+    everywhere = composition.everywhere
     from fmu_src.lanes import highest, lowest, peek, poke
 
     stiffen = composition.closing.stiffen if has_closing else None
@@ -223,8 +223,9 @@ def make(composition: Any) -> Pace:
                 these &= these - np.uint64(1)
                 light = 0.5 * (np.float64(inverse[table[s + A] + i]) + np.float64(inverse[table[s + B] + i]))
                 stiffness, damping = numbers[q + STIFFNESS] * light, numbers[q + DAMPING] * light
-                pressing = p.contact_stiffening if presses else 0.0
-                p.pace_single_bound = min(p.pace_single_bound, longest_step(stiffness + pressing, damping))
+                pressing, resisting = everywhere(p)
+                bound = longest_step(stiffness + pressing, damping + resisting)
+                p.pace_single_bound = min(p.pace_single_bound, bound)
                 p.pace_single = min(p.pace_single, allow(p, stiffness, damping))
 
     @kernel

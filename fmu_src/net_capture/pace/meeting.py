@@ -33,7 +33,7 @@ def make_meeting(composition: Any) -> Meeting:
     """Kernels for the composition's memory and the bound of its scheme."""
     needs, reals_of = composition.needs, composition.memory.reals
     longest_step, accurate_step = needs.longest_step, needs.accurate_step
-    first_plane, presses = NODE_PLANES + needs.planes, composition.presses
+    first_plane, everywhere = NODE_PLANES + needs.planes, composition.everywhere
     from fmu_src.lanes import lowest, peek, poke
 
     @kernel
@@ -42,8 +42,9 @@ def make_meeting(composition: Any) -> Meeting:
 
         Checked  tests/net_capture/test_following.py
         """
-        if presses:
-            stiffness_rate += p.contact_stiffening
+        pressing, resisting = everywhere(p)
+        stiffness_rate += pressing
+        damping_rate += resisting
         if p.solver_step_ratio > 0.0:
             return p.solver_step_ratio * longest_step(stiffness_rate, damping_rate)
         return accurate_step(stiffness_rate, damping_rate)
@@ -60,8 +61,8 @@ def make_meeting(composition: Any) -> Meeting:
         poke(reals, at, stiffness)
         poke(reals, at + p.node_slots, damping)
         light = np.float64(peek(reals, node + INVERSE_MASS * p.node_slots))
-        pressing = p.contact_stiffening if presses else 0.0
-        bound = longest_step(stiffness * light + pressing, damping * light)
+        pressing, resisting = everywhere(p)
+        bound = longest_step(stiffness * light + pressing, damping * light + resisting)
         if chosen == EXPECTED:
             p.solver_bound_now = min(p.solver_bound_now, bound)
             p.pace_wanted = min(p.pace_wanted, allow(p, stiffness * light, damping * light))
