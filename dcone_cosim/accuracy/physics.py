@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Literal
 
 from dcone_cosim import build
@@ -17,8 +17,11 @@ from dcone_cosim.accuracy.judge import Sample, error_of, sample_of
 from dcone_cosim.accuracy.plan import Planned, Planner
 from dcone_cosim.accuracy.settings import Setting
 from dcone_cosim.accuracy.show import percent
-from dcone_cosim.accuracy.work import END, Measured, measure
+from dcone_cosim.accuracy.work import CPU, END, Measured, measure
 from dcone_cosim.cases.alone import Alone
+from dcone_cosim.cases.case import Case
+from dcone_cosim.cases.cost import estimate
+from dcone_cosim.cases.rows import Row, refused
 from dcone_cosim.cases.runner import Memory, Runner
 from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.errors import InputError
@@ -33,6 +36,8 @@ if TYPE_CHECKING:
 
 RUNS = 4
 """Of each variant: jittered starts of a chaotic phase, or repeats."""
+DEARER, AT_LEAST = 30.0, 20.0
+"""How many times what the phase takes as it is a variant may take, and how much it may in any case [s]."""
 NONE = "none"
 AS_IT_IS = Setting("", "", 1.0, ())
 
@@ -81,6 +86,22 @@ class Found:
     notes: list[str]
 
 
+@dataclass(frozen=True)
+class Bounded(Measured):
+    """A case that is left out if it would take longer than so much CPU time [s]."""
+
+    most: float = math.inf
+
+
+def measure_within(case: Case) -> Row:
+    """Run a case, unless it would take too long."""
+    most = case.most if isinstance(case, Bounded) else math.inf
+    cost = estimate(case.scene) if math.isfinite(most) else None
+    if cost is not None and cost.cpu > most:
+        return refused(case.key, f"left out: it would take {cost.told()}")
+    return measure(case)
+
+
 def measured(
     name: str, settings: Sequence[str], progress: Progress, jobs: int | None = None, isolate: bool | None = None
 ) -> list[Found]:
@@ -89,7 +110,7 @@ def measured(
     alone.begin(progress)
     found = []
     with Workers(jobs or cores()) as workers:
-        runner = Runner(Memory(), workers, 2 * cores(), measure)
+        runner = Runner(Memory(), workers, 2 * cores(), measure_within)
         for phase in alone.phases:
             if alone.scene_of(phase).phases[0].main.fmu is None:
                 found.append(_Phase(alone, phase, runner, progress).effects())
@@ -116,7 +137,7 @@ class _Phase:
                 planners[variant] = Planner(self._alone, self._phase, self._progress, changes, variant.without)
             except InputError as error:
                 notes.append(f"{self._phase}, {variant.label}: cannot be tried: {str(error).splitlines()[-1].strip()}")
-        samples = self._run(planners)
+        samples = self._run(planners, max(DEARER * row.timings[CPU], AT_LEAST))
         effects = []
         for (variant, planner), sample in zip(planners.items(), samples, strict=True):
             if sample.failed or not sample.means:
@@ -125,12 +146,14 @@ class _Phase:
             effects.append(self._effect(variant.label, sample, samples[0], planner.base))
         return Found(self._phase, self._alone.scene.title, effects, notes)
 
-    def _run(self, planners: Mapping[Variant, Planner]) -> list[Sample]:
-        cases: dict[str, Measured] = {}
+    def _run(self, planners: Mapping[Variant, Planner], most: float) -> list[Sample]:
+        """Samples of all variants, each of whose cases takes at most so much [s]."""
+        cases: dict[str, Bounded] = {}
         planned = []
         for variant, planner in planners.items():
             planned.append(Planned(Setting("", variant.label, 1.0, ())))
-            cases |= planner.cases(planned[-1], RUNS)
+            for key, case in planner.cases(planned[-1], RUNS).items():
+                cases[key] = Bounded(**{field.name: getattr(case, field.name) for field in fields(case)}, most=most)
         rows = {}
         for row, _ in self._runner.rows(cases.values()):
             rows[row.key] = row

@@ -12,7 +12,7 @@ import time as clock
 import traceback
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any
 
@@ -25,7 +25,7 @@ from dcone_cosim.fmu.shelf import Shelf
 from dcone_cosim.master import run_scene
 from dcone_cosim.progress import Progress
 from dcone_cosim.reports import summary
-from dcone_cosim.results import Begun, RunResult
+from dcone_cosim.results import Begun, PhaseResult, RunResult
 from dcone_cosim.running import Ran
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.scene_fmus import SceneFmus, fmus_of
@@ -165,6 +165,31 @@ def run_beginning(beginning: Beginning) -> None:
 def run_case(case: Case, tell: Telling = tell_summary, tables: bool | None = None) -> Row:
     """Run a case in this process, whose FMUs stay loaded for the next; `tables` as in `Fleet.row`."""
     return _own_fleet().row(case, tell, tables)
+
+
+@dataclass
+class Kept:
+    """A run, or the row that says why there is none."""
+
+    result: RunResult | None
+    row: Row
+
+    @property
+    def phase(self) -> PhaseResult | None:
+        """The first phase, if it began."""
+        return next(iter(self.result.phases.values()), None) if self.result is not None else None
+
+
+def run_alone(scene: Scene) -> Kept:
+    """Run a scene as a case of its own, and keep all that it found."""
+    kept: list[RunResult] = []
+
+    def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
+        kept.append(result)
+        return Row(case.key, result.status, result.exit_code, result.message)
+
+    row = run_case(Case("", scene), tell)
+    return Kept(kept[-1] if kept else None, row)
 
 
 def _own_fleet() -> Fleet:

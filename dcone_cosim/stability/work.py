@@ -6,23 +6,23 @@ import os
 import sys
 import threading
 import time as clock
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
 from dcone_cosim import build
 from dcone_cosim.cases.case import Case
+from dcone_cosim.cases.cost import Cost, estimate
 from dcone_cosim.cases.pace import spoken
 from dcone_cosim.cases.rows import FAULT, REFUSED, Row
-from dcone_cosim.cases.work import run_case
+from dcone_cosim.cases.work import Kept, run_alone
 from dcone_cosim.criteria import Criterion, evidence_of
 from dcone_cosim.errors import CASES_FAILED, SUCCESS
 from dcone_cosim.phases import kind_of
 from dcone_cosim.quantities import Quantity
-from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.results import PhaseResult
 from dcone_cosim.scene.data import Scene
 from dcone_cosim.stability import judge
-from dcone_cosim.stability.cost import Cost, estimate
 from dcone_cosim.stability.judge import (
     FAILED,
     LEFT,
@@ -103,38 +103,14 @@ def _patience(seconds: float) -> Iterator[None]:
         over.set()
 
 
-@dataclass
-class _Ran:
-    """A run, or the row that says why there is none."""
-
-    result: RunResult | None
-    row: Row
-
-    @property
-    def phase(self) -> PhaseResult | None:
-        """The phase, if it began."""
-        return next(iter(self.result.phases.values()), None) if self.result is not None else None
-
-
-def _run(scene: Scene) -> _Ran:
-    kept: list[RunResult] = []
-
-    def tell(case: Case, result: RunResult, timings: Mapping[str, float]) -> Row:
-        kept.append(result)
-        return Row(case.key, result.status, result.exit_code, result.message)
-
-    row = run_case(Case("", scene), tell)
-    return _Ran(kept[-1] if kept else None, row)
-
-
 def judge_cell(cell: Cell) -> tuple[Verdict, Cost | None, float]:
     """Verdict, estimate and CPU time spent [s] of a cell."""
-    cost = estimate(cell.scene, lambda scene: _run(scene).phase)
+    cost = estimate(cell.scene)
     if cost is not None and cost.cpu > cell.limit:
         if cell.quick:
             return Verdict(LEFT, f"not in a quick look: it would take {cost.told()}"), cost, 0.0
         return refusal(f"too long: {cost.told()}, and {spoken(cell.limit)} are allowed"), cost, 0.0
-    here = _run(cell.scene)
+    here = run_alone(cell.scene)
     if here.phase is None:
         return _without(here.row, cell), cost, 0.0
     spent = here.phase.cpu
@@ -180,7 +156,7 @@ def _reason(lines: Sequence[str]) -> str:
     return " ".join(told or lines)
 
 
-def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: float) -> Iterator[tuple[Criterion, float]]:
+def _compared(cell: Cell, here: Kept, criteria: Sequence[Criterion], spent: float) -> Iterator[tuple[Criterion, float]]:
     """The criteria that other runs are needed for, with the CPU time of these [s]."""
     if cell.scatters:
         yield unlike(cell.scatters), 0.0
@@ -190,7 +166,7 @@ def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: floa
     if not cell.same and FINER * spent > 4.0 * cell.limit:
         yield unlike(f"it would take about {spoken(FINER * spent)}"), 0.0
         return
-    other = _run(cell.finer)
+    other = run_alone(cell.finer)
     if other.phase is None or other.phase.error is not None:
         yield unlike(f"that stops: {other.row.message}"), 0.0
         return
@@ -210,7 +186,7 @@ def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: floa
     if cell.jittered is None or (not chaotic and found.value <= found.stable):
         yield found, more
         return
-    twin = _run(cell.jittered)
+    twin = run_alone(cell.jittered)
     if twin.phase is None or twin.phase.error is not None:
         yield unlike(f"its twin stops: {twin.row.message}"), more
         return
@@ -218,7 +194,7 @@ def _compared(cell: Cell, here: _Ran, criteria: Sequence[Criterion], spent: floa
     yield agreement(mine, others, _quantities(cell, twin), count), more + twin.phase.cpu
 
 
-def _quantities(cell: Cell, ran: _Ran) -> list[Quantity]:
+def _quantities(cell: Cell, ran: Kept) -> list[Quantity]:
     assert ran.result is not None
     assert ran.phase is not None
     return list(kind_of(_name(cell)).quantities(ran.result, ran.phase, cell.instants))

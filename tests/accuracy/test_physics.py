@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from dcone_cosim import build
 from dcone_cosim.accuracy import physics
 from dcone_cosim.accuracy.physics import Effect, Found, Variant, variants_of
+from dcone_cosim.accuracy.plan import Planned, Planner
 from dcone_cosim.cases.alone import Alone
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
@@ -82,3 +85,18 @@ def test_a_phase_goes_without_what_the_one_after_it_needs() -> None:
     assert "target" not in own.main.terms
     assert own.main.parameters["tether.length"] == 14.0
     assert own.options.after_capture == 0.0
+
+
+def test_a_variant_that_would_take_too_long_is_left_out_with_its_estimate() -> None:
+    """Ten hours of Table 2 against a bound of a millisecond, and against one of a minute."""
+    alone = Alone("table2-deorbit", ["removal.duration=10 h"], None)
+    alone.begin(Progress())
+    planned = Planned(physics.AS_IT_IS)
+    (case,) = Planner(alone, "removal", Progress()).cases(planned, 1).values()
+    told = {field.name: getattr(case, field.name) for field in dataclasses.fields(case)}
+    row = physics.measure_within(physics.Bounded(**told, most=1e-3))
+    assert not row.succeeded
+    assert row.message.startswith("left out: it would take about ")
+    row = physics.measure_within(physics.Bounded(**told, most=60.0))
+    assert row.succeeded
+    assert row.samples

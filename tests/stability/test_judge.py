@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from dcone_cosim.cases.cost import Cost
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.phases.removal_criteria import criteria as of_removal
 from dcone_cosim.phases.removal_criteria import pushed
 from dcone_cosim.quantities import Quantity
-from dcone_cosim.stability.cost import Cost
 from dcone_cosim.stability.judge import (
     ACCURATE,
     FAILED,

@@ -15,13 +15,13 @@ from scipy.integrate import solve_ivp
 
 from dcone_cosim import build
 from dcone_cosim.cases.alone import Alone, Fmus
+from dcone_cosim.cases.cost import estimate
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import FmuError
 from dcone_cosim.phases.capture_criteria import criteria as of_capture
 from dcone_cosim.phases.capture_criteria import spacing
 from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
-from dcone_cosim.stability.cost import estimate
 from dcone_cosim.stability.judge import FAILED, REFUSED
 from dcone_cosim.stability.plan import AS_IT_IS, _Maker
 from dcone_cosim.stability.work import _stopped

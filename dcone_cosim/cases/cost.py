@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from dcone_cosim.cases.pace import spoken
+from dcone_cosim.cases.work import run_alone
 from dcone_cosim.phases import kind_of
 from dcone_cosim.results import PhaseResult
 from dcone_cosim.scene.data import Scene
@@ -55,7 +56,11 @@ class Rate:
     ended: float | None = None
 
 
-def estimate(scene: Scene, run: Callable[[Scene], PhaseResult | None]) -> Cost | None:
+def _phase(scene: Scene) -> PhaseResult | None:
+    return run_alone(scene).phase
+
+
+def estimate(scene: Scene, run: Callable[[Scene], PhaseResult | None] = _phase) -> Cost | None:
     """What the one phase of a scene would take, from short beginnings of it; None where these tell nothing.
 
     run    a phase run to its end, or None if it comes to none
