@@ -89,6 +89,19 @@ def make_stop(
             r.state_at_begin[i] = found[i]
 
     @kernel
+    def most(record: Any, signal: int, slope: int) -> float:
+        """Bound of a signal within the step, by its two ends: see `quiet`.
+
+        Checked  tests/tethered_deorbit/test_tugs.py, test_ends.py
+        """
+        begin, end, step = record[0].state_at_begin, record[0].state_at_end, record[0].state_step
+        second = begin[signal] + step * begin[slope] / 3.0
+        third = end[signal] - step * end[slope] / 3.0
+        highest = max(max(begin[signal], end[signal]), max(second, third))
+        lowest = min(min(begin[signal], end[signal]), min(second, third))
+        return float(2.0 * highest - lowest)
+
+    @kernel
     def quiet(record: Any) -> bool:
         """Whether the line cannot change between slack and taut within the step, judged by its two ends.
 
@@ -109,11 +122,7 @@ def make_stop(
         if r.state_taut and not by_length:
             steepest = max(abs(begin[TENSION_SLOPE]), abs(end[TENSION_SLOPE]))
             return bool(2.0 * step * steepest < min(begin[TENSION], end[TENSION]))
-        second = begin[CROSSING] + step * begin[CROSSING_SLOPE] / 3.0
-        third = end[CROSSING] - step * end[CROSSING_SLOPE] / 3.0
-        highest = max(max(begin[CROSSING], end[CROSSING]), max(second, third))
-        lowest = min(min(begin[CROSSING], end[CROSSING]), min(second, third))
-        return bool(2.0 * highest - lowest < 0.0)
+        return bool(most(record, CROSSING, CROSSING_SLOPE) < 0.0)
 
     @kernel
     def land(record: Any, work: Array, fraction: float) -> None:
@@ -195,7 +204,7 @@ def make_stop(
         """
         r = record[0]
         limit = acting.limit(record)
-        if r.state_taut and limit < math.inf:
+        if r.state_taut and (most(record, TENSION, TENSION_SLOPE) >= limit or held.mapped(record)) and limit < math.inf:
             fraction = events.first_above(record, work, limit)
             if fraction >= 0.0:
                 least = min(r.state_step, SHORTEST_CONTACT / r.state_frequency)

@@ -248,7 +248,7 @@ def rows(folder: Path) -> int:
     return len(list((folder / "rows").glob("*.json")))
 
 
-def until(condition: Any, patience: float = 60.0) -> None:
+def until(condition: Any, patience: float = 240.0) -> None:
     end = time.monotonic() + patience
     while not condition():
         assert time.monotonic() < end

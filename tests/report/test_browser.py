@@ -217,18 +217,20 @@ def test_no_table_hides_a_column(browser: Browser) -> None:
     """On a narrow screen rows become cards, values beside their heads; else a table slides, and says so."""
     over = "one.scrollWidth > one.clientWidth + 1 && !one.classList.contains('slides')"
     heads = "[...document.querySelectorAll('.stacked td')].map((one) => [one.dataset.head, shown(one)])"
+    of_kinds = "['.stacked', '.slides'].map((name) => document.querySelectorAll(name).length)"
     size = {"height": 900, "deviceScaleFactor": 1, "mobile": False}
     try:
         for width, kinds in ((NARROW, (True, False)), (640, (False, True)), (WIDE, (False, False))):
             browser.call("Emulation.setDeviceMetricsOverride", width=width, **size)
             browser.ask("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
-            settled = f"[...document.querySelectorAll('.wide')].filter((one) => {over}).length"
+            counts = f"[...document.querySelectorAll('.wide')].filter((one) => {over}).length, cards, slide"
+            found = (-1, 0, 0)
             began = time.perf_counter()
-            while browser.ask(settled) and time.perf_counter() - began < 10.0:
+            while (found[0], found[1] > 1, found[2] > 0) != (0, *kinds) and time.perf_counter() - began < 10.0:
                 time.sleep(0.05)
-            assert browser.ask(settled) == 0
-            cards, slide = browser.ask("['.stacked', '.slides'].map((name) => document.querySelectorAll(name).length)")
-            assert (cards > 1, slide > 0) == kinds
+                found = tuple(browser.ask(f"(([cards, slide]) => [{counts}])({of_kinds})"))
+            _, cards, slide = found
+            assert (found[0], cards > 1, slide > 0) == (0, *kinds)
             if cards:
                 shown = "const shown = (one) => getComputedStyle(one, '::before').content"
                 told = browser.ask(f"(() => {{ {shown}; return {heads}; }})()")
