@@ -43,7 +43,8 @@ def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.f
     by_energy = np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
     if main.fmu is None:
         return by_energy if "oblateness" in main.terms else osculating
-    breathes = np.ptp(by_energy - osculating) > _noise(recorder["separation"], osculating)
+    held, _ = _while_held(result)  # far apart, two bodies' axis is no orbit's
+    breathes = np.ptp((by_energy - osculating)[held]) > _noise(recorder["separation"][held], osculating)
     return by_energy if breathes else osculating
 
 
