@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.findings import Finding
-from dcone_cosim.phases.tension import orbital_period
+from dcone_cosim.phases.tension import orbital_period, parting
 from dcone_cosim.results import PhaseResult, RunResult
 from dcone_cosim.scene.data import ComponentScene
 from orbital.constants import EARTH_MU
@@ -44,7 +43,8 @@ def axis_of(run: RunResult, phase: str, result: PhaseResult) -> npt.NDArray[np.f
     by_energy = np.asarray(-0.5 * EARTH_MU * (mass - used) / recorder["energy.orbital"])
     if main.fmu is None:
         return by_energy if "oblateness" in main.terms else osculating
-    breathes = np.ptp(by_energy - osculating) > _noise(recorder["separation"], osculating)
+    held, _ = _while_held(result)  # far apart, two bodies' axis is no orbit's
+    breathes = np.ptp((by_energy - osculating)[held]) > _noise(recorder["separation"][held], osculating)
     return by_energy if breathes else osculating
 
 
@@ -63,16 +63,8 @@ def _breath(time: npt.NDArray[np.float64], axis: npt.NDArray[np.float64]) -> flo
 
 def _while_held(result: PhaseResult) -> tuple[npt.NDArray[np.intp], str]:
     """Rows in which a line holds the two bodies together, and what ended that, "" for nothing."""
-    time, last = result.recorder["time"] - result.recorder["time"][0], result.recorder.last()
-    ends = [
-        (last.get(when, 0.0), told)
-        for what, when, told in (
-            ("release.released", "release.time", "the line was cut"),
-            ("break.broken", "break.time", "the line broke"),
-        )
-        if last.get(what)
-    ]
-    end, told = min(ends, default=(math.inf, ""))
+    time = result.recorder["time"] - result.recorder["time"][0]
+    _, end, told = parting(result.recorder)
     return np.flatnonzero(time <= end), told
 
 

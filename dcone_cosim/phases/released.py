@@ -115,7 +115,7 @@ def findings(run: RunResult, phase: str, result: PhaseResult) -> Iterator[Findin
         axis, e, low, high = apsides(state[:3], state[3:])
         if not (0.0 <= e < 1.0 and axis > 0.0):
             continue
-        told = ""
+        told = "" if main.fmu is None else ", osculating"
         if "oblateness" in main.terms:
             axis, e = mean_orbit(state[:3], state[3:])
             low, high = (axis * (1.0 + side * e) - EARTH_EQUATORIAL_RADIUS for side in (-1.0, 1.0))

@@ -16,7 +16,7 @@ from dcone_cosim.phases import lowering, passive, released
 from dcone_cosim.phases.chaser_report import of_chaser
 from dcone_cosim.phases.end import of_end
 from dcone_cosim.phases.nodes_report import of_nodes, of_table
-from dcone_cosim.phases.tension import last_orbit
+from dcone_cosim.phases.tension import last_orbit, parting
 from dcone_cosim.results import PhaseResult, RunResult
 
 Array = npt.NDArray[np.float64]
@@ -147,14 +147,16 @@ def _of_environment(phase: str, result: PhaseResult, last: Mapping[str, float]) 
             yield Finding(
                 phase, f"electrodynamic_{key}", f"largest {label}, tether that conducts (of rows)", largest, unit
             )
-        time = columns["time"]
+        parted, _, ended_by = parting(columns)
+        whole, until = slice(None, parted), f", until {ended_by}" if ended_by else ""
+        time = columns["time"][whole]
         for key, label in (
             ("orbit_power", "mean power it takes from the orbit"),
             ("power", "mean of voltage times current"),
         ):
-            if f"electrodynamic.{key}" in columns:
-                mean = float(np.trapezoid(columns[f"electrodynamic.{key}"], time) / (time[-1] - time[0]))
-                yield Finding(phase, f"electrodynamic_{key}", f"{label} (of rows)", mean, "W")
+            if f"electrodynamic.{key}" in columns and len(time) > 1:
+                mean = float(np.trapezoid(columns[f"electrodynamic.{key}"][whole], time) / (time[-1] - time[0]))
+                yield Finding(phase, f"electrodynamic_{key}", f"{label}{until} (of rows)", mean, "W")
 
 
 def _of_modes(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
@@ -180,6 +182,8 @@ def _of_tension(phase: str, result: PhaseResult) -> Iterator[Finding]:
         when, window = "last orbit", "length of that last orbit, in whole steps"
     else:
         when, window = f"last {tension.orbits:.3g} orbits", "length of these, as far as rows are apart"
+    if tension.until:
+        when, window = f"{when} until {tension.until}", f"{window}, until {tension.until}"
     for what, value in (("mean", tension.mean), ("least", tension.least), ("largest", tension.largest)):
         sampled = " (of rows)" if what in tension.sampled else ""
         told: float | str = "not reported: tugs fall between the rows" if value is None else value

@@ -164,18 +164,20 @@ def make_brake(interface: Interface, sights: Sights) -> Reel:
         rate[counted + 1] = heat_of(record, speed) if r.state_taut else 0.0
 
     @kernel
-    def turn(record: Any, state: Array, length: float) -> None:
+    def turn(record: Any, state: Array, length: float) -> float:
         """Book what a line has left as it goes slack: see `kept`. One that goes taut so fast that its dashpot leaps
         above the friction slips from the first.
 
         Checked  tests/tethered_deorbit/test_brake.py: the book of energy
         """
         r = record[0]
-        state[counted + 1] += kept(record, length)
+        left: float = kept(record, length)
+        state[counted + 1] += left
         _, _, speed = sight(record, state)
         r.state_slipping = 0
         if r.state_taut and r.state_rest < r.reel_length_most:
             r.state_slipping = 1 if elastic.tension(record, length, speed, 0.0) > breakaway(record) else 0
+        return left
 
     @kernel
     def publish(record: Any, state: Array, length: float, speed: float) -> None:

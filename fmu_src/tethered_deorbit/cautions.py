@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
 from fmu_src.tethered_deorbit.asked import LINEAR_LAWS
 from fmu_src.tethered_deorbit.nodes.cost import cost
+from fmu_src.tethered_deorbit.powered import most_thrust
 from fmu_src.tethered_deorbit.reel_rows import FOLLOWING_LAWS
 from orbital.constants import EARTH_EQUATORIAL_RADIUS
 
@@ -50,6 +51,9 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
     force = _force(values)
     if _raises(values, terms) and MEANT not in given:
         yield Caution("thrust.level", f"{force:g} N in the direction {terms['thrust']} raises the orbit")
+    most = most_thrust(values, terms)
+    if abs(force) > most * (1.0 + 1e-9):
+        yield Caution("thrust.level", f"{force:g} N is more than the power allows: {most:.4g} N by engine.power_limit")
     if force != 0.0 and "thrust.specific_impulse" not in given:
         isp = values["thrust.specific_impulse"]
         yield Caution("thrust.specific_impulse", f"not given; the propellant is that of {isp:g} s, an ion engine's")

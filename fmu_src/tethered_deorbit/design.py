@@ -20,6 +20,7 @@ from scipy.linalg import expm
 from fmu_src.implied import Implied
 from fmu_src.interface import Undesigned
 from fmu_src.tethered_deorbit.asked import EFFORT_WEIGHT, GAINS, LQR, RESTS, TOWING, WEIGHTS
+from fmu_src.tethered_deorbit.powered import most_thrust
 from orbital import dumbbell
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 from orbital.dumbbell import Matrix, Pair
@@ -50,11 +51,12 @@ class Plant(NamedTuple):
 
 
 def pair_of(values: Values, terms: Mapping[str, str]) -> Pair | None:
-    """The pair of a scene; None without an orbit."""
+    """The pair of a scene, with the thrust that an electric engine has the power for; None without an orbit."""
     if "orbit.altitude" not in values:
         return None
     chaser, target = values["chaser.mass"], values["target.mass"]
-    push = -(values.get("thrust.level", 0.0) + values.get("thrust.offset", 0.0)) / chaser
+    most = most_thrust(values, terms)
+    push = -max(-most, min(most, values.get("thrust.level", 0.0) + values.get("thrust.offset", 0.0))) / chaser
     along = terms.get("thrust") == "tether"
     rate = mean_motion(EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], EARTH_MU)
     reduced = chaser * target / (chaser + target)

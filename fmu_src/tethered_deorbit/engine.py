@@ -39,7 +39,8 @@ class Engine(NamedTuple):
     shed(record, rate) -> M'          how fast the pair's mass changes [kg/s]; tells the rate of its centre of mass
     lighten(record, state, rate, n) -> power   what the loss of inertia adds to the rates of the chaser's spin, and to
                                       that of the energy of its turning in a frame of rate n [W]
-    publish(record, force, change)    its outputs, for the force in use [N] and its rate [N/s]
+    publish(record, force, change, asked)   its outputs, for the force in use [N], its rate [N/s], and what is asked of
+                                      it, zero between burns [N]
     acting                            what it does by itself
     """
 
@@ -213,7 +214,7 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
     lighten = lighten_chaser if turns else zero
 
     @kernel
-    def publish(record: Any, force: float, change: float) -> None:
+    def publish(record: Any, force: float, change: float, asked: float) -> None:
         """Propellant left [kg], and power drawn [W]; with their rates.
 
         Checked  tests/tethered_deorbit/test_engine.py
@@ -225,8 +226,7 @@ def make_engine(terms: Mapping[str, str], layout: StateLayout, interface: Interf
             per_force = exhaust_speed(record) / (2.0 * r.engine_efficiency)
             r.engine_power = per_force * abs(force)
             r.rate_engine_power = per_force * (change if force >= 0.0 else -change)
-            asked = r.state_thrust
-            r.engine_limited = limited(record, asked) != asked
+            r.engine_limited = not r.state_empty and limited(record, asked) != asked
 
     @kernel
     def holds(record: Any, state: Array, since: float) -> bool:

@@ -10,7 +10,7 @@ from fmu_src.tethered_deorbit.acting import Acting
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.extremes import Extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
-from fmu_src.tethered_deorbit.idle import nothing
+from fmu_src.tethered_deorbit.idle import zero
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
@@ -28,7 +28,8 @@ class Inputs(NamedTuple):
     judge_line(record, state) -> rate              decide afresh whether the line is taut
     take(record, work, duration) -> fault          as a macro step begins [s]
     leave(record, work, duration) -> fault         as one ends in which inputs have moved
-    turn(record, work)                             the line has gone taut or slack at the end of the step
+    turn(record, work, length) -> energy           the line, so long [m], has gone taut or slack at the end of the
+                                                   step: what the law has booked of it [J]
     act(record, work, target, by_state) -> fault   at the end of the step, where a part acts, until the macro step's end
     """
 
@@ -59,18 +60,17 @@ def make_inputs(
 
     end_state, here_state, slope_state, size = places.end, places.here, places.slope, places.size
 
-    turns = reel.turn is not nothing
+    turns = reel.turn is not zero
 
     @kernel
-    def turn(record: Any, work: Array) -> None:
+    def turn(record: Any, work: Array, length: float) -> float:
         """Have the law book that the line, in the state stored as END, has just gone taut or slack.
 
         Checked  tests/tethered_deorbit/test_winch.py: the book of energy
         """
         end = work[end_state:here_state]
         reel.see(record, end)
-        _, length, _ = bodies.line(record, end)
-        reel.turn(record, end, length)
+        return float(reel.turn(record, end, length))
 
     @kernel
     def judge_line(record: Any, state: Array) -> float:
@@ -138,9 +138,11 @@ def make_inputs(
         code = begin_anew(record, work, duration)
         if code != 0:
             return code
-        speed = judge_line(record, work[end_state:here_state])
+        end = work[end_state:here_state]
+        speed = judge_line(record, end)
         if turns and r.state_taut != was_taut:
-            turn(record, work)
+            _, length, _ = bodies.line(record, end)
+            turn(record, work, length)
         # The first step after a change of the line is a short one.
         trajectory.restart(record, work, r.state_published)
         if r.state_taut and not was_taut:
@@ -193,13 +195,15 @@ def make_inputs(
             return fail(record, code, now)
         thrust.account(record, now)
         thrust.put(record, force, force_rate)
-        was_taut = r.state_taut
+        was_taut, length = r.state_taut, 0.0
+        if turns:
+            _, length, _ = bodies.line(record, end)  # of one that parts, as it still was
         code = acting.act(record, end, now, by_state)
         if code != 0:
             return fail(record, code, now)
         speed = judge_line(record, end)
         if turns and r.state_taut != was_taut:
-            turn(record, work)
+            turn(record, work, length)
         trajectory.restart(record, work, now)
         r.state_since = 0.0
         if r.state_taut and not was_taut:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.acting import IDLE, Acting
-from fmu_src.tethered_deorbit.idle import nothing
+from fmu_src.tethered_deorbit.idle import nothing, zero
 
 
 class Reel(NamedTuple):
@@ -39,8 +39,9 @@ class Reel(NamedTuple):
                                                             `turned` is 1 where its axes turn with the step, else 0
     drive(record, state, rate, length, speed, tension, since)   rates of its own components, `reel.components`; without
                                                             a pull the tension is zero
-    turn(record, state, length)                             the line has just gone taut or slack: book what it then has
-                                                            or no longer has, in the state; `state.taut` is anew
+    turn(record, state, length) -> energy                   the line has just gone taut or slack: book what it then has
+                                                            or no longer has, in the state, and return it [J];
+                                                            `state.taut` is anew
     publish(record, state, length, speed)                   outputs of its own
     differentiate(record, length, speed, acceleration)      and their rates, at since = 0
     at_rest(record, since) -> (l0, l0', l0'', k, c)         of an elastic line with fixed ends, which may settle while
@@ -66,7 +67,7 @@ class Reel(NamedTuple):
     first: int = 6
     see_change: Callable[..., Any] = nothing
     drive: Callable[..., Any] = nothing
-    turn: Callable[..., Any] = nothing
+    turn: Callable[..., Any] = zero
     publish: Callable[..., Any] = nothing
     differentiate: Callable[..., Any] = nothing
     at_rest: Callable[..., Any] = nothing

@@ -22,7 +22,7 @@ from fmu_src.tethered_deorbit.equations import make_equations
 from fmu_src.tethered_deorbit.events import make_events
 from fmu_src.tethered_deorbit.extremes import make_extremes
 from fmu_src.tethered_deorbit.faults import blame, fail
-from fmu_src.tethered_deorbit.idle import never, nothing
+from fmu_src.tethered_deorbit.idle import never, zero
 from fmu_src.tethered_deorbit.inputs import make_inputs
 from fmu_src.tethered_deorbit.interface import BAD_PARAMETER, GROUND, MODEL, NOT_FINITE, TIME_GAP, TOO_MANY_EVENTS
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR, layout_of, places_of
@@ -32,6 +32,7 @@ from fmu_src.tethered_deorbit.minded import LIMITED
 from fmu_src.tethered_deorbit.nodes.books import Watch
 from fmu_src.tethered_deorbit.nodes.chain import make_nodes
 from fmu_src.tethered_deorbit.outputs import begin_tug, clear_tugs, make_publish, note_pull
+from fmu_src.tethered_deorbit.parted import make_loose
 from fmu_src.tethered_deorbit.reel import LAWS, WINCHES, components, make_reel
 from fmu_src.tethered_deorbit.reel_rows import INPUTS
 from fmu_src.tethered_deorbit.release import releasable
@@ -98,7 +99,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     perturbing = make_perturbing(interface, layout)
     bodies = make_bodies(terms, environment.place, environment.gradient, layout.size, interface)
     spin = PAIR + ATTITUDE - 3 if terms["target"] != "point" else -1
-    sights = Sights(layout.reel, spin, bodies.line, environment.frame)
+    sights = Sights(layout.reel, spin, bodies.line, environment.frame, make_loose(terms))
     reel, watch, parting = make_reel(terms["reel"], interface, sights), Watch(), ONE_PIECE
     if "lumped" in terms:
         for group, _, carried in MODEL.unfit(terms):
@@ -122,7 +123,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events, held, places, "release" in terms, watch)
     acting = together((reel.acting, thrust.acting, perturbing.acting, make_ends(terms, bodies.line, interface)))
-    acts, turns = acting is not IDLE, reel.turn is not nothing
+    acts, turns = acting is not IDLE, reel.turn is not zero
     trajectory = make_trajectory(derivative, bodies, scheme, events, acting, held, level, places)
     inputs = make_inputs(reel, thrust, bodies, trajectory, extremes, acting, places, command_slot)
     start_state, freeze = make_start(environment, bodies, interface), make_appendage(terms, interface)
@@ -229,20 +230,23 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         r = record[0]
         end = work[end_state:here_state]
         _, length, speed = trajectory.state_at(record, work, r.state_end, end)
-        was_taut = r.state_taut
+        was_taut, lost = r.state_taut, 0.0
         if r.state_event == EDGES:
+            reel.see(record, end)
             stored = line_energy(record, length)
             bodies.renew(record, end)
             inputs.judge_line(record, end)
             _, length, _ = bodies.line(record, end)
-            bodies.book(record, stored - line_energy(record, length))
+            lost = stored - line_energy(record, length)
         elif r.state_taut:
             r.state_taut = 0
         else:
             r.state_taut = 1
             begin_tug(record, r.state_end, speed)
         if turns and r.state_taut != was_taut:
-            inputs.turn(record, work)
+            lost -= inputs.turn(record, work, length)
+        if r.state_event == EDGES:
+            bodies.book(record, lost)
         trajectory.restart(record, work, r.state_end)
 
     @kernel

@@ -321,11 +321,14 @@ def make_thrust(
         Checked  tests/tethered_deorbit/test_derivatives.py, against differences; test_burn.py, test_engine.py
         """
         r = record[0]
-        force, change = force_at(record, time - (r.state_begin - r.state_since))
+        since = time - (r.state_begin - r.state_since)
+        force, change = force_at(record, since)
         r.rate_propellant = abs(force) / (r.thrust_specific_impulse * STANDARD_GRAVITY)
         if keeps:
             r.thrust_force, r.rate_thrust_force = force, change
-            engine.publish(record, force, change)
+            share, _ = burn.share(record, time)
+            asked = r.state_thrust + r.state_thrust_rate * since
+            engine.publish(record, force, change, asked if share > 0.0 else 0.0)
 
     return Thrust(
         reset=reset,

@@ -48,11 +48,13 @@ def make_winch(
     want(record, state, length, speed, tension, time) -> v*   rate of winding asked for the next sample [m/s]
     start(record) -> fault                                    what the control begins with, and whether it can
 
+    Of a line that has parted nothing is wound any more: the motor comes to rest, whatever the control asks for.
+
     Valid    small strains; massless line; a motor that follows its command within a sample
     Source   ours; the line as of a locked reel
     Checked  tests/tethered_deorbit/test_winch.py
     """
-    place, counted, sight = sights.place, sights.place + MOVED + 1, sights.line
+    place, counted, sight, parted = sights.place, sights.place + MOVED + 1, sights.line, sights.parted
     command_slot = interface.references[command]
     start_slot, least_slot = interface.references["tether.rest_length"], interface.references["reel.length_least"]
     diameter_slot = interface.references["tether.diameter"]
@@ -105,12 +107,14 @@ def make_winch(
             rate[counted + 1] = heat_of(record, speed)
 
     @kernel
-    def turn(record: Any, state: Array, length: float) -> None:
+    def turn(record: Any, state: Array, length: float) -> float:
         """Book what a line has left as it goes slack: see `kept`.
 
         Checked  tests/tethered_deorbit/test_winch.py: the book of energy
         """
-        state[counted + 1] += kept(record, length)
+        left: float = kept(record, length)
+        state[counted + 1] += left
+        return left
 
     @kernel
     def publish(record: Any, state: Array, length: float, speed: float) -> None:
@@ -253,11 +257,11 @@ def make_winch(
             wanted = want(record, state, length, speed, tension, time)
             if not math.isfinite(wanted):
                 return blame(record, BAD_PARAMETER, command_slot, wanted)
-            if abs(wanted) <= STILL * r.reel_rate_limit:
+            if parted(record) or abs(wanted) <= STILL * r.reel_rate_limit:
                 wanted = 0.0
             rate = within(record, wanted, tension)
             r.state_cut = wanted - rate
-            if abs(r.state_cut) > 1.0e-9 * abs(wanted):
+            if abs(r.state_cut) > 1.0e-9 * abs(wanted) and not parted(record):
                 r.reel_limited += 1
             r.state_winding_rate = (rate - now) / h
             r.state_fastest = max(abs(now), abs(rate))

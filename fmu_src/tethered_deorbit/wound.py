@@ -69,15 +69,18 @@ def heat_of(record: Any, speed: float) -> float:
 def kept(record: Any, length: float) -> float:
     """What a line has in its stretch as it goes slack, and its dashpot takes; negative as it goes taut [J].
 
-        k (l - L)^2 / 2
+        k (l - L)^2 / 2 where l > L, else nothing
 
     length        l      of the line                             [m]
 
-    A damped line pulls no more while it is still stretched; what relaxes then is no longer counted as its energy.
+    A damped line pulls no more while it is still stretched; what relaxes then is no longer counted as its energy. One
+    that has slipped off a corner is shorter at once, and has nothing left.
 
-    Checked  tests/tethered_deorbit/test_winch.py: the book of energy
+    Checked  tests/tethered_deorbit/test_winch.py: the book of energy; test_slipping.py: a line that slips
     """
     r = record[0]
+    if not length > r.state_rest:
+        return 0.0
     stored: float = 0.5 * elastic_share(record, length) * (length - r.state_rest)
     return -stored if r.state_taut else stored
 

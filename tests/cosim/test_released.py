@@ -119,6 +119,29 @@ def test_of_an_fmu_from_elsewhere_the_axis_goes_by_energy_or_is_not_told() -> No
             assert found.value == pytest.approx(lowered, rel=1e-6)
 
 
+def test_of_an_fmu_from_elsewhere_only_the_time_with_a_line_says_what_its_axis_does() -> None:
+    """Cut half-way, after 300 m: 500 km apart at the end, which says nothing of the breath while they were held; and
+    the apsides of each body are told as what they are, since its gravity is not known."""
+    time = np.linspace(0.0, 6000.0, 101)
+    cut = time > 3000.0
+    axis = 7.178e6 - 0.1 * time
+    columns = {
+        "time": time, "altitude": time, "separation": np.where(cut, 500e3, 12.0),
+        "center.semi_major_axis": axis + 1e4 * np.cos(2.0 * np.pi * time / 3000.0),
+        "energy.orbital": -0.5 * EARTH_MU * 3000.0 / axis,
+        "release.released": cut, "release.time": np.where(cut, 3000.0, 0.0),
+    }  # fmt: skip
+    for body in ("chaser", "target"):
+        for k, (place, speed) in enumerate(((7.178e6, 0.0), (0.0, 7500.0), (0.0, 0.0)), start=1):
+            columns |= {f"{body}.position[{k}]": np.full(101, place), f"{body}.velocity[{k}]": np.full(101, speed)}
+    run, result = told({}, columns, {"chaser.mass": 2000.0, "target.mass": 1000.0})
+    run.scene.phases[0].main.fmu = "elsewhere.fmu"
+    found = next(iter(lowering.findings(run, "removal", result)))
+    assert found.value == pytest.approx(300.0, rel=1e-6)
+    labels = {one.key: one.label for one in findings(run, "removal", result)}
+    assert labels["chaser_perigee"] == "chaser's perigee at the end, osculating"
+
+
 def test_what_is_told_of_two_bodies_that_no_line_holds() -> None:
     """The nearest return counts from the cut, a pass before it does not; each body has its apsides and its lifetime."""
     time = np.arange(0.0, 1001.0, 10.0)

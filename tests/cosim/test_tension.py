@@ -89,6 +89,35 @@ class TestWindow:
         told = last_orbit(recorded(make_scene("removal"), **columns))
         assert (told.least, told.largest) == (0.0, 9.0)
 
+    @pytest.mark.parametrize(
+        ("flag", "when", "until"),
+        [
+            ("release__released", "release__time", "the line was cut"),
+            ("break__broken", "break__time", "the line broke"),
+        ],
+    )
+    def test_of_a_line_that_parts_it_is_the_orbit_before(
+        self, make_scene: MakeScene, flag: str, when: str, until: str
+    ) -> None:
+        """At 6950 s: an orbit before is 897.6 s, the row before that at 800 s. What is slack after does not count."""
+        parted = self.TIME > 6950.0
+        impulse = np.where(parted, 0.02 * 6950.0, 0.02 * self.TIME)
+        columns = {
+            "tether__tension": np.where(parted, 0.0, 0.02),
+            "tether__impulse": impulse,
+            "tether__tension_least": np.where(parted, 0.0, 0.01),
+            "tether__tension_peak": np.where(self.TIME > 7050.0, 0.0, np.where(parted, 0.7, 0.5)),
+            flag: parted,
+            when: np.where(parted, 6950.0, 0.0),
+        }
+        told = last_orbit(recorded(make_scene("removal"), **columns))
+        assert (told.window, told.is_orbit, told.until) == (6150.0, True, until)
+        assert told.mean == pytest.approx(0.02, rel=1e-12)
+        assert (told.least, told.largest) == (0.01, 0.7)
+        del columns["tether__impulse"], columns["tether__tension_least"]
+        told = last_orbit(recorded(make_scene("removal"), **columns))
+        assert (told.mean, told.least) == pytest.approx((0.02, 0.02), rel=1e-12)
+
     @pytest.mark.parametrize(("at", "largest"), [(1449.0, 0.07625), (1451.0, 30.0)])
     def test_a_tug_counts_from_the_begin_of_the_window(self, make_scene: MakeScene, at: float, largest: float) -> None:
         tugs = TugLog(1)

@@ -174,6 +174,24 @@ def test_towing_has_a_tension_of_its_own() -> None:
     assert found["reel.angle"] == pytest.approx(0.5 * math.pi)
 
 
+def test_a_loop_is_designed_for_the_thrust_there_is() -> None:
+    """-0.01 N asked of an electric engine whose power makes a quarter of it: rest, gains and loop are those of that
+    thrust, and the scene is told; of one with power enough nothing changes."""
+    values, asked, terms = scene("regulator", gains=LQR, about=TOWING)
+    power = 0.0025 * values["thrust.specific_impulse"] * 9.80665 / (2.0 * 0.6)
+    electric = terms | {"engine": "electric"}
+    weak = values | {"engine.efficiency": 0.6, "engine.power_limit": power}
+    right = design.designed(values | {"thrust.level": -0.0025}, asked, terms)
+    assert design.designed(weak, asked, electric) == pytest.approx(right, rel=1e-9)
+    assert right["reel.bias"] != pytest.approx(design.designed(values, asked, terms)["reel.bias"], rel=1e-3)
+    assert design.designed(weak, asked, terms | {"engine": "chemical"}) == design.designed(values, asked, terms)
+    told = [c.sentence for c in before(weak, ("thrust.specific_impulse",), electric) if c.about == "thrust.level"]
+    assert told == ["-0.01 N is more than the power allows: 0.0025 N by engine.power_limit"]
+    strong = weak | {"engine.power_limit": 5.0 * power}
+    assert design.designed(strong, asked, electric) == design.designed(values, asked, terms)
+    assert not [c for c in before(strong, ("thrust.specific_impulse",), electric) if c.about == "thrust.level"]
+
+
 def test_an_unstable_loop_is_told() -> None:
     values, _, terms = scene("regulator")
     told = [c for c in before(values, (), terms) if c.about.startswith("reel.")]

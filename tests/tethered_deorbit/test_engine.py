@@ -120,6 +120,25 @@ def test_power_limits_the_thrust() -> None:
     assert i["engine.power"] == pytest.approx(0.01 * 3000.0 * STANDARD_GRAVITY / 1.2, rel=1e-14)
 
 
+def test_power_limits_no_thrust_that_is_not_asked_for() -> None:
+    """Not with an empty tank, nor between two burns; in one it does."""
+    ion = {"thrust.specific_impulse": 3000.0, "engine.power_limit": 500.0, "engine.efficiency": 0.6}
+    i = free("electric", **ion, **{"thrust.level": -1.0, "engine.propellant": 5e-5})
+    i.step(10.0)
+    assert (i["thrust.force"] < 0.0, i["engine.limited"]) == (True, 1)
+    i.step(100.0)
+    assert (i["thrust.force"], i["engine.limited"]) == (0.0, 0)
+    burns = {"burn.start": 10.0, "burn.duration": 20.0, "burn.edge": 1, "burn.rise": 4.0}
+    terms = {"reel": "commanded", "environment": "none", "thrust": "along_track", "engine": "electric", "burn": "timed"}
+    start = {"start.condition": HANDED_OVER, "start_relative_position": (0.0, -50.0, 0.0), "thrust.level": -1.0}
+    i = PlainInstance(MODEL, terms, start | ion | burns)
+    seen = []
+    for _ in range(5):
+        i.step(8.0)
+        seen.append((i["thrust.force"] < 0.0, i["engine.limited"]))
+    assert seen == [(False, 0), (True, 1), (True, 1), (True, 1), (False, 0)]
+
+
 def test_rates_of_what_an_engine_shows() -> None:
     """Against differences, while the thrust asked for moves, forward and back."""
     values = {"engine.power_limit": 1e7, "thrust.specific_impulse": 3000.0}
