@@ -41,8 +41,14 @@ def report(
     stability: Annotated[Path | None, typer.Option("--stability", help="The same of `dcone stability`.")] = None,
     pdf: Annotated[bool, typer.Option("--pdf", help="Print it too, with a Chromium that is installed.")] = False,
     csv: Annotated[
-        bool, typer.Option("--csv", help="Write the histories and tugs beside it as CSV, every column with all digits.")
-    ] = False,
+        bool | None,
+        typer.Option(
+            "--csv/--no-csv",
+            help="Write the histories and tugs beside it as CSV, every column with all digits. If not given, where the "
+            "page is in the folder of the run, but for tables of more than a million values.",
+            show_default=False,
+        ),
+    ] = None,
     live: Annotated[
         bool, typer.Option("--live/--no-live", help="Put the model of the tow into it, to move its values there.")
     ] = True,

@@ -92,17 +92,24 @@ def _write_state(state: KeptState, folder: Path) -> dict[str, Any]:
     return {"file": name, "sha256": state_file.write(state, folder / name), **about}
 
 
-def histories_as_csv(run: Path, place: Path) -> list[str]:
-    """The tables of a run's folder as CSV too, but for those with a row for each knot or thread; their names.
+def histories_of(run: Path) -> dict[str, int]:
+    """The tables of a run's folder but for those with a row for each knot or thread, and how many values each has."""
+    import pyarrow.parquet
+
+    names = sorted(path.stem for path in run.glob("*.parquet") if not path.stem.endswith(OF_KNOTS))
+    told = ((name, pyarrow.parquet.read_metadata(run / f"{name}.parquet")) for name in names)
+    return {name: meta.num_rows * meta.num_columns for name, meta in told}
+
+
+def as_csv(run: Path, name: str, place: Path) -> str:
+    """A table of a run's folder as CSV in another; its name there.
 
     Checked  tests/report/test_page.py
     """
     import pyarrow.parquet
 
-    names = sorted(path.stem for path in run.glob("*.parquet") if not path.stem.endswith(OF_KNOTS))
-    for name in names:
-        _write_csv(pyarrow.parquet.read_table(run / f"{name}.parquet"), place / f"{name}.csv")
-    return [f"{name}.csv" for name in names]
+    _write_csv(pyarrow.parquet.read_table(run / f"{name}.parquet"), place / f"{name}.csv")
+    return f"{name}.csv"
 
 
 def _write_csv(table: pa.Table, path: Path) -> None:

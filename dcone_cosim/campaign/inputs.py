@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.cases.case import Value
-from dcone_cosim.units import spoken
+from dcone_cosim.units import by_name, spoken
 
 JITTER = "jitter"
 """Name of the input that is the solver's jitter."""
@@ -26,6 +26,7 @@ class Input:
     texts      of a discrete one
     points     coordinates of a grid
     normal     whether its normal score tells it best
+    shown_in   unit in which a person reads it, that of the campaign's file; "" for the SI unit
     """
 
     name: str
@@ -34,6 +35,7 @@ class Input:
     texts: tuple[str, ...] = ()
     points: tuple[float, ...] = ()
     normal: bool = False
+    shown_in: str = ""
 
     def told(self, value: float) -> Value:
         """As a table has it."""
@@ -41,6 +43,16 @@ class Input:
             return _as_value(self.texts[int(value)])
         text = f"{value!r} {spoken(self.unit)}".rstrip() if self.unit != "1" else repr(value)
         return Value(text, value, self.unit)
+
+    def read(self, value: float) -> float:
+        """An SI value in the unit that it is shown in."""
+        return by_name(self.shown_in or self.unit).from_si(value)
+
+    @property
+    def label(self) -> str:
+        """Its name, with the unit that it is shown in behind it."""
+        unit = spoken(self.shown_in or self.unit)
+        return f"{self.name} [{unit}]" if unit else self.name
 
 
 @dataclass(frozen=True)
@@ -89,10 +101,13 @@ class Inputs:
 
 
 def shown(one: Input, value: float) -> str:
-    """A value as a person reads it."""
+    """An SI value as a person reads it.
+
+    Checked  tests/campaign/test_inputs.py
+    """
     if one.texts:
         return one.texts[int(value)]
-    return f"{value:.5g} {spoken(one.unit)}".rstrip() if one.unit != "1" else f"{value:.5g}"
+    return f"{one.read(value):.5g} {spoken(one.shown_in or one.unit)}".rstrip()
 
 
 def _as_value(given: str) -> Value:

@@ -21,6 +21,8 @@ from dcone_cosim.units import PURE, Unit, by_name, named, si_name, spoken
 
 NORMAL = ("normal", "lognormal")
 """Distributions that are told best by their normal scores."""
+WIDTHS = ("deviation", "scale", "within")
+"""Parameters that are differences."""
 _ELEMENT = re.compile(r"(.+)\[(\d+)\]")
 
 
@@ -39,7 +41,7 @@ class Maker:
         self.spec, self.base, self.one = spec, base, one
         match = _ELEMENT.fullmatch(one.key)
         self.key, self.element = (match[1], int(match[2])) if match else (one.key, 0)
-        self.present, self.unit, self.given = standing(base, self.key)
+        self.present, self.unit, self.display, self.given = standing(base, self.key)
 
     def made(self) -> tuple[list[Input], Callable[[Sequence[float]], tuple[str, ...]]]:
         one, size = self.one, len(self.present)
@@ -57,9 +59,9 @@ class Maker:
         elements = [self.element] if self.element else list(range(1, size + 1)) if size else [0]
         found, unit = [], ""
         for element in elements:
-            quantile, unit = self._quantile(element)
+            quantile, unit, shown_in = self._quantile(element)
             name = f"{self.key}[{element}]" if element else self.key
-            found.append(Input(name, quantile, unit, (), _grid(one), one.distribution in NORMAL))
+            found.append(Input(name, quantile, unit, (), _grid(one), one.distribution in NORMAL, shown_in))
         return found, self.writer(elements, unit)
 
     def _discrete(self) -> tuple[list[Input], Callable[[Sequence[float]], tuple[str, ...]]]:
@@ -91,8 +93,8 @@ class Maker:
 
         return write
 
-    def _quantile(self, element: int) -> tuple[Quantile, str]:
-        """Quantile function of one number, SI, and the FMI name of its unit."""
+    def _quantile(self, element: int) -> tuple[Quantile, str, str]:
+        """Quantile function of one number, SI, the FMI name of its unit, and that in which a person reads it."""
         one = self.one
         kind = distributions.KINDS.get(one.distribution) or distributions.of_scipy(one.distribution)
         assert kind is not None
@@ -126,7 +128,7 @@ class Maker:
                 text = f"expected it: {one.distribution} needs {', '.join(kind.needs)}"
                 raise Wrong(Mistake((*one.path, name), None, text))
         try:
-            return kind.make(numbers), unit
+            return kind.make(numbers), unit, self._shown_in(units)
         except Unfit as error:
             raise Wrong(Mistake((*one.path, error.name), one.told.get(error.name), str(error))) from None
 
@@ -141,8 +143,7 @@ class Maker:
 
     def _alone(self) -> float | None:
         """Value of a key that is no vector."""
-        values, _, _ = _named(self.base, self.key)
-        return values
+        return _named(self.base, self.key)[0]
 
     def _within(self, half: float, here: float | None, numbers: Mapping[str, float]) -> dict[str, float]:
         """Ends of what lies within so much of the scene's value."""
@@ -165,8 +166,14 @@ class Maker:
         unit = named(word) if word else by_name("1")
         if not math.isfinite(number) or unit is None:
             raise Wrong(Mistake(path, given, 'expected a number with its unit such as "3 m/s", or a share "1 %"'))
-        difference = unit.of_differences() if name in ("deviation", "scale", "within") else unit
+        difference = unit.of_differences() if name in WIDTHS else unit
         numbers[name], units[name] = difference.to_si(number), unit
+
+    def _shown_in(self, units: Mapping[str, Unit]) -> str:
+        """The unit that the file writes its values in, of a width alone if there are no others; where all are shares,
+        the one in which a person would write the key; "" for the SI unit."""
+        written = {unit.name: name in WIDTHS for name, unit in units.items()}
+        return min(written, key=lambda name: written[name]) if written else self.display
 
     def _one_unit(self, units: Mapping[str, Unit]) -> str:
         """FMI name of the SI unit that all are in."""
@@ -190,24 +197,25 @@ def _grid(one: Dispersion) -> tuple[float, ...]:
     return tuple(((np.arange(count) + 0.5) / count).tolist())
 
 
-def standing(base: Scene, key: str) -> tuple[list[float], str, bool]:
+def standing(base: Scene, key: str) -> tuple[list[float], str, str, bool]:
     """Elements [SI] of a vector of the scene by its key, none where it is none; the FMI name of its unit, "" where that
-    is not known; and whether the scene gives it."""
+    is not known; that in which a person would write it, "" for the same; and whether the scene gives it."""
     found: list[float] = []
-    unit, given = "", False
+    unit, display, given = "", "", False
     while True:
-        value, of, there = _named(base, f"{key}[{len(found) + 1}]")
+        value, of, shown, there = _named(base, f"{key}[{len(found) + 1}]")
         if value is None:
             break
         found.append(value)
-        unit, given = of, given or there
+        unit, display, given = of, shown, given or there
     if not found:
-        _, unit, given = _named(base, key)
-    return found, unit, given
+        _, unit, display, given = _named(base, key)
+    return found, unit, display, given
 
 
-def _named(base: Scene, key: str) -> tuple[float | None, str, bool]:
-    """Value [SI] of one number of the scene by its key, its unit, and whether the scene gives it."""
+def _named(base: Scene, key: str) -> tuple[float | None, str, str, bool]:
+    """Value [SI] of one number of the scene by its key, its units as `standing` has them, and whether the scene gives
+    it."""
     head, _, rest = key.partition(".")
     for phase in base.phases:
         component: ComponentScene | None = phase.main
@@ -219,8 +227,8 @@ def _named(base: Scene, key: str) -> tuple[float | None, str, bool]:
             continue
         value = component.values.get(name, component.asked.get(name))
         if isinstance(value, int | float):
-            return float(value), _unit_of(component, name), name in component.parameters
-    return None, "", False
+            return float(value), *_units_of(component, name), name in component.parameters
+    return None, "", "", False
 
 
 def _keys(base: Scene) -> list[str]:
@@ -232,8 +240,8 @@ def _keys(base: Scene) -> list[str]:
     ]
 
 
-def _unit_of(component: ComponentScene, name: str) -> str:
+def _units_of(component: ComponentScene, name: str) -> tuple[str, str]:
     if not component.model:
-        return ""
+        return "", ""
     known = build.known_variables(component.model) | build.asked_variables(component.model)
-    return known[name][0].unit if name in known else ""
+    return (known[name][0].unit, known[name][0].display_unit) if name in known else ("", "")

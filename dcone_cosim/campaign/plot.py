@@ -116,7 +116,7 @@ def _map(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, sprea
     figure.subplots_adjust(left=0.95 / (4.6 * len(pairs) + 0.6), right=0.97, bottom=0.13, top=0.84, wspace=0.3)
     verdicts = [succeeded(one.row, spec.success) for one in made]
     for axes, (i, j) in zip(grid.flat, pairs, strict=True):
-        x, y = ([one.values[place] for one in made] for place in (i, j))
+        x, y = ([inputs.inputs[place].read(one.values[place]) for one in made] for place in (i, j))
         if len(inputs.inputs) == 2 and spec.sampler == ADAPTIVE and len({v for v in verdicts if v is not None}) == 2:
             levels = [float(v is True) for v in verdicts]
             axes.tricontourf(
@@ -132,9 +132,8 @@ def _map(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, sprea
                 places = [x[n] for n in chosen], [y[n] for n in chosen]
                 axes.plot(*places, mark, color=colour, ms=3.5, label=label, clip_on=False, zorder=3)
         for place, put in ((i, axes.set_xlabel), (j, axes.set_ylabel)):
-            one = inputs.inputs[place]
             axes.locator_params(nbins=5)
-            put(one.name + ("" if one.unit == "1" else f" [{one.unit}]"), fontsize=8, parse_math=False)
+            put(inputs.inputs[place].label, fontsize=8, parse_math=False)
         style.legend(axes)
     return figure
 

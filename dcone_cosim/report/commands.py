@@ -14,13 +14,15 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.redrawing import list_files
 from dcone_cosim.report.links import COMMANDS, REPLAY, REPORT, Linked
 from dcone_cosim.report.page import of_folder
-from dcone_cosim.run_folder import histories_as_csv
+from dcone_cosim.run_folder import as_csv, histories_of
 from dcone_cosim.scratch import Scratch
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "microsoft-edge")
 """Programs that print a page."""
 PATIENCE = 120.0
 """How long a print may take [s]."""
+LARGEST = 1_000_000
+"""Values of a table that is written as CSV unasked: some 17 MB, a tenth of a second."""
 
 
 def linked(sizing: Path | None, accuracy: Path | None, stability: Path | None) -> list[Linked]:
@@ -38,14 +40,14 @@ def write_page(
     pdf: bool = False,
     live: bool = False,
     up: str = "",
-    csv: bool = False,
+    csv: bool | None = None,
 ) -> list[Path]:
     """Write the page of the run of a folder, and print it if asked; where both are.
 
     out      the file; in the folder of the run if not given, and then a file of that run
     whole    all of it, otherwise the replay alone
     up       address of the index that the page is of
-    csv      the histories as CSV beside it
+    csv      the histories as CSV beside it; None for those that are not large, where the page is in the run's folder
     live     with the model in it, whose library is built if it is not in the cache
     """
     name = REPORT if whole else REPLAY
@@ -55,19 +57,21 @@ def write_page(
     browser = _browser() if pdf else ""
     with progress.working("writing"):
         progress.say("reading the run")
-        text = of_folder(run, path, also, whole, progress if live else None, up)
         check_folder(path.parent)
         path.parent.mkdir(parents=True, exist_ok=True)
+        own = path.parent.samefile(run)
+        sizes = histories_of(run) if whole else {}
+        tables = [name for name, size in sizes.items() if (own and size <= LARGEST if csv is None else csv)]
+        beside = {name: name in tables for name in sizes} if tables else {}
+        text = of_folder(run, path, also, whole, progress if live else None, up, beside)
         with Scratch(path.parent) as draft:
             (draft / path.name).write_text(text, encoding="utf-8")
             files = [path.name]
             if pdf:
                 progress.say("printing")
                 files.append(_print(browser, draft / path.name).name)
-            if csv:
-                progress.say("writing the histories as CSV")
-                files += histories_as_csv(run, draft)
-            if path.parent.samefile(run):
+            files += [as_csv(run, name, draft) for name in tables]
+            if own:
                 list_files(run, files, draft / PROVENANCE)
             return [placed.put(draft / one, path.parent / one) for one in files]
 

@@ -6,6 +6,7 @@ import base64
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from dcone_cosim.findings import spoken
@@ -36,12 +37,14 @@ def of_folder(
     whole: bool = True,
     progress: Progress | None = None,
     up: str = "",
+    beside: Mapping[str, bool] = MappingProxyType({}),
 ) -> str:
     """The page of the run of a folder, to be put at `place`; `InputError` where it is no run.
 
     whole    all of it; otherwise the replay alone, with the tugs
     progress    is told of what is built; with none the model is not put into the page
     up    address of the index that the page is of, "" for none
+    beside    by name of a table, whether it is beside the page as CSV; empty where none is
     """
     run, about = read_run(folder), provenance_of(folder)
     here = links.named(folder)
@@ -85,6 +88,7 @@ def of_folder(
         "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
         "about": told.provenance(about, run, here),
+        "beside": beside,
         "page": "report" if whole else "replay",
         "library": scripts.origin() if clips else {},
         "scale": scale(),

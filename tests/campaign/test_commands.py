@@ -166,7 +166,7 @@ def test_show_before_the_end(once: Path, tmp_path: Path, dcone: Dcone) -> None:
 def test_check_runs_nothing(drift: Path, dcone: Dcone) -> None:
     code, out, err = dcone("campaign", str(drift), "--check")
     assert (code, "60 cases by monte-carlo" in out) == (0, True), err
-    assert f"{VELOCITY}: 0.00060801 m/s, 0.001 m/s, 0.001392 m/s at 2.5 %" in out
+    assert f"{VELOCITY}: 0.60801 mm/s, 1 mm/s, 1.392 mm/s at 2.5 %" in out
     assert not list(Path().glob("runs"))
     file = put_campaign(drift.parent, 'record = ["removal.separatoin"]\n' + DRIFT)
     code, _, err = dcone("campaign", str(file), "--check")

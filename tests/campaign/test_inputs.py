@@ -10,7 +10,7 @@ from scipy.stats import kendalltau
 
 from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.inputs import Group as InputGroup
-from dcone_cosim.campaign.inputs import Inputs
+from dcone_cosim.campaign.inputs import Inputs, shown
 from dcone_cosim.campaign.sampling import monte_carlo
 from dcone_cosim.loading import load
 from dcone_cosim.scene.mistakes import SceneError
@@ -52,6 +52,34 @@ def test_each_bullet_has_its_own() -> None:
     found = scene.phases[0].main.values
     assert [found[f"ejection.speed_error[{i}]"] for i in (1, 2, 3, 4)] == values
     assert values[3] == pytest.approx(0.03 * 1.2815516, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("key", "rest", "head", "unit", "told"),
+    [
+        ("capture.target.start_rate[2]", 'least = "10 deg/s"\nmost = "30 deg/s"', NET, "deg/s", "20 deg/s"),
+        ("removal.tether.diameter", 'least = "800 um"\nmost = "1200 um"', TOW, "um", "1000 um"),
+        ("removal.tether.diameter", 'within = "10 %"', TOW, "mm", "1 mm"),
+        ("removal.tether.damping_ratio", "least = 0.04\nmost = 0.06", TOW, "", "0.05"),
+    ],
+)
+def test_values_are_told_in_the_unit_that_they_were_given_in(
+    key: str, rest: str, head: str, unit: str, told: str
+) -> None:
+    """Of shares in that of a person; drawn and written they stay SI."""
+    (one,) = made(dispersion(key, f'distribution = "uniform"\n{rest}'), head).inputs
+    assert one.label == (f"{key} [{unit}]" if unit else key)
+    assert shown(one, one.value(0.5)) == told
+    assert one.read(one.value(0.5)) == pytest.approx(float(told.split()[0]), rel=1e-12)
+    assert one.told(one.value(0.5)).number == one.value(0.5)
+
+
+def test_a_width_names_the_unit_where_nothing_else_does() -> None:
+    text = 'distribution = "normal"\nmean = "1 mm"\ndeviation = "30 um"'
+    (one,) = made(dispersion("removal.tether.diameter", text)).inputs
+    assert one.label.endswith("[mm]")
+    (one,) = made(dispersion("removal.tether.diameter", text.replace('mean = "1 mm"\n', ""))).inputs
+    assert one.label.endswith("[um]")
 
 
 def test_one_element_leaves_the_others() -> None:

@@ -174,6 +174,20 @@ def test_the_diameter_it_asks_for_is_just_thick_enough(asked: Asked, table2: Pat
         assert (factor * tugs(run)[:, 1].max() <= bears * (1.0 + 1e-9)) == holds
 
 
+def test_a_search_that_other_values_broke_off_goes_on(asked: Asked, table2: Path) -> None:
+    """The least diameter of the run, as its reader is faster than the search; it took no answer ever after."""
+    asked.open(page_of(table2))
+    wanted = asked.result("run")["required"]
+    asked.browser.ask(f"Object.assign({TOW}.results.run, {{ sought: true, required: NaN }}); {TOW}.tell()")
+    cell = "document.querySelector('#live-tow [data-figure=required] [data-of=run]').textContent"
+    assert asked.browser.ask(cell) == "…"
+    asked.move(diameter=2)
+    asked.settle()
+    assert asked.result("run")["required"] == wanted
+    assert asked.result("moved")["required"] != wanted
+    assert asked.browser.ask(cell) == spoken(wanted)
+
+
 def test_the_load_that_governs_follows(asked: Asked, table2: Path) -> None:
     """A snap, and from a damping ratio of one half on the dashpot."""
     asked.open(page_of(table2))

@@ -6,6 +6,7 @@ import hashlib
 import json
 import re
 import shlex
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -16,10 +17,11 @@ import pytest
 from dcone_cosim.errors import InputError
 from dcone_cosim.findings import spoken
 from dcone_cosim.progress import Progress
-from dcone_cosim.report import scripts
+from dcone_cosim.report import commands, scripts
 from dcone_cosim.report.commands import write_page
 from dcone_cosim.report.links import Linked
 from dcone_cosim.report.page import of_folder, packed
+from dcone_cosim.run_folder import histories_of
 from tests.cosim.conftest import Dcone, dcone
 from tests.report.conftest import Page
 from tests.report.test_packing import decoded, newtons
@@ -143,8 +145,6 @@ def test_a_run_that_kept_less_shows_less_and_says_how_to_get_more(bare: Path) ->
 
 
 def test_words_of_a_scene_are_no_markup(kept: Path, tmp_path: Path) -> None:
-    import shutil
-
     copy = shutil.copytree(kept, tmp_path / "odd")
     text = (copy / "scene.toml").read_text()
     odd = "A <b>bold</b> </script><script>alert(1)</script> & more"
@@ -167,24 +167,47 @@ def test_commands_write_whole_files_and_refuse_what_is_no_run(kept: Path, tmp_pa
     page = Page((tmp_path / "mine.html").read_text())
     assert [one["key"] for one in page.data["charts"]] == ["removal-tension"]
     assert len(page.data["clips"]) == 2
+    tables = ("capture", "removal", "removal_without_recoil_tugs", "tugs")
     code, out, _ = dcone("report", str(kept))
-    assert (code, out.strip()) == (0, str(kept / "report.html"))
-    assert "report.html" in json.loads((kept / "provenance.json").read_text())["files"]
+    written = ["report.html", *(f"{name}.csv" for name in tables)]
+    assert (code, out.split()) == (0, [str(kept / name) for name in written])
+    assert set(written) <= set(json.loads((kept / "provenance.json").read_text())["files"])
+    links = [link for link in Page((kept / "report.html").read_text()).links if link.endswith(".csv")]
+    assert links == written[1:]
     assert dcone("report", str(tmp_path))[0] == 2
     assert dcone("report", str(kept), "-o", str(tmp_path / "mine.html"), "--csv", "--no-live")[0] == 0
     names = {path.stem for path in tmp_path.glob("*.csv")}
-    assert names == {"capture", "removal", "removal_without_recoil_tugs", "tugs"}
+    assert names == set(tables)
     for name in names:
         told = pyarrow.csv.read_csv(tmp_path / f"{name}.csv").to_pandas()
         table = pd.read_parquet(kept / f"{name}.parquet")
         assert "time [s]" in told
         assert np.array_equal(told.to_numpy(float), table.to_numpy(float), equal_nan=True), "to the bit"
+    other = tmp_path / "other"
+    other.mkdir()
+    code, out, _ = dcone("report", str(kept), "-o", str(other / "mine.html"), "--no-live")
+    assert [path.name for path in other.iterdir()] == ["mine.html"], "nothing unasked where other files are"
     code, _, error = dcone("report", str(kept), "-o", str(tmp_path / "mine.txt"))
     assert code == 2
     assert "ends in .html" in error
     code, _, error = dcone("report", str(kept), "--sizing", str(tmp_path))
     assert code == 2
     assert "`dcone size` writes" in error
+
+
+def test_a_large_table_is_csv_where_it_is_asked_for(
+    bare: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(commands, "LARGEST", histories_of(bare)["capture"] - 1)
+    copy = shutil.copytree(bare, tmp_path / "run")
+    names = {path.name for path in write_page(copy, None, Progress())}
+    assert "capture.csv" not in names
+    assert "tugs.csv" in names
+    page = Page((copy / "report.html").read_text())
+    assert "capture.csv would be large: dcone report ./run --csv" in page.text
+    assert "capture.csv" not in page.links
+    assert (copy / "capture.csv") in write_page(copy, None, Progress(), csv=True)
+    assert {path.name for path in write_page(copy, None, Progress(), csv=False)} == {"report.html"}
 
 
 def test_reports_that_belong_to_it_are_linked_from_where_the_page_is(kept: Path, tmp_path: Path) -> None:

@@ -79,8 +79,17 @@ export class Live extends Panel {
     [this.diameter, this.damping] = ["tether.diameter", "tether.damping_ratio"].map((name) => this.si(name, moved));
     this.number += 1;
     this.root.dataset.number = this.number;
-    const factor = Math.max(Number(this.factor.value) || 1, 1);
-    this.worker.postMessage({ number: this.number, values, factor, diameter: this.diameter });
+    this.send({ values, diameter: this.diameter });
+  }
+
+  send(asked) { this.worker.postMessage({ number: this.number, factor: Math.max(Number(this.factor.value) || 1, 1), ...asked }); }
+
+  /** Go on with the least diameter of the run, whose search other values have broken off. */
+  resume() {
+    const { run } = this.results;
+    if (!run?.sought || this.column === "run" || this.busy || this.waiting) return;
+    this.column = "run";
+    this.send({ values: {}, diameter: this.si("tether.diameter", []), peak: run.largest });
   }
 
   hear(told) {
@@ -104,6 +113,7 @@ export class Live extends Panel {
     if (told.kind !== "required" && !this.waiting) this.chart.give(this.series());
     if (told.kind === "tow" && (this.waiting || (this.column === "run" && this.moved.length))) this.post();
     else if (this.waiting) this.post();
+    if (told.kind !== "tow" || !told.sought) this.resume();
   }
 
   /** Whether the run's own tugs come out again, to the bit. */

@@ -8,16 +8,20 @@ const breathe = () => new Promise((done) => { const channel = new MessageChannel
 
 const said = (error) => String(error.message || error);
 
-async function take({ number, values, factor, diameter }) {
+/** `peak` is the largest tension where it is known, and the least diameter alone is wanted. */
+async function take({ number, values, factor, diameter, peak }) {
   latest = number;
   await breathe();
   if (number !== latest) return;
   try {
-    const began = performance.now();
-    const found = tow(fmu, plan, values);
-    const sought = Boolean(line.strength && diameter && found.largest > 0 && !found.ended);
-    postMessage({ number, kind: "tow", took: (performance.now() - began) / 1000, sought, ...found });
-    if (!sought) return;
+    if (!peak) {
+      const began = performance.now();
+      const found = tow(fmu, plan, values);
+      const sought = Boolean(line.strength && diameter && found.largest > 0 && !found.ended);
+      postMessage({ number, kind: "tow", took: (performance.now() - began) / 1000, sought, ...found });
+      if (!sought) return;
+      peak = found.largest;
+    }
     const peakOf = async (at) => {
       await breathe();
       if (number !== latest) return null;
@@ -26,7 +30,7 @@ async function take({ number, values, factor, diameter }) {
       return tried.largest;
     };
     const unsought = (error) => ({ why: said(error) });
-    const needed = await requiredDiameter(line.strength, factor, diameter, found.largest, peakOf).catch(unsought);
+    const needed = await requiredDiameter(line.strength, factor, diameter, peak, peakOf).catch(unsought);
     if (needed) postMessage({ number, kind: "required", ...needed });
   } catch (error) {
     if (number === latest) postMessage({ number, kind: "failed", text: said(error) });
