@@ -18,11 +18,16 @@ from dcone_cosim.campaign.spec import RANDOM, Spec
 from dcone_cosim.cases.statistics import Share
 from dcone_cosim.cases.vary import in_si
 from dcone_cosim.scene.data import Scene
+from dcone_cosim.units import Unit, by_name
 
 PERCENTS = (5.0, 50.0, 95.0, 99.0)
 """Percentiles that are told."""
 ROUNDING = 1e-12
 """Spread over mean of a figure that is the same in all cases [1]."""
+SHOWN_IN = {"rad": "deg", "rad/s": "deg/s", "Pa": "MPa"}
+"""Units of figures that a page has in others."""
+SMALL = 0.01
+"""Mean of a length below which a page has it in mm [m]."""
 MARGIN, DIAMETER, REQUIRED = "line.margin_of_safety", "tether.diameter", "line.diameter_required"
 
 
@@ -53,6 +58,12 @@ class Distribution:
     def varies(self) -> bool:
         """Whether its spread is more than rounding."""
         return self.deviation > ROUNDING * abs(self.mean)
+
+    @property
+    def shown_in(self) -> Unit:
+        """The unit in which a page has it."""
+        small = self.unit == "m" and abs(self.mean) < SMALL
+        return by_name("mm" if small else SHOWN_IN.get(self.unit, self.unit))
 
 
 @dataclass

@@ -12,6 +12,7 @@ from dcone_cosim.campaign.explained import Explained
 from dcone_cosim.campaign.inputs import Inputs, shown
 from dcone_cosim.campaign.show import cases
 from dcone_cosim.campaign.worst import Worth
+from dcone_cosim.units import spoken
 
 PAGE = "report.html"
 AT = (0.025, 0.5, 0.975)
@@ -64,14 +65,16 @@ def write(
 
 def _figures(found: Answers, bounded: bool) -> Iterator[dict[str, Any]]:
     for name, one in found.figures.items():
+        unit = one.shown_in
+        read = unit.from_si
         yield {
             "name": name,
-            "unit": "" if one.unit == "1" else one.unit,
+            "unit": spoken(unit.name),
             "cases": cases(one.of, one.lacking),
-            "mean": f"{one.mean:.5g}",
-            "spread": f"{one.deviation:.3g}",
+            "mean": f"{read(one.mean):.5g}",
+            "spread": f"{read(one.deviation):.3g}",
             "percentiles": [
-                f"{p.value:.5g}" + (f" ({_or_none(p.interval[0])} to {_or_none(p.interval[1])})" if bounded else "")
+                (f"{read(p.value):.5g}", " to ".join(_or_none(read(end)) for end in p.interval) if bounded else "")
                 for p in one.percentiles
             ],
         }

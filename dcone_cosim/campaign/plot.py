@@ -17,6 +17,7 @@ from dcone_cosim.campaign.intervals import HAVE, of_share
 from dcone_cosim.campaign.outcomes import succeeded
 from dcone_cosim.campaign.spec import ADAPTIVE, GRID, Spec
 from dcone_cosim.plots import style
+from dcone_cosim.units import spoken
 
 ESTIMATE, FIGURES, MAP, SENSITIVITY = "estimate.png", "figures.png", "map.png", "sensitivity.png"
 MOST_FIGURES = 6
@@ -82,7 +83,8 @@ def _estimate(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, 
 
 
 def _figures(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, spread: Explained) -> Any:
-    shown = [(name, one) for name, one in found.figures.items() if one.varies][:MOST_FIGURES]
+    kept = {name for one in made for name in one.row.figures}
+    shown = [(name, one) for name, one in found.figures.items() if one.varies and name in kept][:MOST_FIGURES]
     if not shown:
         return None
     rows = math.ceil(len(shown) / 3)
@@ -92,15 +94,13 @@ def _figures(spec: Spec, inputs: Inputs, made: Sequence[Made], found: Answers, s
     figure.subplots_adjust(left=0.06, right=0.98, bottom=0.5 / height, top=1 - 0.55 / height, wspace=0.25, hspace=0.5)
     for axes, (name, one) in zip(grid.flat, shown, strict=False):
         values = [one_of.row.figures.get(name) for one_of in made]
-        numbers = [float(v) for v in values if isinstance(v, int | float) and math.isfinite(v)]
-        if not numbers:
-            axes.set_visible(False)
-            continue
+        read = one.shown_in.from_si
+        numbers = [read(float(v)) for v in values if isinstance(v, int | float) and math.isfinite(v)]
         axes.hist(numbers, bins=min(BINS, max(5, round(math.sqrt(len(numbers))))), color=style.NET, alpha=0.8)
         for p in one.percentiles[:3]:
-            axes.axvline(p.value, color=style.BULLET, lw=0.9, ls="--")
-        unit = "" if one.unit == "1" else f" [{one.unit}]"
-        axes.set_xlabel(f"{name}{unit}", fontsize=8, parse_math=False)
+            axes.axvline(read(p.value), color=style.BULLET, lw=0.9, ls="--")
+        unit = spoken(one.shown_in.name)
+        axes.set_xlabel(f"{name} [{unit}]" if unit else name, fontsize=8, parse_math=False)
     for axes in list(grid.flat)[len(shown) :]:
         axes.set_visible(False)
     return figure

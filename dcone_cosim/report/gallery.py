@@ -24,6 +24,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.report import tiles
 from dcone_cosim.report.commands import write_page
 from dcone_cosim.report.live import NET
+from dcone_cosim.report.page import answer_of
 from dcone_cosim.reports import pages
 from dcone_cosim.results import RunResult
 from dcone_cosim.run_reading import read_run
@@ -108,6 +109,6 @@ def _card(out: Path, name: str) -> dict[str, Any]:
         "badges": tiles.badges(run),
         "good": run.status == COMPLETED,
         "group": group_of(run),
-        "chief": tiles.chief(run),
+        "chief": answer_of(out / f"{name}.html") or tiles.chief(run),
         "picture": "" if picture is None else base64.b64encode(picture.read_bytes()).decode(),
     }

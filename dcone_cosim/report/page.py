@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
@@ -72,6 +73,10 @@ def of_folder(
     if whole and progress is not None:
         models = {"live": live.of_tow(folder, run, progress), "shot": live.of_shot(folder, run, progress)}
     data |= {name: {**model.told, "folder": here} for name, model in models.items() if isinstance(model, Live)}
+    chief = [
+        *tiles.chief(run, {} if pointed is None else pointed.share),
+        *([governs] if (governs := links.tile(linked)) else []),
+    ]
     values: dict[str, Any] = {
         "title": run.scene.title,
         "badges": tiles.badges(run),
@@ -80,10 +85,8 @@ def of_folder(
         "up": up,
         "good": run.exit_code == 0,
         "whole": whole,
-        "chief": [
-            *tiles.chief(run, {} if pointed is None else pointed.share),
-            *([governs] if (governs := links.tile(linked)) else []),
-        ],
+        "chief": chief,
+        "answer": _script(chief),
         "warnings": [one for one in warnings(run) if one not in tiles.said(run)],
         "clips": [{**_head(clip), "picture": picture_of(folder / PICTURES.get(clip["key"], ""))} for clip in clips],
         "charts": [(name, {"key": chart["key"], "title": chart["title"]}) for name, chart in charts],
@@ -129,9 +132,23 @@ def packed(data: Mapping[str, Any]) -> dict[str, str]:
     """What the template writes into script elements: the data, and the import map of what shows them."""
     more = ("replay", "shot") if data["clips"] else ()
     return {
-        "data": json.dumps(data, separators=(",", ":")).replace("</", "<\\/"),
+        "data": _script(data),
         "import_map": scripts.import_map("page", more),
     }
+
+
+def _script(data: Any) -> str:
+    """Plain data as an element of a page has it."""
+    return json.dumps(data, separators=(",", ":")).replace("</", "<\\/")
+
+
+def answer_of(page: Path) -> list[tiles.Tile]:
+    """What a page tells at its top, as it was written there; nothing of a page that is not a run's.
+
+    Checked  tests/report/test_gallery.py
+    """
+    found = re.search(r'<script type="application/json" id="answer">(.*?)</script>', page.read_text(encoding="utf-8"))
+    return json.loads(found[1]) if found else []
 
 
 def _shown(models: Mapping[str, Live | str], heads: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

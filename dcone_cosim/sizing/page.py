@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,9 @@ from dcone_cosim.sizing.section import Section
 
 if TYPE_CHECKING:
     from dcone_cosim.sizing.result import Sizing
+
+QUANTITY = re.compile(r"[-+]?[\d.,]+(e[-+]?\d+)?( \S+)?")
+"""A number, perhaps with its unit: a column of such texts is one of numbers."""
 
 
 def write(done: Sizing, about: Mapping[str, Any], folder: Path) -> None:
@@ -25,12 +29,17 @@ def write(done: Sizing, about: Mapping[str, Any], folder: Path) -> None:
 def _part(section: Section, folder: Path) -> dict[str, Any]:
     picture = folder / section.picture if section.picture else None
     there = picture is not None and picture.is_file()
+    cells = section.cells()
+    texts = [
+        not head.unit and not all(QUANTITY.fullmatch(row[place]) for row in cells if row[place])
+        for place, head in enumerate(section.heads)
+    ]
     return {
         "key": section.key,
         "title": section.title,
         "purpose": section.purpose,
         "picture": base64.b64encode(picture.read_bytes()).decode() if there and picture is not None else "",
-        "heads": [(head.title, not head.unit) for head in section.heads],
-        "rows": [list(zip(cells, (not head.unit for head in section.heads), strict=True)) for cells in section.cells()],
+        "heads": [(head.title, is_text) for head, is_text in zip(section.heads, texts, strict=True)],
+        "rows": [list(zip(row, texts, strict=True)) for row in cells],
         "said": section.said,
     }

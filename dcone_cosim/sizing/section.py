@@ -20,6 +20,14 @@ Cell = float | int | str | bool | None
 ROW = "row"
 """In the place of a unit: each row has its own, in the column `unit`."""
 
+REACHES = (
+    ("Pa", 1e9, math.inf, "GPa"),
+    ("Pa", 1e6, 1e9, "MPa"),
+    ("m", 1e4, math.inf, "km"),
+    ("m", 1e-9, 0.1, "mm"),
+)
+"""Units, sizes from and below which a reader sees them in another, and that."""
+
 
 @dataclass(frozen=True)
 class Head:
@@ -105,7 +113,29 @@ class Section:
 
     def cells(self) -> list[list[str]]:
         """As a reader sees it."""
-        return [[head.shown(value) for head, value in zip(self.heads, row, strict=True)] for row in self.rows]
+        return [
+            [head.shown(value) for head, value in zip(self.heads, row, strict=True)]
+            for row in map(self._read, self.rows)
+        ]
+
+    def _read(self, row: Sequence[Cell]) -> Sequence[Cell]:
+        """A row whose value has a unit of its own, in the unit that a reader sees."""
+        places = {head.unit if head.unit == ROW else head.key: place for place, head in enumerate(self.heads)}
+        value = row[places[ROW]] if ROW in places else None
+        if not isinstance(value, float):
+            return row
+        found = list(row)
+        found[places[ROW]], found[places["unit"]] = in_reach(value, str(row[places["unit"]]))
+        return found
+
+
+def in_reach(value: float, unit: str) -> tuple[float, str]:
+    """A value and its unit, of those in `REACHES` where there is one.
+
+    Checked  tests/sizing/test_report.py
+    """
+    reach = next((row for row in REACHES if row[0] == unit and row[1] <= abs(value) < row[2]), None)
+    return (by_name(reach[3]).from_si(value), reach[3]) if reach else (value, "" if unit == "1" else unit)
 
 
 def _plain(value: Cell) -> Cell:

@@ -64,6 +64,16 @@ def test_too_few_cases_bound_nothing() -> None:
     assert found.interval[0] == 18.0
 
 
+@pytest.mark.parametrize(
+    ("unit", "mean", "shown_in", "told"),
+    [("rad/s", 0.1, "deg/s", 5.729578), ("m", 2e-3, "mm", 2.0), ("m", 2.0, "m", 2.0), ("N", 3.0, "N", 3.0)],
+)
+def test_a_page_has_figures_in_units_that_are_read(unit: str, mean: float, shown_in: str, told: float) -> None:
+    found = distribution([0.9 * mean, 1.1 * mean], unit, 0, 0.95)
+    assert found.shown_in.name == shown_in
+    assert found.shown_in.from_si(found.mean) == pytest.approx(told, rel=1e-6)
+
+
 def test_required_diameter() -> None:
     """Twice the diameter bears twice the tension: at the diameter required the margin is the factor of safety's."""
     base, spec = load("table2-deorbit"), spec_of(JUST)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from dcone_cosim.errors import OVERLOADED
 from dcone_cosim.loading import named, shipped
 from dcone_cosim.progress import Progress
 from dcone_cosim.report.gallery import DAY, GROUPS, cuts, group_of, make
+from dcone_cosim.report.page import answer_of
 from dcone_cosim.run_reading import read_run
 from tests.report.conftest import Page
 from tests.runs import COARSE
@@ -28,6 +30,13 @@ def test_pages_and_index(tmp_path: Path, kept: Path) -> None:
     assert "Shot, capture and tow" in page.text
     assert "index.html" in Page((out / "small.html").read_text()).links
     assert Page((out / "small.html").read_text()).data["clips"][0]["net"]["tensions"]
+    told = [row["since"] for row in answer_of(out / "small.html") if "as the target is a point" in row["since"]]
+    assert len(told) == 2
+    for since in told:
+        off = re.search(r"off by [\d.]+ %, bounded by [\d.]+ %, as the target is a point$", since)
+        assert off is not None
+        assert off[0] in page.text, "a card tells what the page tells"
+    assert answer_of(index) == []
     before = (out / "small.html").stat().st_mtime_ns
     make([str(scene)], out, Progress())
     assert (out / "small.html").stat().st_mtime_ns == before

@@ -14,7 +14,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.sizing import required, show
 from dcone_cosim.sizing.result import Sizing
-from dcone_cosim.sizing.section import Head, Section, text
+from dcone_cosim.sizing.section import ROW, Head, Section, text
 from dcone_cosim.sizing.work import loads_of
 from orbital.materials import MATERIALS
 from tests.sizing.conftest import SAFETY, SHORT
@@ -30,6 +30,16 @@ def test_a_cell_is_in_the_unit_of_its_head() -> None:
         "1.5", "25", "0.5", "7",
     ]  # fmt: skip
     assert [head.title for head in heads] == ["d [mm]", "s [%]", "t [day]", "n"]
+
+
+def test_a_value_with_a_unit_of_its_own_is_in_one_that_is_read() -> None:
+    heads = (text("what", "what"), Head("value", "value", ROW), text("unit", "unit"))
+    given = ((6e10, "Pa"), (3e6, "Pa"), (1e-3, "m"), (12.0, "m"), (8e5, "m"), (0.05, "1"), (0.0, "m"), (-0.01, "N"))
+    section = Section("asked", "", "", heads, [("", *row) for row in given])
+    assert [row[1:] for row in section.cells()] == [
+        ["60", "GPa"], ["3", "MPa"], ["1", "mm"], ["12", "m"], ["800", "km"], ["0.05", ""], ["0", "m"], ["-0.01", "N"],
+    ]  # fmt: skip
+    assert section.columns()[1].values == [value for value, _ in given], "files stay SI"
 
 
 def test_margins_are_over_the_factor_of_safety(done: Sizing) -> None:
