@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from dcone_cosim.sizing.result import Sizing
 
 QUANTITY = re.compile(r"[-+]?[\d.,]+(e[-+]?\d+)?( \S+)?")
-"""A number, perhaps with its unit: a column of such texts is one of numbers."""
+"""A number, perhaps with its unit."""
 
 
 def write(done: Sizing, about: Mapping[str, Any], folder: Path) -> None:
@@ -31,7 +31,7 @@ def _part(section: Section, folder: Path) -> dict[str, Any]:
     there = picture is not None and picture.is_file()
     cells = section.cells()
     texts = [
-        not head.unit and not all(QUANTITY.fullmatch(row[place]) for row in cells if row[place])
+        not head.unit and not _is_of_numbers([row[place] for row in cells if row[place]])
         for place, head in enumerate(section.heads)
     ]
     return {
@@ -43,3 +43,8 @@ def _part(section: Section, folder: Path) -> dict[str, Any]:
         "rows": [list(zip(row, texts, strict=True)) for row in cells],
         "said": section.said,
     }
+
+
+def _is_of_numbers(cells: Sequence[str]) -> bool:
+    """Whether most of these texts are numbers with their units, and so stand on the right."""
+    return 2 * sum(QUANTITY.fullmatch(one) is not None for one in cells) > len(cells)

@@ -188,6 +188,19 @@ def test_a_search_that_other_values_broke_off_goes_on(asked: Asked, table2: Path
     assert asked.browser.ask(cell) == spoken(wanted)
 
 
+def test_tugs_that_are_not_the_same_bits_are_told_with_the_reason(asked: Asked, table2: Path) -> None:
+    asked.open(page_of(table2))
+    told = asked.browser.ask(
+        f"(() => {{ {TOW}.recorded[1] *= 1 + 2e-12; {TOW}.hold({TOW}.results.run); return {TOW}.same; }})()"
+    )
+    assert "tugs again, within 2e-12 of each figure: sine, exponential and their like" in told
+    told = asked.browser.ask(
+        f"(() => {{ {TOW}.recorded = {TOW}.recorded.slice(3); {TOW}.hold({TOW}.results.run); return {TOW}.same; }})()"
+    )
+    own = len(tugs(table2))
+    assert told == f"Unmoved it gives {own} tugs, where the run has {own - 1}."
+
+
 def test_the_load_that_governs_follows(asked: Asked, table2: Path) -> None:
     """A snap, and from a damping ratio of one half on the dashpot."""
     asked.open(page_of(table2))

@@ -125,7 +125,7 @@ export class Live extends Panel {
     this.off = off;
     const all = n === 1 ? "one tug" : `${n} tugs`;
     this.same = off === 0 ? `Unmoved it gives the run's ${all} again, bit for bit.`
-      : off === off ? `Unmoved it gives the run's ${all} again, within ${off.toExponential(0)} of each figure.`
+      : off === off ? `Unmoved it gives the run's ${all} again, within ${off.toExponential(0)} of each figure: sine, exponential and their like have other last digits in a page than in the library of the FMU.`
         : `Unmoved it gives ${told.tugs.length} tugs, where the run has ${n}.`;
   }
 

@@ -26,6 +26,7 @@
     if (!box.clientWidth) return;
     const table = what.localName === "table";
     what.classList.remove("stacked");
+    box.classList.remove("slides");
     const over = what.offsetWidth > box.clientWidth + 1, stacked = over && table && NARROW.matches, slides = over && !stacked;
     what.classList.toggle("stacked", stacked);
     box.classList.toggle("slides", slides);
