@@ -161,14 +161,14 @@ def make_capstan() -> Capstan:
 
         Checked  tests/net_capture/test_capstan.py
         """
-        before = words[at + HELD * p.thread_numbers] - 1
+        before = words[at + HELD * p.wrap_numbers] - 1
         shift = shift_of(p, edges, before) if known and before > 0 else MOST + 1
         if shift > MOST:
             share(p, edges, way, length)
             return False
         left = length
         for i in range(before):
-            p.wrap_was[i] = FINE * words[at + (PARTS + i) * p.thread_numbers]
+            p.wrap_was[i] = FINE * words[at + (PARTS + i) * p.wrap_numbers]
             left -= p.wrap_was[i]
         p.wrap_was[before] = left
         carry(p, edges, before, shift)
@@ -247,9 +247,9 @@ def make_capstan() -> Capstan:
 
         Checked  tests/net_capture/test_capstan.py
         """
-        p.wrap_friction_loss += FINE * words[at + EXCESS * p.thread_numbers]
-        words[at + EXCESS * p.thread_numbers] = 0
-        words[at + HELD * p.thread_numbers] = 0
+        p.wrap_friction_loss += FINE * words[at + EXCESS * p.wrap_numbers]
+        words[at + EXCESS * p.wrap_numbers] = 0
+        words[at + HELD * p.wrap_numbers] = 0
 
     @kernel
     def hold(p, words, at, edges, way, length, stiffness, known):
@@ -277,10 +277,10 @@ def make_capstan() -> Capstan:
             p.wrap_slide += abs(over)
             p.wrap_friction_loss += (near - far) * (1.0 + 0.5 * (near + far) / axial) * over
         excess = now - 0.5 * stiffness * (way - length) * (way - length)
-        words[at + EXCESS * p.thread_numbers] = np.int64(excess / FINE)
-        words[at + HELD * p.thread_numbers] = edges + 1
+        words[at + EXCESS * p.wrap_numbers] = np.int64(excess / FINE)
+        words[at + HELD * p.wrap_numbers] = edges + 1
         for j in range(edges):
-            words[at + (PARTS + j) * p.thread_numbers] = np.int64(p.wrap_parts[j] / FINE + 0.5)
+            words[at + (PARTS + j) * p.wrap_numbers] = np.int64(p.wrap_parts[j] / FINE + 0.5)
 
     @kernel
     def stretch(p, words, at, edges, way, length, stiffness):

@@ -10,6 +10,7 @@ from typing import Any
 from fmu_src import tables
 from fmu_src.interface import Model, Term
 from fmu_src.net_capture.capture_index import SCRATCH_PLANES
+from fmu_src.net_capture.cord_bends import make_cord_bends
 from fmu_src.net_capture.graph import make_graph
 from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
@@ -46,8 +47,8 @@ class Composition:
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
-    gravity, net, rigging, graph, peaks, folding, target, force_map, contact, jam, closing, tether, air, wrap, spin,
-    ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
+    gravity, net, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing, tether, air, wrap,
+    spin, ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -80,6 +81,7 @@ class Composition:
         self.target = self._make("target")
         self.force_map = self._make("force_map")
         self.contact = self._make("contact")
+        self.cord_bends = make_cord_bends(self)
         self.jam = self._make("jam")
         self.closing, self.tether = self._make("closing"), self._make("tether")
         self.volume, self.air = self._make("volume"), self._make("air")

@@ -29,8 +29,13 @@ STATE, WAY, CLEAR, EDGES, CHAIN, KEPT = 0, 1, 2, 3, 4, 7
 the substep up to which it is clear of the target, over how many edges it bends, and the faces between them, `PACKED` to
 a number."""
 PACKED, FACE_BITS = 6, 9
+CHAIN_WORDS = KEPT - CHAIN
 FINE = 1e-12
 """Metres: lengths are kept in picometres."""
+JUMP = 2e-4
+"""Metres by which a way may differ from what the ends' speeds made of it a substep ago: 0.3 mJ of Table 1's net."""
+SHARE = 0.5
+"""Of what these speeds make in a substep, by which it may differ beside that."""
 
 
 class Near(NamedTuple):
@@ -50,6 +55,21 @@ class Near(NamedTuple):
     keep: Any
 
 
+def make_list_at(composition: Any, kept: int) -> Any:
+    """Kernel `list_at` of `Near`."""
+    masks = composition.traits.masks
+
+    @kernel
+    def list_at(p, words):
+        """Where the list begins.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        return words.size - masks * p.strips - (1 + kept) * p.wrap_numbers
+
+    return list_at
+
+
 def make_near(composition: Any, kept: int) -> Near:
     """Kernels for the composition's net and target, with so many whole numbers kept of each thread."""
     # after the scheme's own parts are known, see `schemes.asleep`
@@ -59,23 +79,21 @@ def make_near(composition: Any, kept: int) -> Near:
     memory = composition.memory
     node_plane, strips, properties, own = memory.node_plane, memory.strips, memory.properties, memory.own
     reals_of, bring = memory.reals, make_asleep(composition).bring
-    masks, distance_to = composition.traits.masks, composition.target.shape.distance
+    distance_to, list_at = composition.target.shape.distance, make_list_at(composition, kept)
+    cord = composition.cord_bends
+    bends, stretches = cord is not None, cord.stretches if cord is not None else None
 
     @kernel
     def words(p):
-        """For each thread a place in the list of those near, and what is kept of it, see `KEPT`.
+        """For each thread, and each stretch of cord that bends, a place in the list of those near, and what is kept of
+        it, see `KEPT`.
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        return (1 + kept) * p.thread_numbers
-
-    @kernel
-    def list_at(p, words):
-        """Where the list begins.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        return words.size - masks * p.strips - (1 + kept) * p.thread_numbers
+        p.wrap_numbers = p.thread_numbers
+        if bends:
+            p.wrap_numbers += stretches(p)
+        return (1 + kept) * p.wrap_numbers
 
     @kernel
     def list_near(p, work):
@@ -119,11 +137,11 @@ def make_near(composition: Any, kept: int) -> Near:
                 if away < (p.envelope_radius + half) * (p.envelope_radius + half):
                     rotate_inverse(middle, p.target_pose, arm)
                     if distance_to(p, p.wrap_line, middle) < half:
-                        words[at + (1 + CLEAR) * p.thread_numbers + table[s + FIRST] + lane] = 0
+                        words[at + (1 + CLEAR) * p.wrap_numbers + table[s + FIRST] + lane] = 0
                         words[at + p.wrap_listed] = 64 * strip + lane
                         p.wrap_listed += 1
                         continue
-                words[at + p.thread_numbers + table[s + FIRST] + lane] = FREE
+                words[at + p.wrap_numbers + table[s + FIRST] + lane] = FREE
 
     @kernel
     def recall(p, words, at):
@@ -135,9 +153,9 @@ def make_near(composition: Any, kept: int) -> Near:
         """
         if words[at] == FREE:
             return 0
-        edges = words[at + EDGES * p.thread_numbers]
+        edges = words[at + EDGES * p.wrap_numbers]
         for j in range(edges + 1):
-            word = words[at + (CHAIN + j // PACKED) * p.thread_numbers]
+            word = words[at + (CHAIN + j // PACKED) * p.wrap_numbers]
             p.wrap_chain[j] = (word >> (FACE_BITS * (j % PACKED))) & ((1 << FACE_BITS) - 1)
         return edges
 
@@ -147,10 +165,10 @@ def make_near(composition: Any, kept: int) -> Near:
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        words[at + EDGES * p.thread_numbers] = edges
+        words[at + EDGES * p.wrap_numbers] = edges
         for n in range(CHAIN, KEPT):
-            words[at + n * p.thread_numbers] = 0
+            words[at + n * p.wrap_numbers] = 0
         for j in range(edges + 1):
-            words[at + (CHAIN + j // PACKED) * p.thread_numbers] |= p.wrap_chain[j] << (FACE_BITS * (j % PACKED))
+            words[at + (CHAIN + j // PACKED) * p.wrap_numbers] |= p.wrap_chain[j] << (FACE_BITS * (j % PACKED))
 
     return Near(words, list_at, list_near, recall, keep)

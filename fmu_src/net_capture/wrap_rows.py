@@ -15,9 +15,13 @@ ROWS = (
     peak("wrap.slip_loss", "J", "lost by threads that slid over a corner"),
     peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
     output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
+    count("wrap_numbers", "threads of which the way is kept, and stretches of cord", "state"),
     count("wrap_listed", "threads near the target", "state"),
     count("wrap_next", "substep at which they are looked up again", "state"),
-    count("wrap_faces", "faces of the target", "state"),
+    count("wrap_faces", "faces of the body round which a way goes", "state"),
+    count("wrap_body", "which of several that is, counted from 0", "state"),
+    count("wrap_round", "round which of several a thread bent a substep ago, counted from 1", "state"),
+    count("wrap_leans", "whether a way is sought on the side of wrap_lean", "state"),
     count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
     count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
     state("wrap_clear", "m", "how far a thread is from the target, at least"),
@@ -48,6 +52,7 @@ ROWS = (
             ("last", "1", "direction from the last bend to the other end"),
             ("line", "1", "direction of the straight thread"),
             ("up", "1", "direction across it, body axes"),
+            ("lean", "m", "where a thread bends already, from its end, body axes"),
         )
     ),
 )

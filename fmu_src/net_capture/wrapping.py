@@ -31,10 +31,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fmu_src.interface import Term
+from fmu_src.net_capture import bodies
 from fmu_src.net_capture.capstan import WITH_FRICTION, make_capstan
 from fmu_src.net_capture.capstan import rows as friction_rows
-from fmu_src.net_capture.contact.edges import make_way
-from fmu_src.net_capture.near import BENT, CLEAR, FINE, FREE, KEPT, PASSED, WAY, make_near
+from fmu_src.net_capture.lying import make_lie
+from fmu_src.net_capture.near import BENT, CLEAR, FINE, FREE, JUMP, KEPT, PASSED, SHARE, WAY, make_near
 from fmu_src.net_capture.planes import (
     DAMPING,
     FIRST,
@@ -59,10 +60,8 @@ from orbital.vectors import cross
 SCHEME = "leapfrog"
 CONVEX = ("box", "cylinder", "frustum", "sphere")
 """Shapes along whose distance a straight line comes to the surface once."""
-JUMP = 2e-4
-"""Metres by which a way may differ from what the ends' speeds made of it a substep ago: 0.3 mJ of Table 1's net."""
-SHARE = 0.5
-"""Of what these speeds make in a substep, by which it may differ beside that."""
+OF_CONVEX = "union"
+"""The shape whose pieces are, or are cut into such."""
 
 
 class Wrap(NamedTuple):
@@ -91,8 +90,8 @@ def make(composition: Any) -> Wrap:
     memory = composition.memory
     node_plane, strips, properties, own = memory.node_plane, memory.strips, memory.properties, memory.own
     reals_of, bring, rouse = memory.reals, make_asleep(composition).bring, composition.rouse
-    find, faces = make_way(), composition.target.shape.faces
-    if faces is None:
+    faces, several = composition.target.shape.faces, composition.target.shape.hulls is not None
+    if faces is None and not several:
         raise ValueError(f"threads bend round no {composition.terms['target']}: it may have hollows")
     begin_step, rate_of = composition.contact.begin_step, composition.gravity.rate
     peaks, now = composition.peaks, composition.clock.now
@@ -100,8 +99,14 @@ def make(composition: Any) -> Wrap:
     has_map = composition.force_map is not None
     add_to_map = composition.force_map.add if has_map else None
     rubs = composition.terms["wrap"] == "friction"
-    words, list_at, list_near, recall, keep = make_near(composition, WITH_FRICTION if rubs else KEPT)
+    kept_of_way = WITH_FRICTION if rubs else KEPT
+    whole = kept_of_way + (bodies.KEPT if several else 0)
+    words, list_at, list_near, recall, keep = make_near(composition, whole)
     begin, remember, hold, let_go, stretch_held = make_capstan() if rubs else (None,) * 5
+    lie = make_lie(composition, remember)
+    ends, look = lie.ends, lie.look
+    rounds = bodies.make_bodies(composition, kept_of_way, lie, remember) if several else None
+    seek, again = (rounds.seek, rounds.again) if several else (None, None)
 
     @kernel
     def start(p):
@@ -117,72 +122,13 @@ def make(composition: Any) -> Wrap:
         p.wrap_stored = 0.0
         p.wrap_slipped = 0
         p.wrap_slip_loss = 0.0
-        p.wrap_faces = faces(p, p.wrap_planes)
+        if several:
+            p.wrap_body = -1
+            p.wrap_leans = 0
+        else:
+            p.wrap_faces = faces(p, p.wrap_planes)
         if rubs:
             begin(p)
-
-    @kernel
-    def look(p, work, code, place, rate, edges):
-        """How many edges a thread bends over, with nodes at the places and rates in these planes; length and rate of
-        its way and of the straight one [m], [m/s].
-
-        Then directions from the first and last bend to its ends are in `wrap_first` and `wrap_last`, and from end to
-        end in `wrap_line`, frame axes.
-
-        edges     how many it bent over before, between the faces in `wrap_chain`
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        s = STRIP_WORDS * (code // 64)
-        table = strips(p, work)
-        a = table[s + A] + code % 64
-        b = table[s + B] + code % 64
-        first, last, line, turned = p.wrap_first, p.wrap_last, p.wrap_line, p.wrap_turned
-        for axis in range(3):
-            x = node_plane(p, work, place + axis)
-            first[axis] = x[a] - p.target_place[axis]
-            last[axis] = x[b] - p.target_place[axis]
-        rotate_inverse(p.wrap_a, p.target_pose, first)
-        rotate_inverse(p.wrap_b, p.target_pose, last)
-        if rubs:
-            remember(p)
-        edges = find(p, edges)
-        if edges == 0:
-            squared = 0.0
-            for axis in range(3):
-                squared += (p.wrap_b[axis] - p.wrap_a[axis]) * (p.wrap_b[axis] - p.wrap_a[axis])
-            return 0, math.sqrt(squared), 0.0, 0.0, 0.0
-        way = 0.0
-        for j in range(edges + 1):
-            way += p.wrap_pieces[j, 3]
-        going = 0.0
-        for end in range(2):
-            before = going
-            bend, out, node = (1, first, a) if end == 0 else (edges, last, b)
-            rotate(turned, p.target_pose, p.wrap_bends[bend])
-            cross(p.wrap_moving, p.target_omega, turned)
-            squared = 0.0
-            for axis in range(3):
-                out[axis] -= turned[axis]
-                squared += out[axis] * out[axis]
-            for axis in range(3):
-                out[axis] /= math.sqrt(squared)
-                v = node_plane(p, work, rate + axis)
-                going += out[axis] * (v[node] - p.target_drift[axis] - p.wrap_moving[axis])
-            if rubs:
-                p.wrap_rates[end] = going - before
-        squared = 0.0
-        for axis in range(3):
-            x = node_plane(p, work, place + axis)
-            line[axis] = x[b] - x[a]
-            squared += line[axis] * line[axis]
-        straight = math.sqrt(squared)
-        closing = 0.0
-        for axis in range(3):
-            line[axis] /= straight
-            v = node_plane(p, work, rate + axis)
-            closing += line[axis] * (v[b] - v[a])
-        return edges, way, going, straight, closing
 
     @kernel
     def slip(p, before, way, length, stiffness):
@@ -205,12 +151,12 @@ def make(composition: Any) -> Wrap:
         """
         before = words[at]
         if edges == 0:
-            if before == BENT and FINE * words[at + WAY * p.thread_numbers] > max(length, way + JUMP):
-                slip(p, FINE * words[at + WAY * p.thread_numbers], way, length, stiffness)
+            if before == BENT and FINE * words[at + WAY * p.wrap_numbers] > max(length, way + JUMP):
+                slip(p, FINE * words[at + WAY * p.wrap_numbers], way, length, stiffness)
             words[at] = FREE
-            words[at + CLEAR * p.thread_numbers] = p.grid + 1 + int(p.wrap_clear / p.wrap_haste)
+            words[at + CLEAR * p.wrap_numbers] = p.grid + 1 + int(p.wrap_clear / p.wrap_haste)
             return
-        expected = FINE * words[at + WAY * p.thread_numbers] if before != FREE else straight
+        expected = FINE * words[at + WAY * p.wrap_numbers] if before != FREE else straight
         within = JUMP + SHARE * p.solver_substep * abs(going)
         if before == FREE:
             within += 2.0 * p.solver_substep * abs(going)
@@ -221,7 +167,9 @@ def make(composition: Any) -> Wrap:
                 p.wrap_passed += 1
             elif expected > length and way < expected - within:
                 slip(p, expected, way, length, stiffness)
-        words[at + WAY * p.thread_numbers] = np.int64((way + p.solver_substep * going) / FINE)
+        words[at + WAY * p.wrap_numbers] = np.int64((way + p.solver_substep * going) / FINE)
+        if several:
+            return
         keep(p, words, at, edges)
 
     @kernel
@@ -261,8 +209,8 @@ def make(composition: Any) -> Wrap:
             code = words[at + n]
             strip = code // 64
             number = table[STRIP_WORDS * strip + FIRST] + code % 64
-            kept = at + p.thread_numbers + number
-            if words[kept + CLEAR * p.thread_numbers] > p.grid:
+            kept = at + p.wrap_numbers + number
+            if words[kept + CLEAR * p.wrap_numbers] > p.grid:
                 continue
             a = table[STRIP_WORDS * strip + A] + code % 64
             b = table[STRIP_WORDS * strip + B] + code % 64
@@ -270,8 +218,12 @@ def make(composition: Any) -> Wrap:
             bring(p, reals_of(work), words, b // p.row_pitch)
             q = STRIP_NUMBERS * strip
             length, stiffness, damping = numbers[q + LENGTH], numbers[q + STIFFNESS], numbers[q + DAMPING]
-            edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
             known, slips = words[kept] == BENT, p.wrap_slipped
+            if several:
+                edges, way, going, straight, closing = seek(p, work, words, kept, a, b, length)
+                known = known and p.wrap_round == words[kept + kept_of_way * p.wrap_numbers]
+            else:
+                edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
             follow(p, words, kept, edges, way, going, straight, length, stiffness)
             if words[kept] != BENT or way <= length:
                 if rubs:
@@ -333,10 +285,14 @@ def make(composition: Any) -> Wrap:
         for n in range(p.wrap_listed):
             code = words[at + n]
             strip = code // 64
-            kept = at + p.thread_numbers + table[STRIP_WORDS * strip + FIRST] + code % 64
+            kept = at + p.wrap_numbers + table[STRIP_WORDS * strip + FIRST] + code % 64
             if words[kept] != BENT:
                 continue
-            edges, way, going, straight, closing = look(p, work, code, SHOWN, SHOWN_RATE, recall(p, words, kept))
+            if several:
+                a, b = ends(p, work, code)
+                edges, way, going, straight, closing = again(p, work, words, kept, a, b, SHOWN, SHOWN_RATE)
+            else:
+                edges, way, going, straight, closing = look(p, work, code, SHOWN, SHOWN_RATE, recall(p, words, kept))
             q = STRIP_NUMBERS * strip
             length = numbers[q + LENGTH]
             if edges == 0 or way <= length:
@@ -369,8 +325,8 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     if scheme != SCHEME:
         yield Refusal("solver.scheme", f'"{scheme}"', f'keeps all threads straight; [capture.wrap] needs "{SCHEME}"')
     shape = scene.terms["target"]
-    if shape not in CONVEX:
-        expected = f"must be convex where threads bend round it, one of {', '.join(CONVEX)}: [capture.wrap]"
+    if shape not in (*CONVEX, OF_CONVEX):
+        expected = f"must be convex or a union where threads bend round it, one of {', '.join((*CONVEX, OF_CONVEX))}: [capture.wrap]"
         yield Refusal("target.shape", f'"{shape}"', expected)
     if precision != "double":
         yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')

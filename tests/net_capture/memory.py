@@ -51,16 +51,20 @@ def shown(net, first=SHOWN):
 
 class Bench:
     """Parts of a model without the model: a record with its start values, and the memory of a net laid out in it, by
-    kernels as they were written: see `tests.net_capture.laid`."""
+    kernels as they were written: see `tests.net_capture.laid`.
 
-    def __init__(self, terms):
-        plainly(self._lay_out)(terms)
+    tables    that its parts bring, by name
+    """
 
-    def _lay_out(self, terms):
-        interface = MODEL.interface(terms)
+    def __init__(self, terms, tables=None):
+        plainly(self._lay_out)(terms, tables)
+
+    def _lay_out(self, terms, tables):
+        interface = self.interface = MODEL.interface(terms).with_tables(tables or {})
         self.parts = Composition(MODEL, interface.terms)
         self.record = interface.make_record().view(np.recarray)
-        self.p = self.record[0]
+        self.p, self._tables = self.record[0], interface.table_block
+        self.p.tables_at = self._tables.ctypes.data
         assert self.parts.graph.count(self.p, np.zeros(0)) == 0
         own = self.parts.scheme.own_words(self.p) + self.parts.traits.masks * self.p.strips
         if self.parts.wrap is not None:

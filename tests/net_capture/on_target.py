@@ -30,8 +30,8 @@ TERMS = {"net": "square", "gravity": "none", "target": "cylinder", "contact": "p
 class Kernels:
     """Parts of such a model, compiled once: `place(values)` gives a target without a node."""
 
-    def __init__(self, terms=TERMS):
-        self.bench = Bench(terms)
+    def __init__(self, terms=TERMS, tables=None):
+        self.bench = Bench(terms, tables)
         parts = self.parts = self.bench.parts
         self.terms = terms = parts.terms
         node_plane, properties, own = parts.memory.node_plane, parts.memory.properties, parts.memory.own
@@ -82,17 +82,21 @@ class Kernels:
 
         self._place, self._advance = place, advance
 
-    def place(self, **values):
-        return Scene(self, values)
+    def place(self, tables=None, **values):
+        """A target with these values, and other tables than it was compiled with."""
+        return Scene(self, values, tables)
 
 
 class Scene:
     """A target, and nodes of given masses [kg] at given places [m] and velocities [m/s]."""
 
-    def __init__(self, kernels, values):
+    def __init__(self, kernels, values, tables=None):
         self.kernels, bench = kernels, kernels.bench
         self.record, self.work = bench.record.copy(), np.zeros_like(bench.work)
         self.p = self.record[0]
+        if tables is not None:
+            self._tables = bench.interface.with_tables(tables).table_block
+            self.p["tables_at"] = self._tables.ctypes.data
         for name, value in values.items():
             self.record[name] = value
         self.planes = planes_of(self.p, self.work, kernels.terms)

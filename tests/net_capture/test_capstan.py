@@ -229,7 +229,7 @@ def test_a_piece_keeps_what_it_holds_as_edges_come_and_go(chain, lengths, parts)
     words = np.zeros(WITH_FRICTION, np.int64)
     words[HELD], words[PARTS : PARTS + 2] = 3, np.round(np.array((0.3, 0.5)) / FINE)
     planes = {"wrap_was": np.zeros(MOST + 1), "wrap_parts": np.zeros(MOST + 1), "wrap_pulls": np.zeros(MOST + 1)}
-    p = SimpleNamespace(thread_numbers=1, wrap_before=np.array((5, 1, 3)), wrap_chain=np.array(chain), **planes)
+    p = SimpleNamespace(wrap_numbers=1, wrap_before=np.array((5, 1, 3)), wrap_chain=np.array(chain), **planes)
     p.wrap_pieces = np.array([(0.0, 0.0, 0.0, length) for length in lengths])
     energy = make_capstan().stretch(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)
     assert p.wrap_parts[: len(parts)] == pytest.approx(np.array(parts), abs=1e-12)

@@ -20,6 +20,8 @@ class Cord(NamedTuple):
 
     pieces(p, work, i)               pieces of thread on the rim between the two [1]
     rouse(p, work)                   all nodes that it draws stand where they are now, and are kicked in this substep
+    meet(p, work, i, slack)          how it lies round the target now, once in a substep; by how much it is shorter at
+                                     once [m], see `CordBends`; None where it stays straight
     along, along_shown (p, work, i)  its way [m] and the rate of that [m/s], now and of what is shown
     draw, draw_shown (p, work, i, tension)   the same tension in every stretch: rings have no friction
     burden(p, work, i, stiffness, dashpot, tension, span)   what it brings to its knots; None where no pace asks
@@ -27,6 +29,7 @@ class Cord(NamedTuple):
 
     pieces: Any
     rouse: Any
+    meet: Any
     along: Any
     along_shown: Any
     draw: Any
@@ -49,6 +52,8 @@ def make_cord(composition: Any) -> Cord:
     node_plane, rim, corners = memory.node_plane, memory.rim, memory.corners
     meets = composition.meeting is not None
     meet = composition.meeting.meet_both if meets else None
+    bends = composition.cord_bends is not None
+    lie, bent, reach, draw_bent = composition.cord_bends[1:] if bends else (None,) * 4
 
     @kernel
     def pieces(p, work, i):
@@ -81,6 +86,18 @@ def make_cord(composition: Any) -> Cord:
             for stop in range(stops(p)):
                 rouse_node(p, work, cord_stop(p, work, i, stop))
 
+    @kernel
+    def meet_target(p, work, i, slack):
+        """How the i-th pair's cord lies round the target now; by how much it is shorter at once [m].
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        fallen = 0.0
+        for stop in range(stops(p)):
+            a, b = cord_stop(p, work, i, stop), cord_stop(p, work, i, stop + 1)
+            fallen += lie(p, work, i * stops(p) + stop, a, b, slack)
+        return fallen
+
     def make_way(place: int, velocity: int) -> Any:
         """Kernel `along_cord` of the positions and velocities in the planes from these on."""
 
@@ -104,6 +121,12 @@ def make_cord(composition: Any) -> Cord:
                 b = cord_stop(p, work, i, stop + 1)
                 squared = radius * radius
                 product = 0.0
+                if bends:
+                    if bent(p, work, i * stops(p) + stop):
+                        d, going = reach(p, work, i * stops(p) + stop, a, b, place, velocity)
+                        way += math.sqrt(squared + d * d)
+                        change += d * going / math.sqrt(squared + d * d)
+                        continue
                 for axis in range(3):
                     at = node_plane(p, work, place + axis)
                     rate = node_plane(p, work, velocity + axis)
@@ -117,8 +140,9 @@ def make_cord(composition: Any) -> Cord:
 
         return along_cord
 
-    def make_draw(place: int) -> Any:
-        """Kernel `draw_cord` at the positions in the planes from this on."""
+    def make_draw(place: int, now: bool) -> Any:
+        """Kernel `draw_cord` at the positions in the planes from this on; in what is shown, `now` false, what bends
+        pulls up to the middle of the last substep."""
 
         @kernel
         def draw_cord(p, work, i, tension):
@@ -132,6 +156,13 @@ def make_cord(composition: Any) -> Cord:
                 a = b
                 b = cord_stop(p, work, i, stop + 1)
                 squared = radius * radius
+                if bends:
+                    if bent(p, work, i * stops(p) + stop):
+                        if now:
+                            d, _ = reach(p, work, i * stops(p) + stop, a, b, place, place)
+                            pull = tension * d / math.sqrt(squared + d * d)
+                            draw_bent(p, work, i * stops(p) + stop, a, b, place, pull)
+                        continue
                 for axis in range(3):
                     at = node_plane(p, work, place + axis)
                     d = at[b] - at[a]
@@ -179,9 +210,10 @@ def make_cord(composition: Any) -> Cord:
     return Cord(
         pieces,
         rouse,
+        meet_target if bends else None,
         make_way(X, P),
         make_way(SHOWN, SHOWN_RATE),
-        make_draw(X),
-        make_draw(SHOWN),
+        make_draw(X, True),
+        make_draw(SHOWN, False),
         burden if meets else None,
     )

@@ -179,6 +179,7 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
     jams, jam_holds = composition.jam is not None, composition.jam
     pieces, rouse, along_now, along_shown = cord.pieces, cord.rouse, cord.along, cord.along_shown
     too_many_rings, burden = composition.code(TOO_MANY_RINGS.name), cord.burden
+    bends, meet = cord.meet is not None, cord.meet
 
     @kernel
     def top_speed(p, i):
@@ -266,7 +267,11 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
             p.trigger_time = now
         if p.closing_t_start < 0.0 and p.trigger_time >= 0.0 and now >= p.trigger_time + p.closing_delay:
             p.closing_t_start = now
+            if bends:
+                rouse(p, work)
             for i in range(p.net_corners):
+                if bends:
+                    meet(p, work, i, True)
                 top = top_speed(p, i)
                 if top > 0.0:
                     distance, rate = along_shown(p, work, i)
@@ -284,6 +289,12 @@ def make_reels(composition: Any, drive: Drive) -> Closing:
         locked = 0
         total = 0.0
         for i in range(p.net_corners):
+            if bends:
+                fallen = meet(p, work, i, False)
+                if fallen > 0.0:
+                    distance, _ = along_now(p, work, i)
+                    p.wrap_slip_loss += cord_energy(p, distance + fallen, p.cord_length[i])
+                    p.wrap_slip_loss -= cord_energy(p, distance, p.cord_length[i])
             top = top_speed(p, i)
             if top > 0.0 and p.cord_length[i] > p.closing_lock_length:
                 distance, rate = along_now(p, work, i)

@@ -41,13 +41,15 @@ BEYOND = 1e-4
 """Metres from a corner over which it has slid, where a way begins."""
 
 
-def make_way() -> Any:
+def make_way(leans: bool = False) -> Any:
     """Kernel `find(p, edges) -> edges` of the way from `wrap_a` to `wrap_b` in body axes, by the faces `wrap_chain`
     over which it went before, one more than edges; 0: none are known.
 
+    leans     see `make_section`
+
     Checked  tests/net_capture/test_wrapping.py
     """
-    section, settle = make_section(), make_shortest()
+    section, settle = make_section(leans), make_shortest()
     cut, upright, over = section.cut, section.upright, section.over
 
     @kernel

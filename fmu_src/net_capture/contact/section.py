@@ -49,8 +49,11 @@ class Section(NamedTuple):
     over: Any
 
 
-def make_section() -> Section:
-    """Kernels of the section."""
+def make_section(leans: bool) -> Section:
+    """Kernels of the section.
+
+    leans     whether `wrap_leans` may ask for the side of `wrap_lean`
+    """
 
     @kernel
     def above(p, point):
@@ -122,6 +125,9 @@ def make_section() -> Section:
         for attempt in range(2):
             for i in range(3):
                 up[i] = planes[first, i] + planes[last, i] if attempt == 0 else planes[wall, i]
+                if leans:
+                    if p.wrap_leans != 0 and attempt == 0:
+                        up[i] = p.wrap_lean[i]
             along = dot(up, line)
             for i in range(3):
                 up[i] -= along * line[i]

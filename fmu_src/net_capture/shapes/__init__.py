@@ -13,6 +13,17 @@ Values = Mapping[str, Any]
 Point = Sequence[float]
 
 
+class Hulls(NamedTuple):
+    """Convex bodies of which a shape with hollows is made: kernels that read tables, see `hulls`.
+
+    bodies(p)     rows of `hulls.BODY`
+    planes(p)     faces of all bodies (n, 4): way out and distance along it [1], [m]
+    """
+
+    bodies: Any
+    planes: Any
+
+
 class Shape(NamedTuple):
     """Kernels of one shape.
 
@@ -26,6 +37,7 @@ class Shape(NamedTuple):
     faces(p, out)                   the faces of a convex polyhedron that is the shape or lies close within it: way out
                                     and distance along it into the rows of `out` (n, 4) [1], [m]; how many. None: it
                                     has hollows
+    hulls                           the convex bodies of which a shape with hollows is made; None: none are known
     """
 
     samples: int
@@ -35,6 +47,7 @@ class Shape(NamedTuple):
     sample: Any
     axes: Any = None
     faces: Any = None
+    hulls: Hulls | None = None
 
 
 class Checks(NamedTuple):

@@ -16,7 +16,7 @@ import numpy as np
 
 from fmu_src.implied import formula
 from fmu_src.interface import Laid, Term
-from fmu_src.net_capture.shapes import Checks, Point, Shape, Values, samples, solids
+from fmu_src.net_capture.shapes import Checks, Hulls, Point, Shape, Values, hulls, samples, solids
 from fmu_src.net_capture.shapes import pieces as of
 from fmu_src.net_capture.shapes.box import box_distance
 from fmu_src.net_capture.shapes.cylinder import cylinder_distance
@@ -28,6 +28,7 @@ from fmu_src.tables import Table
 from orbital.kernel import kernel
 
 PARTS, PIECES = "target.parts", "target.pieces"
+BODIES, PLANES = "target.bodies", "target.planes"
 WORDS = 18
 """Numbers of a piece in the FMU: kind, four sizes (of a box half its edges), place of its middle, matrix from its axes
 to the body's by rows, and radius of the sphere about its middle."""
@@ -97,7 +98,8 @@ def make(composition: Any) -> Shape:
         """
         return union_distance(pieces_of(p), normal, p.piece_normal, p.piece_point, point)
 
-    return samples.make_solid(composition, distance)
+    convex = Hulls(composition.table(BODIES), composition.table(PLANES))
+    return samples.make_solid(composition, distance)._replace(hulls=convex)
 
 
 def body_of(rows: np.ndarray) -> solids.Solid:
@@ -127,6 +129,23 @@ def pieces_table(rows: np.ndarray, body: solids.Solid) -> np.ndarray:
         row[8:17] = (body.turn.T @ piece.turn).ravel()
         row[17] = np.linalg.norm(half)
     return found
+
+
+@lru_cache(maxsize=8)
+def _bodies(content: bytes) -> tuple[np.ndarray, np.ndarray]:
+    rows, (normal, own, local) = np.frombuffer(content).reshape(-1, WORDS), np.empty((3, 3))
+    away = formula(union_distance)
+    return hulls.bodies_and_planes(rows, lambda point: float(away(rows, normal, own, local, point)))
+
+
+def bodies(numbers: Mapping[str, np.ndarray]) -> np.ndarray:
+    """The table `bodies`."""
+    return _bodies(numbers[PIECES].tobytes())[0]
+
+
+def planes(numbers: Mapping[str, np.ndarray]) -> np.ndarray:
+    """The table `planes`."""
+    return _bodies(numbers[PIECES].tobytes())[1]
 
 
 def lay(values: Mapping[str, float], sources: Mapping[str, np.ndarray]) -> Laid:
@@ -202,7 +221,12 @@ PART = Term(
         state("piece_point[#]", "m", "a point in the axes of a piece", shape=(3,)),
         *samples.ROWS,
     ),
-    tables=(Table(PIECES, "1", "pieces of the target in its body axes", dimensions=2), *samples.TABLES),
+    tables=(
+        Table(PIECES, "1", "pieces of the target in its body axes", dimensions=2),
+        *samples.TABLES,
+        Table(BODIES, "1", "convex bodies that it is made of: their faces, and a sphere round each", 2, made=bodies),
+        Table(PLANES, "1", "faces of these, body axes: way out, and distance along it", 2, made=planes),
+    ),
     sources=(
         Table(
             PARTS,

@@ -1,0 +1,211 @@
+"""Threads that bend round the pieces of a union: thin plates, walls and what they stand on."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fmu_src.implied import formula
+from fmu_src.net_capture.contact.section import INSET
+from fmu_src.net_capture.planes import U, X
+from fmu_src.net_capture.shapes import hulls, pieces, union
+from tests.net_capture.on_target import Kernels
+
+TERMS = {"net": "square", "gravity": "none", "target": "union", "contact": "inelastic", "wrap": "friction"}
+THICK, NODE, STIFFNESS = 0.04, 5e-4, 13368.0
+HEAVY = {"target_mass": 1e9, "target_inertia": (1e9, 1e9, 1e9)}
+"""A target that nothing moves."""
+
+
+def box(size, position=(0.0, 0.0, 0.0), mass=100.0):
+    return {"shape": pieces.BOX, "size": list(size), "position": list(position), "mass": mass}
+
+
+def laid(*entries):
+    """Tables of a union, in whose design axes it turns and moves."""
+    made = union.lay({}, {union.PARTS: np.array(pieces.gather(entries))})
+    return made.tables
+
+
+PLATE = laid(box((2.0, THICK, 3.0)), box((0.5, 0.5, 0.5), (0.0, 0.0, -1.5)), box((0.5, 0.5, 0.5), (0.0, 0.0, 1.5)))
+"""A plate across the second axis between two blocks, its rim at x = 1 m; all in the middle."""
+
+
+@pytest.fixture(scope="module")
+def kernels():
+    return Kernels(TERMS, PLATE)
+
+
+def momenta(scene, number, mass):
+    places, speeds = (scene.planes[first : first + 3, :number].T for first in (X, U))
+    held = scene.p["target_mass"] * scene.p["target_drift"]
+    turning = np.cross(places, mass * speeds).sum(axis=0) + np.cross(scene.p["target_place"], held)
+    return mass * speeds.sum(axis=0) + held, turning + scene.p["target_spin"]
+
+
+def energy(scene, number, mass):
+    return 0.5 * mass * float((scene.planes[U : U + 3, :number] ** 2).sum())
+
+
+def test_a_thread_that_falls_centred_on_the_rim_keeps_what_its_nodes_have(kernels):
+    """A contact point on a straight thread would have taken all of it. The error is the scheme's, and falls with it."""
+    lost = []
+    for substep in (4e-5, 2e-5):
+        scene = kernels.place(**HEAVY | {"wrap_friction": 0.0})
+        scene.put([NODE] * 2, [(1.02, 0.499, 0.0), (1.02, -0.499, 0.0)], [(-1.0, 0.0, 0.0)] * 2)
+        scene.join(2, 1.0, STIFFNESS, 0.0).go(substep, round(0.4 / substep))
+        assert (scene.p["wrap_passed"], scene.p["wrap_slipped"]) == (0, 0)
+        assert scene.p["wrap_impulse"] > 0.4 * NODE
+        assert np.linalg.norm(scene.planes[X : X + 3, 0] - scene.planes[X : X + 3, 1]) < 0.8, "they go round it"
+        lost.append(abs(energy(scene, 2, NODE) / NODE - 1.0))
+    assert lost[1] < 1e-4
+    assert lost[1] < 0.6 * lost[0]
+
+
+def test_all_momenta_are_kept_with_a_light_plate_that_turns(kernels):
+    values = {"target_mass": 0.5, "target_inertia": (0.1, 0.2, 0.15), "wrap_friction": 0.2}
+    scene = kernels.place(**values, target_start_rate=(0.3, 0.2, 0.5))
+    scene.put([0.05] * 2, [(1.02, 0.499, 0.3), (1.02, -0.499, 0.1)], [(-1.0, 0.0, 0.0)] * 2)
+    scene.join(2, 1.02, STIFFNESS, 1.0)
+    before = momenta(scene, 2, 0.05)
+    scene.go(2e-5, 20000)
+    assert scene.p["wrap_impulse"] > 0.01
+    for now, then in zip(momenta(scene, 2, 0.05), before, strict=True):
+        assert now == pytest.approx(then, abs=1e-12)
+
+
+class Chain:
+    """Four nodes on three threads of one length over the rim of the plate, along it on both sides, a little slack.
+
+    turn    angle by which the thread in the middle turns over both edges of the rim
+    """
+
+    MASS, LENGTH, SLACK = 0.1, 0.3, 1e-4
+
+    def __init__(self, kernels, friction):
+        self.scene = kernels.place(**HEAVY | {"wrap_friction": friction})
+        self.p, self.planes = self.scene.p, self.scene.planes
+        y, edge = 0.5 * THICK, 0.5 * THICK - INSET
+        near = math.sqrt((0.5 * (self.LENGTH - self.SLACK) - edge) ** 2 - INSET**2)
+        self.turn = math.pi - 2.0 * math.atan2(INSET, near)
+        side = [(1.0 - INSET - near - (self.LENGTH - self.SLACK) * i, y, 0.0) for i in (1, 0)]
+        places = side + [(x, -y, 0.0) for x, y, _ in side[::-1]]
+        self.scene.put([self.MASS] * 4, places, np.zeros((4, 3))).join(4, self.LENGTH, 2e5, 100.0)
+
+    def pulled(self, first, last, steps):
+        """Speed of the first node along its pull after so many substeps of 0.1 ms [m/s]."""
+        pulls = np.array([(-first, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (-last, 0.0, 0.0)])
+        _, speeds = self.scene.go(1e-4, steps, pulls)
+        return -float(speeds[-1, 0])
+
+    def raised(self, start, end):
+        """Slowly from pulls to others: a jerk would ring, and slide."""
+        for share in 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, 41)):
+            self.pulled(*(np.array(start) + share * (np.array(end) - start)), 50)
+
+
+def test_without_friction_a_chain_over_the_rim_pulls_alike_on_both_sides(kernels):
+    chain = Chain(kernels, 0.0)
+    chain.raised((0.0, 0.0), (20.0, 20.0))
+    assert abs(chain.pulled(20.0, 20.0, 100)) < 1e-4
+    pulls = chain.p["wrap_pulls"][:3]
+    assert pulls == pytest.approx(np.full(3, 20.0), rel=5e-3)
+    assert np.ptp(pulls) < 1e-9
+    speed = chain.pulled(20.2, 20.0, 1000)
+    assert speed == pytest.approx(0.2 / (4.0 * Chain.MASS) * 0.1, rel=0.02), "two ends of one cord"
+
+
+def test_with_friction_it_holds_as_the_capstan_does(kernels):
+    """Over both edges of the rim, by the sum of their angles: exp(mu phi)."""
+    friction = 0.3
+    chain = Chain(kernels, friction)
+    most = 10.0 * math.exp(friction * chain.turn)
+    chain.raised((0.0, 0.0), (10.0, 10.0))
+    slid = float(chain.p["wrap_slide"])
+    chain.raised((10.0, 10.0), (0.985 * most, 10.0))
+    held = chain.p["wrap_slide"] - slid
+    assert held < 2e-5
+    assert chain.p["wrap_pulls"][0] / chain.p["wrap_pulls"][2] == pytest.approx(0.985 * most / 10.0, rel=0.01)
+    chain.raised((0.985 * most, 10.0), (1.1 * most, 10.0))
+    chain.pulled(1.1 * most, 10.0, 500)
+    assert chain.p["wrap_slide"] - slid > 20.0 * held + 1e-3
+    assert chain.p["wrap_friction_loss"] > 0.0
+
+
+JOINED = laid(
+    box((2.0, THICK, 1.0), (0.0, 0.0, -0.5)),
+    box((2.0, THICK, 1.0), (0.0, 0.0, 0.5)),
+    box((1.0, 1.0, 1.0), (0.0, 0.0, 0.0)),
+)
+"""Two plates that stand edge to edge at z = 0."""
+
+
+def drawn_along(kernels, tables, places, velocity, length, substep, steps, **values):
+    """Two nodes of 0.5 kg that draw a thread along an edge; the scene, and the least of how many steps it bent."""
+    scene = kernels.place(tables, **HEAVY | {"wrap_friction": 0.0} | values)
+    scene.put([0.5] * 2, places, [velocity] * 2).join(2, length, 1000.0, 0.0)
+    scene.go(substep, steps)
+    return scene
+
+
+def test_a_thread_goes_over_from_one_plate_to_the_next(kernels):
+    """Taut over the rim, it is drawn across the joint, and slows down no more than it does on a plate of one piece."""
+    places = [(0.4, y, -0.05) for y in (0.5 * THICK + 0.001, -0.5 * THICK - 0.001)]
+    length = 2.0 * (1.0 - INSET - 0.4) + THICK - 0.01
+    whole = laid(box((2.0, THICK, 2.0)), box((1.0, 1.0, 1.0)))
+    found = [drawn_along(kernels, tables, places, (0.0, 0.0, 0.2), length, 1e-4, 4000) for tables in (JOINED, whole)]
+    for scene in found:
+        assert (scene.p["wrap_passed"], scene.p["wrap_slipped"]) == (0, 0)
+        assert scene.planes[X + 2, 0] > 0.02
+        assert scene.p["wrap_impulse"] > 0.1
+    one, other = (scene.planes[U : U + 3, :2] for scene in found)
+    np.testing.assert_allclose(one, other, atol=1e-9)
+
+
+SHELL = laid(
+    {"shape": pieces.SHELL, "radius": 1.3, "length": 4.0, "thickness": 0.05, "angle": math.pi, "mass": 100.0},
+    {"shape": pieces.SHELL, "radius": 1.3, "length": 0.05, "thickness": 1.25, "angle": math.pi, "mass": 20.0,
+     "position": [0.0, 0.0, 2.025]},
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("tables", [PLATE, JOINED, SHELL], ids=["plate", "joined", "shell"])
+def test_bodies_lie_within_the_union_and_fill_it(tables):
+    """But for what a slab is less than its piece of a shell, and what a covered face may stand out."""
+    away, room = formula(union.union_distance), np.empty((3, 3))
+    rows, draw = tables["target.pieces"], np.random.default_rng(3)
+    numbers = {union.PIECES: rows}
+    bodies, planes = union.bodies(numbers), union.planes(numbers)
+    found = 0
+    for first, number, *middle, radius in bodies:
+        faces = planes[int(first) : int(first + number)]
+        points = np.array(middle) + radius * draw.uniform(-1.0, 1.0, (4000, 3))
+        inside = points[(points @ faces[:, :3].T <= faces[:, 3]).all(axis=1)]
+        assert np.linalg.norm(inside - middle, axis=1).max() <= radius + 1e-12
+        assert max(away(rows, *room, point) for point in inside) <= hulls.STAYS
+        found += len(inside)
+    assert found > 500
+    half = tables["target.solid"][10:13]
+    points = draw.uniform(-half, half, (4000, 3))
+    deep = points[[away(rows, *room, point) < -0.013 for point in points]]
+    held = [
+        any((planes[int(f) : int(f + n), :3] @ x <= planes[int(f) : int(f + n), 3]).all() for f, n, *_ in bodies)
+        for x in deep
+    ]
+    assert len(deep) > 50
+    assert all(held)
+
+
+def test_a_thread_is_drawn_along_the_rim_of_a_shell_from_slab_to_slab(kernels):
+    """Over its straight end, and round its arc: nothing goes through, and no energy is lost."""
+    turn = SHELL["target.solid"][3:7]
+    assert abs(turn[0]) > 1.0 - 1e-12, "its axes are the design axes"
+    center = SHELL["target.solid"][7:10]
+    out = lambda angle, away, z: np.array([away * math.cos(angle), away * math.sin(angle), z]) - center  # noqa: E731
+    places = [out(-0.3, 1.302, -1.6), out(-0.3, 1.248, -1.6)]
+    along = 0.3 * np.array([math.sin(0.3), math.cos(0.3), 0.0])
+    length = 2.0 * 0.4 + 0.05 - 2.0 * INSET - 0.006
+    scene = drawn_along(kernels, SHELL, places, along, length, 1e-4, 4000)
+    assert scene.p["wrap_passed"] == 0
+    assert scene.p["wrap_impulse"] > 0.1
+    print(scene.planes[X : X + 3, :2].T, scene.planes[U : U + 3, :2].T, scene.p["wrap_slipped"])
