@@ -6,8 +6,8 @@ goes over from one body to another: no energy comes or goes there. A thread that
 taken for one that bends over the one which asks more of it, and lies in the other as deep as that lets it.
 
 Of every body that lies across a thread it is remembered on which side it lies, over up to `SLOTS` of them. A body that
-comes to lie across a thread which bends already may be met on the side of its faces or on that of the bend: it is the
-one with the shorter way, since it has only just been met. A way round a body that a taut thread could not have come to
+comes to lie across a thread which bends already is met on the side of that bend, if the thread may have come there, and
+else on that of its own faces. A way round a body that a taut thread could not have come to
 in a substep is one that has gone through it, and this body alone is left out until the thread is clear of it.
 
 Checked  tests/net_capture/test_union_wrapping.py
@@ -65,6 +65,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         for face in range(p.wrap_faces):
             for i in range(4):
                 p.wrap_planes[face, i] = planes[first + face, i]
+            p.wrap_covered[face] = int(planes[first + face, 4])
         p.wrap_body = body
 
     @kernel
@@ -119,31 +120,24 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         return math.sqrt(squared) - row[RADIUS] - 0.5 * straight
 
     @kernel
-    def length_of(p, edges):
-        """Length of the way [m].
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        way = 0.0
-        for j in range(edges + 1):
-            way += p.wrap_pieces[j, 3]
-        return way
-
-    @kernel
-    def meet(p, leans):
+    def meet(p, work, a, b, expected, bent):
         """Over how many edges a thread goes round a body that it has only just met: on the side of its faces, or, where
-        it bends already, on that of `wrap_lean` if this is shorter.
+        it bends round another already and may have come there, on the side of that bend.
+
+        expected   length of its way as it was to be now              [m]
+        bent       whether it bends round another
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        edges = find(p, 0)
-        if edges == 0 or not leans:
-            return edges
-        way = length_of(p, edges)
-        p.wrap_leans = 1
-        edges = find(p, 0)
-        p.wrap_leans = 0
-        return edges if edges > 0 and length_of(p, edges) < way else find(p, 0)
+        if bent:
+            p.wrap_leans = 1
+            edges = find(p, 0)
+            p.wrap_leans = 0
+            if edges > 0:
+                _, way, going, _, _ = reckon(p, work, a, b, X, P, edges)
+                if way <= expected + JUMP + SHARE * p.solver_substep * abs(going):
+                    return edges
+        return find(p, 0)
 
     @kernel
     def lean(p, edges):
@@ -183,7 +177,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             if off <= 0.0:
                 take(p, body)
                 if place < 0:
-                    edges = meet(p, best >= 0)
+                    edges = meet(p, work, a, b, expected, best >= 0)
                 else:
                     edges = recall(p, words, place)
                     if rubs and n < 0:

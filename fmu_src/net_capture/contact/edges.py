@@ -45,7 +45,7 @@ def make_way(leans: bool = False) -> Any:
     """Kernel `find(p, edges) -> edges` of the way from `wrap_a` to `wrap_b` in body axes, by the faces `wrap_chain`
     over which it went before, one more than edges; 0: none are known.
 
-    leans     see `make_section`
+    leans     see `make_section`; over the end of an edge it slides onto no face that is covered
 
     Checked  tests/net_capture/test_wrapping.py
     """
@@ -190,6 +190,17 @@ def make_way(leans: bool = False) -> Any:
         return True
 
     @kernel
+    def barred(p, one, other):
+        """Whether the way may not slide to an edge between these faces, because one of them lies in another body.
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        covered = False
+        if leans:
+            covered = p.wrap_covered[one] + p.wrap_covered[other] > 0
+        return covered
+
+    @kernel
     def slide(p, edges):
         """Slide over a corner if the way has come to one; how many edges it goes over then, or 0 where it has not.
 
@@ -199,6 +210,8 @@ def make_way(leans: bool = False) -> Any:
             if p.wrap_pieces[j + 1, 3] < TOGETHER:
                 if draws_in(p, j):
                     return edges
+                if barred(p, p.wrap_pairs[j, 0], p.wrap_pairs[j + 1, 1]):
+                    continue
                 join(p, edges, j)
                 return edges - 1
         for j in range(edges):
@@ -210,10 +223,16 @@ def make_way(leans: bool = False) -> Any:
                 face = pair[3]
             if face < 0:
                 continue
+            if barred(p, face, face):
+                continue
             if j + 1 < edges and p.wrap_pairs[j + 1, 0] == pair[1] and p.wrap_pairs[j + 1, 1] == face:
+                if barred(p, pair[0], face):
+                    continue
                 join(p, edges, j)
                 return edges - 1
             if j > 0 and p.wrap_pairs[j - 1, 1] == pair[0] and p.wrap_pairs[j - 1, 0] == face:
+                if barred(p, face, pair[1]):
+                    continue
                 join(p, edges, j - 1)
                 return edges - 1
             if edges < MOST:
@@ -302,6 +321,19 @@ def make_way(leans: bool = False) -> Any:
         return edges
 
     @kernel
+    def uncover(p, edges):
+        """Leave out faces between others that lie in another body. Works on `wrap_chain`; how many edges are left.
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        left = 0
+        for j in range(1, edges + 1):
+            if j == edges or p.wrap_covered[p.wrap_chain[j]] == 0:
+                left += 1
+                p.wrap_chain[left] = p.wrap_chain[j]
+        return left
+
+    @kernel
     def lay_all(p, edges):
         """Lay the edges between the faces of `wrap_chain`; whether there are all.
 
@@ -334,10 +366,14 @@ def make_way(leans: bool = False) -> Any:
             return 0
         if edges > 0:
             edges = lengthen(p, trim(p, edges))
+            if leans:
+                edges = uncover(p, edges)
         if edges == 0 or not lay_all(p, edges):
             if not upright(p, first, last):
                 return 0
             edges = trim(p, over(p, first, last, middle))
+            if leans:
+                edges = uncover(p, edges)
             lay_all(p, edges)
         for i in range(3):
             p.wrap_bends[0, i] = p.wrap_a[i]

@@ -52,7 +52,8 @@ class Section(NamedTuple):
 def make_section(leans: bool) -> Section:
     """Kernels of the section.
 
-    leans     whether `wrap_leans` may ask for the side of `wrap_lean`
+    leans     whether `wrap_leans` may ask for the side of `wrap_lean`, and faces marked in `wrap_covered` lie in other
+              bodies, so that no thread comes to lie over them
     """
 
     @kernel
@@ -123,6 +124,9 @@ def make_section(leans: bool) -> Section:
         line, up, planes = p.wrap_line, p.wrap_up, p.wrap_planes
         wall = nearest_wall(p)
         for attempt in range(2):
+            if leans:
+                if attempt == 0 and p.wrap_leans == 0 and p.wrap_covered[first] + p.wrap_covered[last] > 0:
+                    continue
             for i in range(3):
                 up[i] = planes[first, i] + planes[last, i] if attempt == 0 else planes[wall, i]
                 if leans:
@@ -147,6 +151,9 @@ def make_section(leans: bool) -> Section:
         found = 0
         least = math.inf
         for i in range(p.wrap_faces):
+            if leans:
+                if p.wrap_covered[i] > 0:
+                    continue
             across = math.sqrt(max(1.0 - p.wrap_flat[i, 0] * p.wrap_flat[i, 0], 0.0))
             if across > 0.5 and p.wrap_flat[i, 2] < least:
                 least = p.wrap_flat[i, 2]
@@ -202,6 +209,15 @@ def make_section(leans: bool) -> Section:
         chain[0] = first
         chain[1] = last
         edges = 1
+        if leans:
+            if p.wrap_covered[first] + p.wrap_covered[last] > 0:
+                top = first
+                for i in range(p.wrap_faces):
+                    if p.wrap_covered[i] == 0 and i != last and (top == first or flat[i, 1] > flat[top, 1]):
+                        top = i
+                chain[1] = top
+                chain[2] = last
+                return 2 if top != first else 1
         at = 0
         while at < edges:
             one, other = chain[at], chain[at + 1]

@@ -17,7 +17,7 @@ class Hulls(NamedTuple):
     """Convex bodies of which a shape with hollows is made: kernels that read tables, see `hulls`.
 
     bodies(p)     rows of `hulls.BODY`
-    planes(p)     faces of all bodies (n, 4): way out and distance along it [1], [m]
+    planes(p)     faces of all bodies (n, 5): way out and distance along it [1], [m], 1 where it lies in other bodies
     """
 
     bodies: Any

@@ -133,7 +133,8 @@ def _moved_out(body: Body, distance: Callable[[Array], float]) -> Array:
 
 
 def bodies_and_planes(rows: Array, distance: Callable[[Array], float]) -> tuple[Array, Array]:
-    """The bodies of a union (n, 6), see `BODY`, and all their faces (m, 4), body axes.
+    """The bodies of a union (n, 6), see `BODY`, and all their faces (m, 5), body axes: way out, distance along it, and
+    1 where it is covered.
 
     rows       its pieces, see `union.WORDS`
     distance   of a point from it [m]
@@ -145,5 +146,5 @@ def bodies_and_planes(rows: Array, distance: Callable[[Array], float]) -> tuple[
         middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         radius = np.linalg.norm(corners - middle, axis=1).max()
         bodies.append([float(sum(map(len, planes))), float(len(faces)), *middle, radius])
-        planes.append(faces)
+        planes.append(np.column_stack([faces, faces[:, 3] > body.faces[:, 3]]))
     return np.array(bodies), np.vstack(planes)

@@ -225,7 +225,7 @@ PART = Term(
         Table(PIECES, "1", "pieces of the target in its body axes", dimensions=2),
         *samples.TABLES,
         Table(BODIES, "1", "convex bodies that it is made of: their faces, and a sphere round each", 2, made=bodies),
-        Table(PLANES, "1", "faces of these, body axes: way out, and distance along it", 2, made=planes),
+        Table(PLANES, "1", "faces of these, body axes: way out, distance along it, whether covered", 2, made=planes),
     ),
     sources=(
         Table(
