@@ -27,8 +27,8 @@ from orbital.kernel import kernel
 SLOTS = 4
 """Bodies across one thread that are remembered."""
 SLOT = 2 + CHAIN_WORDS
-"""Whole numbers of each: its number from 1 on, less than 0 where the thread has gone through it and 0 for none; over how
-many edges it bends, and the faces between them."""
+"""Whole numbers of each: its number from 1 on, less than 0 where the thread has gone through it and 0 for none; over
+how many edges it bends, and the faces between them."""
 KEPT = 1 + SLOTS * SLOT
 """Whole numbers kept of each thread behind those that any has: the body round which it bends, from 1 on, and these."""
 

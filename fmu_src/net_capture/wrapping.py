@@ -16,6 +16,9 @@ over the corner where there is none left on its side: its way is shorter at once
 taut thread that is found inside the body, has gone through: it stays straight until it is clear of the target, and is
 counted in `wrap.passed`.
 
+A union is made of convex bodies, and a thread bends round that which asks most of it (`bodies.py`); so does the
+closing cord (`cord_bends.py`).
+
 Which threads are near is looked up now and then, ahead of how fast anything moves. In what is shown the pull round an
 edge counts up to the middle of the last substep, as that of contact by penalty does.
 
@@ -54,7 +57,7 @@ from fmu_src.net_capture.planes import (
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.wrap_rows import EXTREMES, ROWS
 from orbital.kernel import kernel
-from orbital.rotations import rotate, rotate_inverse
+from orbital.rotations import rotate
 from orbital.vectors import cross
 
 SCHEME = "leapfrog"
@@ -105,8 +108,7 @@ def make(composition: Any) -> Wrap:
     begin, remember, hold, let_go, stretch_held = make_capstan() if rubs else (None,) * 5
     lie = make_lie(composition, remember)
     ends, look = lie.ends, lie.look
-    rounds = bodies.make_bodies(composition, kept_of_way, lie, remember) if several else None
-    seek, again = (rounds.seek, rounds.again) if several else (None, None)
+    seek, again = bodies.make_bodies(composition, kept_of_way, lie, remember) if several else (None, None)
 
     @kernel
     def start(p):
@@ -326,7 +328,8 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
         yield Refusal("solver.scheme", f'"{scheme}"', f'keeps all threads straight; [capture.wrap] needs "{SCHEME}"')
     shape = scene.terms["target"]
     if shape not in (*CONVEX, OF_CONVEX):
-        expected = f"must be convex or a union where threads bend round it, one of {', '.join((*CONVEX, OF_CONVEX))}: [capture.wrap]"
+        known = ", ".join((*CONVEX, OF_CONVEX))
+        expected = f"must be convex, or a union, where threads bend round it, one of {known}: [capture.wrap]"
         yield Refusal("target.shape", f'"{shape}"', expected)
     if precision != "double":
         yield Refusal("solver.precision", f'"{precision}"', 'must be "double" where threads bend: [capture.wrap]')

@@ -139,12 +139,13 @@ def bodies_and_planes(rows: Array, distance: Callable[[Array], float]) -> tuple[
     rows       its pieces, see `union.WORDS`
     distance   of a point from it [m]
     """
-    bodies, planes = [], []
+    bodies: list[list[float]] = []
+    planes: list[Array] = []
     for body in (body for row in rows for body in bodies_of(row)):
         faces = _moved_out(body, distance)
         corners = corners_of(faces, body.inside)
         middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         radius = np.linalg.norm(corners - middle, axis=1).max()
-        bodies.append([float(sum(map(len, planes))), float(len(faces)), *middle, radius])
+        bodies.append([float(sum(len(each) for each in planes)), float(len(faces)), *middle, radius])
         planes.append(np.column_stack([faces, faces[:, 3] > body.faces[:, 3]]))
     return np.array(bodies), np.vstack(planes)
