@@ -1,9 +1,9 @@
 """Stretches of the closing cord that bend round the bodies of a union, as threads do (`wrapping.py`).
 
 The cord runs through rings without friction, and so it does round edges: its way is the sum of those of its
-stretches, and its tension is the same in all. The target takes what is left of it at the first and last bend of each. A stretch
-that slides over a corner makes it shorter at once; what it held beyond that is lost (`wrap.slip_loss`). Before the reels
-run nothing is known of it, and as they begin each stretch lies on the side of a body that is the nearest.
+stretches, and its tension is the same in all. The target takes what is left of it at the first and last bend of each. A
+stretch that slides over a corner makes it shorter at once; what it held beyond that is lost (`wrap.slip_loss`). Before
+the reels run nothing is known of it, and as they begin each stretch lies on the side of a body that is the nearest.
 
 Checked  tests/net_capture/test_union_wrapping.py
 """
