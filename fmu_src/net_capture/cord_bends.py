@@ -16,7 +16,7 @@ import numpy as np
 
 from fmu_src.net_capture import bodies
 from fmu_src.net_capture.capstan import WITH_FRICTION
-from fmu_src.net_capture.lying import make_lie
+from fmu_src.net_capture.lying import SHORT, make_lie
 from fmu_src.net_capture.near import BENT, FINE, FREE, JUMP, KEPT, SHARE, WAY, make_list_at
 from fmu_src.net_capture.planes import FX
 from orbital.kernel import kernel
@@ -111,7 +111,7 @@ def make_cord_bends(composition: Any) -> CordBends | None:
             for axis in range(3):
                 v = node_plane(p, work, rate + axis)
                 x = node_plane(p, work, place + axis)
-                going += (x[b] - x[a]) / way * (v[b] - v[a])
+                going += (x[b] - x[a]) / max(way, SHORT) * (v[b] - v[a])
         return way, going
 
     @kernel
@@ -125,7 +125,7 @@ def make_cord_bends(composition: Any) -> CordBends | None:
         if edges == 0:
             for axis in range(3):
                 x = node_plane(p, work, place + axis)
-                pull = tension / way * (x[b] - x[a])
+                pull = tension / max(way, SHORT) * (x[b] - x[a])
                 node_plane(p, work, FX + axis)[a] += pull
                 node_plane(p, work, FX + axis)[b] -= pull
             return

@@ -11,6 +11,9 @@ from orbital.kernel import kernel
 from orbital.rotations import rotate, rotate_inverse
 from orbital.vectors import cross
 
+SHORT = 1e-12
+"""Metres: a piece no shorter than that, where it is divided by."""
+
 
 class Lie(NamedTuple):
     """Kernels of a thread between two nodes a and b, or whose strip and number in it are in `code`, by their places and
@@ -100,7 +103,7 @@ def make_lie(composition: Any, remember: Any) -> Lie:
                 out[axis] -= turned[axis]
                 squared += out[axis] * out[axis]
             for axis in range(3):
-                out[axis] /= math.sqrt(squared)
+                out[axis] /= max(math.sqrt(squared), SHORT)
                 v = node_plane(p, work, rate + axis)
                 going += out[axis] * (v[node] - p.target_drift[axis] - p.wrap_moving[axis])
             if rubs:
@@ -113,7 +116,7 @@ def make_lie(composition: Any, remember: Any) -> Lie:
         straight = math.sqrt(squared)
         closing = 0.0
         for axis in range(3):
-            line[axis] /= straight
+            line[axis] /= max(straight, SHORT)
             v = node_plane(p, work, rate + axis)
             closing += line[axis] * (v[b] - v[a])
         return edges, way, going, straight, closing

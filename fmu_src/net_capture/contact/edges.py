@@ -374,7 +374,10 @@ def make_way(leans: bool = False) -> Any:
             edges = trim(p, over(p, first, last, middle))
             if leans:
                 edges = uncover(p, edges)
-            lay_all(p, edges)
+                if not lay_all(p, edges):
+                    return 0
+            else:
+                lay_all(p, edges)
         for i in range(3):
             p.wrap_bends[0, i] = p.wrap_a[i]
         for n in range(ROUNDS):
@@ -387,7 +390,8 @@ def make_way(leans: bool = False) -> Any:
             note(p, slid)
             edges = trim(p, slid)
             if edges < slid:
-                lay_all(p, edges)
+                if not lay_all(p, edges) and leans:
+                    return 0
         note(p, edges)
         return edges
 
