@@ -158,6 +158,17 @@ def test_a_thread_goes_over_from_one_plate_to_the_next(kernels):
     np.testing.assert_allclose(one, other, atol=1e-9)
 
 
+def test_of_two_bodies_it_bends_round_that_which_asks_more(kernels):
+    """A narrower plate reaches into the wider one, over whose rim the thread lies."""
+    stepped = laid(box((2.0, THICK, 1.0), (0.0, 0.0, -0.5)), box((1.8, THICK, 1.0), (0.0, 0.0, 0.5)))
+    whole = laid(box((2.0, THICK, 2.0)))
+    places = [(1.02, y, -0.1) for y in (0.5 * THICK + 0.001, -0.5 * THICK - 0.001)]
+    found = [drawn_along(kernels, tables, places, (-0.6, 0.0, 0.0), 0.2, 2500) for tables in (stepped, whole)]
+    one, other = (scene.planes[U : U + 3, :2] for scene in found)
+    assert found[1].p["wrap_impulse"] > 0.1
+    np.testing.assert_allclose(one, other, atol=1e-9)
+
+
 WALL = {"shape": pieces.SHELL, "radius": 1.3, "length": 4.0, "thickness": 0.05, "angle": math.pi, "mass": 100.0}
 CAP = WALL | {"length": 0.05, "thickness": 1.25, "mass": 20.0, "position": [0.0, 0.0, 2.025]}
 SHELL = laid(WALL, CAP)
