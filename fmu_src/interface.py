@@ -284,7 +284,8 @@ class Interface:
     def tables(self) -> tuple[Table, ...]:
         """Those of its terms, in order; ValueError if two of them share a name."""
         chosen = (self.model.groups[group].terms[term].tables for group, term in self.terms.items())
-        found = tuple(dict.fromkeys(itertools.chain.from_iterable(chosen)))
+        every = dict.fromkeys(itertools.chain.from_iterable(chosen))
+        found = tuple(t for t in every if t.beside is None or t.beside in self.terms.items())
         for name, count in Counter(table.name for table in found).items():
             if count > 1:
                 raise ValueError(f"{self.model.name}: two parts bring a table {name}, and they differ")

@@ -82,6 +82,7 @@ class Table:
     counted_in  row of the scene's that says the unit of its numbers, "" where the file does
     rewritten   `rewritten(path, factor)`: text of such a file with every number times the factor of its FMI unit
     made    `made(numbers)`: the numbers of one that no scene gives, from those of the tables before it, by name
+    beside  group and term of it, beside which alone the part has this table; None: beside all
     """
 
     name: str
@@ -94,10 +95,13 @@ class Table:
     made: Callable[[Mapping[str, npt.NDArray[np.float64]]], npt.ArrayLike] | None = None
     counted_in: str = ""
     rewritten: Callable[[Path, Callable[[str], float]], str] | None = None
+    beside: tuple[str, str] | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.dimensions <= MOST_DIMENSIONS:
             raise ValueError(f"table {self.name}: {self.dimensions} dimensions, expected 1 to {MOST_DIMENSIONS}")
+        if self.beside is not None and self.made is None:
+            raise ValueError(f"table {self.name}: a scene gives it, it cannot hang on the choice of {self.beside[0]}")
 
     def numbers(self, given: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """A copy of what is given, as it is kept; ValueError if it can not be this table."""

@@ -55,6 +55,7 @@ from fmu_src.net_capture.planes import (
     X,
 )
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.shapes.union import FOR_THREADS
 from fmu_src.net_capture.wrap_rows import EXTREMES, ROWS
 from orbital.kernel import kernel
 from orbital.rotations import rotate
@@ -340,6 +341,7 @@ PART = Term(
     ROWS,
     needs=("target", "contact"),
     excludes=("break",),
+    tables=FOR_THREADS,
     extremes=EXTREMES,
     make=make,
     refuses=refuses,
@@ -350,6 +352,7 @@ FRICTION = Term(
     (*ROWS, *friction_rows()),
     needs=("target", "contact"),
     excludes=("break",),
+    tables=FOR_THREADS,
     extremes=EXTREMES,
     make=make,
     refuses=refuses,

@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 
 from fmu_src.implied import formula
+from fmu_src.instance import Instance
+from fmu_src.net_capture import bodies as among
+from fmu_src.net_capture import near
 from fmu_src.net_capture.contact.section import INSET
+from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.planes import U, X
 from fmu_src.net_capture.shapes import pieces, union
+from tests.conftest import CAPTURE
 from tests.net_capture.on_target import Kernels
 
 TERMS = {"net": "square", "gravity": "none", "target": "union", "contact": "inelastic", "wrap": "friction"}
@@ -159,19 +164,28 @@ def test_a_thread_goes_over_from_one_plate_to_the_next(kernels):
 
 
 def test_of_two_bodies_it_bends_round_that_which_asks_more(kernels):
-    """A narrower plate reaches into the wider one, over whose rim the thread lies."""
-    stepped = laid(box((2.0, THICK, 1.0), (0.0, 0.0, -0.5)), box((1.8, THICK, 1.0), (0.0, 0.0, 0.5)))
+    """A narrower plate reaches into the wider one, over whose rim the thread lies; its nodes come down past both."""
+    stepped = laid(box((2.0, THICK, 1.0), (0.0, 0.0, -0.5)), box((1.94, THICK, 1.0), (0.0, 0.0, 0.5)))
     whole = laid(box((2.0, THICK, 2.0)))
     places = [(1.02, y, -0.1) for y in (0.5 * THICK + 0.001, -0.5 * THICK - 0.001)]
     found = [drawn_along(kernels, tables, places, (-0.6, 0.0, 0.0), 0.2, 2500) for tables in (stepped, whole)]
     one, other = (scene.planes[U : U + 3, :2] for scene in found)
     assert found[1].p["wrap_impulse"] > 0.1
+    assert found[0].p["wrap_passed"] == 0
     np.testing.assert_allclose(one, other, atol=1e-9)
 
 
 WALL = {"shape": pieces.SHELL, "radius": 1.3, "length": 4.0, "thickness": 0.05, "angle": math.pi, "mass": 100.0}
 CAP = WALL | {"length": 0.05, "thickness": 1.25, "mass": 20.0, "position": [0.0, 0.0, 2.025]}
 SHELL = laid(WALL, CAP)
+
+
+@pytest.mark.parametrize(("terms", "brought"), [({}, 0), ({"wrap": "plain"}, 2), ({"wrap": "friction"}, 2)])
+def test_a_union_has_bodies_where_threads_bend_and_else_nothing_of_them(terms, brought):
+    of_union = MODEL.interface(CAPTURE | {"target": "union"} | terms)
+    names = [table.name for table in of_union.tables]
+    assert names == ["target.pieces", "target.solid", "target.samples", "target.bodies", "target.planes"][: 3 + brought]
+    assert MODEL.interface(CAPTURE | terms).tables == (), "a box has no pieces"
 
 
 @pytest.mark.parametrize("tables", [PLATE, JOINED, SHELL], ids=["plate", "joined", "shell"])
@@ -219,3 +233,50 @@ def test_a_thread_is_drawn_along_the_rim_of_a_shell_from_slab_to_slab(kernels):
     assert away[1] < 1.251
     held = energy(scene, 2, 0.5) + scene.p["contact_loss"] + scene.p["wrap_slip_loss"]
     assert held == pytest.approx(0.305, rel=1e-4), "kinetic energy at the start [J]; it is not taut in the end"
+
+
+NETTED = laid(box((1.0, 1.6, 1.0), mass=20.0), box((3.0, 1.2, THICK), (0.0, 0.0, 0.1), 5.0))
+"""A block in the middle of a plate."""
+DRAWN_IN = {
+    "target.mass": 25.0,
+    "target.start_rate[1]": 0.02,
+    "target.start_rate[3]": 0.03,
+    "net.side": 6.0,
+    "net.mesh": 1.0,
+    "net.mass": 0.3,
+    "net.youngs_modulus": 7e10,
+    "bullets.mass": 0.4,
+    "chaser.mass": 200.0,
+    "chaser.start_position[2]": -6.0,
+    "closing.time": 2.6,
+    "closing.speed": 5.0,
+    "closing.stall_force": 6.0,
+    "closing.rings": 0,
+    "closing.axial_stiffness": 90.0,
+}
+"""A small net round it; its cord is soft, so that it holds much."""
+
+
+def stretches_bent(net):
+    """How many stretches of the cord bend round the target now."""
+    p = net.record[0]
+    numbers, kept = int(p["wrap_numbers"]), 1 + near.KEPT + among.KEPT
+    states = net.work.view(np.int64)[int(p["work_size"]) - (kept - 1) * numbers :][:numbers]
+    return int((states[int(p["thread_numbers"]) :] == near.BENT).sum())
+
+
+def test_a_cord_that_bends_keeps_all_momenta_and_tells_what_it_loses_where_it_slides_off():
+    net = Instance(MODEL, CAPTURE | {"target": "union", "wrap": "plain"}, DRAWN_IN, NETTED).initialise()
+    linear, angular = net.array("momentum").copy(), net.array("angular_momentum").copy()
+    most, shot = 0, 4.0 * 0.4 * 3.0
+    net.step(3.5)
+    before = net["energy.remainder"]
+    for _ in range(10):
+        net.step(0.05)
+        most = max(most, stretches_bent(net))
+        np.testing.assert_allclose(net.array("momentum"), linear, atol=1e-9 * shot, rtol=0.0)
+        np.testing.assert_allclose(net.array("angular_momentum"), angular, atol=1e-9 * shot * 6.0, rtol=0.0)
+    assert most >= 2
+    assert net["wrap.passed"] == 0
+    assert net["wrap.slip_loss"] > 1.0
+    assert abs(net["energy.remainder"] - before) < 0.01 * net["wrap.slip_loss"]

@@ -166,6 +166,21 @@ def test_tables_of_two_parts_must_not_share_a_name():
         Table("deep", "1", "too deep", dimensions=4)
 
 
+def test_a_table_beside_a_term_of_another_part_is_there_with_it_alone():
+    twice = Table("curve.twice", "1", "twice", 2, made=lambda n: 2.0 * n["curve.knots"], beside=("box", "grid"))
+    part = MODEL.groups["curve"].terms["linear"]
+    curve = replace(MODEL.groups["curve"], terms={"linear": replace(part, tables=(*part.tables, twice))})
+    made = replace(MODEL, groups={**MODEL.groups, "curve": curve})
+    both, alone = made.interface(BOTH), made.interface(CURVE_ALONE)
+    assert [table.name for table in both.tables] == ["curve.knots", "curve.twice", "box.numbers"]
+    given = both.with_tables({"curve.knots": KNOTS, "box.numbers": BOX}).given
+    np.testing.assert_array_equal(given["curve.twice"], 2.0 * KNOTS)
+    knots, plain = {"curve.knots": KNOTS}, MODEL.interface(CURVE_ALONE)
+    assert table_file.content(alone.with_tables(knots)) == table_file.content(plain.with_tables(knots))
+    with pytest.raises(ValueError, match=r"table spans: a scene gives it, it cannot hang on the choice of box"):
+        Table("spans", "1", "given", beside=("box", "grid"))
+
+
 def test_what_is_given_is_kept_as_it_was():
     mine = KNOTS.copy()
     interface = MODEL.interface(CURVE_ALONE).with_tables({"curve.knots": mine})

@@ -37,7 +37,8 @@ class Shape(NamedTuple):
     faces(p, out)                   the faces of a convex polyhedron that is the shape or lies close within it: way out
                                     and distance along it into the rows of `out` (n, 4) [1], [m]; how many. None: it
                                     has hollows
-    hulls                           the convex bodies of which a shape with hollows is made; None: none are known
+    hulls                           the convex bodies of which a shape with hollows is made, where threads bend;
+                                    None: none
     """
 
     samples: int

@@ -98,8 +98,10 @@ def make(composition: Any) -> Shape:
         """
         return union_distance(pieces_of(p), normal, p.piece_normal, p.piece_point, point)
 
-    convex = Hulls(composition.table(BODIES), composition.table(PLANES))
-    return samples.make_solid(composition, distance)._replace(hulls=convex)
+    solid = samples.make_solid(composition, distance)
+    if "wrap" not in composition.terms:
+        return solid
+    return solid._replace(hulls=Hulls(composition.table(BODIES), composition.table(PLANES)))
 
 
 def body_of(rows: np.ndarray) -> solids.Solid:
@@ -221,12 +223,7 @@ PART = Term(
         state("piece_point[#]", "m", "a point in the axes of a piece", shape=(3,)),
         *samples.ROWS,
     ),
-    tables=(
-        Table(PIECES, "1", "pieces of the target in its body axes", dimensions=2),
-        *samples.TABLES,
-        Table(BODIES, "1", "convex bodies that it is made of: their faces, and a sphere round each", 2, made=bodies),
-        Table(PLANES, "1", "faces of these, body axes: way out, distance along it, whether covered", 2, made=planes),
-    ),
+    tables=(Table(PIECES, "1", "pieces of the target in its body axes", dimensions=2), *samples.TABLES),
     sources=(
         Table(
             PARTS,
@@ -242,3 +239,24 @@ PART = Term(
     make=make,
     checks=CHECKS,
 )
+
+BESIDE = ("target", "union")
+FOR_THREADS = (
+    Table(
+        BODIES,
+        "1",
+        "convex bodies that it is made of: their faces, and a sphere round each",
+        dimensions=2,
+        made=bodies,
+        beside=BESIDE,
+    ),
+    Table(
+        PLANES,
+        "1",
+        "faces of these, body axes: way out, distance along it, whether covered",
+        dimensions=2,
+        made=planes,
+        beside=BESIDE,
+    ),
+)
+"""Of threads that bend round it; without these it has none of them."""
