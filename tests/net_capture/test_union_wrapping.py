@@ -9,11 +9,14 @@ from fmu_src.implied import formula
 from fmu_src.instance import Instance
 from fmu_src.net_capture import bodies as among
 from fmu_src.net_capture import near
+from fmu_src.net_capture.contact.edges import make_way
 from fmu_src.net_capture.contact.section import INSET
 from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.planes import U, X
 from fmu_src.net_capture.shapes import pieces, union
+from orbital.kernel import kernel
 from tests.conftest import CAPTURE
+from tests.net_capture.memory import Bench
 from tests.net_capture.on_target import Kernels
 
 TERMS = {"net": "square", "gravity": "none", "target": "union", "contact": "inelastic", "wrap": "friction"}
@@ -233,6 +236,35 @@ def test_a_thread_is_drawn_along_the_rim_of_a_shell_from_slab_to_slab(kernels):
     assert away[1] < 1.251
     held = energy(scene, 2, 0.5) + scene.p["contact_loss"] + scene.p["wrap_slip_loss"]
     assert held == pytest.approx(0.305, rel=1e-4), "kinetic energy at the start [J]; it is not taut in the end"
+
+
+def test_no_way_lies_on_edges_that_a_body_has_not():
+    """Between faces that lie in other bodies there may be no edge left, and a way over one would be anywhere."""
+    search = make_way(leans=True)
+
+    @kernel
+    def found(record):
+        return search(record[0], 0)
+
+    record, draw = Bench(TERMS, SHELL).record, np.random.default_rng(1)
+    numbers = {union.PIECES: SHELL["target.pieces"]}
+    bodies, planes = union.bodies(numbers), union.planes(numbers)
+    bent = 0
+    for _ in range(8000):
+        first, number, *middle, radius = bodies[draw.integers(len(bodies))]
+        faces = planes[int(first) : int(first + number)]
+        record["wrap_faces"], record["wrap_planes"][0, : len(faces)] = len(faces), faces[:, :4]
+        record["wrap_covered"][0, : len(faces)] = faces[:, 4]
+        middle, half = middle + 0.9 * radius * draw.uniform(-1.0, 1.0, 3), draw.normal(size=3)
+        half *= draw.uniform(0.05, 0.5) / np.linalg.norm(half)
+        record["wrap_a"], record["wrap_b"] = middle - half, middle + half
+        edges = int(found(record))
+        if edges > 0:
+            bent += 1
+            out = record["wrap_bends"][0, 1 : edges + 1] @ faces[:, :3].T - faces[:, 3]
+            assert out.max() < -0.5 * INSET
+            assert record["wrap_pieces"][0, : edges + 1, 3].sum() > 2.0 * np.linalg.norm(half)
+    assert bent > 10
 
 
 NETTED = laid(box((1.0, 1.6, 1.0), mass=20.0), box((3.0, 1.2, THICK), (0.0, 0.0, 0.1), 5.0))

@@ -78,10 +78,10 @@ def make_way(leans: bool = False) -> Any:
             foot[i] += (height_other - alike * height) * planes[other, i] / squared
         for i in range(3):
             middle += edge[i] * (0.5 * (p.wrap_a[i] + p.wrap_b[i]) - foot[i])
-        low = -math.inf
-        high = math.inf
+        low, high = -math.inf, math.inf
         pair[0] = one
         pair[1] = other
+        beside = False
         for k in range(p.wrap_faces):
             if k != one and k != other:
                 rises = dot(planes[k, 0:3], edge)
@@ -92,10 +92,11 @@ def make_way(leans: bool = False) -> Any:
                 elif rises < -PARALLEL and below < low * rises:
                     low = below / rises
                     pair[2] = k
+                beside = beside or (leans and abs(rises) <= PARALLEL and below < -TOGETHER)
         p.wrap_spans[j, TAU] = min(max(middle, low), high)
         p.wrap_spans[j, LOW] = low
         p.wrap_spans[j, HIGH] = high
-        return low <= high + TOGETHER
+        return low <= high + TOGETHER and not beside
 
     @kernel
     def shift(p, edges, j, by):
