@@ -32,6 +32,12 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
     if "closing" in terms and "target" in terms:
         yield from _open_loops(values, terms)
         yield from _small_nets(values, terms)
+    if "wrap" in terms and terms.get("target") == "union":
+        yield Caution(
+            "wrap.bends",
+            "round a union of several pieces threads may still pass through thin ones, slack threads without being "
+            "counted: look at the picture before trusting what is held",
+        )
     if values.get("solver.step_ratio", 0.0) > 0.0:
         yield from _long_steps(values, terms)
 
@@ -102,6 +108,7 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     yield from _unbalanced(values, terms, seen)
     yield from _taken_back(seen)
     yield from _not_pulled(seen)
+    yield from _passed(seen)
     yield from _unforeseen(seen)
 
 
@@ -133,6 +140,15 @@ def _unforeseen(seen: Seen) -> Iterator[Caution]:
             "solver.margin_least",
             f"a substep was {1.0 / margin.least:.3g} times the bound of the threads that were taut in truth: choose a "
             "smaller solver.step_ratio, or leave it out",
+        )
+
+
+def _passed(seen: Seen) -> Iterator[Caution]:
+    """Threads that went through the target."""
+    passed = seen("wrap.passed")
+    if passed is not None and passed.last > 0.0:
+        yield Caution(
+            "wrap.passed", f"taut threads went through the target {passed.last:.0f} times: less holds than it seems"
         )
 
 
