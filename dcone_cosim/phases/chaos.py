@@ -19,6 +19,7 @@ CAPTURE: Mapping[str, float] = {
     "mouth.t80": 8e-4,
     "mouth.t_max": 1e-3,
     "mouth.area_max": 2e-3,
+    "mouth.area_at_touch": 2e-3,
     "thread.tension_max": 0.31,
     "cord.tension_max": 0.17,
     "mouth.cord_length": 0.07,

@@ -71,7 +71,8 @@ def test_each_quantity_of_a_shipped_capture_takes_its_share(tmp_path: Path, orig
             continue  # without an orbital frame no phase has it
         name = ".".join(key for key in path if isinstance(key, str)).removeprefix("capture.")
         if name.startswith(OF_A_PLACE) and scale_of(value.unit) != 1.0:
-            assert name in head, path
+            # where nothing goes by the orbit, what is said of it is kept without a word
+            assert name in head or (path[0] == "orbit" and "hill" not in str(told["capture"])), path
             expected = value
         found = dict(quantities(at(told, path[:1]), path[:1]))[path]
         assert found.to_value(value.unit) == pytest.approx(expected.value, rel=1e-10, abs=0.0), path
