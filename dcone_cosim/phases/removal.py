@@ -13,7 +13,7 @@ import numpy as np
 from dcone_cosim import build
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.criteria import Criterion, Evidence
-from dcone_cosim.errors import HANDOFF_FAILED, DconeError, FmuError, Interrupted
+from dcone_cosim.errors import HANDOFF_FAILED, FmuError, Interrupted
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
@@ -24,7 +24,6 @@ from dcone_cosim.handoff import (
     line_drawn,
     mean_motion,
     prepare,
-    without_recoil,
 )
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
@@ -33,6 +32,7 @@ from dcone_cosim.phases import (
     expended,
     hastened,
     passive,
+    recoil,
     removal_criteria,
     removal_quantities,
     removal_report,
@@ -353,41 +353,9 @@ class Removal(Tow):
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """The same removal with the shot's momentum left out: what the recoil changes."""
         super().afterwards(stage, result)
-        run, phase = stage.run, stage.phase
-        record = run.handovers.get(self.name)
-        if not isinstance(record, HandoffRecord) or not run.scene.handoff.compare_without_recoil:
-            return
-        if stage.begun is not None and run.gone_on.get("changed"):
-            stage.progress.say("the comparison without recoil is left out: values were changed where the tow went on")
-            return
-        assert stage.before is not None, "somebody handed over"
-        capture = run.parameters[stage.before.name]
-        velocity = np.array([capture[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
-        name = f"{self.name} without recoil"
-        if phase.main.fmu is None and not phase.others:
-            # of ours the tugs have the same bits whatever the macro step, and a step with too many of them is halved
-            stage = replace(stage, phase=replace(phase, macro_step=hastened.COARSE * phase.macro_step), tables=True)
-        try:
-            component = stage.instantiate(self.name, name)
-            try:
-                component.set(run.given[self.name] | without_recoil(record.handed, velocity))
-                component.enter_initialisation(record.start, record.start + phase.duration)
-                component.exit_initialisation()
-                loop = self.loop(stage, component, record.start)
-                stage.progress.begin(name, 0.0, phase.duration)
-                beside = loop.run()
-                stage.progress.end()
-            finally:
-                component.close()
-            reason: DconeError | None = beside.error
-        except FmuError as error:
-            reason = error
-        if reason is None:
-            run.comparisons[self.name] = beside
-            return
-        if isinstance(reason, Interrupted):
-            run.stop(reason)
-        stage.progress.say(f"the {name} is left out: {reason}")
+        record = stage.run.handovers.get(self.name)
+        if isinstance(record, HandoffRecord) and stage.run.scene.handoff.compare_without_recoil:
+            recoil.compare(self, stage, record)
 
     def clock(self, run: RunResult) -> str:
         record = run.handovers.get(self.name)

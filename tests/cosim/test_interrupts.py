@@ -16,7 +16,7 @@ import pyarrow.parquet
 import pytest
 
 from dcone_cosim import commands, interrupts, progress, running
-from dcone_cosim.phases import hastened
+from dcone_cosim.phases import recoil
 from dcone_cosim.progress import Lines, Progress
 from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
@@ -92,7 +92,7 @@ def test_in_the_capture_no_removal_follows(dcone: Dcone, stand_ins) -> None:
 
 
 def test_in_the_comparison_the_removal_is_whole(dcone: Dcone, stand_ins, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hastened, "COARSE", 2)
+    monkeypatch.setattr(recoil, "COARSE", 2)
     stand_ins(MockCapture, MockRemoval, signalled(MockRemoval, 20.0, signal.SIGTERM))
     assert dcone("run", "mock", "-o", "out")[0] == 6
     assert rows("removal")[-1] == 100.0
