@@ -210,6 +210,8 @@ def nearest(times: Vectors, position: Vectors, velocity: Vectors) -> Nearest:
         h = times[i + 1] - times[i]
         # straight on over the piece: exact for two bodies that pass each other
         u, w = position[i], (position[i + 1] - position[i]) / h
+        if not w @ w > 0.0:
+            continue  # it comes back to where it was: no nearer than its ends
         at = float(np.clip(-(u @ w) / (w @ w), 0.0, h))
         there = float(np.linalg.norm(u + at * w))
         if there < best.distance:

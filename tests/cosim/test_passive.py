@@ -39,6 +39,12 @@ def test_two_bodies_that_pass_between_two_looks() -> None:
     assert nearest(times[:3], position[:3], velocity[:3]) == (pytest.approx(0.5), 2.0)
 
 
+@pytest.mark.filterwarnings("error")
+def test_of_what_comes_back_to_the_same_place_the_ends_are_nearest() -> None:
+    there = np.array([[3.0, 4.0, 0.0], [3.0, 4.0, 0.0]])
+    assert nearest(np.array([0.0, 1.0]), there, np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])) == (5.0, 0.0)
+
+
 def test_the_worst_of_the_instants() -> None:
     instants = [
         Instant(0.0, 10.0, Nearest(5.0, 1.0), None),
