@@ -40,6 +40,15 @@ def run(
         Path | None,
         typer.Option("-o", "--out", help="Folder for the results; the same command goes on there."),
     ] = None,
+    cases: Annotated[
+        int | None,
+        typer.Option(
+            "--cases",
+            metavar="N",
+            min=1,
+            help="How many cases, in place of n or until of the file: a first look, or more of them.",
+        ),
+    ] = None,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -87,11 +96,11 @@ def run(
     path = find(campaign)
     if check:
         with at_work():
-            content, said = commands.told_of_check(path)
+            content, said = commands.told_of_check(path, cases)
         answer(json, content, lambda console: show.show(content["title"], said, {}, console), [], None)
         return
     with at_work() as progress:
-        done = commands.campaign(path, out, progress, scheduler, jobs, isolate, figures, replays=replays)
+        done = commands.campaign(path, out, progress, scheduler, jobs, isolate, figures, replays=replays, cases=cases)
 
     def shown(console: Console) -> None:
         show.show(done.title, done.said, done.content["figures"], console)

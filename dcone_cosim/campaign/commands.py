@@ -79,6 +79,7 @@ class Plan:
 
     identity    of all that settles a case's numbers beside its settings
     facts       of the FMUs, for the provenance
+    cases       how many were asked for in place of what the file says
     """
 
     spec: Spec
@@ -87,6 +88,7 @@ class Plan:
     fmus: Mapping[str, str]
     facts: Sequence[Mapping[str, Any]]
     text: str
+    cases: int | None
 
     @property
     def identity(self) -> list[Any]:
@@ -104,12 +106,13 @@ class Plan:
             "name": self.spec.name,
             "file": self.spec.source,
             "campaign": self.text,
+            **({} if self.cases is None else {"cases": self.cases}),
         }
 
 
-def checked(path: Path) -> tuple[Spec, Scene, Inputs]:
+def checked(path: Path, cases: int | None = None) -> tuple[Spec, Scene, Inputs]:
     """A campaign held against its scene; nothing is built or run."""
-    spec = read(path)
+    spec = read(path, cases)
     base = base_of(spec)
     spec = settled(spec, base)
     check_names(spec, base)
@@ -123,9 +126,9 @@ def checked(path: Path) -> tuple[Spec, Scene, Inputs]:
     return spec, base, inputs
 
 
-def planned(path: Path, progress: Progress, isolate: bool | None = None) -> Plan:
+def planned(path: Path, progress: Progress, isolate: bool | None = None, cases: int | None = None) -> Plan:
     """The same with the FMUs of every term that a case may have."""
-    spec, base, inputs = checked(path)
+    spec, base, inputs = checked(path, cases)
     base = base.isolating(isolate)
     fmus = Fmus(progress)
     others = list(_alternatives(inputs, base))
@@ -133,7 +136,7 @@ def planned(path: Path, progress: Progress, isolate: bool | None = None) -> Plan
     found = fmus.of(base)
     for place, scene in enumerate(others):
         found |= {f"{name}, alternative {place + 1}": one for name, one in fmus.of(scene).items() if one != found[name]}
-    return Plan(spec, base, inputs, found, list(fmus.facts.values()), spec.places.text)
+    return Plan(spec, base, inputs, found, list(fmus.facts.values()), spec.places.text, cases)
 
 
 def _alternatives(inputs: Inputs, base: Scene) -> Iterator[Scene]:
@@ -155,16 +158,18 @@ def campaign(
     with_figures: bool = True,
     work: Work = run_shot,
     replays: bool = False,
+    cases: int | None = None,
 ) -> Done:
     """Run a campaign and write its folder. Bad input raises and leaves nothing; the same command goes on there.
 
     scheduler, jobs    see `cluster.opened`
     work               what makes the row of a case, a function of a module
     replays            run the cases worth looking at again, with a page of each
+    cases              how many, in place of what the file says
     """
     started = datetime.now(UTC)
     cluster.check(scheduler)
-    plan = planned(path, progress, isolate)
+    plan = planned(path, progress, isolate, cases)
     spec, folder = plan.spec, out if out is not None else default_folder(f"{plan.spec.name}-campaign")
     coordinates = [one.points for one in plan.inputs.inputs]
     count = count_of(spec, coordinates)
@@ -184,7 +189,7 @@ def campaign(
         check_figures(spec, nominal)
         found = _run(engine, coordinates, count)
         store.gather_if_many()
-        command = f"dcone campaign {shlex.quote(path.name)}"
+        command = f"dcone campaign {shlex.quote(path.name)}{'' if cases is None else f' --cases {cases}'}"
         return _written(
             plan, engine, nominal, found, folder, started, command, with_figures, progress if replays else None
         )
@@ -335,22 +340,22 @@ def _there(found: Kept, identity: Any, store: Store) -> Iterator[Made]:
             yield Made(number, values, row)
 
 
-def told_of_check(path: Path) -> tuple[dict[str, Any], list[str]]:
+def told_of_check(path: Path, cases: int | None = None) -> tuple[dict[str, Any], list[str]]:
     """What a campaign would be, for machines and in sentences; nothing is built or run."""
-    spec, base, inputs = checked(path)
+    spec, base, inputs = checked(path, cases)
     count = count_of(spec, [one.points for one in inputs.inputs])
     first = []
     for one in inputs.inputs:
         values = [one.value(u) for u in CHECKED]
         texts = [inputs_module.shown(one, value) for value in values]
         first.append({"input": one.name, "values": texts})
-    cases = (
+    how_many = (
         f"{count:,} cases"
         if count is not None
         else f"cases until {spec.until.text if spec.until else ''}, {spec.most:,} at most"
     )
     said = [
-        f"{base.name}: {cases} by {spec.sampler}, {len(inputs.inputs)} values drawn for each",
+        f"{base.name}: {how_many} by {spec.sampler}, {len(inputs.inputs)} values drawn for each",
         *(
             f"{row['input']}: {', '.join(row['values'])} at {', '.join(f'{100 * u:g} %' for u in CHECKED)}"
             for row in first

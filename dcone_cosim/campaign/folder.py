@@ -1,6 +1,6 @@
 """The folder of a campaign: what is in it from the first moment, and how a case is found again.
 
-study.json rows/           the result store; study.json has the campaign's text
+study.json rows/           the result store; study.json has the campaign's text, and how many cases if the command said so
 scene.toml fmus/           the scene with what the campaign sets in it
 table.parquet table.csv    a row per case: number, values, outcome, figures; timings.parquet what each cost
 summary.json               the answers
@@ -73,6 +73,8 @@ def study_of(folder: Path) -> Mapping[str, Any]:
     for name, kind in (("campaign", str), ("name", str), ("file", str), ("fmus", dict), ("code", dict)):
         if not isinstance(told.get(name), kind):
             raise _damaged(folder / STUDY, f"has no {name}")
+    if type(told.get("cases", 1)) is not int:
+        raise _damaged(folder / STUDY, f"has {told['cases']!r} cases")
     return told
 
 
@@ -85,7 +87,7 @@ def kept(folder: Path) -> Kept:
     told = study_of(folder)
     if not (folder / SCENE).is_file():
         raise _damaged(folder / SCENE, "is not there")
-    spec = parse(told["campaign"], told["name"], told["file"])
+    spec = parse(told["campaign"], told["name"], told["file"], told.get("cases"))
     base = base_of(spec, folder / SCENE)
     spec = settled(spec, base)
     return Kept(folder, spec, base, inputs_of(spec, base))

@@ -33,6 +33,7 @@ from dcone_cosim.campaign.spec import (
     Success,
     Until,
 )
+from dcone_cosim.campaign.toml_text import as_toml, flat
 from dcone_cosim.errors import InputError
 from dcone_cosim.scene.expected import number_and_unit
 from dcone_cosim.scene.mistakes import Mistake, Mistakes, Places, SceneError, unknown
@@ -59,13 +60,15 @@ _TEXT = "expected a text"
 class Reader:
     """Takes a document apart and notes what is wrong with it."""
 
-    def __init__(self, text: str, source: str) -> None:
+    def __init__(self, text: str, source: str, cases: int | None = None) -> None:
         self.places = Places(source, text)
         self.wrong = Mistakes()
         try:
             self.document: Mapping[str, Any] = tomllib.loads(text)
         except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
             raise InputError(f"{source} is not valid TOML, or cut short: {error}") from None
+        if cases is not None:
+            self.document = {key: value for key, value in self.document.items() if key != "until"} | {"n": cases}
 
     def told(self, name: str) -> Spec:
         """The campaign; a `SceneError` lists every mistake."""
@@ -354,44 +357,11 @@ class Reader:
         return self._number(path, given)
 
 
-def flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, str]]:
-    """Every value of nested tables by its dotted key, as TOML; an empty table is a value."""
-    for key, value in table.items():
-        bare = key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else f'"{key}"'
-        if isinstance(value, Mapping) and value:
-            yield from flat(value, f"{above}{bare}.")
-        else:
-            yield f"{above}{bare}", as_toml(value)
-
-
-def as_toml(value: Any) -> str:
-    """A value of a TOML document as it is written there, tables within a line."""
-    import tomlkit
-
-    return str(tomlkit.item(_within_a_line(value)).as_string())
-
-
-def _within_a_line(value: Any) -> Any:
-    import tomlkit
-
-    if isinstance(value, Mapping):
-        table = tomlkit.inline_table()
-        for key, inner in value.items():
-            table[key] = _within_a_line(inner)
-        return table
-    if isinstance(value, list):
-        array = tomlkit.array()
-        for inner in value:
-            array.append(_within_a_line(inner))
-        return array
-    return value
-
-
-def read(path: Path) -> Spec:
+def read(path: Path, cases: int | None = None) -> Spec:
     """The campaign of a file."""
-    return parse(read_text(path), path.stem, str(path))
+    return parse(read_text(path), path.stem, str(path), cases)
 
 
-def parse(text: str, name: str, source: str) -> Spec:
-    """A campaign from its text; `source` names it in messages."""
-    return Reader(text, source).told(name)
+def parse(text: str, name: str, source: str, cases: int | None = None) -> Spec:
+    """A campaign from its text; `source` names it in messages, `cases` takes the place of its `n` or `until`."""
+    return Reader(text, source, cases).told(name)

@@ -16,7 +16,7 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -67,7 +67,7 @@ class Store:
         self._look()
 
     def _claim(self, study: Mapping[str, Any]) -> None:
-        """Write what the folder is of, unless it says so already."""
+        """Write what the folder is of. One that goes on says what this command asks for: more cases, another bound."""
         file = self.folder / STUDY
         if not file.exists():
             others = sorted(p.name for p in self.folder.iterdir()) if self.folder.is_dir() else []
@@ -78,15 +78,21 @@ class Store:
                     f"{self.folder} holds other files: {', '.join(others[:TOLD])}{more}; choose a new folder with -o"
                 )
             self.folder.mkdir(parents=True, exist_ok=True)
-            with Scratch(self.folder) as scratch:
-                draft = scratch / STUDY
-                draft.write_text(as_json(study) + "\n", encoding="utf-8")
-                to_disk(draft)
-                with suppress(FileExistsError):  # another process was first: what it says is looked at now
-                    placed.put_new(draft, file)
-        reason = unlike(self._study(file), json.loads(as_json(study)))
+            with suppress(FileExistsError):  # another process was first: what it says is looked at now
+                self._write(study, placed.put_new)
+        told, asked = self._study(file), json.loads(as_json(study))
+        reason = unlike(told, asked)
         if reason:
             raise InputError(f"{self.folder} {reason}; choose a new folder with -o")
+        if told != asked:
+            self._write(study, placed.put)
+
+    def _write(self, study: Mapping[str, Any], put: Callable[[Path, Path], Path]) -> None:
+        with Scratch(self.folder) as scratch:
+            draft = scratch / STUDY
+            draft.write_text(as_json(study) + "\n", encoding="utf-8")
+            to_disk(draft)
+            put(draft, self.folder / STUDY)
 
     @staticmethod
     def _study(file: Path) -> Mapping[str, Any]:

@@ -20,6 +20,7 @@ import pytest
 from scipy.special import ndtr
 
 from dcone_cosim.campaign import commands
+from dcone_cosim.campaign.folder import kept, settings_of
 from dcone_cosim.campaign.shipped import shipped
 from dcone_cosim.campaign.shots import Shot, ground_of, run_shot
 from dcone_cosim.loading import load
@@ -91,11 +92,12 @@ def test_it_goes_on_with_more(once: Path, tmp_path: Path) -> None:
     """The same folder with more cases runs those that are missing; a worker more or less changes no bit."""
     folder = shutil.copytree(once, tmp_path / "out")
     campaign = once.parent / "scene" / "campaign.toml"
+    commands.campaign(campaign, folder, Progress(), "processes", with_figures=False, cases=70)
     more = put_campaign(campaign.parent, DRIFT.replace("n = 60", "n = 70"))
-    commands.campaign(more, folder, Progress(), "processes", with_figures=False)
     commands.campaign(more, tmp_path / "one", Progress(), "processes", jobs=1, with_figures=False)
     put_campaign(campaign.parent, DRIFT)
     assert tables(folder) == tables(tmp_path / "one")
+    assert settings_of(kept(folder), 65) == settings_of(kept(tmp_path / "one"), 65)  # case 65 can be made again
     assert pd.read_parquet(folder / "table.parquet")[:60].equals(pd.read_parquet(once / "table.parquet"))
 
 
@@ -168,6 +170,9 @@ def test_check_runs_nothing(drift: Path, dcone: Dcone) -> None:
     assert (code, "60 cases by monte-carlo" in out) == (0, True), err
     assert f"{VELOCITY}: 0.60801 mm/s, 1 mm/s, 1.392 mm/s at 2.5 %" in out
     assert not list(Path().glob("runs"))
+    for text in (DRIFT, DRIFT.replace("n = 60", 'until = "95 % within 1 %"')):
+        code, out, err = dcone("campaign", str(put_campaign(drift.parent, text)), "--check", "--cases", "7")
+        assert (code, "7 cases by monte-carlo" in out) == (0, True), err
     file = put_campaign(drift.parent, 'record = ["removal.separatoin"]\n' + DRIFT)
     code, _, err = dcone("campaign", str(file), "--check")
     assert (code, "is no figure that drift.toml can tell; did you mean 'removal.separation'?" in err) == (2, True), err
