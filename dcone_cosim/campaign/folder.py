@@ -1,6 +1,6 @@
 """The folder of a campaign: what is in it from the first moment, and how a case is found again.
 
-study.json rows/           the result store; study.json has the campaign's text, and how many cases if the command said so
+study.json rows/           the result store; study.json has the campaign's text, and --cases
 scene.toml fmus/           the scene with what the campaign sets in it
 table.parquet table.csv    a row per case: number, values, outcome, figures; timings.parquet what each cost
 summary.json               the answers

@@ -9,8 +9,8 @@ from dcone_cosim.campaign.answers import answers
 from dcone_cosim.campaign.applied import base_of, inputs_of
 from dcone_cosim.campaign.engine import Made
 from dcone_cosim.campaign.inputs import Inputs
-from dcone_cosim.campaign.toml_text import as_toml
 from dcone_cosim.campaign.show import as_dict, sentences
+from dcone_cosim.campaign.toml_text import as_toml
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.cases.statistics import share
 from dcone_cosim.loading import load
