@@ -62,12 +62,15 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
             whole = not unit and math.isfinite(last[name])
             value = int(last[name]) if whole else last[name]
             yield Finding(result.name, name, label, value, unit)
+    parameters = run.parameters.get(result.name, {})
+    if result.outcome == "not_closed" and "closing.timeout" in parameters:
+        label = "counts as not closed after, from the start of the reels (closing.timeout)"
+        yield Finding(result.name, "closing.timeout", label, parameters["closing.timeout"], "s")
     yield from _at_the_touch(last, result)
     yield from _of_hardest(last, result)
     yield from _of_catch(last, result)
     yield from _of_approach(result)
     yield from closed_report.findings(result.name, last)
-    parameters = run.parameters.get(result.name, {})
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))

@@ -9,6 +9,10 @@ import pytest
 
 from dcone_cosim.errors import CAPTURE_FAILED
 from dcone_cosim.loading import load, shipped
+from dcone_cosim.phases.capture_report import findings
+from dcone_cosim.recorder import Recorder
+from dcone_cosim.results import PhaseResult, RunResult
+from dcone_cosim.scene.data import Scene
 from tests.cosim.conftest import Dcone
 
 PAGE = Path(__file__).parents[2] / "fmu_src" / "net_capture" / "README.md"
@@ -37,3 +41,11 @@ def test_it_ends_as_the_page_says(dcone: Dcone, name: str) -> None:
     code, out, err = dcone("run", name, "-o", "out", "--no-figures")
     assert code == CAPTURE_FAILED
     assert f"capture failed: {OUTCOMES[name]} at t = " in " ".join((out + err).split())
+
+
+@pytest.mark.parametrize(("outcome", "told"), [("not_closed", {"closing.timeout": 20.0}), ("captured", {})])
+def test_how_long_it_had_to_close_is_told(outcome: str, told: dict[str, float]) -> None:
+    """A time that suits a net of 2 m, and is none of the winches' doing, ended captures of 25 m unseen."""
+    result = PhaseResult("capture", 0.0, Recorder.of({"time": ("s", "Real", [0.0, 1.0])}), outcome=outcome)
+    run = RunResult(scene=Scene("one", "", "", ()), parameters={"capture": {"closing.timeout": 20.0}})
+    assert {one.key: one.value for one in findings(run, result) if one.key == "closing.timeout"} == told
