@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from dcone_cosim.cases.rows import Row
+from dcone_cosim.errors import CAPTURE_FAILED
 
 CONFIDENCE = 0.95
 PERCENTILES = (5.0, 50.0, 95.0)
@@ -62,7 +63,7 @@ class Summary:
     """An ensemble or a sweep as a whole.
 
     statuses   of all cases
-    figures    over the cases that came to their end
+    figures    over the cases that came to their end; over those whose capture failed, where that became of all
     texts      figures that are texts, over the same: how many cases tell which
     """
 
@@ -115,7 +116,8 @@ def spread(values: Sequence[Any], unit: str = "1", confidence: float = CONFIDENC
 def summarise(rows: Iterable[Row]) -> Summary:
     """What the rows come to."""
     rows = list(rows)
-    good, succeeded = [row for row in rows if row.complete], sum(row.succeeded for row in rows)
+    good = [row for row in rows if row.complete] or [row for row in rows if row.exit_code == CAPTURE_FAILED]
+    succeeded = sum(row.succeeded for row in rows)
     names = list(dict.fromkeys(name for row in good for name in row.figures))
     figures, texts = {}, {}
     for name in names:

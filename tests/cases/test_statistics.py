@@ -10,6 +10,7 @@ from scipy import stats
 
 from dcone_cosim.cases.rows import Row
 from dcone_cosim.cases.statistics import share, spread, summarise
+from dcone_cosim.errors import CAPTURE_FAILED
 
 
 def test_spread_is_that_of_numpy_and_scipy() -> None:
@@ -92,3 +93,12 @@ def test_failures_are_told_beside_and_averaged_with_nothing() -> None:
 def test_all_failed() -> None:
     found = summarise(rows()[-1:])
     assert (found.figures, found.texts, found.succeeded.count) == ({}, {}, 0)
+
+
+def test_where_every_capture_failed_their_figures_are_told() -> None:
+    """A capture that failed is an answer; beside others that came to their end it is no part of their mean."""
+    missed = [Row(f"m{x}", "capture failed", CAPTURE_FAILED, figures={"capture.area": x}) for x in (2.0, 4.0)]
+    whole = Row("w", "completed", 0, figures={"capture.area": 9.0})
+    assert summarise(missed).figures["capture.area"].mean == 3.0
+    assert summarise([*missed, whole]).figures["capture.area"].mean == 9.0
+    assert summarise([*missed, whole]).succeeded.count == 1
