@@ -2,6 +2,8 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -27,29 +29,32 @@ CAPTURE_HILL = {**{k: v for k, v in CAPTURE.items() if k != "settling"}, "gravit
 
 DEAREST = (
     "tests/consistency/test_readme.py",
-    "tests/packaging/test_fmu.py",
-    "tests/tethered_deorbit/test_rigid.py",
-    "tests/net_capture/test_free_flight.py",
-    "tests/cosim/test_swapped_in.py",
-    "tests/interop/test_tools.py",
-    "tests/net_capture/test_contact.py",
-    "tests/cosim/test_built_fmus.py",
-    "tests/packaging/test_platforms.py",
-    "tests/cosim/test_isolation.py",
-    "tests/orbital/test_keeping.py",
-    "tests/cases/test_beginnings.py",
-    "tests/cases/test_commands.py",
-    "tests/interop/test_checks.py",
-    "tests/packaging/test_dependence.py",
-    "tests/net_capture/test_wrapping.py",
-    "tests/interop/test_built.py",
     "tests/report/test_live.py",
-    "tests/net_capture/test_schemes.py",
-    "tests/net_capture/test_shapes.py",
+    "tests/cosim/test_swapped_in.py",
+    "tests/cosim/test_built_fmus.py",
+    "tests/net_capture/test_union_wrapping.py",
+    "tests/net_capture/test_free_flight.py",
     "tests/campaign/test_commands.py",
+    "tests/net_capture/test_contact.py",
+    "tests/tethered_deorbit/test_rigid.py",
+    "tests/cosim/test_isolation.py",
+    "tests/packaging/test_platforms.py",
+    "tests/net_capture/test_shapes.py",
+    "tests/interop/test_tools.py",
     "tests/cosim/test_kills.py",
-    "tests/interop/test_ssp_tools.py",
+    "tests/tethered_deorbit/test_way.py",
+    "tests/net_capture/test_wrapping.py",
+    "tests/net_capture/test_schemes.py",
+    "tests/cases/test_beginnings.py",
+    "tests/packaging/test_fmu.py",
+    "tests/cosim/test_ssp_export.py",
+    "tests/cases/test_commands.py",
+    "tests/net_capture/test_following.py",
+    "tests/net_capture/test_own_net.py",
+    "tests/net_capture/test_bending.py",
     "tests/net_capture/test_capstan.py",
+    "tests/stability/test_command.py",
+    "tests/benchmarks/test_plain_net.py",
 )
 """Files that take longest, the longest first, so that no worker is left with one when the others are done."""
 
@@ -57,6 +62,16 @@ DEAREST = (
 def pytest_addoption(parser: pytest.Parser) -> None:
     told = "run the tests that compare with independent sources alone, and write their rows here (see tests.validation)"
     parser.addoption(validation.OPTION, metavar="FOLDER", type=Path, default=None, help=told)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    """Of two workers that collect everything one begins at the end, so that each file is compiled by one of them."""
+    config = session.config
+    if config.args_source is config.ArgsSource.TESTPATHS and os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
+        for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+            with suppress(Exception, pytest.skip.Exception):  # which is told where the file is collected
+                import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

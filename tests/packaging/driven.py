@@ -24,7 +24,7 @@ TERMS = {**{name: case[0] for name, case in CASES.items()}, "reel_control": {}}
 """Every FMU that the tests of this folder may ask for, and its terms."""
 VARIANTS = {
     "removal, linear": ("tethered_deorbit", {"reel": "linear", "thrust": "tether"}),
-    "removal, commanded": ("tethered_deorbit", {"reel": "commanded"}),
+    "removal, commanded": ("tethered_deorbit", {"reel": "commanded", "thrust": "along_track"}),
     "reel control, motor": ("reel_control", {"motor": "lag"}),
 }
 """More of them, each a model with other terms."""
@@ -38,6 +38,33 @@ SMALL = {
     "reel_control": ({}, {"reel.length": 11.0, "gain.derivative": 1.0, "length": 12.5, "length_rate": 0.01}, 1.0),
 }
 """Terms, parameters and macro step of a short life: for what is done thousands of times, or under valgrind."""
+
+SHORT = {
+    "net_capture": (
+        CAPTURE,
+        {
+            "bullets.speed": 12.0,
+            "chaser.start_position[2]": -2.5,
+            "net.side": 4.0,
+            "net.mesh": 1.0,
+            "net.youngs_modulus": 7e6,
+            **{f"target.size[{axis}]": 1.0 for axis in (1, 2, 3)},
+            "target.start_rate[1]": 0.02,
+            "closing.time": 0.2,
+            "closing.speed": 20.0,
+            "closing.stall_force": 50.0,
+            "closing.axial_stiffness": 9.0,
+        },
+        0.05,
+        12,
+        {"thread.tension_max": 1.0, "contact.impulse": 1.0, "closed": 0},
+    ),
+    "tethered_deorbit": (
+        REMOVAL, {"thrust.level": -0.5, "start.separation": 11.9, "tether.damping_ratio": 0.05}, 20.0, 12,
+        {"tether.tug_count": 1, "solver.steps": 20},
+    ),
+}  # fmt: skip
+"""Terms, parameters, macro step and count of a life in which all happens within moments, and outputs that say so."""
 
 
 def library_of(folder):

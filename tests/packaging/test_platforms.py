@@ -16,6 +16,7 @@ import pytest
 
 from dcone_cosim import build as door
 from dcone_cosim import cli
+from dcone_cosim.build import cache_folder
 from dcone_cosim.errors import InputError
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
@@ -32,9 +33,9 @@ OLDEST = (2, 17)
 
 
 @pytest.fixture(scope="session")
-def cache(tmp_path_factory):
-    """Kept for all processes of the session."""
-    return Path(tmp_path_factory.getbasetemp()).parent / "fmus"
+def cache():
+    """Where runs find FMUs too."""
+    return cache_folder()
 
 
 @pytest.fixture(scope="session")
@@ -124,6 +125,17 @@ def test_windows_library_shows_the_interface_alone(library):
     assert {e.name for e in exported.entries} == FUNCTIONS
     ours = {i.name for i in binary.imports}
     assert all(n.startswith("api-ms-win-crt-") or n == "KERNEL32.dll" for n in ours)
+
+
+def test_clang_runs_where_its_own_files_are(monkeypatch, tmp_path):
+    """It tells C libraries apart by paths seen from where it runs: from above its files it would build them anew."""
+    told = []
+    monkeypatch.setattr(tools, "run", lambda what, command, place: told.append((command, place)))
+    monkeypatch.chdir(tmp_path)
+    link.clang(["-c", Path("a.c"), "-o", tmp_path / "a.o", "-lm"])
+    ((command, place),) = told
+    assert command[-5:] == ["-c", str(tmp_path / "a.c"), "-o", str(tmp_path / "a.o"), "-lm"]
+    assert (place / "lib" / "libc" / "wasi").is_dir()
 
 
 def part_of(kind, content):
