@@ -87,6 +87,8 @@ class Checks(NamedTuple):
     drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
                        count them
     bullets(values)    how many the shape has
+    uneven(values)     the most by which a bullet stands beside the middle of its sector, where as many equal ones as
+                       there are bullets lie round the shot's axis, in halves of a sector                [1]
     sound(values)      whether the others have an answer
     """
 
@@ -106,6 +108,7 @@ class Checks(NamedTuple):
     drawing: Callable[[Values], tuple[list[list[int]], list[int]]]
     bullets: Callable[[Values], int] = lambda values: USUAL_BULLETS
     sound: Callable[[Values], bool] = lambda values: True
+    uneven: Callable[[Values], float] = lambda values: 0.0
 
 
 def nets() -> dict[str, Any]:
