@@ -39,7 +39,7 @@ class Composition:
     lanes        vectors of its precision (`fmu_src.lanes`)
     memory       kernels that find what lies in the work memory
     bullets      how many there are
-    rouse        of the scheme, see `schemes.Needs`
+    rouse, rouse_all    of the scheme, see `schemes.Needs`
     everywhere(p)    half the stiffness over mass [1/s2], and dashpots over mass [1/s], that contact and bending may add
                      at any node
     scratch_plane            the first of the node planes that the convex hull may scribble on, where there are any
@@ -74,7 +74,8 @@ class Composition:
         self.memory = make_memory(terms["precision"])
         self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
-        self.rouse, self.meeting = needs.make_rouse(self), traits.make_meeting(self)
+        self.rouse, self.rouse_all = needs.make_rouse(self), needs.make_rouse_all(self)
+        self.meeting = traits.make_meeting(self)
         self.net, self.folding = self._make("net"), self._make("folding")
         self.rigging = [self._make(group) for group in riggings() if group in terms]
         self.graph, self.peaks = make_graph(self), make_peaks(self)
