@@ -31,6 +31,7 @@ from fmu_src.net_capture.planes import (
     FX,
     LANES,
     LENGTH,
+    PER_SQUARED,
     SHOWN,
     SHOWN_RATE,
     SQUARED,
@@ -75,7 +76,7 @@ def make(composition: Any) -> Air:
     node_plane, strips, properties, bullets = memory.node_plane, memory.strips, memory.properties, memory.bullets
     lanes, reals_of = composition.lanes, memory.reals
     load, store, splat, where, root, slide = lanes.load, lanes.store, lanes.splat, lanes.where, lanes.root, lanes.slide
-    flags_of, lane, width, last = lanes.flags, lanes.lane, lanes.width, np.int64(lanes.width - 1)
+    flags_of, bits, lane, width, last = lanes.flags, lanes.bits, lanes.lane, lanes.width, np.int64(lanes.width - 1)
     group = np.uint64((1 << width) - 1)
     from fmu_src.lanes import highest, peek, poke
 
@@ -100,12 +101,12 @@ def make(composition: Any) -> Air:
 
         @kernel
         def across(reals, slots, node, dx, dy, dz, per_squared, share, limit, on):
-            """Drag on one end of some threads side by side, and what it takes [W].
+            """Drag on one end of some threads side by side, three components [N], and what it takes [W].
 
-            dx, dy, dz     the threads                                   [m]
-            per_squared    1 over the square of their chord or length    [1/m2]
-            share          1/2 rho C d l/2                               [kg/m]
-            limit          the most of force over speed                  [kg/s]
+            dx, dy, dz     the threads                                             [m]
+            per_squared    1 over the square of their chord, or of their length    [1/m2]
+            share          1/2 rho C d l/2                                         [kg/m]
+            limit          the most of force over speed                            [kg/s]
             on             which lanes are threads
 
             Checked  tests/net_capture/test_air.py
@@ -120,17 +121,20 @@ def make(composition: Any) -> Air:
             return x, y, z, x * u + y * v + z * w
 
         @kernel
-        def slow_strip(reals, slots, a, b, held, squared, share, limit):
+        def slow_strip(reals, slots, a, b, held, squared, per_squared, share, limit):
             """Take the drag on a strip of threads from the forces on their ends; its power in lanes [W].
 
-            a, b       nodes of its lane 0              squared    rest length squared     [m2]
-            held       lanes that are threads
+            a, b                    nodes of its lane 0
+            held                    lanes that are threads
+            squared, per_squared    rest length squared [m2], 1 over that [1/m2]
+            share                   1/2 rho C d l/2                               [kg/m]
+            limit                   the most of force over speed                  [kg/s]
 
             Of a strip along a row, whose lanes are a chain, a node gets both its threads' drag at once.
 
             Checked  tests/net_capture/test_air.py
             """
-            rest, most, steady = splat(squared), splat(share), splat(limit)
+            rest, slack, most, steady = splat(squared), splat(per_squared), splat(share), splat(limit)
             zero, one = splat(0.0), splat(1.0)
             taken, last_x, last_y, last_z = zero, zero, zero, zero
             chained = b == a + 1
@@ -143,9 +147,12 @@ def make(composition: Any) -> Air:
                 dy = load(reals, k + slots) - load(reals, i + slots)
                 dz = load(reals, k + 2 * slots) - load(reals, i + 2 * slots)
                 distance = dx * dx + dy * dy + dz * dz
-                per_squared = one / where(distance > rest, distance, rest)
-                ax, ay, az, here = across(reals, slots, m, dx, dy, dz, per_squared, most, steady, on)
-                bx, by, bz, there = across(reals, slots, n, dx, dy, dz, per_squared, most, steady, on)
+                taut = distance > rest
+                per = slack
+                if bits(taut) != np.uint64(0):
+                    per = where(taut, one / distance, slack)
+                ax, ay, az, here = across(reals, slots, m, dx, dy, dz, per, most, steady, on)
+                bx, by, bz, there = across(reals, slots, n, dx, dy, dz, per, most, steady, on)
                 taken = taken + (here + there)
                 i = m + FX * slots
                 if chained:
@@ -209,9 +216,10 @@ def make(composition: Any) -> Air:
                     share = half * p.air_thread_drag * thread_diameter(own, length, density) * 0.5 * length
                     limit = steady * 0.5 * own
                     last_own, last_length, last_density = own, length, density
+                squared, per_squared = numbers[q + SQUARED], numbers[q + PER_SQUARED]
                 a, b, held = table[s + A], table[s + B], table[s + LANES]
                 if held != 0:  # all of them may have broken
-                    power = power + slow_strip(reals, slots, a, b, held, numbers[q + SQUARED], share, limit)
+                    power = power + slow_strip(reals, slots, a, b, held, squared, per_squared, share, limit)
             taken = 0.0
             for i in range(width):
                 taken += lane(power, np.int64(i))

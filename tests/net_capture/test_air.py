@@ -7,7 +7,9 @@ import pytest
 
 from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
+from fmu_src.net_capture.planes import SHOWN, SHOWN_RATE
 from tests.conftest import FREE
+from tests.net_capture.memory import graph, planes
 
 AIR = {**FREE, "gravity": "uniform", "air": "quadratic", "nodes": "169"}
 """Of the scene breadboard-nylon."""
@@ -111,6 +113,46 @@ def test_the_book_of_a_net_in_air_closes():
     impulse = net.array("momentum") - start - net["catch.mass"] * np.array([-9.81, 0.0, 0.0]) * net.time
     assert impulse[1] < -1.0, "drag against the shot"
     assert impulse[0] > 1.0, "drag against the fall"
+
+
+def one_by_one(net):
+    """Force on the whole net [N] and power of the drag [W] as shown, thread by thread and bullet by bullet."""
+    memory, drawn = planes(net), graph(net)
+    place, rate = (memory[plane : plane + 3].T for plane in (SHOWN, SHOWN_RATE))
+    half, steady = 0.5 * net["air.density"], 0.5 / net["solver.substep"]
+    force, power = np.zeros(3), 0.0
+    for (a, b), length, mass in zip(drawn.ends, drawn.length, drawn.mass, strict=True):
+        across = math.sqrt(4.0 * mass / (math.pi * net["net.density"] * length))
+        chord = place[b] - place[a]
+        chord = chord / max(np.linalg.norm(chord), length)
+        for end in (a, b):
+            cross = rate[end] - chord * (chord @ rate[end])
+            drag = min(
+                half * net["air.thread_drag"] * across * 0.5 * length * np.linalg.norm(cross), steady * 0.5 * mass
+            )
+            force -= drag * cross
+            power += drag * cross @ rate[end]
+    for node in drawn.bullets:
+        speed = np.linalg.norm(rate[node])
+        drag = half * net["air.bullet_drag"] * 0.25 * math.pi * net["air.bullet_diameter"] ** 2 * speed
+        force -= drag * rate[node]
+        power += drag * speed**2
+    return force, power
+
+
+@pytest.mark.parametrize("density", [RHO, 100.0 * RHO])
+def test_drag_is_that_of_every_thread_by_itself(density):
+    """Rows and columns of threads side by side, some of them taut; the power is of predicted velocities."""
+    net = shoot({**WEIGHTLESS, "net.mesh": 24.0 / 11.0, "air.density": density, "bullets.speed": 10.0})
+    net.step(0.8)
+    force, power = one_by_one(net)
+    assert net.record[0]["air_power"] == pytest.approx(power, rel=1e-5)
+    before = net.array("momentum").copy()
+    net.step(net["solver.substep"])
+    later, _ = one_by_one(net)
+    taken = (net.array("momentum") - before) / net["solver.substep"]
+    np.testing.assert_allclose(taken, 0.5 * (force + later), rtol=1e-3, atol=1e-3 * np.abs(force).max())
+    assert np.abs(force).max() > 0.1
 
 
 def test_a_scene_without_air_has_nothing_of_it():
