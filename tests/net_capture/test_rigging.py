@@ -121,6 +121,16 @@ def test_a_lead_hangs_on_every_corner(rigged):
     assert loads[graph.bullets].tolist() == pytest.approx([0.5] * 4, rel=1e-12)
 
 
+def test_where_bullets_alone_would_have_spread_the_net(rigged):
+    """They start and end beyond the corners of the mouth, by a lead that is folded as the net is."""
+    values = all_values(rigged.shape, rigged.values, *RIGS)
+    (told,) = (row.value for row in rows(values, terms_of(rigged.shape, *RIGS)) if row.key == "shot.opening")
+    folded, bullets = rigged.layer.fold(rigged.laid), rigged.laid.graph.bullets
+    start, end = (np.linalg.norm(at[bullets, :2], axis=1) for at in (folded, rigged.places))
+    assert end.min() > np.linalg.norm(rigged.places[rigged.laid.graph.rim[rigged.laid.graph.corners], :2], axis=1).max()
+    assert told == pytest.approx((end - start).mean() / math.tan(values["bullets.angle"]), rel=1e-12)
+
+
 def test_knots_weigh_and_give_way(rigged):
     """Every node has half of each thread that ends there; a knot its own mass too, a node within a thread or on a lead
     none. A thread and its knots in series have the sum of their compliances."""

@@ -193,5 +193,6 @@ PART = Term(
         nodes=lambda values, net: net.bullets(values) * int(values["leads.segments"]),
         threads=lambda values, net: net.bullets(values) * int(values["leads.segments"]),
         corner=lambda values, net: 0.5 * _piece(values)[2],
+        reach=lambda values: float(values["leads.length"]),
     ),
 )
