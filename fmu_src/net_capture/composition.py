@@ -12,6 +12,7 @@ from fmu_src.interface import Model, Term
 from fmu_src.net_capture.capture_index import SCRATCH_PLANES
 from fmu_src.net_capture.cord_bends import make_cord_bends
 from fmu_src.net_capture.graph import make_graph
+from fmu_src.net_capture.numbering import make_numbering
 from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
 from fmu_src.net_capture.rigging import riggings
@@ -47,8 +48,8 @@ class Composition:
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
-    gravity, net, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing, tether, air,
-    wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
+    gravity, net, numbering, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing,
+    tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -77,6 +78,7 @@ class Composition:
         self.rouse, self.rouse_all = needs.make_rouse(self), needs.make_rouse_all(self)
         self.meeting = traits.make_meeting(self)
         self.net, self.folding = self._make("net"), self._make("folding")
+        self.numbering = make_numbering(self)
         self.rigging = [self._make(group) for group in riggings() if group in terms]
         self.graph, self.peaks = make_graph(self), make_peaks(self)
         self.target = self._make("target")

@@ -26,6 +26,8 @@ class Net(NamedTuple):
     rim_gap(p, n)            from that to the next, as the net is meant [m]
     thread(p)                stiffness [N/m], dashpot [N s/m] of the stiffest piece of thread, and mass of a node
                              between two threads like it [kg]: what the bound of the substep is reckoned from
+    knots(p)                 how many knots there are [1], and knot_slot(p, k), the slot of the k-th, of a net whose
+                             outputs count them in another order than that of their slots; None of all others
     """
 
     count: Any
@@ -33,6 +35,8 @@ class Net(NamedTuple):
     rim_node: Any
     rim_gap: Any
     thread: Any
+    knots: Any = None
+    knot_slot: Any = None
 
 
 class Hanging(NamedTuple):
