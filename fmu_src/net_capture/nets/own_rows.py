@@ -26,6 +26,8 @@ EMPTY = 2.0
 """Slots for each node from which on rows are filled up."""
 DISORDER = 0.5
 """Strips for each thread from which on the threads are sorted, and then the nodes."""
+ORDERLY = 0.2
+"""Strips for each thread with which no better order of the nodes is looked for."""
 NEAR = 0.25
 """Of a thread's length, by which the nodes of a line lie apart across it."""
 WAYS = 4
@@ -67,6 +69,8 @@ def rows_of(graph: OwnGraph) -> Rows:
             rows = _rows(other[graph.ends], alike, count)
             if len(rows.strips) < len(found.strips):
                 found, rank = rows, other
+            if len(found.strips) <= ORDERLY * len(graph.ends):
+                break
     return found._replace(slots=found.slots[rank])
 
 
