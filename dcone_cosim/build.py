@@ -33,7 +33,7 @@ from fmu_src.net_capture import trade as net_capture_trade
 from fmu_src.net_capture.capacity import FAMILIES
 from fmu_src.net_capture.entered import over_time as energy_entered
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
-from fmu_src.net_capture.interface import NETS, TARGETS
+from fmu_src.net_capture.interface import NETS, TARGETS, rigged_of
 from fmu_src.packaging.c_header import STATE_HEAD
 from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.sources import SHIM
@@ -404,9 +404,14 @@ def shot_frame(values: Mapping[str, float]) -> tuple[Any, Any]:
 
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:
-    """Lines of threads and closed rim of the net with these values, as numbers of nodes; None for none of ours."""
+    """Lines of threads and leads, and the closed rim of the net with these values, as numbers of nodes; None for none
+    of ours."""
     part = _net(values, terms)
-    return None if part is None else part.checks.drawing(values)
+    if part is None:
+        return None
+    lines, rim = part.checks.drawing(values)
+    added = (line for rig in rigged_of(terms).values() for line in rig.checks.lines(values, part.checks))
+    return [*lines, *added], rim
 
 
 def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Surface | None:

@@ -90,6 +90,7 @@ class Checks(NamedTuple):
     nodes(values)      with the inner nodes of all threads; 1 where there is no such net             [1]
     drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
                        count them
+    turns(values)      the rim's nodes that are corners, by their places in that rim; None: its threads are all as long
     bullets(values)    how many the shape has
     uneven(values)     the most by which a bullet stands beside the middle of its sector, where as many equal ones as
                        there are bullets lie round the shot's axis, in halves of a sector                [1]
@@ -110,6 +111,7 @@ class Checks(NamedTuple):
     finest: Callable[[Values], tuple[float, float]]
     nodes: Callable[[Values], int]
     drawing: Callable[[Values], tuple[list[list[int]], list[int]]]
+    turns: Callable[[Values], list[int]] | None = None
     bullets: Callable[[Values], int] = lambda values: USUAL_BULLETS
     sound: Callable[[Values], bool] = lambda values: True
     uneven: Callable[[Values], float] = lambda values: 0.0

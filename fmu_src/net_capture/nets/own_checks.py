@@ -118,6 +118,7 @@ CHECKS = Checks(
     finest=lambda values: (float(own_graph(values).lengths.min()), float(_threads(values)[:, 2].min())),
     nodes=_nodes,
     drawing=_drawing,
+    turns=lambda values: [int(corner) for corner in own_graph(values).corners],
     bullets=lambda values: len(own_graph(values).corners) if sound(values) else USUAL_BULLETS,
     sound=sound,
     uneven=_uneven,

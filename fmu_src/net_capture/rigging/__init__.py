@@ -38,6 +38,7 @@ class Checks(NamedTuple):
     threads(values, net)                        it adds [1]
     corner(values, net)                         mass [kg] that hangs on a bullet; None: it is that of the net's corner
     reach(values)                               how far beyond the corner of the mouth bullets are in the open net [m]
+    lines(values, net)                          what it adds to the drawing of the net
     """
 
     rates: Callable[[Values, Any, float, float, float], tuple[float, float]]
@@ -46,6 +47,7 @@ class Checks(NamedTuple):
     threads: Callable[[Values, Any], int] = lambda values, net: 0
     corner: Callable[[Values, Any], float] | None = None
     reach: Callable[[Values], float] = lambda values: 0.0
+    lines: Callable[[Values, Any], list[list[int]]] = lambda values, net: []
 
 
 def at_bullets(net: Any, rigs: Iterable[Checks]) -> Any:
