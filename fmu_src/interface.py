@@ -137,6 +137,7 @@ class Group:
     follows      `follows(terms, values)`: the term that follows from the other terms and the values, SI by FMI name,
                  where the scene has the table and names none
     early        it follows from the terms of the groups before it alone, and is known before any value is read
+    sure         `sure(terms, values)`: whether it does; not from files that make no sense
     """
 
     terms: Mapping[str, Term]
@@ -146,6 +147,7 @@ class Group:
     default: str = ""
     table: str = ""
     early: bool = False
+    sure: Callable[[Mapping[str, str], Mapping[str, float]], bool] = lambda terms, values: True
 
 
 HEAD = (

@@ -9,7 +9,7 @@ import numpy as np
 
 from fmu_src.interface import Term
 from fmu_src.net_capture import force_map
-from fmu_src.net_capture.interface import NETS, TARGETS
+from fmu_src.net_capture.interface import NETS, TARGETS, rigged_of
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.hull import CORNERS
 from orbital.corners import few_corners
@@ -53,9 +53,14 @@ def shot_frame(values: Mapping[str, float]) -> tuple[Any, Any]:
 
 
 def net_drawing(values: Mapping[str, float], terms: Mapping[str, str]) -> Drawing | None:
-    """Lines of threads and closed rim of the net with these values, as numbers of nodes; None for none of ours."""
+    """Lines of threads and leads, and the closed rim of the net with these values, as numbers of nodes; None for none
+    of ours."""
     part = _net(values, terms)
-    return None if part is None else part.checks.drawing(values)
+    if part is None:
+        return None
+    lines, rim = part.checks.drawing(values)
+    added = (line for rig in rigged_of(terms).values() for line in rig.checks.lines(values, part.checks))
+    return [*lines, *added], rim
 
 
 def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Surface | None:

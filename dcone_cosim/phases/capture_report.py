@@ -74,7 +74,9 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))
-        yield Finding(result.name, "recoil", "momentum of the shot", size * parameters["chaser.mass"], "N s")
+        late = any(value > 0.0 for name, value in parameters.items() if name.startswith("ejection.delay["))
+        label = "momentum of the bullets that left at once" if late else "momentum of the shot"
+        yield Finding(result.name, "recoil", label, size * parameters["chaser.mass"], "N s")
 
 
 _OPEN_ROWS = (

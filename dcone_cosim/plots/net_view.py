@@ -69,7 +69,7 @@ def draw(
         mark = "  (hand-over)" if result.located is not None and shots.times[i] == result.located else ""
         axes.set_title(f"t = {shots.times[i]:.2f} s{mark}", y=0.99)
     style.head(figure, title)
-    _legend(figure)
+    _legend(figure, surface is not None)
     style.save(figure, path)
 
 
@@ -90,6 +90,8 @@ def _panel(
         ring = rim if rim is not None else np.vstack([bullets, bullets[:1]])
         axes.plot(*ring.T, color=style.BULLET, linewidth=0.9, alpha=0.8, zorder=4)
         axes.plot(*bullets.T, "o", color=style.BULLET, markersize=2.8, zorder=5)
+    for artist in (*axes.lines, *axes.collections):
+        artist.set_clip_on(False)  # a long box reaches beyond its panel
 
 
 def _bullets(result: PhaseResult, row: int) -> Array:
@@ -161,7 +163,7 @@ def _frame(axes: Any, low: Array, high: Array) -> None:
         axis.pane.set_alpha(0.15)
 
 
-def _legend(figure: Any) -> None:
+def _legend(figure: Any, has_target: bool) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -169,7 +171,7 @@ def _legend(figure: Any) -> None:
         handles=[
             Line2D([], [], color=style.NET, label="threads"),
             Line2D([], [], color=style.BULLET, marker="o", markersize=4, label="bullets and mouth"),
-            Patch(facecolor=style.TARGET, alpha=0.45, label="target"),
+            *([Patch(facecolor=style.TARGET, alpha=0.45, label="target")] if has_target else []),
             Line2D(
                 [], [], linestyle="", label="axes [m]: along-track to the right, cross-track to the back, radial up"
             ),

@@ -38,7 +38,7 @@ def of_model(
         path = (*part.path, group.table or group_name)
         table = tables.get(group.table or group_name)
         if group.default and (table is None or (isinstance(table, dict) and group.selector not in table)):
-            part.terms[group_name] = _early(part, group, model, tables, folder) if group.early else group.default
+            part.terms[group_name] = _early(part, group_name, model, tables, folder) if group.early else group.default
             part.unnamed.add(group_name)
             continue
         if table is None:
@@ -52,7 +52,7 @@ def of_model(
             part.terms[group_name] = names[0]
         if group.follows is not None and isinstance(table, dict) and group.selector not in table:
             if group.early:
-                part.terms[group_name] = _early(part, group, model, tables, folder)
+                part.terms[group_name] = _early(part, group_name, model, tables, folder)
                 continue
             part.following.append(group_name)
             continue
@@ -116,7 +116,7 @@ def _part_company(part: ReadComponent, model: build.Model, tables: Mapping[str, 
             part.following = [name for name in part.following if name != group_name]
 
 
-def _early(part: ReadComponent, group: build.Group, model: build.Model, tables: Mapping[str, Any], folder: File) -> str:
+def _early(part: ReadComponent, group_name: str, model: build.Model, tables: Mapping[str, Any], folder: File) -> str:
     """The term of a group that follows from those before it and from their files; what is wrong with these is told
     where all are read."""
     found = {}
@@ -126,7 +126,10 @@ def _early(part: ReadComponent, group: build.Group, model: build.Model, tables: 
             if given is not None:
                 with suppress(Unexpected):
                     found[table.name] = table_of(table, given, folder, part.path).numbers
+    group = model.groups[group_name]
     assert group.follows is not None
+    if not group.sure(part.terms, found):
+        part.unsure.add(group_name)
     return group.follows(part.terms, found)
 
 
@@ -314,7 +317,8 @@ def _take(
 ) -> None:
     """Read the value of one key into the variables it sets."""
     key = part.keys[name]
-    given = read_value(value, key.expected.read, path, mistakes)
+    unsure = name.partition(".")[0] in part.unsure
+    given = read_value(value, key.expected.read, path, [] if unsure else mistakes)
     if given is None:
         return
     numbers = given if isinstance(given, list) else [given]

@@ -33,6 +33,7 @@ class ReadComponent:
     given        where the value of each variable was given
     following    groups whose term follows from the values
     refused      groups whose term does not go with others: nothing is said of their keys
+    unsure       groups whose term follows from files that make no sense: nothing is said of their values
     texts        that the scene gives to Strings, by variable
     files        tables that our model reads, by name, which a scene gives as the path of a file or entry by entry
     tables       those that it gives as files
@@ -52,6 +53,7 @@ class ReadComponent:
     given: dict[str, Path] = field(default_factory=dict)
     following: list[str] = field(default_factory=list)
     refused: set[str] = field(default_factory=set)
+    unsure: set[str] = field(default_factory=set)
     texts: dict[str, str] = field(default_factory=dict)
     files: dict[str, build.Table] = field(default_factory=dict)
     tables: dict[str, TableFile] = field(default_factory=dict)

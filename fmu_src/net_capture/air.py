@@ -23,16 +23,18 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from fmu_src.extremes import Extreme, times
 from fmu_src.interface import Term
 from fmu_src.net_capture.planes import (
     FX,
     LANES,
     LENGTH,
-    LONGEST_ROW,
-    MASS,
+    PER_SQUARED,
     SHOWN,
     SHOWN_RATE,
+    SQUARED,
     STRIP_NUMBERS,
     STRIP_WORDS,
     THREAD_MASS,
@@ -70,8 +72,14 @@ def thread_diameter(mass, length, density):
 
 def make(composition: Any) -> Air:
     """Kernels for the composition's net and what is rigged to it."""
-    memory, rouse = composition.memory, composition.rouse
+    memory, rouse_all = composition.memory, composition.rouse_all
     node_plane, strips, properties, bullets = memory.node_plane, memory.strips, memory.properties, memory.bullets
+    lanes, reals_of = composition.lanes, memory.reals
+    load, store, splat, where, root, slide = lanes.load, lanes.store, lanes.splat, lanes.where, lanes.root, lanes.slide
+    flags_of, bits, lane, width, last = lanes.flags, lanes.bits, lanes.lane, lanes.width, np.int64(lanes.width - 1)
+    group = np.uint64((1 << width) - 1)
+    from fmu_src.lanes import highest, peek, poke
+
     has_edge, has_leads = "edge" in composition.terms, "leads" in composition.terms
 
     @kernel
@@ -92,28 +100,99 @@ def make(composition: Any) -> Air:
         """Kernel of the drag by the planes of positions and velocities from these on; `wake`: rows may sleep."""
 
         @kernel
-        def slow(p, work, node, x, y, z, share, limit):
-            """Drag on one end of a thread; its power [W].
+        def across(reals, slots, node, dx, dy, dz, per_squared, share, limit, on):
+            """Drag on one end of some threads side by side, three components [N], and what it takes [W].
 
-            x, y, z   the thread over the larger of its chord and its length   [1]
-            share     1/2 rho C d l/2                                          [kg/m]
-            limit     the most of force over speed                             [kg/s]
+            dx, dy, dz     the threads                                             [m]
+            per_squared    1 over the square of their chord, or of their length    [1/m2]
+            share          1/2 rho C d l/2                                         [kg/m]
+            limit          the most of force over speed                            [kg/s]
+            on             which lanes are threads
 
             Checked  tests/net_capture/test_air.py
             """
-            u = node_plane(p, work, rate)[node]
-            v = node_plane(p, work, rate + 1)[node]
-            w = node_plane(p, work, rate + 2)[node]
-            along = x * u + y * v + z * w
-            across_x = u - along * x
-            across_y = v - along * y
-            across_z = w - along * z
-            speed = math.sqrt(across_x * across_x + across_y * across_y + across_z * across_z)
-            drag = min(share * speed, limit)
-            node_plane(p, work, FX)[node] -= drag * across_x
-            node_plane(p, work, FX + 1)[node] -= drag * across_y
-            node_plane(p, work, FX + 2)[node] -= drag * across_z
-            return drag * (across_x * u + across_y * v + across_z * w)
+            at = node + rate * slots
+            u, v, w = load(reals, at), load(reals, at + slots), load(reals, at + 2 * slots)
+            along = (dx * u + dy * v + dz * w) * per_squared
+            x, y, z = u - along * dx, v - along * dy, w - along * dz
+            drag = share * root(x * x + y * y + z * z)
+            drag = where(on, where(drag < limit, drag, limit), splat(0.0))
+            x, y, z = drag * x, drag * y, drag * z
+            return x, y, z, x * u + y * v + z * w
+
+        @kernel
+        def slow_strip(reals, slots, a, b, held, squared, per_squared, share, limit):
+            """Take the drag on a strip of threads from the forces on their ends; its power in lanes [W].
+
+            a, b                    nodes of its lane 0
+            held                    lanes that are threads
+            squared, per_squared    rest length squared [m2], 1 over that [1/m2]
+            share                   1/2 rho C d l/2                               [kg/m]
+            limit                   the most of force over speed                  [kg/s]
+
+            Of a strip along a row, whose lanes are a chain, a node gets both its threads' drag at once.
+
+            Checked  tests/net_capture/test_air.py
+            """
+            rest, slack, most, steady = splat(squared), splat(per_squared), splat(share), splat(limit)
+            zero, one = splat(0.0), splat(1.0)
+            taken, last_x, last_y, last_z = zero, zero, zero, zero
+            chained = b == a + 1
+            end = np.int64(highest(np.uint64(held))) + 1
+            for j in range(0, end, width):
+                m, n = a + j, b + j
+                on = flags_of((np.uint64(held) >> np.uint64(j)) & group)
+                i, k = m + place * slots, n + place * slots
+                dx = load(reals, k) - load(reals, i)
+                dy = load(reals, k + slots) - load(reals, i + slots)
+                dz = load(reals, k + 2 * slots) - load(reals, i + 2 * slots)
+                distance = dx * dx + dy * dy + dz * dz
+                taut = distance > rest
+                per = slack
+                if bits(taut) != np.uint64(0):
+                    per = where(taut, one / distance, slack)
+                ax, ay, az, here = across(reals, slots, m, dx, dy, dz, per, most, steady, on)
+                bx, by, bz, there = across(reals, slots, n, dx, dy, dz, per, most, steady, on)
+                taken = taken + (here + there)
+                i = m + FX * slots
+                if chained:
+                    store(reals, i, load(reals, i) - (ax + slide(bx, last_x)))
+                    store(reals, i + slots, load(reals, i + slots) - (ay + slide(by, last_y)))
+                    store(reals, i + 2 * slots, load(reals, i + 2 * slots) - (az + slide(bz, last_z)))
+                    last_x, last_y, last_z = bx, by, bz
+                else:
+                    k = n + FX * slots
+                    store(reals, i, load(reals, i) - ax)
+                    store(reals, i + slots, load(reals, i + slots) - ay)
+                    store(reals, i + 2 * slots, load(reals, i + 2 * slots) - az)
+                    store(reals, k, load(reals, k) - bx)
+                    store(reals, k + slots, load(reals, k + slots) - by)
+                    store(reals, k + 2 * slots, load(reals, k + 2 * slots) - bz)
+            if chained:
+                i = a + (end + width - 1) // width * width + FX * slots
+                poke(reals, i, peek(reals, i) - lane(last_x, last))
+                poke(reals, i + slots, peek(reals, i + slots) - lane(last_y, last))
+                poke(reals, i + 2 * slots, peek(reals, i + 2 * slots) - lane(last_z, last))
+            return taken
+
+        @kernel
+        def slow_bullet(p, work, node, share, limit):
+            """Drag on a bullet; its power [W].
+
+            share     1/2 rho C A                   [kg/m]
+            limit     the most of force over speed  [kg/s]
+
+            Checked  tests/net_capture/test_air.py
+            """
+            u = 1.0 * node_plane(p, work, rate)[node]
+            v = 1.0 * node_plane(p, work, rate + 1)[node]
+            w = 1.0 * node_plane(p, work, rate + 2)[node]
+            squared = u * u + v * v + w * w
+            drag = min(share * math.sqrt(squared), limit)
+            node_plane(p, work, FX)[node] -= drag * u
+            node_plane(p, work, FX + 1)[node] -= drag * v
+            node_plane(p, work, FX + 2)[node] -= drag * w
+            return drag * squared
 
         @kernel
         def pull(p, work):
@@ -122,39 +201,33 @@ def make(composition: Any) -> Air:
             Checked  tests/net_capture/test_air.py
             """
             if wake:
-                mass = node_plane(p, work, MASS)
-                for node in range(p.node_slots):
-                    if mass[node] > 0.0:
-                        rouse(p, work, node)
-            table = strips(p, work)
-            numbers = properties(p, work)
+                rouse_all(p, work)
+            table, numbers = strips(p, work), properties(p, work)
+            reals, slots = reals_of(work), p.node_slots
             half = 0.5 * p.air_density
             steady = MOST_SLOWED / p.solver_substep
-            power = 0.0
+            power = splat(0.0)
+            share, limit, last_own, last_length, last_density = 0.0, 0.0, -1.0, -1.0, -1.0
             for strip in range(p.strips):
-                s = STRIP_WORDS * strip
-                length = numbers[STRIP_NUMBERS * strip + LENGTH]
-                own = numbers[STRIP_NUMBERS * strip + THREAD_MASS]
-                share = half * p.air_thread_drag * thread_diameter(own, length, density_of(p, strip)) * 0.5 * length
-                limit = steady * 0.5 * own
-                for lane in range(LONGEST_ROW):
-                    if (table[s + LANES] >> lane) & 1:
-                        a = table[s + A] + lane
-                        b = table[s + B] + lane
-                        x = node_plane(p, work, place)[b] - node_plane(p, work, place)[a]
-                        y = node_plane(p, work, place + 1)[b] - node_plane(p, work, place + 1)[a]
-                        z = node_plane(p, work, place + 2)[b] - node_plane(p, work, place + 2)[a]
-                        longer = max(math.sqrt(x * x + y * y + z * z), length)
-                        x /= longer
-                        y /= longer
-                        z /= longer
-                        power += slow(p, work, a, x, y, z, share, limit)
-                        power += slow(p, work, b, x, y, z, share, limit)
+                s, q = STRIP_WORDS * strip, STRIP_NUMBERS * strip
+                length, own = numbers[q + LENGTH], numbers[q + THREAD_MASS]
+                density = density_of(p, strip)
+                if own != last_own or length != last_length or density != last_density:
+                    share = half * p.air_thread_drag * thread_diameter(own, length, density) * 0.5 * length
+                    limit = steady * 0.5 * own
+                    last_own, last_length, last_density = own, length, density
+                squared, per_squared = numbers[q + SQUARED], numbers[q + PER_SQUARED]
+                a, b, held = table[s + A], table[s + B], table[s + LANES]
+                if held != 0:  # all of them may have broken
+                    power = power + slow_strip(reals, slots, a, b, held, squared, per_squared, share, limit)
+            taken = 0.0
+            for i in range(width):
+                taken += lane(power, np.int64(i))
             share = half * p.air_bullet_drag * 0.25 * math.pi * p.air_bullet_diameter * p.air_bullet_diameter
             limit = steady * p.bullets_mass
             for n in range(p.net_corners):
-                power += slow(p, work, bullets(p, work)[n], 0.0, 0.0, 0.0, share, limit)
-            p.air_power = power
+                taken += slow_bullet(p, work, bullets(p, work)[n], share, limit)
+            p.air_power = taken
 
         return pull
 

@@ -40,7 +40,6 @@ from fmu_src.net_capture.joints import JOINT_WORDS, make_joints
 from fmu_src.net_capture.planes import (
     FX,
     LENGTH,
-    MASS,
     SHOWN,
     SHOWN_RATE,
     STRIP_NUMBERS,
@@ -109,7 +108,7 @@ def make(composition: Any) -> Bending:
     """Kernels for the composition's net."""
     if composition.terms["solver"] not in SCHEMES:
         raise ValueError(f"net_capture: bending needs one of the schemes {SCHEMES}")
-    memory, rouse = composition.memory, composition.rouse
+    memory, rouse_all = composition.memory, composition.rouse_all
     node_plane, properties = memory.node_plane, memory.properties
     words, list_joints, joints, lengths = make_joints(composition)
 
@@ -178,10 +177,7 @@ def make(composition: Any) -> Bending:
             Checked  tests/net_capture/test_bending.py
             """
             if wake:
-                mass = node_plane(p, work, MASS)
-                for node in range(p.node_slots):
-                    if mass[node] > 0.0:
-                        rouse(p, work, node)
+                rouse_all(p, work)
             found, long = joints(p, work), lengths(p, work)
             first, second = p.bending_vectors[0:3], p.bending_vectors[3:6]
             first_rate, second_rate = p.bending_vectors[6:9], p.bending_vectors[9:12]

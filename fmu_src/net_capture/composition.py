@@ -12,6 +12,7 @@ from fmu_src.interface import Model, Term
 from fmu_src.net_capture.capture_index import SCRATCH_PLANES
 from fmu_src.net_capture.cord_bends import make_cord_bends
 from fmu_src.net_capture.graph import make_graph
+from fmu_src.net_capture.numbering import make_numbering
 from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
 from fmu_src.net_capture.rigging import riggings
@@ -39,7 +40,7 @@ class Composition:
     lanes        vectors of its precision (`fmu_src.lanes`)
     memory       kernels that find what lies in the work memory
     bullets      how many there are
-    rouse        of the scheme, see `schemes.Needs`
+    rouse, rouse_all    of the scheme, see `schemes.Needs`
     everywhere(p)    half the stiffness over mass [1/s2], and dashpots over mass [1/s], that contact and bending may add
                      at any node
     scratch_plane            the first of the node planes that the convex hull may scribble on, where there are any
@@ -47,8 +48,8 @@ class Composition:
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
-    gravity, net, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing, tether, air,
-    wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
+    gravity, net, numbering, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing,
+    tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -74,8 +75,10 @@ class Composition:
         self.memory = make_memory(terms["precision"])
         self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
-        self.rouse, self.meeting = needs.make_rouse(self), traits.make_meeting(self)
+        self.rouse, self.rouse_all = needs.make_rouse(self), needs.make_rouse_all(self)
+        self.meeting = traits.make_meeting(self)
         self.net, self.folding = self._make("net"), self._make("folding")
+        self.numbering = make_numbering(self)
         self.rigging = [self._make(group) for group in riggings() if group in terms]
         self.graph, self.peaks = make_graph(self), make_peaks(self)
         self.target = self._make("target")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Term, Variable
-from fmu_src.net_capture.planes import FIRST, LONGEST_ROW, MASS, STRIP_WORDS, A, B
+from fmu_src.net_capture.planes import FIRST, LONGEST_ROW, STRIP_WORDS, A, B
 from fmu_src.rows import count, peak
 from orbital.kernel import kernel
 
@@ -24,7 +24,7 @@ class Hardest(NamedTuple):
 def make(composition: Any) -> Hardest:
     """Kernels of the place of the largest tension."""
     memory, now = composition.memory, composition.clock.now
-    node_plane, strips = memory.node_plane, memory.strips
+    strips, number_of = memory.strips, composition.numbering.of
 
     @kernel
     def start(p):
@@ -37,18 +37,6 @@ def make(composition: Any) -> Hardest:
         for end in range(2):
             p.thread_tension_peak_node[end] = 0
             p.thread_tension_max_node[end] = 0
-
-    @kernel
-    def number_of(p, work, slot):
-        """Number of the node in a slot, counted from 1 over those that hold one.
-
-        Checked  tests/net_capture/test_hardest.py
-        """
-        mass = node_plane(p, work, MASS)
-        found = 0
-        for i in range(slot + 1):
-            found += 1 if mass[i] > 0.0 else 0
-        return found
 
     @kernel
     def tell(p, work):

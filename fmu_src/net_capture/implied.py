@@ -10,6 +10,7 @@ from fmu_src.net_capture import formulas
 from fmu_src.net_capture.interface import GROUPS, NETS, rigged_of
 from fmu_src.net_capture.nets import USUAL_BULLETS, Checks, Hanging, Thread
 from fmu_src.net_capture.release import ejection, ejector
+from fmu_src.net_capture.rigging import at_bullets
 from fmu_src.net_capture.rigging.knots import in_series
 from fmu_src.net_capture.shapes import mesh, solids
 from fmu_src.net_capture.shot import opening_distance
@@ -180,7 +181,7 @@ def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")
     yield Implied("shot.energy", "energy of the shot", 0.5 * bullet * sum(whole * whole for _, whole in ways), "J")
     yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")
-    net = NETS[terms["net"]].checks
+    net = at_bullets(NETS[terms["net"]].checks, [rig.checks for rig in rigged_of(terms).values()])
     fold = GROUPS["folding"].terms[terms.get("folding", "flat")].checks
     opening = opening_distance(math.hypot(*net.corner(values)), fold.radius(values, net), speed, angle)
     if math.isfinite(opening):

@@ -235,6 +235,12 @@ def bullets_of(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str
     return str(NETS[terms["net"]].checks.bullets(parameters))
 
 
+def sure_bullets(terms: Mapping[str, str], parameters: Mapping[str, float]) -> bool:
+    """Whether the shape of the net says how many; files that make no net do not."""
+    term = NETS[terms["net"]]
+    return not term.tables or bool(term.checks.sound(parameters))
+
+
 def each_bullet(terms: Mapping[str, str], parameters: Mapping[str, float]) -> str:
     """As many as there are."""
     return terms.get("bullets") or bullets_of(terms, parameters)
@@ -290,7 +296,9 @@ GROUPS = {
     "section": _plain(section.PART),
     **{name: _plain(part) for name, part in RIGGINGS.items()},
     "bullets": Group(BULLETS, selector="number", default=str(USUAL_BULLETS), follows=bullets_of, early=True),
-    "ejection": Group(ejection.PARTS, selector="number", optional=True, follows=each_bullet, early=True),
+    "ejection": Group(
+        ejection.PARTS, selector="number", optional=True, follows=each_bullet, early=True, sure=sure_bullets
+    ),
     "ejector": Group(ejector.PARTS, selector="kind", optional=True),
     "spin": Group({"turning": spin.PART}, selector="kind", optional=True, follows=lambda terms, values: "turning"),
     "folding": Group(foldings(), selector="pattern", default="flat"),

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from fmu_src.interface import fault
 from fmu_src.net_capture.planes import INVERSE_MASS, MASS, SHOWN, U, X
 from fmu_src.net_capture.refusal import Refusal, Scene, text
+from fmu_src.net_capture.rigging import at_bullets, riggings
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
@@ -186,7 +187,8 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
     chaser, axis = scene.vector("chaser.start_position"), scene.vector("shot.axis")
     shape, net = scene.parts["target"].checks, scene.parts["net"].checks
     sides, open_radius = net.sides(values), math.hypot(*net.corner(values))
-    folded = scene.parts["folding"].checks.radius(values, net)
+    led = at_bullets(net, [scene.parts[group].checks for group in riggings() if group in scene.parts])
+    folded = scene.parts["folding"].checks.radius(values, led)
     distance = math.hypot(*chaser)
     here = f"is {distance:.4g} m from the target"
     speed, angle = float(values["bullets.speed"]), float(values["bullets.angle"])
@@ -216,7 +218,7 @@ def refuses_way(scene: Scene) -> Iterator[Refusal]:
                 f"come within {forward * duration + radius:.4g} m, or raise duration or bullets.speed"
             )
             yield Refusal(place, shown, expected)
-        limit = FALLEN_BACK * opening_distance(open_radius, folded, speed, angle)
+        limit = FALLEN_BACK * opening_distance(math.hypot(*led.corner(values)), folded, speed, angle)
         if near > limit:
             expected = f"{here}; must be at most {limit + radius:.4g} m: farther out the net has fallen back"
             yield Refusal(place, shown, f"{expected} on itself")

@@ -7,7 +7,6 @@ from typing import Any
 
 from fmu_src.net_capture import quality
 from fmu_src.net_capture.book import make_balance
-from fmu_src.net_capture.planes import MASS, SHOWN
 from orbital.kernel import kernel
 
 
@@ -33,7 +32,7 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     has_ejection, ejection = parts.ejection is not None, parts.ejection
     gravity, scheme, peaks = parts.gravity, parts.scheme, parts.peaks
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
-    lag, frame_rate, now, node_plane = scheme.lag, gravity.rate, parts.clock.now, parts.memory.node_plane
+    lag, frame_rate, now, write_nodes = scheme.lag, gravity.rate, parts.clock.now, parts.numbering.write
     energy_balance = make_balance(parts)
 
     @kernel
@@ -143,19 +142,5 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
         gravity.kick_chaser(p, p.chaser_place, p.chaser_velocity, p.pull, late)
         if has_target:
             gravity.kick_target(p, p.target_place, p.target_velocity, p.rest, late)
-
-    @kernel
-    def write_nodes(p, work):
-        """Positions of all nodes, unused slots passed over.
-
-        Checked  tests/net_capture/test_nets.py
-        """
-        mass = node_plane(p, work, MASS)
-        out = 0
-        for node in range(p.node_slots):
-            if mass[node] > 0.0:
-                for axis in range(3):
-                    p.node_position[out, axis] = node_plane(p, work, SHOWN + axis)[node]
-                out += 1
 
     return measure

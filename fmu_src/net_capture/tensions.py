@@ -42,19 +42,7 @@ def make_tensions(composition: Any) -> Tensions:
     """Kernels for the composition's memory."""
     memory = composition.memory
     node_plane, strips, properties = memory.node_plane, memory.strips, memory.properties
-
-    @kernel
-    def nodes_before(p, work, slot):
-        """How many nodes stand in the slots before one.
-
-        Checked  tests/net_capture/test_tensions.py
-        """
-        mass = node_plane(p, work, MASS)
-        found = 0
-        for k in range(slot):
-            if mass[k] > 0.0:
-                found += 1
-        return found
+    number_of, has_order = composition.numbering.of, composition.net.knot_slot is not None
 
     @kernel
     def list_threads(p, work):
@@ -69,18 +57,19 @@ def make_tensions(composition: Any) -> Tensions:
             at = STRIP_WORDS * strip
             a = table[at + A]
             b = table[at + B]
-            first = nodes_before(p, work, a)
-            second = nodes_before(p, work, b)
+            first = 0
+            second = 0
+            if not has_order:
+                first = number_of(p, work, a) - (1 if mass[a] > 0.0 else 0)
+                second = number_of(p, work, b) - (1 if mass[b] > 0.0 else 0)
             for lane in range(min(LONGEST_ROW, p.node_slots - max(a, b))):
-                if mass[a + lane] > 0.0:
-                    first += 1
-                if mass[b + lane] > 0.0:
-                    second += 1
+                first += 1 if mass[a + lane] > 0.0 else 0
+                second += 1 if mass[b + lane] > 0.0 else 0
                 if (table[at + LANES] >> lane) & 1:
                     p.thread_strip[found] = strip
                     p.thread_lane[found] = lane
-                    p.thread_node[found, 0] = first
-                    p.thread_node[found, 1] = second
+                    p.thread_node[found, 0] = number_of(p, work, a + lane) if has_order else first
+                    p.thread_node[found, 1] = number_of(p, work, b + lane) if has_order else second
                     found += 1
         for k in range(found, p.thread_tension.size):
             p.thread_tension[k] = 0.0

@@ -24,6 +24,7 @@ LEFT_OUT = {
     "knots": {"knots": "plain"},
     "accordion": {"folding": "accordion"},
     "rolled": {"folding": "rolled"},
+    "star": {"folding": "star"},
     "ejection": {"ejection": "4"},
     "spin": {"spin": "turning"},
     "gravity uniform": {"gravity": "uniform"},

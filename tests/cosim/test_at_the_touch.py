@@ -31,6 +31,21 @@ def test_between_two_rows() -> None:
     assert (figures["mouth.area_at_touch"].unit, figures["net.volume_at_touch"].unit) == ("m2", "m3")
 
 
+@pytest.mark.parametrize(
+    ("late", "label"), [(0.0, "momentum of the shot"), (0.01, "momentum of the bullets that left at once")]
+)
+def test_what_the_momentum_is_of(late: float, label: str) -> None:
+    """By the chaser's recoil in the first row, which knows of no bullet that leaves later."""
+    moves = {
+        f"chaser.velocity[{axis}]": ("m/s", "Real", np.array([speed] * 2)) for axis, speed in enumerate((0, 3, 4), 1)
+    }
+    rows = Recorder.of({"time": ("s", "Real", np.array([0.0, 1.0])), **moves})
+    given = {"chaser.mass": 2.0, "ejection.delay[2]": late} | {f"chaser.start_velocity[{i}]": 0.0 for i in (1, 2, 3)}
+    run = RunResult(scene=Scene("one", "", "", ()), parameters={"capture": given})
+    (figure,) = (one for one in findings(run, PhaseResult("capture", 0.0, rows)) if one.key == "recoil")
+    assert (figure.label, figure.value) == (label, 10.0)
+
+
 def test_no_touch_and_no_volume_have_none() -> None:
     assert not {"mouth.area_at_touch", "net.volume_at_touch"} & told(9.0).keys()
     assert "net.volume_at_touch" not in told(4.6, volume=False)

@@ -12,6 +12,8 @@ import numpy as np
 
 from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.interface import MODEL
+from fmu_src.net_capture.nets.own_graph import own_graph
+from fmu_src.net_capture.nets.own_rows import rows_of
 from fmu_src.net_capture.planes import MASS, SHOWN, X
 from fmu_src.net_capture.shot import make_shot
 from fmu_src.net_capture.stepping import make_choose_substep
@@ -108,7 +110,7 @@ class Laid:
     """One such net.
 
     mass      of the net alone, by slot; `planes` have bullets and vertex too
-    slots     those that hold a node       number    of the node in a slot, -1: none
+    slots     those that hold a node, as the outputs count them; number    of the node in a slot, -1: none
     places    of all nodes, as the net is meant
     bound     guaranteed stability bound of the explicit step [s]
     """
@@ -125,6 +127,9 @@ class Laid:
         layer.load(record, self.work)
         self.graph = graph_of(p, self.work, layer.terms)
         self.slots = np.flatnonzero(self.mass > 0.0)
+        if layer.tables:
+            knots = rows_of(own_graph(layer.tables)).slots @ (int(p["row_pitch"]), 1)
+            self.slots = np.concatenate([knots, self.slots[self.slots >= p["knot_slots"]]])
         self.number = np.full(int(p["node_slots"]), -1)
         self.number[self.slots] = np.arange(len(self.slots))
         self.places = self.planes[SHOWN : SHOWN + 3].T[self.slots]

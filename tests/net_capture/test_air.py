@@ -7,7 +7,11 @@ import pytest
 
 from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
+from fmu_src.net_capture.planes import FX, SHOWN, SHOWN_RATE, complete_strips
+from orbital.kernel import kernel
 from tests.conftest import FREE
+from tests.net_capture.laid import Layer
+from tests.net_capture.memory import graph, planes
 
 AIR = {**FREE, "gravity": "uniform", "air": "quadratic", "nodes": "169"}
 """Of the scene breadboard-nylon."""
@@ -111,6 +115,72 @@ def test_the_book_of_a_net_in_air_closes():
     impulse = net.array("momentum") - start - net["catch.mass"] * np.array([-9.81, 0.0, 0.0]) * net.time
     assert impulse[1] < -1.0, "drag against the shot"
     assert impulse[0] > 1.0, "drag against the fall"
+
+
+def one_by_one(p, memory, drawn, density_of):
+    """Drag on every node [N] and its power [W] as shown, thread by thread and bullet by bullet."""
+    place, rate = (memory[plane : plane + 3].T for plane in (SHOWN, SHOWN_RATE))
+    half, steady = 0.5 * p["air_density"], 0.5 / p["solver_substep"]
+    force, power = np.zeros_like(place), 0.0
+    for number, ((a, b), length, mass) in enumerate(zip(drawn.ends, drawn.length, drawn.mass, strict=True)):
+        across = math.sqrt(4.0 * mass / (math.pi * density_of(number) * length))
+        chord = place[b] - place[a]
+        chord = chord / max(np.linalg.norm(chord), length)
+        for end in (a, b):
+            cross = rate[end] - chord * (chord @ rate[end])
+            drag = min(half * p["air_thread_drag"] * across * 0.5 * length * np.linalg.norm(cross), steady * 0.5 * mass)
+            force[end] -= drag * cross
+            power += drag * cross @ rate[end]
+    for node in drawn.bullets:
+        speed = np.linalg.norm(rate[node])
+        drag = half * p["air_bullet_drag"] * 0.25 * math.pi * p["air_bullet_diameter"] ** 2 * speed
+        drag = min(drag, steady * p["bullets_mass"])
+        force[node] -= drag * rate[node]
+        power += drag * speed**2
+    return force, power
+
+
+@pytest.mark.parametrize("thick", [1.0, 1e3])
+def test_drag_on_every_node_is_that_of_its_threads(thick):
+    """Slack and taut threads in strips along rows and across, longer and shorter than a vector, a rope of
+    the net's material and leads of another; in
+    thick air most ends are held to half their speed."""
+    layer = Layer("rectangle", edge="plain", leads="plain", air="quadratic")
+    pull_shown, properties = layer.parts.air.pull_shown, layer.parts.memory.properties
+
+    @kernel
+    def pull(record, work):
+        complete_strips(record[0], properties(record[0], work))
+        pull_shown(record[0], work)
+
+    mesh = {"net.width": 12.0, "net.height": 3.0, "net.mesh": 1.0, "net.mass": 0.4, "net.density": 1440.0}
+    rigged = {"edge.diameter": 3e-3, "edge.density": 1440.0, "leads.segments": 7, "leads.density": 970.0}
+    laid = layer.lay(mesh | rigged | {"solver.substep": 1e-3, "air.density": thick * RHO})
+    p, memory, slots = laid.p, laid.planes, laid.slots
+    draw = np.random.default_rng(5)
+    memory[SHOWN : SHOWN + 3, slots] *= draw.uniform(0.3, 1.6, (3, len(slots)))
+    memory[SHOWN_RATE : SHOWN_RATE + 3, slots] = draw.normal(0.0, 4.0, (3, len(slots)))
+    memory[FX : FX + 3] = 0.0
+    pull(laid.record, laid.work)
+    own = len(laid.graph.ends) - 4 * 7
+    force, power = one_by_one(p, memory, laid.graph, lambda n: 1440.0 if n < own else 970.0)
+    np.testing.assert_allclose(memory[FX : FX + 3].T, force, rtol=1e-12, atol=1e-13 * np.abs(force).max())
+    assert p["air_power"] == pytest.approx(power, rel=1e-12)
+
+
+def test_what_drag_takes_of_the_momentum():
+    net = shoot({**WEIGHTLESS, "bullets.speed": 10.0})
+    net.step(0.8)
+    drawn, given = graph(net), net.record[0]
+    force, power = one_by_one(given, planes(net), drawn, lambda number: net["net.density"])
+    assert given["air_power"] == pytest.approx(power, rel=1e-5), "of predicted velocities"
+    before = net.array("momentum").copy()
+    net.step(net["solver.substep"])
+    later, _ = one_by_one(given, planes(net), drawn, lambda number: net["net.density"])
+    taken = (net.array("momentum") - before) / net["solver.substep"]
+    expected = 0.5 * (force + later).sum(axis=0)
+    np.testing.assert_allclose(taken, expected, rtol=1e-3, atol=1e-3 * np.abs(expected).max())
+    assert np.abs(expected).max() > 0.1
 
 
 def test_a_scene_without_air_has_nothing_of_it():

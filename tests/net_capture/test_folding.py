@@ -10,7 +10,8 @@ from scipy.spatial import cKDTree
 
 from fmu_src.implied import formula
 from fmu_src.instance import Instance
-from fmu_src.net_capture.folding.rolled import CORE, pitch, turned
+from fmu_src.net_capture.folding.rolled import CORE, pitch
+from fmu_src.net_capture.folding.spiral import turned
 from fmu_src.net_capture.folding.zigzag import fold_width, zigzag
 from fmu_src.net_capture.implied import rows
 from fmu_src.net_capture.interface import MODEL, refusals
@@ -21,6 +22,7 @@ SET = {
     "flat": {"net.fold_side": 0.4},
     "accordion": {"canister.width": 0.25, "canister.depth": 0.3},
     "rolled": {"canister.radius": 0.12, "canister.depth": 0.3},
+    "star": {"canister.radius": 0.12, "canister.depth": 0.3},
 }
 NETS = {
     "square": {"net.side": 12.0, "net.mesh": 0.5, "net.segments": 2},
@@ -34,6 +36,7 @@ CASES = [
     ("square", "rolled"),
     ("cone", "rolled"),
     ("led", "accordion"),
+    ("hexagon", "star"),
 ]
 
 
@@ -166,6 +169,8 @@ def starts_of(pattern):
         ("accordion", {"canister.depth": 6.0}, "canister.depth"),
         ("rolled", {"canister.depth": 6.0}, "canister.depth"),
         ("rolled", {"canister.radius": 1.2}, "canister.radius"),
+        ("star", {"canister.depth": 6.0}, "canister.depth"),
+        ("star", {"canister.radius": 1.4}, "canister.radius"),
     ],
 )
 def test_a_canister_that_is_none_is_refused_before_and_by_the_kernel(pattern, change, told):
@@ -180,7 +185,8 @@ def test_a_canister_that_is_none_is_refused_before_and_by_the_kernel(pattern, ch
 
 
 @pytest.mark.parametrize(
-    ("pattern", "expected"), [("accordion", 0.25 * 0.25 * 0.3), ("rolled", math.pi * 0.12 * 0.12 * 0.3)]
+    ("pattern", "expected"),
+    [("accordion", 0.25 * 0.25 * 0.3), *((each, math.pi * 0.12 * 0.12 * 0.3) for each in ("rolled", "star"))],
 )
 def test_what_is_told_of_the_canister(pattern, expected):
     terms = MODEL.interface(FREE | {"folding": pattern}).terms

@@ -353,12 +353,18 @@ law = "none"
     save(tmp_path, [*GRID_NODES, "6,0.5,0,0,"], GRID_THREADS, "diameter [mm]")
     with pytest.raises(InputError, match=r"capture.net.node_file = \"nodes.csv\": line 7: node 6 hangs on nothing"):
         parse(text, "mine", "mine.toml", tmp_path)
+    with pytest.raises(InputError) as alone:  # how many bullets there are, such files do not say
+        parse(text + '[capture.ejection]\ndelay = ["0 s", "1 ms", "0 s"]\n', "mine", "mine.toml", tmp_path)
+    assert "node 6 hangs on nothing" in str(alone.value)
+    assert "ejection" not in str(alone.value)
     (tmp_path / "threads.csv").write_text("from,to,diameter\n1,2,1\n")
     with pytest.raises(InputError, match=r"threads.csv: line 1: diameter has no unit"):
         parse(text, "mine", "mine.toml", tmp_path)
     save(tmp_path, GRID_NODES, GRID_THREADS, "diameter [mm]")
     scene = parse(text, "mine", "mine.toml", tmp_path)
     assert scene.phases[0].main.terms["nodes"] == "5"
+    with pytest.raises(InputError, match=r"capture\.ejection\.delay.*expected a list of 4"):
+        parse(text + '[capture.ejection]\ndelay = ["0 s", "1 ms", "0 s"]\n', "mine", "mine.toml", tmp_path)
     with pytest.raises(InputError, match=r"bullets.number.*3.*must be 4"):
         parse(text + "[capture.bullets]\nnumber = 3\n", "mine", "mine.toml", tmp_path)
 

@@ -2,10 +2,12 @@
 
 import math
 from collections import Counter
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from dcone_cosim.build import net_drawing
 from fmu_src.instance import Instance
 from fmu_src.net_capture.implied import catch_mass, rows, substeps
 from fmu_src.net_capture.interface import MODEL
@@ -119,6 +121,29 @@ def test_a_lead_hangs_on_every_corner(rigged):
     np.testing.assert_allclose(graph.mass[rigged.leads], 970.0 * area * 0.5, rtol=1e-12)
     loads = rigged.laid.planes[MASS] - rigged.laid.mass
     assert loads[graph.bullets].tolist() == pytest.approx([0.5] * 4, rel=1e-12)
+
+
+def test_leads_are_drawn_from_corner_to_bullet(rigged):
+    values = all_values(rigged.shape, rigged.values, *RIGS)
+    lines, rim = net_drawing(values, terms_of(rigged.shape, *RIGS))
+    graph, number = rigged.laid.graph, rigged.laid.number
+    drawn, leads = lines[:-4], lines[-4:]
+    assert [line[0] for line in leads] == number[graph.rim[graph.corners]].tolist()
+    assert [line[-1] for line in leads] == number[graph.bullets].tolist()
+    threads = {tuple(pair) for pair in number[graph.ends[rigged.leads]].tolist()}
+    assert {pair for line in leads for pair in pairwise(line)} == threads
+    assert max(node for line in drawn for node in line) < min(line[1] for line in leads)
+    assert rim[0] == rim[-1]
+
+
+def test_where_bullets_alone_would_have_spread_the_net(rigged):
+    """They start and end beyond the corners of the mouth, by a lead that is folded as the net is."""
+    values = all_values(rigged.shape, rigged.values, *RIGS)
+    (told,) = (row.value for row in rows(values, terms_of(rigged.shape, *RIGS)) if row.key == "shot.opening")
+    folded, bullets = rigged.layer.fold(rigged.laid), rigged.laid.graph.bullets
+    start, end = (np.linalg.norm(at[bullets, :2], axis=1) for at in (folded, rigged.places))
+    assert end.min() > np.linalg.norm(rigged.places[rigged.laid.graph.rim[rigged.laid.graph.corners], :2], axis=1).max()
+    assert told == pytest.approx((end - start).mean() / math.tan(values["bullets.angle"]), rel=1e-12)
 
 
 def test_knots_weigh_and_give_way(rigged):

@@ -204,6 +204,8 @@ def all_values(shape, values):
             marks=pytest.mark.evidence,
         ),
         ("cone", {"net.mesh": 0.1, "net.segments": 2}, "net.mesh", "net.segments", 1536),
+        ("cone", {"net.radius": 3.0, "net.top_radius": 4.0}, "net.top_radius", "net.top_radius", 4.0),
+        ("cone", {"net.radius": 3.0, "net.top_radius": 3.0, "net.floor": 1}, "net.top_radius", "net.top_radius", 3.0),
     ],
 )
 def test_what_makes_no_net_is_refused_before_and_by_the_kernel(shape, change, told, blamed, shown):

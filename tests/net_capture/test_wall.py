@@ -122,6 +122,7 @@ SHOT = {
     "net.segments": 2,
     "canister.width": 0.3,
     "canister.depth": 0.3,
+    "vertex.mass": 1e-3,
     "chaser.mass": 40.0,
     "solver.jitter[1]": 1e-4,
     "shot.roll": 0.3,
@@ -142,15 +143,17 @@ def test_a_net_leaves_in_order_and_all_keeps_its_books():
     within = np.flatnonzero(held > 0.0)
     assert len(within) == net["wall.stowed"] == len(slots) - 4
     energy, spin = net["energy.kinetic"], net.array("angular_momentum").copy()
-    lying = memory[X : X + 3].T - net.array("chaser_position")
-    moved, stowed = set(graph(net).bullets.tolist()), len(within)
+    net.step(0.02)  # the chaser recoils, and takes along all that lies in the canister
+    lying = memory[SHOWN : SHOWN + 3].T - net.array("chaser_position")
+    most, moved, stowed = 0, set(graph(net).bullets.tolist()), len(within)
     while net["wall.stowed"] > 0:
         net.step(0.01)
         assert net.time < 10.0
         assert net["wall.stowed"] <= stowed
         stowed = net["wall.stowed"]
         places = memory[SHOWN : SHOWN + 3].T - net.array("chaser_position")
-        fresh = [i for i in within.tolist() if i not in moved and np.abs(places[i] - lying[i]).max() > 1e-9]
+        fresh = [i for i in within.tolist() if i not in moved and np.abs(places[i] - lying[i]).max() > 1e-5]
+        most = max(most, len(fresh))
         # one look may see several of one thread set out
         while fresh:
             drawn = [i for i in fresh if near[i] & moved]
@@ -160,6 +163,7 @@ def test_a_net_leaves_in_order_and_all_keeps_its_books():
         assert np.abs(net.array("momentum")).max() < 1e-12 * 6.0
         assert np.abs(net.array("angular_momentum") - spin).max() < 1e-12 * 120.0
         assert abs(net["energy.remainder"]) < 0.01 * energy
+    assert most < 0.2 * len(within), "by and by, not at one look"
     assert 0.5 < net["wall.emptied"] <= net.time
     assert (held == 0.0).all()
     assert 0.1 * energy < net["wall.friction_loss"] < energy

@@ -38,6 +38,6 @@ class Checks(NamedTuple):
 
 def foldings() -> dict[str, Any]:
     """Every folding's term, by name."""
-    from fmu_src.net_capture.folding import accordion, flat, rolled
+    from fmu_src.net_capture.folding import accordion, flat, rolled, star
 
-    return {"flat": flat.PART, "accordion": accordion.PART, "rolled": rolled.PART}
+    return {"flat": flat.PART, "accordion": accordion.PART, "rolled": rolled.PART, "star": star.PART}

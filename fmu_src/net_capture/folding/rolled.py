@@ -17,20 +17,17 @@ from typing import Any
 
 from fmu_src.implied import formula
 from fmu_src.interface import Term, fault
-from fmu_src.net_capture.folding import Checks, Folding, Values
+from fmu_src.net_capture.folding import Checks, Folding
+from fmu_src.net_capture.folding.spiral import CANISTER, KEPT, RADIUS, spiral_length, turned, volume
 from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, extremes, fold_width, make_spans, zigzag
 from fmu_src.net_capture.planes import SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
-from fmu_src.rows import positive
 from orbital.kernel import kernel
 
-RADIUS = "canister.radius"
 CORE = 0.25
 """Of the canister's radius."""
 FILLED = 0.9
 """Of the distance of two turns that the layers of the band take."""
-KEPT = 1.0 - 1e-6
-NEWTON_STEPS = 50
 TOO_ROOMY = fault("too_roomy", RADIUS, "the canister is so wide for this net that it would not make a roll of layers")
 
 
@@ -44,30 +41,6 @@ def pitch(radius, length):
     Checked  tests/net_capture/test_folding.py
     """
     return math.pi * (1.0 - CORE * CORE) * radius * radius / length
-
-
-@kernel
-def spiral_length(turned):
-    """Length of the spiral r = phi from its middle to an angle [1]: (phi sqrt(1 + phi^2) + asinh phi) / 2.
-
-    Checked  tests/net_capture/test_folding.py
-    """
-    return 0.5 * (turned * math.sqrt(1.0 + turned * turned) + math.asinh(turned))
-
-
-@kernel
-def turned(length):
-    """The angle up to which that spiral is so long [rad], by Newton's method.
-
-    Checked  tests/net_capture/test_folding.py
-    """
-    angle = math.sqrt(2.0 * length)
-    for _ in range(NEWTON_STEPS):
-        change = (spiral_length(angle) - length) / math.sqrt(1.0 + angle * angle)
-        angle -= change
-        if abs(change) <= 1e-15 * angle:
-            break
-    return angle
 
 
 def make(composition: Any) -> Folding:
@@ -129,17 +102,9 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
         yield Refusal(RADIUS, f"{radius:g} m", expected)
 
 
-def volume(values: Values) -> float:
-    """Of the cylinder [m3]."""
-    return math.pi * values[RADIUS] ** 2 * values[DEPTH]
-
-
 PART = Term(
     "folded to and fro along one axis and rolled up along the other, into a cylindrical canister",
-    (
-        positive(RADIUS, "m", "of the canister", 0.15),
-        positive(DEPTH, "m", "of the canister, along the shot", 0.3),
-    ),
+    CANISTER,
     faults=(TOO_DEEP, TOO_ROOMY),
     make=make,
     checks=Checks(lambda values, net: values[RADIUS], volume),

@@ -26,6 +26,8 @@ class Net(NamedTuple):
     rim_gap(p, n)            from that to the next, as the net is meant [m]
     thread(p)                stiffness [N/m], dashpot [N s/m] of the stiffest piece of thread, and mass of a node
                              between two threads like it [kg]: what the bound of the substep is reckoned from
+    knots(p)                 how many knots there are [1], and knot_slot(p, k), the slot of the k-th, of a net whose
+                             outputs count them in another order than that of their slots; None of all others
     """
 
     count: Any
@@ -33,6 +35,8 @@ class Net(NamedTuple):
     rim_node: Any
     rim_gap: Any
     thread: Any
+    knots: Any = None
+    knot_slot: Any = None
 
 
 class Hanging(NamedTuple):
@@ -86,7 +90,10 @@ class Checks(NamedTuple):
     nodes(values)      with the inner nodes of all threads; 1 where there is no such net             [1]
     drawing(values)    the threads as lines from knot to knot, and the rim, closed: numbers of nodes as the outputs
                        count them
+    turns(values)      the rim's nodes that are corners, by their places in that rim; None: its threads are all as long
     bullets(values)    how many the shape has
+    uneven(values)     the most by which a bullet stands beside the middle of its sector, where as many equal ones as
+                       there are bullets lie round the shot's axis, in halves of a sector                [1]
     sound(values)      whether the others have an answer
     """
 
@@ -104,8 +111,10 @@ class Checks(NamedTuple):
     finest: Callable[[Values], tuple[float, float]]
     nodes: Callable[[Values], int]
     drawing: Callable[[Values], tuple[list[list[int]], list[int]]]
+    turns: Callable[[Values], list[int]] | None = None
     bullets: Callable[[Values], int] = lambda values: USUAL_BULLETS
     sound: Callable[[Values], bool] = lambda values: True
+    uneven: Callable[[Values], float] = lambda values: 0.0
 
 
 def nets() -> dict[str, Any]:

@@ -7,7 +7,7 @@ import math
 from fmu_src.interface import Term
 from fmu_src.net_capture.nets.extremes import extremes
 from fmu_src.net_capture.nets.ring_measures import Profile, make_checks
-from fmu_src.net_capture.nets.rings import ROWS, UNEVEN, make_refuses, make_rings
+from fmu_src.net_capture.nets.rings import NO_NARROWER, ROWS, UNEVEN, make_refuses, make_rings
 from fmu_src.net_capture.nets.weave import TOO_FINE
 from fmu_src.rows import at_least_zero, choice, positive
 from orbital.kernel import kernel
@@ -60,11 +60,13 @@ PART = Term(
     (
         positive("net.radius", "m", "of the mouth", 12.0),
         at_least_zero("net.depth", "m", "from the mouth to the top", 12.0),
-        at_least_zero("net.top_radius", "m", "of the top; 0: the walls meet in a point", 3.0),
+        at_least_zero(
+            "net.top_radius", "m", "of the top, less than that of the mouth; 0: the walls meet in a point", 3.0
+        ),
         choice("net.floor", "what closes the top, where that is no point", FLOORS),
         *ROWS,
     ),
-    faults=(UNEVEN, TOO_FINE),
+    faults=(UNEVEN, NO_NARROWER, TOO_FINE),
     make=lambda composition: make_rings(composition, PROFILE),
     checks=CHECKS,
     refuses=make_refuses(PROFILE),

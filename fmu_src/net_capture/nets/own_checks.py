@@ -95,6 +95,14 @@ def _drawing(values: Values) -> tuple[list[list[int]], list[int]]:
     return graph.ends.tolist(), [*rim, rim[0]]
 
 
+def _uneven(values: Values) -> float:
+    graph = own_graph(values)
+    x, y, _ = graph.places[graph.rim[graph.corners]].T
+    sector = 2.0 * math.pi / len(x)
+    beside = np.unwrap(np.arctan2(y, x)) - sector * np.arange(len(x))
+    return float(np.abs(beside - beside.mean()).max() / (0.5 * sector))
+
+
 CHECKS = Checks(
     corner=_corner,
     widths=lambda values: (own_graph(values).width,) * 2,
@@ -110,8 +118,10 @@ CHECKS = Checks(
     finest=lambda values: (float(own_graph(values).lengths.min()), float(_threads(values)[:, 2].min())),
     nodes=_nodes,
     drawing=_drawing,
+    turns=lambda values: [int(corner) for corner in own_graph(values).corners],
     bullets=lambda values: len(own_graph(values).corners) if sound(values) else USUAL_BULLETS,
     sound=sound,
+    uneven=_uneven,
 )
 
 

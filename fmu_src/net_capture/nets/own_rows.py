@@ -3,14 +3,15 @@
 Threads that follow one another in their file, from and to nodes that go up in step, are a strip, as far as they are
 alike. Nodes that a strip reaches over stand in one row, so a net that is written row by row stands as it would if it
 were one of ours. Where most threads do not follow one another so (they are written node by node, say, or in no order)
-they are sorted first. Where the nodes too are in no order the rows are full, and many strips have one lane.
+they are sorted first. Where the nodes too are in no order they stand along the lines in which threads run on (the
+outputs count them as their file does); in a net without such lines the rows are full, and many strips have one lane.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -24,7 +25,13 @@ Floats = npt.NDArray[np.float64]
 EMPTY = 2.0
 """Slots for each node from which on rows are filled up."""
 DISORDER = 0.5
-"""Strips for each thread from which on the threads are sorted."""
+"""Strips for each thread from which on the threads are sorted, and then the nodes."""
+ORDERLY = 0.2
+"""Strips for each thread with which no better order of the nodes is looked for."""
+NEAR = 0.25
+"""Of a thread's length, by which the nodes of a line lie apart across it."""
+WAYS = 4
+"""Directions of threads along which nodes may stand in lines."""
 
 HALF_WORD = 32
 ROW, COLUMN = 0, 1
@@ -54,20 +61,62 @@ class Rows(NamedTuple):
 @lru_cache(maxsize=16)
 def rows_of(graph: OwnGraph) -> Rows:
     """Rows and strips of a graph."""
-    alike = _alike(graph)
-    ends = graph.ends.tolist()
+    alike, count = _alike(graph), len(graph.names)
+    found, rank = _rows(graph.ends, alike, count), np.arange(count)
+    if len(found.strips) > DISORDER * len(graph.ends):
+        for order in orders_of(graph):
+            other = np.argsort(order)
+            rows = _rows(other[graph.ends], alike, count)
+            if len(rows.strips) < len(found.strips):
+                found, rank = rows, other
+            if len(found.strips) <= ORDERLY * len(graph.ends):
+                break
+    return found._replace(slots=found.slots[rank])
+
+
+def orders_of(graph: OwnGraph) -> Iterator[npt.NDArray[np.int64]]:
+    """Orders in which the nodes may stand in lines of threads: along the ways that most threads run, seen through the
+    mouth, and round the axis and towards it."""
+    places = graph.places[:, :2]
+    ways = places[graph.ends[:, 1]] - places[graph.ends[:, 0]]
+    lengths = np.linalg.norm(ways, axis=1)
+    near = NEAR * float(np.median(lengths))
+    angles = np.degrees(np.arctan2(ways[:, 1], ways[:, 0])) % 180.0
+    number = np.round(angles).astype(np.int64) % 180
+    many = np.bincount(number, minlength=180)
+    for most in np.argsort(-many, kind="stable")[: min(WAYS, np.count_nonzero(many))].tolist():
+        turned = 2.0 * np.radians(angles[number == most])
+        angle = 0.5 * math.atan2(float(np.sin(turned).mean()), float(np.cos(turned).mean()))
+        along = np.array([math.cos(angle), math.sin(angle)])
+        yield _in_lines(places @ along, places @ (along[1], -along[0]), near)
+    radius, bearing = np.linalg.norm(places, axis=1), np.arctan2(places[:, 1], places[:, 0])
+    yield _in_lines(bearing, radius, near)
+    yield _in_lines(radius, bearing, near / float(radius.max()))
+
+
+def _in_lines(along: Floats, across: Floats, near: float) -> npt.NDArray[np.int64]:
+    """Order of nodes line by line; those of a line differ by less than that from one to the next."""
+    order = np.argsort(across, kind="stable")
+    line = np.empty(len(order), dtype=np.int64)
+    line[order] = np.cumsum(np.diff(across[order], prepend=across[order[0]]) > near)
+    return np.lexsort((along, line))
+
+
+def _rows(given: npt.NDArray[np.int64], alike: Sequence[int], count: int) -> Rows:
+    """Rows and strips of so many nodes in their order, with threads between these ends."""
+    ends = given.tolist()
     order: Sequence[int] = range(len(ends))
-    runs = _runs(ends, order, alike, np.zeros((len(graph.names), 2), dtype=np.int64))
+    runs = _runs(ends, order, alike, np.zeros((count, 2), dtype=np.int64))
     if len(runs) <= DISORDER * len(ends):
-        lengths = _row_lengths(len(graph.names), ends, runs)
+        lengths = _row_lengths(count, ends, runs)
     else:
-        upward = np.sort(graph.ends, axis=1)
+        upward = np.sort(given, axis=1)
         ends, order = upward.tolist(), np.lexsort((upward[:, 0], upward[:, 1] - upward[:, 0], np.array(alike))).tolist()
-        lengths = _threaded(len(graph.names), upward)
+        lengths = _threaded(count, upward)
     slots = _slots(lengths)
     longest = int(slots[:, COLUMN].max()) + 1
     if (slots[-1, ROW] + 1) * longest > EMPTY * len(slots):
-        slots = _slots([len(graph.names)])
+        slots = _slots([count])
         longest = int(slots[:, COLUMN].max()) + 1
     found, row, column = [], 0, 0
     for run in _runs(ends, order, alike, slots):

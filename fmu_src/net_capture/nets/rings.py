@@ -38,6 +38,10 @@ from fmu_src.rows import parameter
 from orbital.kernel import kernel
 
 UNEVEN = fault("uneven", "net.meridians", "net.meridians must be a multiple of four, or 0 for as many as the mesh asks")
+RADIUS, TOP = "net.radius", "net.top_radius"
+NO_NARROWER = fault(
+    "no_narrower", TOP, "net.top_radius must be less than net.radius: seen along the shot nodes would hide one another"
+)
 
 _SAID = {
     "net.mesh": "wanted between knots, along rings and inwards: a design choice; the net keeps its mass",
@@ -66,6 +70,7 @@ def make_rings(composition: Any, profile: Profile) -> Net:
     measures = make_measures(kernel, chord, next_every, profile)
     every_of, along_of, inward_of, total = measures.every_of, measures.along_of, measures.inward_of, measures.total
     uneven, too_fine = composition.code(UNEVEN.name), composition.code(TOO_FINE.name)
+    no_narrower = composition.code(NO_NARROWER.name)
 
     @kernel
     def count(p, work):
@@ -82,6 +87,13 @@ def make_rings(composition: Any, profile: Profile) -> Net:
         if max(meridians, rings(p)) * pieces > LARGEST_MESH:
             p.fault_value = max(meridians, rings(p)) * pieces
             return too_fine
+        widest = 0.0
+        for i in range(1, rings(p)):
+            further, _ = ring(p, i)
+            widest = max(widest, further)
+        if widest >= radius:
+            p.fault_value = widest
+            return no_narrower
         p.grid_columns = meridians
         p.grid_rows = rings(p)
         p.grid_split = (meridians + LONGEST_ROW - 1) // LONGEST_ROW
@@ -296,6 +308,12 @@ def make_refuses(profile: Profile) -> Any:
         given, segments = int(values["net.meridians"]), int(values["net.segments"])
         if given % BULLETS:
             yield Refusal("net.meridians", f"{given}", "must be a multiple of four, or 0 for as many as the mesh asks")
+            return
+        if values.get(TOP, 0.0) >= values[RADIUS]:
+            expected = (
+                f"must be less than {RADIUS}, {values[RADIUS]:g} m: seen along the shot nodes would hide one another"
+            )
+            yield Refusal(TOP, f"{values[TOP]:g} m", expected)
             return
         p = record_of(profile, values)
         most = max(p.grid_columns, p.grid_rows)

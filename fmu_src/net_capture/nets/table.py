@@ -230,7 +230,23 @@ def make(composition: Any) -> Net:
         """
         return of_kinds(kinds(p), p.net_youngs_modulus, p.net_density, p.net_damping_ratio, p.net_segments)
 
-    return Net(count, lay_out, rim_node, rim_gap, thread)
+    @kernel
+    def knot_count(p):
+        """Knots of the file [1].
+
+        Checked  tests/net_capture/test_own_order.py
+        """
+        return knots(p).shape[0]
+
+    @kernel
+    def knot_slot(p, k):
+        """Slot of the k-th knot of the file.
+
+        Checked  tests/net_capture/test_own_order.py
+        """
+        return slot(p, knots(p)[k, ROW], knots(p)[k, COLUMN])
+
+    return Net(count, lay_out, rim_node, rim_gap, thread, knot_count, knot_slot)
 
 
 _OF_MATERIAL = ("net.segments", "net.youngs_modulus", "net.density", "net.damping_ratio")

@@ -6,7 +6,8 @@ Each is a group of its own that a scene may leave out, and adds nodes and strips
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 Values = Mapping[str, float]
@@ -36,6 +37,8 @@ class Checks(NamedTuple):
     nodes(values, net)                          it adds [1]
     threads(values, net)                        it adds [1]
     corner(values, net)                         mass [kg] that hangs on a bullet; None: it is that of the net's corner
+    reach(values)                               how far beyond the corner of the mouth bullets are in the open net [m]
+    lines(values, net)                          what it adds to the drawing of the net
     """
 
     rates: Callable[[Values, Any, float, float, float], tuple[float, float]]
@@ -43,6 +46,20 @@ class Checks(NamedTuple):
     nodes: Callable[[Values, Any], int] = lambda values, net: 0
     threads: Callable[[Values, Any], int] = lambda values, net: 0
     corner: Callable[[Values, Any], float] | None = None
+    reach: Callable[[Values], float] = lambda values: 0.0
+    lines: Callable[[Values, Any], list[list[int]]] = lambda values, net: []
+
+
+def at_bullets(net: Any, rigs: Iterable[Checks]) -> Any:
+    """The checks of a net so rigged, with the corners where the bullets are: straight on from the middle."""
+
+    def corner(values: Values) -> tuple[float, float]:
+        x, y = net.corner(values)
+        farther = 1.0 + sum(rig.reach(values) for rig in rigs) / math.hypot(x, y)
+        return farther * x, farther * y
+
+    rigs = list(rigs)
+    return net._replace(corner=corner)
 
 
 def riggings() -> dict[str, Any]:

@@ -163,6 +163,18 @@ def _mass(values: Values, net: Any) -> float:
     return float(net.bullets(values) * values["leads.segments"] * _piece(values)[2])
 
 
+def _lines(values: Values, net: Any) -> list[list[int]]:
+    """From each corner of the mouth to its bullet."""
+    _, rim = net.drawing(values)
+    if net.turns is not None:
+        turns = net.turns(values)
+    else:
+        sides = net.sides(values)
+        turns = [round((len(rim) - 1) * sum(sides[:k]) / sum(sides)) for k in range(len(sides))]
+    pieces, first = int(values["leads.segments"]), net.nodes(values)
+    return [[rim[turn], *range(first + k * pieces, first + (k + 1) * pieces)] for k, turn in enumerate(turns)]
+
+
 PART = Term(
     "bullets on leads of their own, from the corners of the mouth outward",
     (
@@ -193,5 +205,7 @@ PART = Term(
         nodes=lambda values, net: net.bullets(values) * int(values["leads.segments"]),
         threads=lambda values, net: net.bullets(values) * int(values["leads.segments"]),
         corner=lambda values, net: 0.5 * _piece(values)[2],
+        reach=lambda values: float(values["leads.length"]),
+        lines=_lines,
     ),
 )

@@ -21,6 +21,7 @@ class Needs(NamedTuple):
 
     make_rouse(composition)   kernel `rouse(p, work, node)`: called before something other than a thread pulls a node,
                               whose positions in X and velocities in P are those of now afterwards
+    make_rouse_all(composition)   kernel `rouse_all(p, work)`: the same of all nodes
     planes                    node planes of its own, behind NODE_PLANES
     longest_step, accurate_step   kernels (stiffness_rate, damping_rate) -> the longest stable step at a node, and the
                               step that is accurate [s], see `formulas`; `solver.stability_bound`, the default substep
@@ -41,6 +42,7 @@ class Needs(NamedTuple):
     """
 
     make_rouse: Any
+    make_rouse_all: Any
     planes: int
     longest_step: Any = longest_step
     accurate_step: Any = accurate_step

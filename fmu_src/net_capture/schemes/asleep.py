@@ -252,3 +252,23 @@ def make_rouse(composition: Any) -> Any:
         mark(p, own(p, work), row, node, np.uint64(1))
 
     return rouse
+
+
+def make_rouse_all(composition: Any) -> Any:
+    """Kernel `rouse_all(p, work)`, see `schemes.Needs`."""
+    asleep, own, reals_of = make_asleep(composition), composition.memory.own, composition.memory.reals
+    bring, mark = asleep.bring, asleep.mark
+
+    @kernel
+    def rouse_all(p, work):
+        """All rows stand where they are now, and are kicked in this substep.
+
+        Checked  tests/net_capture/test_air.py
+        """
+        pitch = p.row_pitch
+        whole = np.uint64(0xFFFFFFFFFFFFFFFF) >> np.uint64(64 - pitch)
+        for row in range(p.node_slots // pitch):
+            bring(p, reals_of(work), own(p, work), row)
+            mark(p, own(p, work), row, row * pitch, whole)
+
+    return rouse_all

@@ -77,3 +77,13 @@ def make_rouse(composition: Any) -> Any:
         """Every node is where it is now."""
 
     return rouse
+
+
+def make_rouse_all(composition: Any) -> Any:
+    """Kernel `rouse_all(p, work)`: every node is where it is now."""
+
+    @kernel
+    def rouse_all(p, work):
+        """Every node is where it is now."""
+
+    return rouse_all

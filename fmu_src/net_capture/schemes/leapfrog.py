@@ -58,6 +58,7 @@ from fmu_src.net_capture.schemes.asleep import (
     WAKE,
     make_asleep,
     make_rouse,
+    make_rouse_all,
 )
 from fmu_src.net_capture.stepping import LONGEST_SLEEP
 from fmu_src.net_capture.threads import make_threads
@@ -362,5 +363,5 @@ def make(composition: Any) -> Scheme:
 PART = Term(
     "leapfrog with predicted velocities: order 2, dashpots included; rows that nothing pulls are left alone",
     make=make,
-    checks=Needs(make_rouse, 0),
+    checks=Needs(make_rouse, make_rouse_all, 0),
 )

@@ -26,7 +26,7 @@ from fmu_src.net_capture.planes import (
     X,
 )
 from fmu_src.net_capture.schemes import Needs, Scheme
-from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
+from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse, make_rouse_all
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
 
@@ -153,5 +153,5 @@ PART = Term(
     "classical Runge-Kutta of order 4, for the opening: a second opinion, at four evaluations of all forces a substep",
     make=make,
     excludes=("contact", "closing"),
-    checks=Needs(make_rouse, OWN_PLANES, longest_step, accurate_step),
+    checks=Needs(make_rouse, make_rouse_all, OWN_PLANES, longest_step, accurate_step),
 )

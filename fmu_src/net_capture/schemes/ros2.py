@@ -40,7 +40,7 @@ from fmu_src.net_capture.planes import FX, INVERSE_MASS, NODE_PLANES, P, U, X
 from fmu_src.net_capture.schemes import MOST_RATIO, UNBOUNDED, Needs, Scheme, unbounded
 from fmu_src.net_capture.schemes.conjugate import make_solver
 from fmu_src.net_capture.schemes.held import RESIDUAL, SOLUTION, make_held
-from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
+from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse, make_rouse_all
 from fmu_src.net_capture.threads import make_threads
 from fmu_src.rows import count
 from orbital.kernel import kernel
@@ -298,6 +298,7 @@ PART = Term(
     faults=(NOT_SOLVED,),
     checks=Needs(
         make_rouse,
+        make_rouse_all,
         OWN_PLANES,
         longest_step,
         accurate_step,

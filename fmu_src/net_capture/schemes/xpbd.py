@@ -54,7 +54,7 @@ from fmu_src.net_capture.planes import (
 )
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.schemes import MOST_RATIO, UNBOUNDED, Needs, Scheme, unbounded
-from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse
+from fmu_src.net_capture.schemes.in_step import make_in_step, make_rouse, make_rouse_all
 from fmu_src.net_capture.threads import make_threads
 from orbital.kernel import kernel
 
@@ -300,6 +300,7 @@ PART = Term(
     excludes=("contact", "closing"),
     checks=Needs(
         make_rouse,
+        make_rouse_all,
         0,
         longest_step,
         accurate_step,
