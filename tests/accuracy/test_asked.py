@@ -91,6 +91,24 @@ def test_a_scene_says_what_was_chosen_and_what_is_known_of_it() -> None:
 
 
 @pytest.mark.parametrize(
+    ("scene", "settings", "unfit"),
+    [
+        ("lumped-tether", [], "radau"),
+        ("big-panel-wrapped", [], "single"),
+        ("pull-off", ['capture.contact.law="penalty"'], "single"),
+    ],
+)
+def test_nothing_is_chosen_that_a_part_of_the_scene_refuses(scene: str, settings: list[str], unfit: str) -> None:
+    """A line of nodes goes with dop853, bent threads and springs at the surface with 53 bits; the usual is cheaper."""
+    found = load(scene, [*settings, "solver.accuracy=1 %"]).phases[0].chosen
+    usual = load("table2-deorbit" if unfit == "radau" else "failed-missed", ["solver.accuracy=1 %"]).phases[0].chosen
+    assert found is not None
+    assert usual is not None
+    assert unfit in usual.label
+    assert unfit not in found.label
+
+
+@pytest.mark.parametrize(
     ("settings", "said"),
     [
         (["solver.accuracy=1 %", "capture.solver.step_ratio=0.3"], "is chosen by solver.accuracy"),
