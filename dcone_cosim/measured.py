@@ -103,7 +103,7 @@ def _able(model: str, terms: Mapping[str, str], values: Mapping[str, float], fix
         with_it = {**terms, **wanted}
         if build.whole(model, terms) and not build.whole(model, with_it):
             continue
-        if list(catalogue.clashing(with_it)) or list(catalogue.unfit(with_it)):
+        if any(catalogue.clashing(with_it)) or any(catalogue.unfit(with_it)):
             continue
         full = {**build.defaults(catalogue.interface(with_it)), **values}
         if _refused(model, full, with_it, wanted):
