@@ -11,9 +11,12 @@ import pytest
 
 from dcone_cosim.criteria import Evidence
 from dcone_cosim.phases.capture_criteria import criteria as of_capture
+from dcone_cosim.phases.capture_criteria import shot_momentum
 from dcone_cosim.phases.removal_criteria import criteria as of_removal
 from fmu_src.tethered_deorbit.interface import MODEL
+from tests.conftest import FREE
 from tests.plain import PlainInstance, plain
+from tests.stability import COARSE_NET
 from tests.tethered_deorbit import low
 
 __all__ = ["plain"]
@@ -140,3 +143,36 @@ def test_what_gives_energy_goes_through_or_is_of_no_body_is_red(changed: dict[st
     """A dashpot of the wrong sign gives back what it took; a hull fuller than a ball, or turned inside out."""
     asked = {"contact_takes", "through", "hull", "offset"}
     assert red(of_capture, wrapped(**changed), asked) == broken
+
+
+def flown(speeds: list[float], terms: Mapping[str, str], **columns: Any) -> Evidence:
+    """A net whose centre of mass flies along the shot at these shares of the shot's speed, each for a second."""
+    axes = {f"chaser.start_{what}[{i}]": 0.0 for what in ("position", "velocity") for i in (1, 2, 3)}
+    values = {**COARSE_NET, **axes, "chaser.start_position[2]": -20.0, **{f"shot.axis[{i}]": 0.0 for i in (1, 2, 3)}}
+    count = len(speeds)
+    mass = np.full(count, 2.48)
+    velocity = np.array(speeds) * shot_momentum(Evidence({}, values, terms, 0.0)) / mass
+    found: dict[str, Any] = {"time": np.arange(float(count)), "catch.mass": mass}
+    for i in (1, 2, 3):
+        along = velocity if i == 2 else np.zeros(count)
+        found[f"catch.velocity[{i}]"] = along
+        found[f"catch.position[{i}]"] = np.concatenate([[0.0], np.cumsum(along[:-1])]) - 20.0 * (i == 2)
+    found |= {name.replace("__", "."): column for name, column in columns.items()}
+    return Evidence(found, values, terms, float(count - 1))
+
+
+def test_a_net_flies_straight_on_from_its_canister_until_something_pulls() -> None:
+    """At the speed of the shot; from a canister that holds on to it, at that with which it leaves; not while a load
+    pulls, nor on a line that drags."""
+    asked, held = {"flight"}, [0.2, 0.5, 0.8, 0.8, 0.8]
+    assert red(of_capture, flown([1.0] * 5, FREE), asked) == set()
+    assert red(of_capture, flown(held, FREE), asked) == asked
+    wall, stowed = FREE | {"wall": "plain"}, np.array([9, 4, 0, 0, 0])
+    assert red(of_capture, flown(held, wall, wall__stowed=stowed), asked) == set()
+    assert red(of_capture, flown([0.2, 0.5, 0.8, 0.7, 0.8], wall, wall__stowed=stowed), asked) == asked
+    pulled = {f"pull_off__impulse[{i}]": np.array([0.0, 0.0, 0.0, i == 2, i == 2]) for i in (1, 2, 3)}
+    late = flown([1.0, 1.0, 1.0, 0.6, 0.6], FREE, **pulled)
+    assert red(of_capture, late, asked) == set()
+    assert red(of_capture, flown([1.0, 0.6, 0.6, 0.6, 0.6], FREE, **pulled), asked) == asked
+    drags = flown(held, FREE | {"tether": "dragging"})
+    assert "flight" not in {one.key for one in of_capture(drags)}
