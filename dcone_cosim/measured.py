@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -103,9 +103,18 @@ def _able(model: str, terms: Mapping[str, str], values: Mapping[str, float], fix
         with_it = {**terms, **wanted}
         if build.whole(model, terms) and not build.whole(model, with_it):
             continue
-        if list(catalogue.clashing(with_it)):
+        if any(catalogue.clashing(with_it)) or any(catalogue.unfit(with_it)):
             continue
         full = {**build.defaults(catalogue.interface(with_it)), **values}
+        if _refused(model, full, with_it, wanted):
+            continue
         for rung in build.rungs(model, full, with_it):
             if math.isclose(rung.size, entry.size, rel_tol=SAME):
                 yield Choice(entry, rung.values)
+
+
+def _refused(model: str, values: Mapping[str, float], terms: Mapping[str, str], groups: Collection[str]) -> bool:
+    """Whether a part of the scene refuses what is chosen of these groups."""
+    catalogue = build.CATALOGUE[model].groups
+    keys = {f"{catalogue[name].table or name}.{catalogue[name].selector}" for name in groups}
+    return any(one.variable in keys for one in build.cannot_work(model, values, math.inf, terms, True))

@@ -97,19 +97,9 @@ def open_experiments() -> tuple[Open, ...]:
             "Si et al. (2021), one edge closed by a thread through rings",
             "an edge drawn shut on the ground, compared there with a model of rings that slide",
             "the tables of masses, lengths and friction, and the measured course of the edge "
-            "([doi 10.1155/2021/8827141](https://doi.org/10.1155/2021/8827141)); on the ground also weight and drag, "
-            "which the net does not have yet",
+            "([doi 10.1155/2021/8827141](https://doi.org/10.1155/2021/8827141))",
         ),
     )
-
-
-WAITING = (
-    Open(
-        "MoorDyn's pendulum",
-        "a hanging line with mass, swinging, as another program computes it",
-        "a line with nodes: that of the removal has no mass",
-    ),
-)
 
 
 def subject(test: str) -> str:
@@ -215,5 +205,4 @@ def render(stored: Mapping[str, Any]) -> str:
             if part:
                 out += ["", f"### {HEADINGS[level]}: {name.lower()}", "", *table(part)]
     out += ["", "### Open experiments", "", *listed(open_experiments())]
-    out += ["", "## Comparisons that wait for a part of the model", "", *listed(WAITING)]
     return "\n".join(out) + "\n"

@@ -7,7 +7,8 @@ coarse (twice as fine where there is none), a chaotic one several times each, wi
 
 for errors that fall with the first power of the size at least. If that is too much, the next finer setting is tried.
 What one run scatters no setting mends: two standard deviations are added to the error, and are brought down by the
-mean of n runs where the scene allows so many.
+mean of n runs where the scene allows so many. A phase that is not chaotic by nature is run once more from a start a
+micrometre beside its own: where that comes to something else, it is taken for chaotic too.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ RUNS = 3
 """Of a chaotic phase with each of two settings."""
 APART = 1.9
 """Ratio of the sizes of two settings whose difference tells an error."""
+PARTED = 1e-5
+"""Difference [1] from which on a twin has parted: a hundred times what a micrometre is to a line of ten metres."""
 MARGIN = 1.3
 """More runs than the scatter asks for, which is known from few."""
 Make = Callable[[Sequence[Planned], int], list[Sample]]
@@ -128,7 +131,7 @@ class _Attempt:
         self._phase, self._accuracy, self._progress = phase, accuracy, progress
         self._planner = Planner(alone, phase, progress)
         self._ladders = _ladders(self._planner.own)
-        self._made = 0
+        self._made: set[str] = set()
         self._runner = Runner(Memory(), workers, 2 * cores(), measure)
 
     def attained(self) -> tuple[list[str], Attained]:
@@ -137,6 +140,7 @@ class _Attempt:
         if not self._ladders:
             return [], Attained(asked, "as it is", math.nan, "", 0.0, "")
         begun = [ladder.place for ladder in self._ladders]
+        self._planner.chaotic = self._planner.chaotic or self._parts()
         told, runs = self._refined(), 1
         scatter, noisy = max(((s, told.labels.get(k, "")) for k, s in told.scatters.items()), default=(0.0, ""))
         while told.of_mean(told.worst(runs), runs) > asked:
@@ -150,7 +154,19 @@ class _Attempt:
         label, key = "; ".join(ladder.here.label for ladder in self._ladders), told.worst(runs)
         error, what = told.of_mean(key, runs), told.labels[key]
         means = told.means if runs > 1 else {}
-        return changes, Attained(asked, label, error, what, scatter, noisy, runs, means, self._made)
+        return changes, Attained(asked, label, error, what, scatter, noisy, runs, means, len(self._made))
+
+    def _parts(self) -> bool:
+        """Whether a twin that begins a micrometre beside it comes to something else: then a single run is a sample."""
+        here, beside = (_with([change for one in self._ladders for change in one.here.changes], None) for _ in range(2))
+        try:
+            twin = self._planner.twin(beside)
+        except InputError:
+            return False  # nothing to move
+        samples = self._of([here, beside], self._planner.cases(here, 1) | twin)
+        keys = [key for key, about in samples[0].about.items() if self._counts(key, about["meant"])]
+        apart = [error_of(samples[1], samples[0], key)[0] for key in keys]
+        return max((one for one in apart if not math.isnan(one)), default=0.0) > PARTED
 
     def _beyond(self, scatter: float, noisy: str, needed: int) -> str:
         """Why one run, or as many as are allowed, cannot tell it."""
@@ -225,8 +241,12 @@ class _Attempt:
         cases: dict[str, Measured] = {}
         for one in planned:
             cases |= self._planner.cases(one, runs)
+        return self._of(planned, cases)
+
+    def _of(self, planned: Sequence[Planned], cases: Mapping[str, Measured]) -> list[Sample]:
+        """What these cases of some settings come to."""
         self._progress.say(f"{self._phase}: {len(cases)} runs for the estimate of its error")
-        self._made += len(cases)
+        self._made |= cases.keys()
         rows: dict[str, Row] = {row.key: row for row, _ in self._runner.rows(cases.values())}
         samples = [sample_of(one, rows) for one in planned]
         for sample in samples:

@@ -24,6 +24,8 @@ from dcone_cosim.scene_fmus import SceneFmus
 
 INSTANTS = 120
 """At which curves are compared, at most."""
+TWIN = 1
+"""Seed of the start that a twin has."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,14 @@ class Planner:
             found.setdefault(key, Measured(key, scene, changes, {}, number, self._instants))
             planned.keys.append(key)
         return found
+
+    def twin(self, planned: Planned) -> dict[str, Measured]:
+        """A case that begins a micrometre beside; `InputError` for a scene that has nothing to move."""
+        changes = (*self._rest, *planned.setting.changes, *ensemble.jitter(self.base, TWIN))
+        scene = self._alone.scene_of(self._phase, changes, self._without)
+        key = digest(key_of(scene, self._fmus.of(scene), TWIN), self._instants)
+        planned.keys.append(key)
+        return {key: Measured(key, scene, changes, {}, TWIN, self._instants)}
 
     def by_peers(self, notes: list[str]) -> Iterator[tuple[Planned, Measured]]:
         """A case of every peer for each of its tolerances, begun where our FMU begins."""

@@ -124,9 +124,9 @@ def _momentum(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def _is_held_back(evidence: Evidence) -> bool:
-    """Whether something couples net and chaser on the way, or bullets leave otherwise than all alike: a canister that
-    holds on to the net, a tether that drags, bullets with errors of their own, a chaser that turns."""
-    if "wall" in evidence.terms or evidence.terms.get("tether") == "dragging":
+    """Whether something couples net and chaser on the way, or bullets leave otherwise than all alike: a tether that
+    drags, bullets with errors of their own, a chaser that turns."""
+    if evidence.terms.get("tether") == "dragging":
         return True
     own = ("ejection.", "spin.chaser_rate")
     return any(value != 0.0 for name, value in evidence.values.items() if name.startswith(own))
@@ -145,6 +145,7 @@ def _flight(evidence: Evidence) -> Iterator[Criterion]:
 
     With 24 bits a way is rounded once a substep and once more as it is shown, by half the distance of neighbouring
     numbers at most, whatever the signs; what a kick moves a bullet by is far less than such a number.
+    From a canister that holds on to it the net flies on as fast as it leaves.
     """
     values, columns = evidence.values, evidence.columns
     if not _is_free(evidence) or not evidence.has("catch.position", "catch.mass"):
@@ -155,13 +156,23 @@ def _flight(evidence: Evidence) -> Iterator[Criterion]:
     drift = np.array([values[f"chaser.start_velocity[{i}]"] for i in (1, 2, 3)])
     axis = np.array([values[f"shot.axis[{i}]"] for i in (1, 2, 3)])
     axis = axis if axis.any() else -start
-    time, place = columns["time"], evidence.vector("catch.position")
+    time, place, first = columns["time"], evidence.vector("catch.position"), 0
     touched = columns["contact.first_time"] if "contact.first_time" in columns else np.full(len(time), -1.0)
     free = touched < 0.0
+    if evidence.has("pull_off.impulse"):
+        free &= ~evidence.vector("pull_off.impulse").any(axis=1)
     speed = shot_momentum(evidence) / columns["catch.mass"][0]
     velocity = drift + speed * axis / np.linalg.norm(axis)
-    way = np.linalg.norm(place - start - velocity * time[:, None] - (place[0] - start), axis=1)[free]
-    flown = max(float(np.linalg.norm(velocity)) * float(time[free][-1]), 1e-9)
+    if "wall" in evidence.terms:
+        left = np.flatnonzero(free & (columns["wall.stowed"] == 0))
+        if len(left) < 2:
+            return
+        first = int(left[0])
+        velocity = evidence.vector("catch.velocity")[first]
+    since = time - time[first]
+    free &= since >= 0.0
+    way = np.linalg.norm(place - place[first] - velocity * since[:, None], axis=1)[free]
+    flown = max(float(np.linalg.norm(velocity)) * float(since[free][-1]), 1e-9)
     accurate, stable = ROUNDING[evidence.terms.get("precision", "double")]
     if evidence.terms.get("precision") == "single" and evidence.has("solver.substep", "bullet[1].position"):
         substeps = float(time[free][-1]) / float(np.min(columns["solver.substep"]))

@@ -29,6 +29,8 @@ orbit counts as one circle."""
 COARSE = 0.25
 """Radians from row to row up to which trapezoids tell a work [1]: of what goes round once they leave h^2/12, half a
 percent, of what goes round twice two percent; over whole turns nothing."""
+FREE = "none"
+"""The environment without a field."""
 OTHER_WORK = frozenset({"thrust", "air", "third_bodies", "sunlight", "release", "break"})
 """Groups that do work on an orbit, or leave two of one."""
 
@@ -39,6 +41,7 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
     if len(evidence.columns["time"]) < 2:
         return
     yield from _line(evidence)
+    yield from _takes(evidence)
     yield from _orbit(evidence)
     yield from _conducts(evidence)
     if evidence.terms.get("reel") == "locked":
@@ -46,6 +49,7 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
             yield from _longer(evidence)
             yield from _snaps(evidence)
         yield from _jacobi(evidence)
+        yield from _work(evidence)
     elif evidence.has("reel.paid_out", "tether.length", "tether.tension_peak"):
         yield from _longer_than_wound(evidence)
 
@@ -111,6 +115,15 @@ def _line(evidence: Evidence) -> Iterator[Criterion]:
     yield Criterion("impulse", "impulse of the line given back", back, "1", 1e-9, 1e-6)
 
 
+def _takes(evidence: Evidence) -> Iterator[Criterion]:
+    """Dashpots of a line of nodes and friction on a table give nothing back."""
+    for name, label in (("lumped.heat", "the line's dashpots"), ("friction.loss", "friction")):
+        if evidence.has(name):
+            taken = evidence.columns[name]
+            back = rise(-taken) / max(float(np.abs(taken).max()), 1e-300)
+            yield Criterion(f"{name.partition('.')[0]}_takes", f"energy given by {label}", back, "1", 1e-6, 1e-3)
+
+
 def _longer(evidence: Evidence) -> Iterator[Criterion]:
     """No longer than its largest tension stretches it, beside what rounding makes of a length."""
     columns = evidence.columns
@@ -137,10 +150,11 @@ def _longer_than_wound(evidence: Evidence) -> Iterator[Criterion]:
 def _snaps(evidence: Evidence) -> Iterator[Criterion]:
     """The first tugs that are over, against the closed form of a snap, with what other forces add at most.
 
-        |T - T_snap| <= 2 P,   P = m_r (3 (1 + e) mu/r_p^3 l + 2 n_p w + w^2/l) + F m_t/M
+        |T - T_snap| <= 2 P,   P = m_r (3 (1 + e) mu/r_p^3 l + 2 n_p w + w^2/l + 2 mu_f g) + F m_t/M
 
-    r_p, n_p   least radius of the orbit, its rate there         [m], [rad/s]
-    w          speed of the bodies across the line, at most      [m/s]
+    r_p, n_p   least radius of the orbit, its rate there; without a field n_p is zero and the tide too  [m], [rad/s]
+    w          speed of the bodies across the line, at most                                             [m/s]
+    mu_f g     what friction slows each body by, at most; zero without a table                          [m/s2]
 
     The motion is linear while the line is taut, so the tension is that of the snap and that of a force P put on a line
     at rest, m x'' = P - T, which starts at 0 and stays between 0 and 2 P at any damping ratio.
@@ -155,11 +169,9 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
     values = evidence.values
     chaser, target, reduced = _masses(evidence)
     stiffness, zeta = _stiffness(evidence), values["tether.damping_ratio"]
-    axis, eccentricity = EARTH_EQUATORIAL_RADIUS + values["orbit.altitude"], values["orbit.eccentricity"]
-    perigee = axis * (1.0 - eccentricity)
-    rate = math.sqrt((1.0 + eccentricity) * EARTH_MU / perigee**3)
-    across = _across(evidence)
-    steady = reduced * (3.0 * rate**2 * _rest(evidence) + 2.0 * rate * across + across**2 / _rest(evidence))
+    rate, across, rest = _quickest(evidence), _across(evidence), _rest(evidence)
+    slowed = 2.0 * values["friction.coefficient"] * values["friction.gravity"] if "friction" in evidence.terms else 0.0
+    steady = reduced * (3.0 * rate**2 * rest + 2.0 * rate * across + across**2 / rest + slowed)
     steady += abs(force(evidence)) * target / (chaser + target)
     quickness = math.sqrt(stiffness / reduced)
     if quickness < FAST * max(rate, _spin(evidence)):
@@ -180,6 +192,15 @@ def _snaps(evidence: Evidence) -> Iterator[Criterion]:
         worst, compared = max(worst, off), compared + 1
     if compared:
         yield Criterion("snap", "peaks of the first tugs from the closed form", worst, "1", SNAP, SNAP)
+
+
+def _quickest(evidence: Evidence) -> float:
+    """Rate of the orbit at its perigee [rad/s]; 0 without a field."""
+    if evidence.terms.get("environment") == FREE:
+        return 0.0
+    eccentricity = evidence.values["orbit.eccentricity"]
+    perigee = (EARTH_EQUATORIAL_RADIUS + evidence.values["orbit.altitude"]) * (1.0 - eccentricity)
+    return math.sqrt((1.0 + eccentricity) * EARTH_MU / perigee**3)
 
 
 def _spin(evidence: Evidence) -> float:
@@ -285,7 +306,8 @@ def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
     """
     columns, values = evidence.columns, evidence.values
     if (
-        changes(evidence)
+        evidence.terms.get("environment") == FREE
+        or changes(evidence)
         or values["orbit.eccentricity"] > 0.0
         or not evidence.has("energy.relative", "relative.position", "separation", "center.semi_major_axis")
     ):
@@ -305,3 +327,36 @@ def _jacobi(evidence: Evidence) -> Iterator[Criterion]:
     if values["tether.damping_ratio"] == 0.0 or "lumped" in evidence.terms:
         label = "integral of the relative motion below what it was"
         yield Criterion("jacobi_falls", label, rise(-energy), "1", ACCURATE, STABLE)
+
+
+def _work(evidence: Evidence) -> Iterator[Criterion]:
+    """Without a field the pair has no more energy than the work of its thrust less what friction took; and no less
+    where nothing damps.
+
+        W = M V^2/2 + E + Q - F y_c,   E of relative motion and line, Q by friction, y_c of the chaser along the thrust
+
+    In units of all that came in: the energy at the start, and the work. With the heat that a line of nodes tells it
+    stays whatever damps.
+    Source   work of a constant force
+    Checked  tests/stability/test_judge.py
+    """
+    columns, terms = evidence.columns, evidence.terms
+    if terms.get("environment") != FREE or terms.get("thrust", "along_track") != "along_track" or changes(evidence):
+        return
+    if {"release", "break", "aocs"} & terms.keys() or not evidence.has(
+        "energy.relative", "center.velocity", "chaser.position"
+    ):
+        return
+    chaser, target, _ = _masses(evidence)
+    mass = chaser + target + (float(columns["lumped.mass"][0]) if "lumped.mass" in columns else 0.0)
+    energy = columns["energy.relative"] + 0.5 * mass * (evidence.vector("center.velocity") ** 2).sum(axis=1)
+    if "lumped" in terms:
+        energy = energy + columns["lumped.heat"] + columns["lumped.parted_energy"]
+    work = force(evidence) * (columns["chaser.position[2]"] - columns["chaser.position[2]"][0])
+    size = max(float(energy[0]), 0.0) + float(np.abs(work).max())
+    if not size > 0.0:
+        return
+    kept = (energy + (columns["friction.loss"] if "friction" in terms else 0.0) - work) / size
+    yield Criterion("work", "energy of the pair above the work done on it", rise(kept), "1", 1e-3, ACCURATE)
+    if evidence.values["tether.damping_ratio"] == 0.0 or "lumped" in terms:
+        yield Criterion("work_lost", "energy of the pair below the work done on it", rise(-kept), "1", 1e-3, ACCURATE)

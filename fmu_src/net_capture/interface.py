@@ -17,6 +17,7 @@ from fmu_src.net_capture import (
     section,
     shot,
     tether,
+    thrown,
     volume,
     wall,
     wrapping,
@@ -383,6 +384,8 @@ def refusals(terms: Mapping[str, str], values: Mapping[str, float], duration: fl
         if part.refuses is not None:
             found += part.refuses(scene)
     found += _refuses_numbers(scene)
+    if terms.get("tether") == "dragging" and not found:
+        found += thrown.refuses(scene)
     if "target" in terms:
         found += shot.refuses_place(scene)
         if not found:

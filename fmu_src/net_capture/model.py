@@ -127,7 +127,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             before[axis] = p.chaser_drift[axis]
         gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, h)
         if has_wall:
-            wall.rub(p, work)
+            wall.rub(p, work, before)
         if has_ejection:
             ejection.hold(p, work, before)
         for axis in range(3):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term
 from fmu_src.net_capture.nets import nets
 from fmu_src.rows import positive
@@ -30,4 +31,13 @@ PART = Term(
     carries={"net": tuple(name for name in nets() if name != OF_FILES)},
     asked=(positive("section.diameter", "m", "of the net's thread, solid and round", 5e-4, display_unit="mm"),),
     design=net_mass,
+    extremes=tuple(
+        Extreme(
+            f"thread of {1e3 * diameter:g} mm",
+            "from a single filament to a rope: the net's mass follows with the square",
+            "energy_gained",
+            {"section.diameter": diameter},
+        )
+        for diameter in (5e-5, 5e-3)
+    ),
 )

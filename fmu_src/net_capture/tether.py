@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any, NamedTuple
 
+from fmu_src.extremes import Extreme
 from fmu_src.interface import Term, Variable
 from fmu_src.net_capture.planes import FX, SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
@@ -259,4 +260,13 @@ DRAGGING = Term(
     ),
     make=partial(make, drags=True),
     refuses=refuses,
+    extremes=(
+        Extreme("a spool that hardly turns", "the line stops the net", "energy_gained", {"tether.friction": 10.0}),
+        Extreme(
+            "a brake of a kilonewton",
+            "it would throw the vertex back within a substep",
+            "energy_gained",
+            {"tether.brake_force": 1e3, "tether.brake_at": 0.0},
+        ),
+    ),
 )

@@ -10,8 +10,9 @@ off at a depth z takes the work mu p z for each metre, and the tension mu p z. I
 
     J = min(F h, u / (1/m + 1/M)),   the node by -J/m, the chaser by J/M along the relative velocity u
 
-so it comes to rest and never turns round. The chaser takes the impulse at the node's place: what that turns it by is
-booked. Past the muzzle a node is out, and stays so.
+so it comes to rest and never turns round. What that takes is J along the mean of the relative velocities before and
+after a substep, with the pulls in it: nothing of a node that is held against a pull. The chaser takes the impulse at
+the node's place: what that turns it by is booked. Past the muzzle a node is out, and stays so.
 
 Valid    a chaser whose attitude is held. Walls do not guide: a node is braked on its straight way to whoever draws it
 Source   Coulomb friction; ours
@@ -34,6 +35,7 @@ from fmu_src.net_capture.planes import (
     LONGEST_ROW,
     MASS,
     SHOWN,
+    SHOWN_BACK,
     SHOWN_RATE,
     STRIP_NUMBERS,
     STRIP_WORDS,
@@ -60,7 +62,8 @@ class Wall(NamedTuple):
 
     start(p, work)    all that lies behind the muzzle is in
     wake(p, work)     rows of what is in stay awake
-    rub(p, work)      brake it over the substep just taken, and let out what has passed the muzzle
+    rub(p, work, before)    brake it over the substep just taken, from a velocity of the chaser [m/s], and let out what
+                      has passed the muzzle
     show(p, work)     brake what is shown, up to the instant that is shown
     """
 
@@ -122,7 +125,7 @@ def make(composition: Any) -> Wall:
 
     @kernel
     def brake(p, work, node, rate, velocity, duration, turned, place):
-        """Impulse between a node and the chaser over a time, shared between both and booked; what it took [J].
+        """Impulse between a node and the chaser over a time, shared between both and booked; what the node gives [J].
 
         rate        planes of the nodes' velocities
         velocity    of the chaser before                   [m/s]
@@ -130,8 +133,8 @@ def make(composition: Any) -> Wall:
         turned      takes the turn of the chaser           [N m s]
         place       of the node, from the chaser           [m]
 
-        What the chaser has got so far stands in `wall_given` [N s], the change of the node's velocity in `wall_change`
-        [m/s].
+        Velocity of the node before the pulls of this time stands in `wall_before` [m/s], what the chaser has got so far
+        in `wall_given` [N s], the change of the node's velocity in `wall_change` [m/s].
 
         Checked  tests/net_capture/test_wall.py
         """
@@ -153,13 +156,27 @@ def make(composition: Any) -> Wall:
             node_plane(p, work, rate + axis)[node] += change[axis]
             p.wall_given[axis] += going[axis]
         cross(moment, place, going)
+        given = 0.0
         for axis in range(3):
             turned[axis] += moment[axis]
-        return impulse * (speed - 0.5 * impulse * light)
+            after = np.float64(node_plane(p, work, rate + axis)[node])
+            given += 0.5 * going[axis] * (p.wall_before[axis] + after)
+        return given
 
     @kernel
-    def rub(p, work):
+    def taken(p, before, velocity):
+        """What the chaser gets of all that nodes give [J], by its velocity before, without and with its pulls [m/s].
+
+        Checked  tests/net_capture/test_wall.py
+        """
+        given = p.wall_given
+        return 0.5 * (dot(given, before) + dot(given, velocity) + dot(given, given) / p.chaser_mass)
+
+    @kernel
+    def rub(p, work, before):
         """Brake what is in over the substep just taken, whose drift goes with it; and let out what passes the muzzle.
+
+        before    velocity of the chaser before that substep [m/s]
 
         Checked  tests/net_capture/test_wall.py
         """
@@ -172,13 +189,17 @@ def make(composition: Any) -> Wall:
         for node in range(p.node_slots):
             if held[node] > 0.0:
                 for axis in range(3):
-                    before = np.float64(node_plane(p, work, X + axis)[node])
-                    before -= h * np.float64(node_plane(p, work, U + axis)[node])
-                    place[axis] = before - p.chaser_place[axis]
+                    was = np.float64(node_plane(p, work, X + axis)[node])
+                    was -= h * np.float64(node_plane(p, work, U + axis)[node])
+                    place[axis] = was - p.chaser_place[axis]
+                    # predicted is half the last kick beyond
+                    p.wall_before[axis] = 3.0 * np.float64(node_plane(p, work, U + axis)[node])
+                    p.wall_before[axis] -= 2.0 * np.float64(node_plane(p, work, P + axis)[node])
                 p.wall_loss += brake(p, work, node, U, p.chaser_drift, h, p.chaser_turned, place)
                 for axis in range(3):
                     node_plane(p, work, X + axis)[node] += h * p.wall_change[axis]
                     node_plane(p, work, P + axis)[node] += 1.5 * p.wall_change[axis]
+        p.wall_loss -= taken(p, before, p.chaser_drift)
         for axis in range(3):
             p.chaser_drift[axis] += p.wall_given[axis] / p.chaser_mass
         for node in range(p.node_slots):
@@ -209,9 +230,11 @@ def make(composition: Any) -> Wall:
             if held[node] > 0.0:
                 for axis in range(3):
                     place[axis] = np.float64(node_plane(p, work, SHOWN + axis)[node]) - p.chaser_place[axis]
+                    p.wall_before[axis] = np.float64(node_plane(p, work, SHOWN_BACK + axis)[node])
                 half = 0.5 * p.solver_substep
-                taken = brake(p, work, node, SHOWN_RATE, p.chaser_velocity, half, p.chaser_spin, place)
-                p.wall_friction_loss += taken
+                given = brake(p, work, node, SHOWN_RATE, p.chaser_velocity, half, p.chaser_spin, place)
+                p.wall_friction_loss += given
+        p.wall_friction_loss -= taken(p, p.chaser_drift, p.chaser_velocity)
         for axis in range(3):
             p.chaser_velocity[axis] += p.wall_given[axis] / p.chaser_mass
 
@@ -251,6 +274,7 @@ PART = Term(
         *BOOKED,
         state("wall_loss", "J", "the same up to half a substep back"),
         state("wall_going[#]", "m/s", "of a node against the chaser; then the impulse between them", shape=(3,)),
+        state("wall_before[#]", "m/s", "velocity of a node before the pulls of a substep", shape=(3,)),
         state("wall_given[#]", "N.s", "what the chaser takes of all nodes in a substep", shape=(3,)),
         state("wall_change[#]", "m/s", "of the velocity of a node, by friction", shape=(3,)),
         state("wall_moment[#]", "N.m.s", "of that impulse about the chaser", shape=(3,)),

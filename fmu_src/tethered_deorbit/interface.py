@@ -366,7 +366,9 @@ CHASERS = Group(
     {
         "point": Term("a point mass, the line made fast at it"),
         "rigid": Term(
-            "a rigid body that turns, as of the target", (*rigid_body("chaser", (0.0, 1.0, 0.0)), *THRUSTER, *_TURNING)
+            "a rigid body that turns, as of the target",
+            (*rigid_body("chaser", (0.0, 1.0, 0.0)), *THRUSTER, *_TURNING),
+            extremes=stress.CHASER_TURNING,
         ),
     },
     selector="body",

@@ -100,6 +100,7 @@ RELEASE = Group(
                           display_unit="km"),
                 *_RELEASE,
             ),
+            extremes=stress.RELEASE_ALTITUDE,
         ),
         "perigee": Term(
             "the line is cut where the osculating perigee comes down to an altitude, and both bodies fly on",
@@ -108,6 +109,7 @@ RELEASE = Group(
                           NOWHERE, EVERYWHERE, display_unit="km"),
                 *_RELEASE,
             ),
+            extremes=stress.RELEASE_PERIGEE,
         ),
     },
     selector="when",
@@ -222,6 +224,7 @@ PLUME = Group(
                 flag("plume.on_line", "the line of centres lies within the half-angle of the beam"),
             ),
             needs=("thrust",),
+            extremes=stress.PLUME,
         ),
     },
     optional=True,
@@ -336,6 +339,7 @@ LEVELS = Group(
             "every tug is resolved, and a damped line that has come to rest is held where the load has it: its "
             "vibration is stepped over once it has died",
             _SETTLED,
+            extremes=stress.SETTLED,
         ),
         "event_map": Term(
             "free flight from tug to tug, every tug and every vibration in closed form, a rigid dumbbell once that has "

@@ -183,6 +183,7 @@ REELS = Group(
         "linear": Term(
             "a reel that controls tension: T = max(0, T_ff + k_p (l - l_c) + k_d dl/dt)",
             LINEAR,
+            extremes=stress.LINEAR,
         ),
         "regulator": Term(
             "a reel that controls tension by length, angle and their rates: T = max(0, T_ff + T_b + k_p (l - l_c) + "
@@ -192,7 +193,9 @@ REELS = Group(
             asked=asked_rows("the tension, in m_r reel.length n^2"),
             design=_designed,
         ),
-        "commanded": Term("a reel that gives the tension it is told: T = max(0, command)", COMMAND),
+        "commanded": Term(
+            "a reel that gives the tension it is told: T = max(0, command)", COMMAND, extremes=stress.COMMANDED
+        ),
         "constant_tension": Term(
             "a winch that holds a tension: an elastic line wound by a sampled motor with limits",
             (*WOUND, *WINDING, *CONSTANT_TENSION),

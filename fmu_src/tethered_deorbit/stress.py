@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
-from fmu_src.extremes import Extreme, Values
+from fmu_src.extremes import Extreme, Given, Values
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
 
 HOUR, DAY, YEAR = 3600.0, 86400.0, 365.25 * 86400.0
@@ -117,6 +118,21 @@ BRAKE = (
 )  # fmt: skip
 """Of a line that slips."""
 
+LINEAR = (
+    Extreme("gains a thousand times larger", "a reel that is stiff and damped hard", "impulse",
+            {"reel.proportional_gain": 4.0, "reel.derivative_gain": 2000.0}, chief=True),
+    Extreme("gains that let the pair go", "below 3 n^2 m_r the tide pulls harder than the reel", "impulse",
+            {"reel.proportional_gain": 1e-4, "reel.derivative_gain": 0.0}, duration=2.0 * HOUR),
+)  # fmt: skip
+"""Of a law of length and rate."""
+
+COMMANDED = (
+    Extreme("a pull of a micronewton", "hardly there", "impulse", {"reel.tension": 1e-6}, chief=True),
+    Extreme("a pull of 10 kN", "it draws both together within a second", "impulse", {"reel.tension": 1e4},
+            duration=0.5, macro_step=0.1),
+)  # fmt: skip
+"""Of a reel that pulls as it is told."""
+
 AS_TOLD = {"reel.gains": 0}
 """Gains as they are told, also where the scene has them designed."""
 
@@ -151,6 +167,14 @@ TURNING = (
 )  # fmt: skip
 """Of a target that turns."""
 
+CHASER_TURNING = (
+    Extreme("chaser at 60 deg/s", "the line is wound round its point ten times a minute", "longer",
+            {"chaser.start_rate": (0.3, 0.6, 0.8)}, duration=600.0, chief=True),
+    Extreme("chaser of hardly any inertia", "the line turns it at once", "longer",
+            {"chaser.inertia": (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)}, duration=HOUR),
+)  # fmt: skip
+"""Of a chaser that turns."""
+
 APPENDAGE = (
     Extreme("an appendage stopped from 60 deg/s", "what it had becomes spin of the whole", "longer",
             {"appendage.rate": 1.047}, duration=600.0),
@@ -174,9 +198,18 @@ AIR = (
     Extreme("one body as thin as air", "it is blown away from the other", "longer",
             {"orbit.altitude": 400e3, "air.target_area": 1e4}, duration=HOUR),
 )  # fmt: skip
+SLEDS_APART: Mapping[str, Given] = {
+    "start.condition": HANDED_OVER, "tether.rest_length": 2.0, "start.relative_position": (0.0, 1.99, 0.0),
+    "start.relative_velocity": (0.0, 1.0, 0.0), "tether.damping_ratio": 0.0,
+}  # fmt: skip
+"""Two sleds that part at 1 m/s, a centimetre before their line is taut, which damps nothing."""
 FRICTION = (
-    Extreme("friction of rubber", "both stop within the line's slack, and creep", "pushes",
-            {"friction.coefficient": 1.0}, duration=5.0, macro_step=0.1),
+    Extreme("friction of rubber", "a tug, and both stop within a hand's width, and creep", "work",
+            {**SLEDS_APART, "friction.coefficient": 1.0}, duration=2.0, macro_step=0.02, chief=True),
+    Extreme("friction that leaps", "it comes to its full value over a micrometre per second", "work",
+            {**SLEDS_APART, "friction.coefficient": 0.1, "friction.creep": 1e-6}, duration=2.0, macro_step=0.02),
+    Extreme("a table without friction", "what the thrust gives, the pair has", "work",
+            {**SLEDS_APART, "friction.coefficient": 0.0}),
 )  # fmt: skip
 MSIS = (
     Extreme("below the table of the air", "at 95 km, for a moment", "longer",
@@ -223,6 +256,11 @@ ENGINES = (
     Extreme("a chaser that is nearly all tank", "it may lose all but a kilogramme", "longer",
             {"engine.propellant": lambda values: values["chaser.mass"] - 1.0}, duration=HOUR),
 )  # fmt: skip
+PLUME = (
+    Extreme("a beam like a hair", "a milliradian", "orbit", {"plume.half_angle": 1e-3}),
+    Extreme("a target like a wall", "all of the beam meets it, and nothing is left to tow with", "orbit",
+            {"plume.face": 1e3}),
+)  # fmt: skip
 BREAKING = (
     Extreme("a line as weak as a cobweb", "it breaks as soon as it is taut", "pushes",
             {"break.strength": 1e-9, "break.flies_on": True}),
@@ -231,6 +269,20 @@ RELEASE_AT = (
     Extreme("cut as it begins", "a line that is never there", "pushes", {"release.at": 0.0}, duration=HOUR),
     Extreme("cut in the middle of a tug", "what it had stored is gone", "pushes", {"release.at": 1119.5},
             duration=HOUR),
+)  # fmt: skip
+RELEASE_ALTITUDE, RELEASE_PERIGEE = (
+    (
+        Extreme("cut a hundred metres down", "within its first tugs", "pushes",
+                {name: lambda values: values["orbit.altitude"] - 100.0}),
+        Extreme("never cut", "it would be below the ground", "pushes", {name: -1e6}, duration=HOUR),
+    )
+    for name in ("release.altitude", "release.perigee")
+)  # fmt: skip
+SETTLED = (
+    Extreme("a line that settles at once", "ten times critical", "longer", {"tether.damping_ratio": 10.0}),
+    Extreme("a line that never settles", "without damping", "longer", {"tether.damping_ratio": 0.0}),
+    Extreme("a soft line that settles", "as soft as the orbit is quick", "longer",
+            {"tether.youngs_modulus": 1e6, "tether.damping_ratio": 0.5}),
 )  # fmt: skip
 MAPPED = (
     Extreme("tugs that are followed all the same", "a bound that no tug keeps", "longer", {"level.peak_error": 0.0}),

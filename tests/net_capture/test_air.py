@@ -12,6 +12,7 @@ from orbital.kernel import kernel
 from tests.conftest import FREE
 from tests.net_capture.laid import Layer
 from tests.net_capture.memory import graph, planes
+from tests.validation import closed_form
 
 AIR = {**FREE, "gravity": "uniform", "air": "quadratic", "nodes": "169"}
 """Of the scene breadboard-nylon."""
@@ -36,14 +37,18 @@ LIGHT = {
 }
 
 
-def test_a_bullet_alone_slows_as_the_closed_form():
+def test_a_bullet_alone_slows_as_the_closed_form(validated):
     """v0 / (1 + v0 t / L), L = 2 m / (rho C A); one of 1 % more air does not."""
     length = 2.0 * 0.5 / (RHO * 0.47 * math.pi * 0.15**2)
     net = shoot(LIGHT)
+    found, wanted = [], []
     for _ in range(4):
         net.step(0.1)
         expected = SPEED / (1.0 + SPEED * net.time / length)
-        assert net["bullet[1].velocity[2]"] == pytest.approx(expected, rel=2e-6)
+        found.append(net["bullet[1].velocity[2]"])
+        wanted.append(expected)
+    law = closed_form("v0 / (1 + v0 t / L), L = 2 m / (rho C A)")
+    validated(law, "bullet alone in air: speed", found, wanted, "m/s", rel=2e-6)
     assert net["bullet[1].velocity[2]"] < 0.8 * SPEED
     kept = 0.5 * 4 * 0.5 * (SPEED**2 - expected**2)
     assert net["air.dissipated"] == pytest.approx(kept, rel=1e-5)
@@ -69,14 +74,18 @@ def diameter(net):
     return math.sqrt(4.0 * net["net.mass"] / (math.pi * 1440.0 * length))
 
 
-def test_a_spread_net_falls_at_its_terminal_velocity():
+def test_a_spread_net_falls_at_its_terminal_velocity(validated):
     """v = v_t tanh(g t / v_t), v_t2 = pi rho_thread d g / (2 rho C)."""
     net = shoot({**SHEET, "gravity.acceleration[1]": 0.0, "gravity.acceleration[2]": 9.81})
     limit = math.sqrt(math.pi * 1440.0 * diameter(net) * 9.81 / (2.0 * RHO * 1.1))
+    found, wanted = [], []
     for until in (0.2, 0.5, 2.5):
         while net.time < until - 1e-9:
             net.step(0.1)
-        assert net["catch.velocity[2]"] == pytest.approx(limit * math.tanh(9.81 * net.time / limit), rel=1e-4)
+        found.append(net["catch.velocity[2]"])
+        wanted.append(limit * math.tanh(9.81 * net.time / limit))
+    law = closed_form("v_t tanh(g t / v_t), v_t2 = pi rho_thread d g / 2 rho C")
+    validated(law, "spread net that falls in air: speed", found, wanted, "m/s", rel=1e-4)
     assert net["catch.velocity[2]"] == pytest.approx(limit, rel=2e-3)
     assert limit != pytest.approx(math.sqrt(1.01) * net["catch.velocity[2]"], rel=2e-3)
 

@@ -53,3 +53,22 @@ def test_it_goes_with_the_leapfrog():
     values = {n: s for v in variables for n, s in zip(v.element_names(), v.starts(), strict=True)}
     found = refusals({"net": "square", "gravity": "none", "tether": "dragging", "solver": "rk4"}, values, 10.0)
     assert [r.name for r in found] == ["solver.scheme"]
+
+
+def test_what_would_throw_the_vertex_back_is_refused(shoot):
+    """At the bound the energy book stays within 1 % of the shot's 9 J; at twenty times that it is open by all of it."""
+    variables = [v for v in MODEL.interface(RELEASED).variables if v.causality == "parameter"]
+    start = {n: s for v in variables for n, s in zip(v.element_names(), v.starts(), strict=True)}
+    light = COARSE | {"vertex.mass": 0.05}
+    terms = MODEL.interface(RELEASED).terms
+    bounds = []
+    for name in ("tether.friction", "tether.brake_force"):
+        (found,) = refusals(terms, start | light | {name: 1e6}, 10.0)
+        assert found.name == name
+        bounds.append(float(found.expected.split(" at most ")[1].split()[0]))
+    most = bounds[0] - start["tether.brake_force"]
+    assert refusals(terms, start | light | {"tether.friction": 0.99 * most}, 10.0) == []
+    for share, open_by in ((0.99, 0.01), (20.0, 1.0)):
+        net = shoot(light | {"tether.friction": share * most}, RELEASED)
+        net.step(3.0)
+        assert (abs(net["energy.remainder"]) < open_by * 9.0) is (share < 1.0)

@@ -77,6 +77,21 @@ def test_a_node_slides_as_far_as_its_energy_lasts(kernels, validated, friction):
     assert scene.p["contact_friction_loss"] == scene.p["contact_loss"] == pytest.approx(taken, rel=1e-6)
 
 
+@pytest.mark.parametrize("zeta", [1.0, 10.0])
+def test_friction_of_a_blow_takes_and_gives_nothing_back(kernels, zeta):
+    """Aslant on a wall, stopped within few substeps: at no step has the spring along it more than friction put in."""
+    scene = kernels.place(**FACE, contact_damping_ratio=zeta, contact_friction=0.3)
+    scene.put([NODE], [(0.3, 0.1, 2.0 + 4e-5)], [(1.0, 0.0, -1.0)])
+    taken = []
+    for _ in range(100):
+        _, speeds = scene.go(9e-5, 1)
+        taken.append(float(scene.p["contact_friction_loss"]))
+    before, after = 0.5 * NODE * 2.0, 0.5 * NODE * (speeds[-1] ** 2).sum()
+    assert np.diff(taken, prepend=0.0).min() > -1e-3 * before
+    assert float(scene.p["contact_loss"]) == pytest.approx(before - after, rel=0.02)
+    assert taken[-1] > 0.1 * before
+
+
 @pytest.mark.parametrize("friction", [0.1, 0.7, 2.0])
 def test_it_sticks_below_the_angle_of_friction_and_slides_above(kernels, friction):
     pull = 9.81
@@ -213,6 +228,7 @@ TERMS = {"net": "square", "gravity": "none", "target": "box", "contact": "penalt
         ({}, {"contact.damping": 1.0}, "contact.damping", "must come with contact.stiffness"),
         ({}, {"contact.stiffness": 1.0}, "contact.stiffness", "must be at least 112"),
         ({}, {"contact.duration": 1.0}, "contact.duration", "must be at most 0.209"),
+        ({"closing": "winches", "pull_off": "plain"}, {"pull_off.force": 1e5}, "pull_off.force", "must be at most"),
     ],
 )
 def test_what_can_not_work_is_refused(terms, values, name, expected):

@@ -173,6 +173,20 @@ def test_a_net_leaves_in_order_and_all_keeps_its_books():
     assert net["wall.friction_loss"] == taken
 
 
+def test_a_net_that_is_held_fast_takes_nothing():
+    """Packed so hard that none is drawn off: bullets swing on threads that damp nothing, and friction does no work."""
+    net = shoot(SHOT | {"wall.pressing": 1e7, "net.damping_ratio": 0.0})
+    energy, stowed = net["energy.kinetic"], net["wall.stowed"]
+    reached = 0.0
+    for _ in range(60):
+        net.step(0.05)
+        reached = max(reached, net["thread.tension_max"])
+    assert net["wall.stowed"] == stowed
+    assert reached > 10.0
+    assert net["wall.friction_loss"] == pytest.approx(0.0, abs=1e-3 * energy)
+    assert abs(net["energy.remainder"]) < 0.01 * energy
+
+
 def test_without_friction_nothing_is_held():
     """The same shot: what lies in the canister stays behind as the chaser recoils, and nothing is lost there."""
     net = shoot(SHOT | {"wall.friction": 0.0})

@@ -17,6 +17,7 @@ from fmu_src.net_capture.refusal import Scene
 from fmu_src.net_capture.shapes import box, cylinder, frustum, sphere
 from orbital.kernel import kernel
 from tests.net_capture.on_target import Kernels
+from tests.validation import closed_form, other_code
 
 BOX = {"net": "square", "gravity": "none", "target": "box", "contact": "inelastic", "wrap": "plain"}
 SIDES = {"target_size": (4.0, 8.0, 4.0), "target_mass": 1e9}
@@ -87,7 +88,7 @@ def length_of(points):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_a_way_over_an_edge_is_the_shortest(ways, seed):
+def test_a_way_over_an_edge_is_the_shortest(ways, validated, seed):
     """Of all points of that edge, by minimising."""
     draw = np.random.default_rng(seed)
     a = np.array([draw.uniform(1.4, 1.95), draw.uniform(-1.0, 1.0), 2.0 + draw.uniform(0.0, 0.3)])
@@ -98,16 +99,18 @@ def test_a_way_over_an_edge_is_the_shortest(ways, seed):
     if found is None:
         assert not any(np.all(np.abs(a + s * (b - a)) < HALF) for s in np.linspace(0.0, 1.0, 2001)), "it cuts the box"
     else:
-        np.testing.assert_allclose(found, over(shortest.x), atol=1e-6)
+        source = other_code("the shortest by scipy's minimize")
+        validated(source, "thread over an edge of a box: its way", found, over(shortest.x), "m", abs=1e-6)
         assert length_of(found) <= shortest.fun + 1e-12
 
 
-def test_over_two_edges_it_is_straight_on_the_faces_laid_flat(ways):
+def test_over_two_edges_it_is_straight_on_the_faces_laid_flat(ways, validated):
     """From above to below, over a side of 4 m; and over a corner, on the side where the thread lay."""
     found = ways((1.0, -0.3, 2.0), (1.0, 0.9, -2.0))
     ends = math.hypot(HALF[0] - 1.0, INSET)
     assert len(found) == 4
-    assert length_of(found) == pytest.approx(math.hypot(2.0 * (ends + HALF[2]), 1.2), abs=1e-12)
+    flat, what = closed_form("straight on the faces laid flat"), "thread over two edges of a box: length of its way"
+    validated(flat, what, length_of(found), math.hypot(2.0 * (ends + HALF[2]), 1.2), "m", abs=1e-12)
     a, b = np.array([1.0, 3.8, 2.0]), np.array([2.0, 3.5, 1.0])
     one = ways(a, b)
     ways((1.0, 4.0, 1.9), b)
@@ -233,10 +236,11 @@ def momenta(scene):
     return NODE * speeds.sum(axis=0) + held, turning + scene.p["target_spin"]
 
 
-def test_nodes_swing_round_an_edge_and_keep_what_they_have(kernels):
+def test_nodes_swing_round_an_edge_and_keep_what_they_have(kernels, validated):
     """A contact point in the middle of a straight thread would have left them nothing."""
     scene, share, _ = swung(kernels)
-    assert share == pytest.approx(1.0, abs=1e-6)
+    kept = closed_form("what both had: the edge does no work")
+    validated(kept, "two nodes on a thread round an edge: energy over that at the start", share, 1.0, abs=1e-6)
     assert scene.p["wrap_impulse"] > 0.2 * NODE
     # they go round: what fell now comes from both sides
     assert np.linalg.norm(scene.planes[X : X + 3, 0] - scene.planes[X : X + 3, 1]) < 0.9 * LENGTH

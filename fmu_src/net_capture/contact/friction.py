@@ -52,7 +52,11 @@ def make_friction(composition: Any) -> Friction:
     def rub(p, work, node, inverse, since, held, stiffness, dashpot, most):
         """Friction of a node for a substep; its impulse [N s].
 
-            x' = x + t w,   F = -(c_t x' + b_t w),   and mu F_n along it where that is less; then x' = -F / c_t
+            x' = x + t w,   F = -(c_t x' + b_t w),   and mu F_n along it where that is less; then the spring gives way
+
+            c_t x' + b_t (x' - x)/t = -F,   x' = (b_t x - t F)/(c_t t + b_t)
+
+        no faster than its dashpot lets it: at once it would hold energy that nobody has put in.
 
         since         t      on the surface in this substep                    [s]
         held          whether it was there a substep ago, and holds on
@@ -66,6 +70,7 @@ def make_friction(composition: Any) -> Friction:
         Checked  tests/net_capture/test_penalty.py
         """
         normal, slip, along, carried = p.contact_normal, p.contact_slip, p.contact_along, p.contact_carried
+        rested = p.contact_rested
         turn, h = p.target_turn, p.solver_substep
         spring = ALONG * stiffness
         rate = ALONG * dashpot
@@ -77,8 +82,9 @@ def make_friction(composition: Any) -> Friction:
                 for k in range(3):
                     carried[i] += turn[i, k] * node_plane(p, work, first_plane + CARRIED + k)[node]
         relative(p, work, node, 2.0, slip)
-        out = dot(carried, normal) + since * dot(slip, normal)
+        lifted, out = dot(carried, normal), dot(carried, normal) + since * dot(slip, normal)
         for i in range(3):
+            rested[i] = carried[i] - lifted * normal[i]
             carried[i] += since * slip[i] - out * normal[i]
         relative(p, work, node, 1.0, slip)
         out = dot(slip, normal)
@@ -97,7 +103,7 @@ def make_friction(composition: Any) -> Friction:
             middle = dot(slip, along) + 0.5 * h * size * feel
             if slides:
                 for i in range(3):
-                    carried[i] = -along[i] * size / spring
+                    carried[i] = (rate * rested[i] - since * size * along[i]) / (spring * since + rate)
                 taken = before - 0.5 * spring * dot(carried, carried)
             else:
                 taken = -h * spring * (dot(carried, slip) + 0.5 * h * size * feel * dot(carried, along))

@@ -270,7 +270,8 @@ def of_values(
 
 
 def refuses(scene: Scene) -> Iterator[Refusal]:
-    """Another scheme or precision; both of two coefficients; bullets that would go too deep; a muzzle inside."""
+    """Another scheme or precision; both of two coefficients; bullets, or a test load on one node, that would go too
+    deep; a muzzle inside."""
     values = scene.values
     for group, wanted, told in (("solver", SCHEME, "solver.scheme"), ("precision", PRECISION, "solver.precision")):
         if scene.terms[group] != wanted:
@@ -294,6 +295,16 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
             f"of half the target's least dimension, {deepest:.2g} m"
         )
         yield Refusal(name, value, expected)
+    if "pull_off" in scene.terms:
+        node = scene.parts["net"].checks.piece(values)[-1]
+        stiffness = formula(own_stiffness)(values["contact.duration"], values["contact.stiffness"], node)
+        if values["pull_off.force"] > deepest * stiffness:
+            expected = (
+                f"must be at most {deepest * stiffness:.3g} N on springs of {stiffness:.3g} N/m: a node that bore all "
+                f"of it would go {values['pull_off.force'] / stiffness:.2g} m deep, more than a tenth of half the "
+                f"target's least dimension, {deepest:.2g} m; with a shorter contact.duration they are stiffer"
+            )
+            yield Refusal("pull_off.force", f"{values['pull_off.force']:g} N", expected)
     yield from refuses_place(scene)
 
 
@@ -320,6 +331,7 @@ PART = Term(
                 ("slip", "m/s", "velocity of a node relative to the surface, frame axes"),
                 ("along", "1", "direction of the force along the surface, frame axes"),
                 ("carried", "m", "way of a node along the surface from where it holds on, frame axes"),
+                ("rested", "m", "the same before the substep"),
             )
         ),
     ),

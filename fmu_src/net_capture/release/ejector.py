@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from fmu_src.extremes import Extreme, times
 from fmu_src.implied import Implied
 from fmu_src.interface import Term, Undesigned, Variable
 from fmu_src.net_capture.release import pneumatic, springs
@@ -55,11 +56,34 @@ PARTS = {
         "the bullets' speed is that of gas guns: gas, reservoir, valve and barrel",
         asked=(*pneumatic.ROWS, *SCATTER),
         design=_pneumatic,
+        extremes=(
+            Extreme(
+                "a valve like a pinhole",
+                "gas hisses behind bullets that creep: the design's own integration, stiff",
+                "energy_gained",
+                {"ejector.valve_area": 1e-8},
+            ),
+            Extreme(
+                "a valve that opens wholly at once",
+                "pressures that are one",
+                "energy_gained",
+                {"ejector.valve_area": 0.0},
+            ),
+        ),
     ),
     "springs": Term(
         "the bullets' speed is that of springs: stiffness, stroke, and a bound of the impulse",
         asked=(*springs.ROWS, *SCATTER),
         design=_springs,
+        extremes=(
+            Extreme(
+                "springs a thousand times as stiff",
+                "bullets thirty times as fast",
+                "energy_gained",
+                {"ejector.stiffness": times("ejector.stiffness", 1e3), "ejector.most_impulse": 0.0},
+                duration=1.0,
+            ),
+        ),
     ),
 }
 """By the name a scene gives them."""
