@@ -49,7 +49,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
     """Kernels for the composition's target, behind so many whole numbers kept of each thread."""
     hulls, rubs = composition.target.shape.hulls, remember is not None
     bodies_of, planes_of = hulls.bodies, hulls.planes
-    find, stand, straight_of, reckon = lie.find, lie.stand, lie.straight, lie.reckon
+    find, stand, straight_of, reckon, lose = lie.find, lie.stand, lie.straight, lie.reckon, lie.lose
 
     @kernel
     def take(p, body):
@@ -174,7 +174,8 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             place = slot_of(p, words, at, body)
             off = apart(p, body, straight)
             edges = 0
-            if off <= 0.0:
+            lost = False
+            if off <= 0.0 or place >= 0:
                 take(p, body)
                 if place < 0:
                     edges = meet(p, work, a, b, expected, best >= 0)
@@ -182,12 +183,15 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                     edges = recall(p, words, place)
                     if rubs and n < 0:
                         remember(p)
-                    edges = find(p, edges)
+                    edges = find(p, edges if words[place] > 0 else 0)
+                    lost = words[place] > 0 and p.wrap_lost > 0
                 off = p.wrap_clear
             if edges == 0:
                 clear = min(clear, off)
                 if place >= 0:
                     words[place] = 0
+                if lost:
+                    lose(p, expected > length)
                 continue
             clear = 0.0
             last = body
@@ -203,6 +207,8 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                 keep(p, words, place, -1 - body, edges)
                 p.wrap_passed += 1
                 continue
+            if lost and way <= length:
+                lose(p, expected > length)
             keep(p, words, place, 1 + body, edges)
             if n < 0:
                 lean(p, edges)

@@ -26,6 +26,7 @@ class Lie(NamedTuple):
     reckon(p, work, a, b, place, rate, edges)  of its way over so many edges, which is in `wrap_bends`: as `look`
     look(p, work, code, place, rate, edges)    how many edges it bends over; length and rate of its way and of the
                                                straight one [m], [m/s]
+    lose(p, taut)                              count a thread whose way could not go on
     """
 
     find: Any
@@ -34,6 +35,7 @@ class Lie(NamedTuple):
     straight: Any
     reckon: Any
     look: Any
+    lose: Any
 
 
 def make_lie(composition: Any, remember: Any) -> Lie:
@@ -136,4 +138,15 @@ def make_lie(composition: Any, remember: Any) -> Lie:
             return 0, straight_length(p), 0.0, 0.0, 0.0
         return reckon(p, work, a, b, place, rate, edges)
 
-    return Lie(find, ends, stand, straight_length, reckon, look)
+    @kernel
+    def lose(p, taut):
+        """Count a thread of which it is not known any more how it lies.
+
+        Checked  tests/net_capture/test_hooked_threads.py
+        """
+        if taut:
+            p.wrap_passed += 1
+        else:
+            p.wrap_passed_slack += 1
+
+    return Lie(find, ends, stand, straight_length, reckon, look, lose)

@@ -30,6 +30,9 @@ Array = npt.NDArray[np.float64]
 BODY = 6
 """Numbers of a body: where its faces begin, how many it has, middle and radius of a sphere around it [m]."""
 FIRST, NUMBER, MIDDLE, RADIUS = 0, 1, 2, 5
+THIN = 1e-3
+"""Metres by which the faces of a thin round piece may lie within it, half of what ways do. So few that a thread may go
+round all of it over as many edges as a way has."""
 SAGITTA, FLAT = 0.2, 0.009
 """Of a shell's thickness, and of its radius, by which a slab may lie within it at most."""
 STEPS = (0.004, 0.008, 0.016, 0.03, 0.06, 0.12, 0.25)
@@ -52,6 +55,12 @@ def slabs(radius: float, thickness: float, angle: float) -> int:
     """How many slabs a shell is cut into."""
     sagitta = min(SAGITTA * thickness, FLAT * radius)
     return max(2, math.ceil(0.5 * angle / math.acos(1.0 - sagitta / radius)))
+
+
+def faces_round(radius: float) -> int:
+    """How many faces a round piece has round its axis."""
+    most = cylinder.FACES_AROUND
+    return next((n for n in range(8, most, 4) if radius * (1.0 - math.cos(math.pi / n)) <= THIN), most)
 
 
 def _box(half: Array) -> Array:
@@ -96,8 +105,9 @@ def bodies_of(row: Array) -> list[Body]:
         own, every = [(room[:count], none)], []
     else:
         bottom, top, length = (row[1], row[1], row[2]) if kind == of.CYLINDER else row[1:4]
-        count = formula(cylinder.faces_around)(room, bottom, top, -0.5 * length, 0.5 * length)
-        own, every = [(room[:count], none)], list(range(cylinder.FACES_AROUND, count))
+        around = faces_round(max(bottom, top))
+        count = formula(cylinder.faces_around)(room, around, bottom, top, -0.5 * length, 0.5 * length)
+        own, every = [(room[:count], none)], list(range(around, count))
     found = []
     for faces, inside in own:
         moved = np.empty_like(faces)
