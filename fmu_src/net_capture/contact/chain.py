@@ -106,7 +106,8 @@ def make_chain(lay: Any) -> Chain:
     @kernel
     def lengthen(p, edges):
         """Put faces before the first that one end does not see, and after the last that the other does not. Works on
-        `wrap_chain`; how many edges there are then, 0 where no such face joins.
+        `wrap_chain`; how many edges there are then, 0 where no such face joins. Where it is wound over more edges than
+        are kept, its last piece cuts the body, and the way is taken for shorter.
 
         Checked  tests/net_capture/test_wrapping.py
         """
@@ -115,7 +116,7 @@ def make_chain(lay: Any) -> Chain:
             end, other = (p.wrap_a, p.wrap_b) if way == 0 else (p.wrap_b, p.wrap_a)
             while not sees(p, chain[0 if way == 0 else edges], end):
                 if edges == MOST:
-                    return 0
+                    break
                 for i in range(3):
                     point[i] = other[i]
                 if edges > 0:
