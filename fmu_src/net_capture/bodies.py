@@ -174,7 +174,6 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             place = slot_of(p, words, at, body)
             off = apart(p, body, straight)
             edges = 0
-            lost = False
             if off <= 0.0 or place >= 0:
                 take(p, body)
                 if place < 0:
@@ -183,15 +182,15 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                     edges = recall(p, words, place)
                     if rubs and n < 0:
                         remember(p)
-                    edges = find(p, edges if words[place] > 0 else 0)
-                    lost = words[place] > 0 and p.wrap_lost > 0
+                    before = edges
+                    edges = find(p, before if words[place] > 0 else 0)
+                    if words[place] > 0:
+                        lose(p, before, edges, expected > length)
                 off = p.wrap_clear
             if edges == 0:
                 clear = min(clear, off)
                 if place >= 0:
                     words[place] = 0
-                if lost:
-                    lose(p, expected > length)
                 continue
             clear = 0.0
             last = body
@@ -200,6 +199,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             if place < 0:
                 place = slot_of(p, words, at, -1)
                 if place < 0:
+                    p.wrap_passed_slack += 1
                     continue
             _, way, going, _, _ = reckon(p, work, a, b, X, P, edges)
             within = JUMP + (SHARE if bent else SHARE + 2.0) * p.solver_substep * abs(going)
@@ -207,8 +207,6 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                 keep(p, words, place, -1 - body, edges)
                 p.wrap_passed += 1
                 continue
-            if lost and way <= length:
-                lose(p, expected > length)
             keep(p, words, place, 1 + body, edges)
             if n < 0:
                 lean(p, edges)
@@ -223,6 +221,8 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         if last != best:
             take(p, best)
             edges = find(p, edges)
+            if edges == 0:
+                return 0, straight, 0.0, 0.0, 0.0
         return reckon(p, work, a, b, X, P, edges)
 
     @kernel

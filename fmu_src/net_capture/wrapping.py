@@ -38,7 +38,7 @@ from fmu_src.net_capture import bodies
 from fmu_src.net_capture.capstan import WITH_FRICTION, make_capstan
 from fmu_src.net_capture.capstan import rows as friction_rows
 from fmu_src.net_capture.lying import make_lie
-from fmu_src.net_capture.near import BENT, CLEAR, FINE, FREE, JUMP, KEPT, PASSED, SHARE, WAY, make_near
+from fmu_src.net_capture.near import BENT, CLEAR, EDGES, FINE, FREE, JUMP, KEPT, PASSED, SHARE, WAY, make_near
 from fmu_src.net_capture.planes import (
     DAMPING,
     FIRST,
@@ -228,8 +228,9 @@ def make(composition: Any) -> Wrap:
                 known = known and p.wrap_round == words[kept + kept_of_way * p.wrap_numbers]
             else:
                 edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
-                if p.wrap_lost > 0 and (edges == 0 or way <= length):
-                    lose(p, FINE * words[kept + WAY * p.wrap_numbers] > length)
+                if known:
+                    taut = FINE * words[kept + WAY * p.wrap_numbers] > length
+                    lose(p, words[kept + EDGES * p.wrap_numbers], edges, taut)
             follow(p, words, kept, edges, way, going, straight, length, stiffness)
             if words[kept] != BENT or way <= length:
                 if rubs:

@@ -16,6 +16,11 @@ from orbital.vectors import dot
 ABOVE = 1e-9
 """Metres above a face from where it is seen."""
 
+MANY = 4
+"""Edges from which on a way may go round more than half of a body."""
+KEPT, LOST, WOUND = range(3)
+"""Of a way that was known: it went on, could not go on, or goes on over more edges than are kept."""
+
 
 class Chain(NamedTuple):
     """Kernels that work on `wrap_chain`, the faces of a way over so many edges; all but `sees` return how many edges
@@ -48,27 +53,6 @@ def make_chain(lay: Any) -> Chain:
         return dot(plane[0:3], end) - plane[3] + p.wrap_inset > ABOVE
 
     @kernel
-    def trim(p, edges):
-        """Leave out faces before the last one that one end sees, and after the first that the other sees: up to there
-        the way is straight. Works on `wrap_chain`; how many edges are left, 0: one face alone.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        first = 0
-        for j in range(edges, 0, -1):
-            if sees(p, p.wrap_chain[j], p.wrap_a):
-                first = j
-                break
-        last = edges
-        for j in range(first, edges):
-            if sees(p, p.wrap_chain[j], p.wrap_b):
-                last = j
-                break
-        for j in range(first, last + 1):
-            p.wrap_chain[j - first] = p.wrap_chain[j]
-        return last - first
-
-    @kernel
     def lift(p, edges):
         """Leave out the first face while one end sees the next, and the last while the other sees that before: the way
         lifts off the edge between. However far it goes round the body, no farther faces are asked. Works on
@@ -82,6 +66,30 @@ def make_chain(lay: Any) -> Chain:
         last = edges
         while last > first and sees(p, p.wrap_chain[last - 1], p.wrap_b):
             last -= 1
+        for j in range(first, last + 1):
+            p.wrap_chain[j - first] = p.wrap_chain[j]
+        return last - first
+
+    @kernel
+    def trim(p, edges):
+        """Leave out faces before the last one that one end sees, and after the first that the other sees: up to there
+        the way is straight. Of a way that may go round more than half the body these would be farther turns, and faces
+        are left out one after another. Works on `wrap_chain`; how many edges are left, 0: one face alone.
+
+        Checked  tests/net_capture/test_wrapping.py, test_hooked_threads.py
+        """
+        if edges >= MANY:
+            return lift(p, edges)
+        first = 0
+        for j in range(edges, 0, -1):
+            if sees(p, p.wrap_chain[j], p.wrap_a):
+                first = j
+                break
+        last = edges
+        for j in range(first, edges):
+            if sees(p, p.wrap_chain[j], p.wrap_b):
+                last = j
+                break
         for j in range(first, last + 1):
             p.wrap_chain[j - first] = p.wrap_chain[j]
         return last - first
@@ -107,7 +115,7 @@ def make_chain(lay: Any) -> Chain:
     def lengthen(p, edges):
         """Put faces before the first that one end does not see, and after the last that the other does not. Works on
         `wrap_chain`; how many edges there are then, 0 where no such face joins. Where it is wound over more edges than
-        are kept, its last piece cuts the body, and the way is taken for shorter.
+        are kept, its last piece cuts the body, and the way is taken for shorter; then `wrap_lost` is 2.
 
         Checked  tests/net_capture/test_wrapping.py
         """
@@ -116,6 +124,7 @@ def make_chain(lay: Any) -> Chain:
             end, other = (p.wrap_a, p.wrap_b) if way == 0 else (p.wrap_b, p.wrap_a)
             while not sees(p, chain[0 if way == 0 else edges], end):
                 if edges == MOST:
+                    p.wrap_lost = WOUND
                     break
                 for i in range(3):
                     point[i] = other[i]

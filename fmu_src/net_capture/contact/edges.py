@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fmu_src.net_capture.contact.chain import make_chain
+from fmu_src.net_capture.contact.chain import KEPT, LOST, make_chain
 from fmu_src.net_capture.contact.section import MOST, make_section
 from fmu_src.net_capture.contact.shortest import HIGH, LOW, SLOPE, TAU, along, make_shortest
 from orbital.kernel import kernel
@@ -284,12 +284,12 @@ def make_way(leans: bool = False) -> Any:
 
         Where it is known how it lay, it goes on from there though the straight way has left the body, until it has
         lifted off it: what is thin has been crossed by then, and the thread still lies on the other side. Where it can
-        not go on from there it begins anew, or is let go, and `wrap_lost` is 1.
+        not go on from there it begins anew, or is let go; `wrap_lost` tells, see `chain`.
 
         Checked  tests/net_capture/test_wrapping.py, test_hooked_threads.py
         """
         known = edges > 0
-        p.wrap_lost = 0
+        p.wrap_lost = KEPT
         first, last, middle = cut(p)
         if first < 0:
             if not known:
@@ -301,7 +301,7 @@ def make_way(leans: bool = False) -> Any:
             if leans:
                 edges = uncover(p, edges)
             if edges == 0 or not lay_all(p, edges):
-                p.wrap_lost = 1
+                p.wrap_lost = LOST
                 return 0
         elif edges > 0:
             edges = lengthen(p, trim(p, edges))
@@ -309,7 +309,7 @@ def make_way(leans: bool = False) -> Any:
                 edges = uncover(p, edges)
         if first >= 0 and (edges == 0 or not lay_all(p, edges)):
             if known:
-                p.wrap_lost = 1
+                p.wrap_lost = LOST
             if not upright(p, first, last):
                 return 0
             edges = trim(p, over(p, first, last, middle))
@@ -334,7 +334,7 @@ def make_way(leans: bool = False) -> Any:
                 return 0
             if edges < slid:
                 if not lay_all(p, edges) and (leans or first < 0):
-                    p.wrap_lost = 1 if known else 0
+                    p.wrap_lost = LOST if known else KEPT
                     return 0
         note(p, edges)
         if first < 0 and edges == 1 and not presses(p):
