@@ -231,10 +231,10 @@ def _depth(evidence: Evidence) -> Iterator[Criterion]:
 
 
 def _through(evidence: Evidence) -> Iterator[Criterion]:
-    """No taut thread goes through a target round whose edges threads bend."""
-    if evidence.has("wrap.passed"):
-        passed = float(evidence.columns["wrap.passed"][-1])
-        yield Criterion("through", "taut threads that went through the target", passed, "threads", 0.0, 0.0)
+    """No thread goes through a target round whose edges threads bend, as far as is known of slack ones."""
+    if evidence.has("wrap.passed", "wrap.passed_slack"):
+        passed = float(evidence.columns["wrap.passed"][-1] + evidence.columns["wrap.passed_slack"][-1])
+        yield Criterion("through", "threads that went through the target", passed, "threads", 0.0, 0.0)
 
 
 def _hull(evidence: Evidence) -> Iterator[Criterion]:

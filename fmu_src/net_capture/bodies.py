@@ -49,7 +49,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
     """Kernels for the composition's target, behind so many whole numbers kept of each thread."""
     hulls, rubs = composition.target.shape.hulls, remember is not None
     bodies_of, planes_of = hulls.bodies, hulls.planes
-    find, stand, straight_of, reckon = lie.find, lie.stand, lie.straight, lie.reckon
+    find, stand, straight_of, reckon, lose = lie.find, lie.stand, lie.straight, lie.reckon, lie.lose
 
     @kernel
     def take(p, body):
@@ -174,7 +174,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             place = slot_of(p, words, at, body)
             off = apart(p, body, straight)
             edges = 0
-            if off <= 0.0:
+            if off <= 0.0 or place >= 0:
                 take(p, body)
                 if place < 0:
                     edges = meet(p, work, a, b, expected, best >= 0)
@@ -182,7 +182,10 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                     edges = recall(p, words, place)
                     if rubs and n < 0:
                         remember(p)
-                    edges = find(p, edges)
+                    before = edges
+                    edges = find(p, before if words[place] > 0 else 0)
+                    if words[place] > 0:
+                        lose(p, before, edges, expected > length)
                 off = p.wrap_clear
             if edges == 0:
                 clear = min(clear, off)
@@ -196,6 +199,7 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             if place < 0:
                 place = slot_of(p, words, at, -1)
                 if place < 0:
+                    p.wrap_passed_slack += 1
                     continue
             _, way, going, _, _ = reckon(p, work, a, b, X, P, edges)
             within = JUMP + (SHARE if bent else SHARE + 2.0) * p.solver_substep * abs(going)
@@ -217,6 +221,8 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
         if last != best:
             take(p, best)
             edges = find(p, edges)
+            if edges == 0:
+                return 0, straight, 0.0, 0.0, 0.0
         return reckon(p, work, a, b, X, P, edges)
 
     @kernel

@@ -36,15 +36,16 @@ import numpy as np
 from fmu_src.interface import Variable
 from fmu_src.net_capture.contact.friction import FRICTION
 from fmu_src.net_capture.contact.section import MOST
-from fmu_src.net_capture.contact.shortest import along
+from fmu_src.net_capture.contact.shortest import TAU, along
 from fmu_src.net_capture.near import FINE, KEPT
 from fmu_src.rows import at_least_zero, count, peak, state
 from orbital.kernel import kernel
 
-HELD, EXCESS, PARTS, WITH_FRICTION = KEPT, KEPT + 1, KEPT + 2, KEPT + 2 + MOST
+HELD, EXCESS, PARTS = KEPT, KEPT + 1, KEPT + 2
+PLACES, DRAGS, WITH_FRICTION = PARTS + MOST, PARTS + 2 * MOST, PARTS + 3 * MOST
 """Whole numbers kept of a thread behind those that any has: of how many pieces the next are, what it stores beyond what
-it would without friction [pJ], and the unstretched length in each piece but the last,
-`FINE` metres to one."""
+it would without friction [pJ], the unstretched length in each piece but the last and where the way crosses each edge
+[pm], and by how much one side of it pulls more than the other [pN]; `FINE` of a unit to one."""
 SWEEPS = 60
 """Over all edges at most, in each of which length goes over every edge that it slides over."""
 STRAIN = 1e-12
@@ -81,6 +82,7 @@ def rows() -> Iterator[Variable]:
         ("parts", "m", "unstretched length in every piece of a way", MOST + 1),
         ("was", "m", "the same before it slides", MOST + 1),
         ("pulls", "N", "elastic pull of every piece", MOST + 1),
+        ("drags", "N", "by how much one side of an edge pulled more than the other a substep ago", MOST),
         ("grips", "1", "how many times one side of an edge may pull what the other does", MOST),
         ("rates", "m/s", "at which either end of a way lengthens it", 2),
     ):
@@ -156,6 +158,23 @@ def make_capstan() -> Capstan:
             p.wrap_parts[j] = held * p.wrap_pieces[j, 3] / together
 
     @kernel
+    def go_along(p, words, at, edges, before, shift):
+        """As its bends move along their edges, the thread that is held there stays where it is along itself: by so much
+        of it goes over from the piece behind a bend to that before it.
+
+            du = (tau - tau') cos(a),   a the angle of the way to the edge
+
+        Checked  tests/net_capture/test_capstan.py
+        """
+        for j in range(max(0, -shift), min(edges, before - shift)):
+            moved = p.wrap_spans[j, TAU] - FINE * words[at + (PLACES + j + shift) * p.wrap_numbers]
+            over = 0.5 * (along(p, j, j) + along(p, j + 1, j)) * moved
+            over = min(max(over, -0.5 * p.wrap_parts[j]), 0.5 * p.wrap_parts[j + 1])
+            p.wrap_parts[j] += over
+            p.wrap_parts[j + 1] -= over
+            p.wrap_drags[j] = FINE * words[at + (DRAGS + j + shift) * p.wrap_numbers]
+
+    @kernel
     def take_up(p, words, at, edges, way, length, known):
         """Share the thread among the pieces as it was held; whether that is known.
 
@@ -172,6 +191,7 @@ def make_capstan() -> Capstan:
             left -= p.wrap_was[i]
         p.wrap_was[before] = left
         carry(p, edges, before, shift)
+        go_along(p, words, at, edges, before, shift)
         return True
 
     @kernel
@@ -264,6 +284,8 @@ def make_capstan() -> Capstan:
         Checked  tests/net_capture/test_capstan.py
         """
         axial = stiffness * length
+        for j in range(edges):
+            p.wrap_drags[j] = 0.0
         if not take_up(p, words, at, edges, way, length, known):
             let_go(p, words, at)
         for j in range(edges + 1):
@@ -275,12 +297,14 @@ def make_capstan() -> Capstan:
             over += p.wrap_parts[j] - p.wrap_was[j]
             near, far = p.wrap_pulls[j], p.wrap_pulls[j + 1]
             p.wrap_slide += abs(over)
-            p.wrap_friction_loss += (near - far) * (1.0 + 0.5 * (near + far) / axial) * over
+            p.wrap_friction_loss += 0.5 * (near - far + p.wrap_drags[j]) * (1.0 + 0.5 * (near + far) / axial) * over
         excess = now - 0.5 * stiffness * (way - length) * (way - length)
         words[at + EXCESS * p.wrap_numbers] = np.int64(excess / FINE)
         words[at + HELD * p.wrap_numbers] = edges + 1
         for j in range(edges):
             words[at + (PARTS + j) * p.wrap_numbers] = np.int64(p.wrap_parts[j] / FINE + 0.5)
+            words[at + (PLACES + j) * p.wrap_numbers] = np.int64(p.wrap_spans[j, TAU] / FINE)
+            words[at + (DRAGS + j) * p.wrap_numbers] = np.int64((p.wrap_pulls[j] - p.wrap_pulls[j + 1]) / FINE)
 
     @kernel
     def stretch(p, words, at, edges, way, length, stiffness):

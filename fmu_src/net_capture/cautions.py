@@ -13,6 +13,8 @@ from fmu_src.net_capture.interface import GROUPS, TARGETS
 from fmu_src.net_capture.pull_off import PULLED, WAITING
 from fmu_src.net_capture.schemes import Needs
 from fmu_src.net_capture.shapes import Point
+from fmu_src.net_capture.shapes.pieces import SHELL
+from fmu_src.net_capture.shapes.union import PIECES
 from fmu_src.net_capture.wrapping import CONVEX
 
 Values = Mapping[str, float]
@@ -35,9 +37,15 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
     if "wrap" in terms and terms.get("target") == "union":
         yield Caution(
             "wrap.bends",
-            "round a union of several pieces threads may still pass through thin ones, slack threads without being "
-            "counted: look at the picture before trusting what is held",
+            "round a union of several pieces threads may still pass through thin ones, where they lie over several at "
+            "once: wrap.passed and wrap.passed_slack count it; look at the picture before trusting what is held",
         )
+        if any(row[0] == SHELL for row in values[PIECES]):
+            yield Caution(
+                "wrap.bends",
+                "the wall of a shell does not hold threads: they go through where they lie over several of the slabs "
+                "that it is cut into, so nothing that is held there is to be trusted",
+            )
     if values.get("solver.step_ratio", 0.0) > 0.0:
         yield from _long_steps(values, terms)
 
@@ -144,12 +152,14 @@ def _unforeseen(seen: Seen) -> Iterator[Caution]:
 
 
 def _passed(seen: Seen) -> Iterator[Caution]:
-    """Threads that went through the target."""
-    passed = seen("wrap.passed")
-    if passed is not None and passed.last > 0.0:
-        yield Caution(
-            "wrap.passed", f"taut threads went through the target {passed.last:.0f} times: less holds than it seems"
-        )
+    """Threads that went through the target, or may have."""
+    for name, said in (
+        ("wrap.passed", "taut threads went through the target {} times"),
+        ("wrap.passed_slack", "it was lost {} times how a slack thread lies, which may have gone through"),
+    ):
+        passed = seen(name)
+        if passed is not None and passed.last > 0.0:
+            yield Caution(name, f"{said.format(f'{passed.last:.0f}')}: less holds than it seems")
 
 
 def _taken_back(seen: Seen) -> Iterator[Caution]:

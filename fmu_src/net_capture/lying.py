@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from fmu_src.net_capture.contact.chain import KEPT, LOST, WOUND
 from fmu_src.net_capture.contact.edges import make_way
+from fmu_src.net_capture.contact.section import MOST
 from fmu_src.net_capture.planes import STRIP_WORDS, A, B
 from orbital.kernel import kernel
 from orbital.rotations import rotate, rotate_inverse
@@ -26,6 +28,7 @@ class Lie(NamedTuple):
     reckon(p, work, a, b, place, rate, edges)  of its way over so many edges, which is in `wrap_bends`: as `look`
     look(p, work, code, place, rate, edges)    how many edges it bends over; length and rate of its way and of the
                                                straight one [m], [m/s]
+    lose(p, before, edges, taut)               count a thread whose way could not go on, if that was so
     """
 
     find: Any
@@ -34,6 +37,7 @@ class Lie(NamedTuple):
     straight: Any
     reckon: Any
     look: Any
+    lose: Any
 
 
 def make_lie(composition: Any, remember: Any) -> Lie:
@@ -136,4 +140,23 @@ def make_lie(composition: Any, remember: Any) -> Lie:
             return 0, straight_length(p), 0.0, 0.0, 0.0
         return reckon(p, work, a, b, place, rate, edges)
 
-    return Lie(find, ends, stand, straight_length, reckon, look)
+    @kernel
+    def lose(p, before, edges, taut):
+        """Count a thread of which it is not known any more how it lies, or that has come to be wound over more edges
+        than are kept.
+
+        before, edges    over how many it bent, and bends
+        taut             whether it was
+
+        Checked  tests/net_capture/test_hooked_threads.py
+        """
+        if p.wrap_lost == KEPT or (p.wrap_lost == WOUND and before == MOST):
+            return
+        if p.wrap_lost == LOST and edges > 0 and taut:
+            return
+        if taut:
+            p.wrap_passed += 1
+        else:
+            p.wrap_passed_slack += 1
+
+    return Lie(find, ends, stand, straight_length, reckon, look, lose)

@@ -151,7 +151,7 @@ def make_near(composition: Any, kept: int) -> Near:
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        if words[at] == FREE:
+        if words[at] != BENT:
             return 0
         edges = words[at + EDGES * p.wrap_numbers]
         for j in range(edges + 1):

@@ -11,6 +11,11 @@ from fmu_src.rows import count, output, peak, state
 ROWS = (
     count("wrap.threads", "taut threads that bend round an edge now"),
     count("wrap.passed", "how often a taut thread has gone through the target"),
+    count(
+        "wrap.passed_slack",
+        "how often it was lost how a slack thread lies round the target, so that it may be through, or a thread came "
+        "to be wound over more edges than are kept",
+    ),
     count("wrap.slipped", "how often a taut thread has slid over a corner"),
     peak("wrap.slip_loss", "J", "lost by threads that slid over a corner"),
     peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
@@ -21,6 +26,7 @@ ROWS = (
     count("wrap_faces", "faces of the body round which a way goes", "state"),
     count("wrap_body", "which of several that is, counted from 0", "state"),
     count("wrap_round", "round which of several a thread bent a substep ago, counted from 1", "state"),
+    count("wrap_lost", "whether a way went on from where it was known, could not, or is wound too far", "state"),
     count("wrap_leans", "whether a way is sought on the side of wrap_lean", "state"),
     count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
     count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),

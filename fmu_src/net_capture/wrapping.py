@@ -38,7 +38,7 @@ from fmu_src.net_capture import bodies
 from fmu_src.net_capture.capstan import WITH_FRICTION, make_capstan
 from fmu_src.net_capture.capstan import rows as friction_rows
 from fmu_src.net_capture.lying import make_lie
-from fmu_src.net_capture.near import BENT, CLEAR, FINE, FREE, JUMP, KEPT, PASSED, SHARE, WAY, make_near
+from fmu_src.net_capture.near import BENT, CLEAR, EDGES, FINE, FREE, JUMP, KEPT, PASSED, SHARE, WAY, make_near
 from fmu_src.net_capture.planes import (
     DAMPING,
     FIRST,
@@ -108,7 +108,7 @@ def make(composition: Any) -> Wrap:
     words, list_at, list_near, recall, keep = make_near(composition, whole)
     begin, remember, hold, let_go, stretch_held = make_capstan() if rubs else (None,) * 5
     lie = make_lie(composition, remember)
-    ends, look = lie.ends, lie.look
+    ends, look, lose = lie.ends, lie.look, lie.lose
     seek, again = bodies.make_bodies(composition, kept_of_way, lie, remember) if several else (None, None)
 
     @kernel
@@ -121,6 +121,7 @@ def make(composition: Any) -> Wrap:
         p.wrap_next = 0
         p.wrap_threads = 0
         p.wrap_passed = 0
+        p.wrap_passed_slack = 0
         p.wrap_impulse = 0.0
         p.wrap_stored = 0.0
         p.wrap_slipped = 0
@@ -227,6 +228,9 @@ def make(composition: Any) -> Wrap:
                 known = known and p.wrap_round == words[kept + kept_of_way * p.wrap_numbers]
             else:
                 edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
+                if known:
+                    taut = FINE * words[kept + WAY * p.wrap_numbers] > length
+                    lose(p, words[kept + EDGES * p.wrap_numbers], edges, taut)
             follow(p, words, kept, edges, way, going, straight, length, stiffness)
             if words[kept] != BENT or way <= length:
                 if rubs:

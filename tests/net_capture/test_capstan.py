@@ -195,6 +195,31 @@ def test_as_scipy_has_it(kernels, validated):
     assert lost > 0.05
 
 
+def test_the_book_of_thrown_nodes_closes_with_the_square_of_the_substep(kernels):
+    """Threads aslant over an edge, some of them at a corner: their bends wander along it while friction holds them."""
+    draw, left, lost = np.random.default_rng(5), [], 0.0
+    for number in range(16):
+        aside = draw.uniform(-0.3, 0.3, 2) + (3.9 if number % 2 else 0.0)
+        deep = draw.uniform(0.1, 0.5, 2)
+        places = np.array([(2.02, aside[0], 2.0 - deep[0]), (2.0 - deep[1], aside[1], 2.02)])
+        speeds = draw.normal(0.0, 0.7, (2, 3)) - ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+        masses = draw.uniform(0.003, 0.02, 2)
+        length = deep.sum() + 0.06 + 0.5 * abs(aside[0] - aside[1])
+        left.append([])
+        for substep in (6e-5, 3e-5, 1.5e-5):
+            scene = kernels.place(**SIDES | {"wrap_friction": 0.1})
+            scene.put(masses, places, speeds).join(2, length, 13368.0 / length, 0.0).go(substep, round(0.3 / substep))
+            p, now = scene.p, scene.planes[U : U + 3, :2].T
+            losses = p["wrap_friction_loss"] + p["wrap_slip_loss"] + p["contact_loss"]
+            left[-1].append(0.5 * (masses[:, None] * (now**2 - speeds**2)).sum() + losses)
+        lost += p["wrap_friction_loss"]
+    mean = np.abs(left).mean(axis=0)
+    assert lost > 0.01
+    print(mean, np.sum(left, axis=0), lost)
+    assert abs(np.sum(left, axis=0)[1]) < 0.01 * lost
+    assert np.log2(mean[0] / mean[2]) / 2.0 == pytest.approx(2.0, abs=0.3)
+
+
 def test_nodes_on_a_thread_over_a_tumbling_light_body_keep_both_momenta(kernels):
     hung = over_one(kernels, SOFT, target_mass=3.0, target_start_rate=(0.2, 0.1, 0.4))
     hung.planes[U : U + 3, :2] = np.array([(-1.5, 0.2, 0.1), (0.1, 0.4, 0.6)]).T
@@ -233,7 +258,8 @@ def test_a_piece_keeps_what_it_holds_as_edges_come_and_go(chain, lengths, parts)
     """By hand, of a thread of 1 m that lay over faces 5, 1, 3 with 0.3, 0.5 and 0.2 m of it on each."""
     words = np.zeros(WITH_FRICTION, np.int64)
     words[HELD], words[PARTS : PARTS + 2] = 3, np.round(np.array((0.3, 0.5)) / FINE)
-    planes = {"wrap_was": np.zeros(MOST + 1), "wrap_parts": np.zeros(MOST + 1), "wrap_pulls": np.zeros(MOST + 1)}
+    planes = {f"wrap_{name}": np.zeros(MOST + 1) for name in ("was", "parts", "pulls", "drags")}
+    planes |= {"wrap_spans": np.zeros((MOST, 4)), "wrap_edges": np.zeros((MOST, 3))}
     p = SimpleNamespace(wrap_numbers=1, wrap_before=np.array((5, 1, 3)), wrap_chain=np.array(chain), **planes)
     p.wrap_pieces = np.array([(0.0, 0.0, 0.0, length) for length in lengths])
     energy = make_capstan().stretch(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)

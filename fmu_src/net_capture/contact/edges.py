@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fmu_src.net_capture.contact.chain import KEPT, LOST, make_chain
 from fmu_src.net_capture.contact.section import MOST, make_section
 from fmu_src.net_capture.contact.shortest import HIGH, LOW, SLOPE, TAU, along, make_shortest
 from orbital.kernel import kernel
@@ -35,8 +36,6 @@ ALIKE = 1e-8
 """Square of the sine of the angle between faces that have no edge."""
 TOGETHER = 1e-6
 """Metres between two bends that are at one corner."""
-ABOVE = 1e-9
-"""Metres above a face from where it is seen."""
 BEYOND = 1e-4
 """Metres from a corner over which it has slid, where a way begins."""
 
@@ -97,6 +96,9 @@ def make_way(leans: bool = False) -> Any:
         p.wrap_spans[j, LOW] = low
         p.wrap_spans[j, HIGH] = high
         return low <= high + TOGETHER and not beside
+
+    chain = make_chain(lay)
+    sees, trim, lift, lengthen, uncover = chain.sees, chain.trim, chain.lift, chain.lengthen, chain.uncover
 
     @kernel
     def shift(p, edges, j, by):
@@ -242,99 +244,6 @@ def make_way(leans: bool = False) -> Any:
         return 0
 
     @kernel
-    def sees(p, face, end):
-        """Whether an end of the thread is above a face.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        plane = p.wrap_planes[face]
-        return dot(plane[0:3], end) - plane[3] + p.wrap_inset > ABOVE
-
-    @kernel
-    def trim(p, edges):
-        """Leave out faces before the last one that one end sees, and after the first that the other sees: up to there
-        the way is straight. Works on `wrap_chain`; how many edges are left, 0: one face alone.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        first = 0
-        for j in range(edges, 0, -1):
-            if sees(p, p.wrap_chain[j], p.wrap_a):
-                first = j
-                break
-        last = edges
-        for j in range(first, edges):
-            if sees(p, p.wrap_chain[j], p.wrap_b):
-                last = j
-                break
-        for j in range(first, last + 1):
-            p.wrap_chain[j - first] = p.wrap_chain[j]
-        return last - first
-
-    @kernel
-    def come_in(p, end, point):
-        """Face through which the straight line from an end of the thread to a point comes in, -1: none.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        found = -1
-        latest = -1.0
-        for k in range(p.wrap_faces):
-            plane = p.wrap_planes[k]
-            above = dot(plane[0:3], end) - plane[3] + p.wrap_inset
-            there = dot(plane[0:3], point) - plane[3] + p.wrap_inset
-            if above > ABOVE and there < above and above / (above - there) > latest:
-                latest = above / (above - there)
-                found = k
-        return found
-
-    @kernel
-    def lengthen(p, edges):
-        """Put faces before the first that one end does not see, and after the last that the other does not. Works on
-        `wrap_chain`; how many edges there are then, 0 where no such face joins.
-
-        Checked  tests/net_capture/test_wrapping.py
-        """
-        chain, point = p.wrap_chain, p.wrap_up
-        for way in range(2):
-            end, other = (p.wrap_a, p.wrap_b) if way == 0 else (p.wrap_b, p.wrap_a)
-            while not sees(p, chain[0 if way == 0 else edges], end):
-                if edges == MOST:
-                    return 0
-                for i in range(3):
-                    point[i] = other[i]
-                if edges > 0:
-                    near = 0 if way == 0 else edges - 1
-                    if not lay(p, 0, chain[near], chain[near + 1]):
-                        return 0
-                    for i in range(3):
-                        point[i] = p.wrap_feet[0, i] + p.wrap_spans[0, TAU] * p.wrap_edges[0, i]
-                face = come_in(p, end, point)
-                if face < 0:
-                    return 0
-                edges += 1
-                if way == 0:
-                    for j in range(edges, 0, -1):
-                        chain[j] = chain[j - 1]
-                    chain[0] = face
-                else:
-                    chain[edges] = face
-        return edges
-
-    @kernel
-    def uncover(p, edges):
-        """Leave out faces between others that lie in another body. Works on `wrap_chain`; how many edges are left.
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        left = 0
-        for j in range(1, edges + 1):
-            if j == edges or p.wrap_covered[p.wrap_chain[j]] == 0:
-                left += 1
-                p.wrap_chain[left] = p.wrap_chain[j]
-        return left
-
-    @kernel
     def lay_all(p, edges):
         """Lay the edges between the faces of `wrap_chain`; whether there are all.
 
@@ -356,20 +265,51 @@ def make_way(leans: bool = False) -> Any:
             p.wrap_chain[j + 1] = p.wrap_pairs[j, 1]
 
     @kernel
+    def presses(p):
+        """Whether a way over one edge, which a straight one would miss, presses on it: both its pieces together point
+        into the body. Else it has lifted off.
+
+        Checked  tests/net_capture/test_hooked_threads.py
+        """
+        one, other = p.wrap_planes[p.wrap_pairs[0, 0]], p.wrap_planes[p.wrap_pairs[0, 1]]
+        outward = 0.0
+        for i in range(3):
+            outward += (p.wrap_pieces[1, i] - p.wrap_pieces[0, i]) * (one[i] + other[i])
+        return outward < 0.0
+
+    @kernel
     def find(p, edges):
         """How many edges the way bends over, 0: it is straight. Its points are `wrap_bends[0 : edges + 2]`, both ends
         included, its pieces `wrap_pieces[0 : edges + 1]`, direction and length [m]; its faces are in `wrap_chain`.
 
-        Checked  tests/net_capture/test_wrapping.py
+        Where it is known how it lay, it goes on from there though the straight way has left the body, until it has
+        lifted off it: what is thin has been crossed by then, and the thread still lies on the other side. Where it can
+        not go on from there it begins anew, or is let go; `wrap_lost` tells, see `chain`.
+
+        Checked  tests/net_capture/test_wrapping.py, test_hooked_threads.py
         """
+        known = edges > 0
+        p.wrap_lost = KEPT
         first, last, middle = cut(p)
         if first < 0:
-            return 0
-        if edges > 0:
+            if not known:
+                return 0
+            edges = lift(p, edges)
+            if edges == 0 and sees(p, p.wrap_chain[0], p.wrap_a) and sees(p, p.wrap_chain[0], p.wrap_b):
+                return 0
+            edges = lengthen(p, edges)
+            if leans:
+                edges = uncover(p, edges)
+            if edges == 0 or not lay_all(p, edges):
+                p.wrap_lost = LOST
+                return 0
+        elif edges > 0:
             edges = lengthen(p, trim(p, edges))
             if leans:
                 edges = uncover(p, edges)
-        if edges == 0 or not lay_all(p, edges):
+        if first >= 0 and (edges == 0 or not lay_all(p, edges)):
+            if known:
+                p.wrap_lost = LOST
             if not upright(p, first, last):
                 return 0
             edges = trim(p, over(p, first, last, middle))
@@ -389,11 +329,16 @@ def make_way(leans: bool = False) -> Any:
             if slid == 0:
                 break
             note(p, slid)
-            edges = trim(p, slid)
+            edges = trim(p, slid) if first >= 0 else lift(p, slid)
+            if edges == 0 and first < 0:
+                return 0
             if edges < slid:
-                if not lay_all(p, edges) and leans:
+                if not lay_all(p, edges) and (leans or first < 0):
+                    p.wrap_lost = LOST if known else KEPT
                     return 0
         note(p, edges)
+        if first < 0 and edges == 1 and not presses(p):
+            return 0
         return edges
 
     return find

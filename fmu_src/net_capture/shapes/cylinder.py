@@ -68,25 +68,26 @@ def cylinder_distance(normal, point, radius, half_length):
 
 
 @kernel
-def faces_around(out, bottom, top, low, high):
+def faces_around(out, around, bottom, top, low, high):
     """Faces of a prism or pyramid within a cylinder or frustum, edge to edge on its surface, into the rows of `out`,
     see `Shape.faces`; how many.
 
+    around       so many of them round the axis
     bottom, top  radii at its ends, of which one may be 0        [m]
     low, high    the ends on the third axis                      [m]
 
     Checked  tests/net_capture/test_wrapping.py
     """
-    shrunk = math.cos(math.pi / FACES_AROUND)
+    shrunk = math.cos(math.pi / around)
     slope = (bottom - top) * shrunk / (high - low)
     size = math.sqrt(1.0 + slope * slope)
-    for face in range(FACES_AROUND):
-        angle = 2.0 * math.pi * face / FACES_AROUND
+    for face in range(around):
+        angle = 2.0 * math.pi * face / around
         out[face, 0] = math.cos(angle) / size
         out[face, 1] = math.sin(angle) / size
         out[face, 2] = slope / size
         out[face, 3] = (bottom * shrunk + slope * low) / size
-    count = FACES_AROUND
+    count = around
     for end in range(2):
         if (bottom if end == 0 else top) > 0.0:
             out[count, 0] = 0.0
@@ -169,7 +170,7 @@ def faces(p, out):
 
     Checked  tests/net_capture/test_wrapping.py
     """
-    return faces_around(out, p.target_radius, p.target_radius, -p.half_size[2], p.half_size[2])
+    return faces_around(out, FACES_AROUND, p.target_radius, p.target_radius, -p.half_size[2], p.half_size[2])
 
 
 def _half(values: Values) -> list[float]:

@@ -14,7 +14,7 @@ Checked  tests/net_capture/test_union_wrapping.py
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -30,28 +30,43 @@ Array = npt.NDArray[np.float64]
 BODY = 6
 """Numbers of a body: where its faces begin, how many it has, middle and radius of a sphere around it [m]."""
 FIRST, NUMBER, MIDDLE, RADIUS = 0, 1, 2, 5
+COARSE, FEWEST, THIN = 1e-3, 8, 4e-3
+"""Metres by which the faces of a round piece may lie within it, half of what ways do; and by which these few may, of a
+thin one: a thread may be wound round it for two turns then, as far as edges are kept."""
 SAGITTA, FLAT = 0.2, 0.009
 """Of a shell's thickness, and of its radius, by which a slab may lie within it at most."""
 STEPS = (0.004, 0.008, 0.016, 0.03, 0.06, 0.12, 0.25)
 """Metres by which a covered face may be moved out."""
 STAYS = 1.5e-3
 """Metres by which a face moved out may stand out of what covers it, less than what ways lie below the surface."""
-INWARD = 0.02
-"""Share of the way to its middle at which points of a face are looked at."""
+SHARES = (0.02, 0.35, 0.65)
+"""Shares of the way to its middle at which points of a face are looked at, the first of which move it."""
+MOSTLY = 0.5
+"""Share of these outside by which it is not covered: no thread comes to lie over the rest of a covered face."""
 
 
 class Body(NamedTuple):
-    """Faces (n, 4), way out and distance along it, a point inside, and faces that may be moved out; body axes [m]."""
+    """Faces (n, 4), way out and distance along it, a point inside; faces that may be moved out, and of these which lie
+    in a face of the piece; body axes [m]."""
 
     faces: Array
     inside: Array
     movable: npt.NDArray[np.int64]
+    plane: Collection[int]
 
 
 def slabs(radius: float, thickness: float, angle: float) -> int:
     """How many slabs a shell is cut into."""
     sagitta = min(SAGITTA * thickness, FLAT * radius)
     return max(2, math.ceil(0.5 * angle / math.acos(1.0 - sagitta / radius)))
+
+
+def faces_round(radius: float) -> int:
+    """How many faces a round piece has round its axis."""
+    if radius * (1.0 - math.cos(math.pi / FEWEST)) <= THIN:
+        return FEWEST
+    most = cylinder.FACES_AROUND
+    return next((n for n in range(FEWEST, most, 4) if radius * (1.0 - math.cos(math.pi / n)) <= COARSE), most)
 
 
 def _box(half: Array) -> Array:
@@ -96,14 +111,16 @@ def bodies_of(row: Array) -> list[Body]:
         own, every = [(room[:count], none)], []
     else:
         bottom, top, length = (row[1], row[1], row[2]) if kind == of.CYLINDER else row[1:4]
-        count = formula(cylinder.faces_around)(room, bottom, top, -0.5 * length, 0.5 * length)
-        own, every = [(room[:count], none)], list(range(cylinder.FACES_AROUND, count))
+        around = faces_round(max(bottom, top))
+        count = formula(cylinder.faces_around)(room, around, bottom, top, -0.5 * length, 0.5 * length)
+        own, every = [(room[:count], none)], list(range(around, count))
     found = []
     for faces, inside in own:
         moved = np.empty_like(faces)
         moved[:, :3] = faces[:, :3] @ turn.T
         moved[:, 3] = faces[:, 3] + moved[:, :3] @ place
-        found.append(Body(moved, place + turn @ inside, np.array(every, dtype=np.int64)))
+        plane = every[4:] if kind == of.SHELL else every
+        found.append(Body(moved, place + turn @ inside, np.array(every, dtype=np.int64), plane))
     return found
 
 
@@ -115,9 +132,9 @@ def corners_of(faces: Array, inside: Array) -> Array:
     return np.asarray(found[np.isfinite(found).all(axis=1)])
 
 
-def _moved_out(body: Body, distance: Callable[[Array], float]) -> Array:
-    """Faces of a body, those that are covered moved out; `distance(point)` from the union [m]."""
-    faces = body.faces.copy()
+def _moved_out(body: Body, distance: Callable[[Array], float]) -> tuple[Array, Array]:
+    """Faces of a body, those that are covered moved out, and which are; `distance(point)` from the union [m]."""
+    faces, covered = body.faces.copy(), np.zeros(len(body.faces))
     for face in body.movable:
         for step in STEPS:
             moved = faces.copy()
@@ -125,11 +142,14 @@ def _moved_out(body: Body, distance: Callable[[Array], float]) -> Array:
             corners = corners_of(moved, body.inside)
             on = corners[np.abs(corners @ moved[face, :3] - moved[face, 3]) < 1e-7]
             between = 0.5 * (on[:, None] + on[None]).reshape(-1, 3)
-            between += INWARD * (on.mean(axis=0) - between)
-            if any(distance(point) > STAYS for point in between):
+            within = [between + share * (on.mean(axis=0) - between) for share in SHARES]
+            out = [np.array([distance(point) > STAYS for point in points]) for points in within]
+            if face in body.plane and step == STEPS[0] and np.mean(out) < MOSTLY:
+                covered[face] = 1.0
+            if out[0].any():
                 break
-            faces = moved
-    return faces
+            faces, covered[face] = moved, 1.0
+    return faces, covered
 
 
 def bodies_and_planes(rows: Array, distance: Callable[[Array], float]) -> tuple[Array, Array]:
@@ -142,10 +162,10 @@ def bodies_and_planes(rows: Array, distance: Callable[[Array], float]) -> tuple[
     bodies: list[list[float]] = []
     planes: list[Array] = []
     for body in (body for row in rows for body in bodies_of(row)):
-        faces = _moved_out(body, distance)
+        faces, covered = _moved_out(body, distance)
         corners = corners_of(faces, body.inside)
         middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         radius = np.linalg.norm(corners - middle, axis=1).max()
         bodies.append([float(sum(len(each) for each in planes)), float(len(faces)), *middle, radius])
-        planes.append(np.column_stack([faces, faces[:, 3] > body.faces[:, 3]]))
+        planes.append(np.column_stack([faces, covered]))
     return np.array(bodies), np.vstack(planes)
