@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim import build
+from dcone_cosim import build, pulled
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.criteria import Criterion, Evidence
-from dcone_cosim.errors import HANDOFF_FAILED, FmuError, Interrupted
+from dcone_cosim.errors import HANDOFF_FAILED, FmuError, HandoffError, Interrupted
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
@@ -32,6 +32,7 @@ from dcone_cosim.phases import (
     expended,
     hastened,
     passive,
+    pulled_net,
     recoil,
     removal_criteria,
     removal_quantities,
@@ -246,6 +247,7 @@ class Removal(Tow):
     handoff_keys: Mapping[str, Expected] = {
         "point_tolerance": Expected("1", example="1 %", minimum=0.0, share=True),
         "compare_without_recoil": Expected("1", kind="Boolean"),
+        "measure_net": Expected("1", kind="Boolean"),
     }
     handoff_gone: Mapping[str, str] = {
         "spin_tolerance": "is gone: point_tolerance bounds what a point changes of the first tug, its spin and all, "
@@ -258,6 +260,7 @@ class Removal(Tow):
     def faults(self, document: Document) -> Iterator[Mistake]:
         """The same, and orbits on which capture and removal do not fit together."""
         yield from super().faults(document)
+        yield from pulled_net.faults(document, self.name)
         if not document.before(self.name):
             return
         orbit = document.tables.get(SHARED)
@@ -340,6 +343,7 @@ class Removal(Tow):
         start = capture.origin + capture.located
         earlier = since_first_shot(run, stage.before.name)
         record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line, earlier)
+        record.net = _net(run, left)
         run.handovers[self.name] = record
         held = run.parameters[stage.before.name]
         main = stage.before.main
@@ -349,6 +353,13 @@ class Removal(Tow):
         check_before(record, run.scene.handoff, build.towed_surface(main.terms.get(GROUP, "")))
         self.foresee(stage)
         return record
+
+    def probe(self, stage: Stage, component: Steppable, result: PhaseResult) -> dict[str, float]:
+        """By how much the captured net gives, if that is wanted."""
+        if not stage.run.scene.handoff.measure_net:
+            return {}
+        assert result.located is not None, "it has handed over"
+        return pulled.pull(component, result.origin + result.located, stage.phase.macro_step).left()
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """The same removal with the shot's momentum left out: what the recoil changes."""
@@ -365,6 +376,16 @@ class Removal(Tow):
 
     def handover_spreads(self) -> Mapping[str, float]:
         return chaos.HAND_OFF
+
+
+def _net(run: RunResult, left: Mapping[str, float]) -> pulled.Pulled | None:
+    """By how much the net gives, as the capture has left it; `HandoffError` where it left it out."""
+    found = pulled.Pulled.of(left)
+    if not run.scene.handoff.measure_net:
+        return None
+    if found is None:
+        raise HandoffError("hand-off refused: handoff.measure_net is set, and this capture ended without; run it again")
+    return found
 
 
 def _with(phase: PhaseScene, name: str, value: float | None) -> PhaseScene:

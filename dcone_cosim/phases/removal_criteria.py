@@ -89,7 +89,8 @@ def _masses(evidence: Evidence) -> tuple[float, float, float]:
 
 def _stiffness(evidence: Evidence) -> float:
     values = evidence.values
-    return line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], _rest(evidence))
+    line = line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], _rest(evidence))
+    return line / (1.0 + line * values.get("net.compliance", 0.0))
 
 
 def _rest(evidence: Evidence) -> float:
