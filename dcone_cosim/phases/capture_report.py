@@ -70,7 +70,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     yield from _of_hardest(last, result)
     yield from _of_catch(last, result)
     yield from _of_approach(result)
-    yield from closed_report.findings(result.name, last)
+    yield from closed_report.findings(result.name, last, run.left.get(result.name, ()))
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))

@@ -13,7 +13,7 @@ import numpy as np
 from dcone_cosim import build, pulled
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.criteria import Criterion, Evidence
-from dcone_cosim.errors import HANDOFF_FAILED, FmuError, HandoffError, Interrupted
+from dcone_cosim.errors import HANDOFF_FAILED, FmuError, Interrupted
 from dcone_cosim.events import Event
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
@@ -197,6 +197,8 @@ class Tow(Phase):
         reach = None if record is None else record.reach
         yield from removal_report.meeting(self.name, result, reach)
         yield from removal_report.unsafe(run, self.name, result, reach)
+        if isinstance(record, HandoffRecord) and result.tugs is not None and 1 in result.tugs.rows:
+            yield from pulled.warnings(self.name, record.net, result.tugs.rows[1][1])
 
     def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
         """The orbit of both bodies, and the tension of the line."""
@@ -247,7 +249,7 @@ class Removal(Tow):
     handoff_keys: Mapping[str, Expected] = {
         "point_tolerance": Expected("1", example="1 %", minimum=0.0, share=True),
         "compare_without_recoil": Expected("1", kind="Boolean"),
-        "measure_net": Expected("1", kind="Boolean"),
+        pulled.KEY: Expected("1", choices=pulled.HOW),
     }
     handoff_gone: Mapping[str, str] = {
         "spin_tolerance": "is gone: point_tolerance bounds what a point changes of the first tug, its spin and all, "
@@ -343,8 +345,8 @@ class Removal(Tow):
         start = capture.origin + capture.located
         earlier = since_first_shot(run, stage.before.name)
         record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line, earlier)
-        record.net = _net(run, left)
         run.handovers[self.name] = record
+        record.net = pulled.Pulled.of(left, run.scene.handoff.net_compliance)
         held = run.parameters[stage.before.name]
         main = stage.before.main
         record.shape = {name: held[name] for name in SHAPE if name in held}
@@ -356,7 +358,7 @@ class Removal(Tow):
 
     def probe(self, stage: Stage, component: Steppable, result: PhaseResult) -> dict[str, float]:
         """By how much the captured net gives, if that is wanted."""
-        if not stage.run.scene.handoff.measure_net:
+        if stage.run.scene.handoff.net_compliance == pulled.GIVEN:
             return {}
         assert result.located is not None, "it has handed over"
         return pulled.pull(component, result.origin + result.located, stage.phase.macro_step).left()
@@ -376,16 +378,6 @@ class Removal(Tow):
 
     def handover_spreads(self) -> Mapping[str, float]:
         return chaos.HAND_OFF
-
-
-def _net(run: RunResult, left: Mapping[str, float]) -> pulled.Pulled | None:
-    """By how much the net gives, as the capture has left it; `HandoffError` where it left it out."""
-    found = pulled.Pulled.of(left)
-    if not run.scene.handoff.measure_net:
-        return None
-    if found is None:
-        raise HandoffError("hand-off refused: handoff.measure_net is set, and this capture ended without; run it again")
-    return found
 
 
 def _with(phase: PhaseScene, name: str, value: float | None) -> PhaseScene:
