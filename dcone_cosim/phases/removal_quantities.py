@@ -66,4 +66,6 @@ def quantities(result: PhaseResult, instants: Sequence[float]) -> Iterator[Quant
         yield Quantity("paid_out", "line paid out over time", told.tolist(), "m", size, "its largest", False)
     if "friction.loss" in recorder and (lost := float(recorder["friction.loss"][-1])) > 0.0:
         told = at(recorder, "friction.loss", instants)
-        yield Quantity("friction_loss", "what friction has taken over time", told.tolist(), "J", lost, "all of it", False)
+        yield Quantity(
+            "friction_loss", "what friction has taken over time", told.tolist(), "J", lost, "all of it", False
+        )

@@ -9,6 +9,7 @@ import pytest
 from dcone_cosim.errors import HANDOFF_FAILED, SUCCESS, HandoffError, InputError
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
+from dcone_cosim.phases.second_tow import GIVES, SecondTow, TowHandover
 from dcone_cosim.progress import Progress
 from dcone_cosim.pulled import COMPLIANCE, Pulled, pull, warnings
 from dcone_cosim.reports import summary
@@ -132,6 +133,21 @@ def test_a_first_tug_far_from_the_load_is_warned_of() -> None:
     for peak in (4.9, 20.1):
         (said,) = warnings("removal", net, peak)
         assert "measured at 10 N" in said
+
+
+def test_a_second_tow_has_the_same_net() -> None:
+    """What the first gives is handed on; a net in one tow alone, or of another compliance, is a mistake."""
+    gives = "removal.net.compliance=5 mm/N"
+    for own, said in ((), "holds the target in both tows"), (("second_tow.net.compliance=1 mm/N",), "is set by the"):
+        with pytest.raises(InputError) as stop:
+            load("two-tows", (gives, *own))
+        assert said in str(stop.value)
+    scene = load("two-tows", (gives, "second_tow.net={}"))
+    tow = scene.phases[1]
+    assert GIVES in SecondTow.takes_too
+    left = {name: 1.0 for name in (*SecondTow.takes, GIVES)} | {"center.position[3]": 7e6}
+    record = TowHandover(0.0, 0.0, tow, left | {GIVES: 5e-3}, None)
+    assert record.parameters(NetRemoval())[GIVES] == 5e-3
 
 
 PULL = ("capture.pull_off.force=10 N", "capture.pull_off.after=captured")
