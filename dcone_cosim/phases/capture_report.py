@@ -40,6 +40,7 @@ _CAPTURE_ROWS = (
     ("closing.braked", "energy taken by the reels' brakes, and by slack taken in", "J"),
     ("air.dissipated", "energy taken by the air", "J"),
     ("wall.friction_loss", "energy taken by friction in the canister", "J"),
+    ("table.friction_loss", "energy taken by friction on the table", "J"),
     ("wall.emptied", "the last of the net out of its canister at", "s"),
     ("bending.dissipated", "energy taken by the damping of bending", "J"),
     ("gravity.work", "energy given by the change of gravity", "J"),

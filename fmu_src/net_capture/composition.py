@@ -48,7 +48,7 @@ class Composition:
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
     gravity, net, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing, tether, air,
-    wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
+    wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, table, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -90,9 +90,15 @@ class Composition:
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
         self.wrap, self.bending = self._make("wrap"), self._make("bending")
-        self.wall = self._make("wall")
+        self.wall, self.table = self._make("wall"), self._make("table")
         self.pulls = _make_pulls(
-            (self.ejection, self.wall), self.closing, self.tether, self.air, self.bending, self.pull_off, self.wrap
+            (self.ejection, self.wall, self.table),
+            self.closing,
+            self.tether,
+            self.air,
+            self.bending,
+            self.pull_off,
+            self.wrap,
         )
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
