@@ -31,7 +31,7 @@ def make_balance(composition: Any) -> Any:
     rubs = composition.terms.get("wrap") == "friction"
     has_air, has_load = composition.air is not None, composition.pull_off is not None
     has_bending, has_wall = composition.bending is not None, composition.wall is not None
-    has_table = composition.table is not None
+    has_table = composition.sliding is not None
     node_plane = composition.memory.node_plane
 
     @kernel

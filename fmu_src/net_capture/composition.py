@@ -48,7 +48,7 @@ class Composition:
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
     gravity, net, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing, tether, air,
-    wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, table, pulls, pace, breaking, scheme
+    wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, sliding, pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -90,9 +90,9 @@ class Composition:
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
         self.wrap, self.bending = self._make("wrap"), self._make("bending")
-        self.wall, self.table = self._make("wall"), self._make("table")
+        self.wall, self.sliding = self._make("wall"), self._make("table")
         self.pulls = _make_pulls(
-            (self.ejection, self.wall, self.table),
+            (self.ejection, self.wall, self.sliding),
             self.closing,
             self.tether,
             self.air,

@@ -53,7 +53,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     tensions = make_tensions(parts) if has_threads else None
     has_hardest, hardest = parts.hardest is not None, parts.hardest
     has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
-    has_table, table = parts.table is not None, parts.table
+    has_table, table = parts.sliding is not None, parts.sliding
     per_double = parts.per_double
     properties = parts.memory.properties
 
