@@ -26,6 +26,17 @@ AXES = ("radial", "along-track", "cross-track")
 
 
 @dataclass(frozen=True)
+class Check:
+    """A size the removal computes from what it was handed, against the same size before."""
+
+    quantity: str
+    given: float
+    found: float
+    tolerance: float
+    unit: str
+
+
+@dataclass(frozen=True)
 class LedgerRow:
     """One conserved quantity across the hand-off.
 

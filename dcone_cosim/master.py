@@ -17,7 +17,7 @@ from dcone_cosim.fmu.component import NUMBERS, CallError, Steppable
 from dcone_cosim.phases import kind_of
 from dcone_cosim.phases.phase import Adopt, Instantiate, Loop, Stage, failed
 from dcone_cosim.progress import Progress
-from dcone_cosim.results import Begun, Handover, RunResult
+from dcone_cosim.results import Begun, Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene, Scene
 from dcone_cosim.scene.mistakes import places_named
 from dcone_cosim.states import Keeper
@@ -100,7 +100,7 @@ def _run(stage: Stage, adopt: Adopt) -> None:
             kind.judge(stage, result)
         following = stage.next_of(result)
         if run.exit_code == SUCCESS and following is not None:
-            _leave(stage, component, following)
+            _leave(stage, component, following, result)
     finally:
         component.close()
     if run.exit_code == SUCCESS:
@@ -182,7 +182,7 @@ def _initialise(stage: Stage, component: Steppable, values: Mapping[str, float],
     run.inputs[name] = standing(component, "input")
 
 
-def _leave(stage: Stage, component: Steppable, following: PhaseScene) -> None:
+def _leave(stage: Stage, component: Steppable, following: PhaseScene, result: PhaseResult) -> None:
     """Read what the next phase takes over, while there is somebody to ask."""
     run, phase = stage.run, stage.phase
     next_kind = kind_of(following.name)
@@ -195,6 +195,9 @@ def _leave(stage: Stage, component: Steppable, following: PhaseScene) -> None:
     try:
         left = component.get([*next_kind.takes, *there])
         run.left[phase.name] = kind_of(phase.name).leaves(run, phase, left)
+        run.left[phase.name] |= next_kind.probe(stage, component, result)
+    except HandoffError as error:
+        run.fail("hand-off refused", str(error), HANDOFF_FAILED)
     except FmuError as error:
         run.fail("FMU failed", str(error), FMU_FAILED)
 

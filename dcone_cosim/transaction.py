@@ -25,7 +25,7 @@ from dcone_cosim.handoff import (
     spin_energy,
     spin_speeds,
 )
-from dcone_cosim.ledger import LedgerRow, closure_finding, ledger, require_closed
+from dcone_cosim.ledger import Check, LedgerRow, closure_finding, ledger, require_closed
 from dcone_cosim.level import (
     GROUP,
     POINT,
@@ -51,6 +51,7 @@ from dcone_cosim.line import (
     line_parameters,
     line_rows,
 )
+from dcone_cosim.pulled import TAKES, Pulled
 from dcone_cosim.scene.data import HandoffOptions, PhaseScene
 
 HAND_OFF, FIRST = "hand-off", "removal"
@@ -60,17 +61,6 @@ HULL = "hull"
 CROSS_CHECK = 1e-4
 """Relative agreement asked of what the removal computes with what was handed over. It forms its outputs in the frame of
 the pair's centre of mass, turned and turning a little differently: by the offset over the radius, 3e-6 for 20 m."""
-
-
-@dataclass(frozen=True)
-class Check:
-    """A size the removal computes from what it was handed, against the same size before."""
-
-    quantity: str
-    given: float
-    found: float
-    tolerance: float
-    unit: str
 
 
 @dataclass
@@ -86,6 +76,7 @@ class HandoffRecord:
     shortfall         by which the target reaches beyond that hull at most [m]
     line_parameters   what is set in the removal so that its line is the capture's
     turning           what is set in it so that its target turns as the capture's; empty for a point
+    net               by how much the captured net gives, None where it was not pulled
     """
 
     time: float
@@ -104,6 +95,7 @@ class HandoffRecord:
     rows: list[LedgerRow] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
     failure: str = ""
+    net: Pulled | None = None
 
     @property
     def reach(self) -> float:
@@ -123,7 +115,8 @@ class HandoffRecord:
         epoch = self.phase.setting("orbit.epoch")
         if epoch is not None and "orbit.epoch" in component.variables:
             begun["orbit.epoch"] = epoch + since
-        return self.handed.parameters | begun | self.line_parameters | self.turning
+        net = {} if self.net is None else self.net.parameters(component.variables)
+        return self.handed.parameters | begun | self.line_parameters | self.turning | net
 
     @property
     def asked_appendage(self) -> dict[str, float]:
@@ -210,6 +203,7 @@ class HandoffRecord:
                 "attachment_distance": {"value": line.attachment, "unit": "m"},
                 "slack": {"value": line.slack, "unit": "m"},
             },
+            **({} if self.net is None else {"net": self.net.told()}),
             "set_in_removal": handed.parameters | self.line_parameters | self.turning,
             "failure": self.failure,
         }
@@ -258,7 +252,7 @@ def close_ledger(record: HandoffRecord, component: Steppable) -> None:
     missing = [name for name in REMOVAL_SETS if name not in component.variables]
     if missing:
         raise HandoffError(f"hand-off violated: the removal FMU lacks {', '.join(missing)}")
-    there = [name for name in (*LINE_HELD, *TURNING_SETS, *APPENDAGE) if name in component.variables]
+    there = [name for name in (*LINE_HELD, *TAKES, *TURNING_SETS, *APPENDAGE) if name in component.variables]
     held = component.get([*REMOVAL_SETS, *there])
     chaser, target = held_bodies(held)
     turning = held_turning(held)
@@ -267,7 +261,7 @@ def close_ledger(record: HandoffRecord, component: Steppable) -> None:
         of_line = line_rows(record.line, record.line_parameters, held, float(np.linalg.norm(apart)))
     else:
         of_line = attached_rows(record.line, held, turning.attachment, apart)
-    of_line += drawn_rows(record.handed, component)
+    of_line += drawn_rows(record.handed, component) + ([] if record.net is None else record.net.rows(held))
     record.rows = ledger(record.handed, held, turning, record.appendage) + of_line
     record.checks = _cross_check(record, component)
     wrong = (c for c in record.checks if not abs(c.found - c.given) <= c.tolerance)
@@ -366,6 +360,7 @@ def findings(record: HandoffRecord) -> Iterator[Finding]:
             shown_in="%",
         )
     yield from _of_line(record)
+    yield from () if record.net is None else record.net.findings("hand-off")
     if record.rows:
         yield from closure_finding("hand-off", record.rows)
         book = next(row for row in record.rows if row.quantity == "kinetic energy")

@@ -45,6 +45,7 @@ m3   net.volume_at_touch quality.hull_volume
 N    thread.tension_max cord.tension_max pull_off.tension_max
 J    contact.loss contact.friction_loss closing.work closing.spring_energy closing.braked thread.dissipated
 J    cord.dissipated air.dissipated bending.dissipated wall.friction_loss gravity.work energy.remainder pull_off.work
+J    table.friction_loss
 N s  recoil
 1    net.nodes net.threads enclosure.at_capture enclosure.least quality.at_capture quality.index
 """
@@ -74,13 +75,14 @@ s    time
 kg   mass propellant propellant_spent chaser_mass
 m/s  velocity_change target_speed
 1    nets_left
-m    distance released_axis beyond_hull line attachment_distance slack slack_after
+m    distance released_axis beyond_hull line attachment_distance slack slack_after net_drawn net_stays
 m/s  relative_speed attachment_speed tug_speed
 N m s  spin spin_dropped appendage_momentum
 J    appendage_energy spin_energy spin_energy_dropped energy_lost
 rad/s  body_rate
 1    point_bound_time point_bound_peak ledger_closure
-N    tension_cut
+N    tension_cut net_load
+m/N  net_compliance
      target target_reason line_carried
 """
 

@@ -40,6 +40,7 @@ _CAPTURE_ROWS = (
     ("closing.braked", "energy taken by the reels' brakes, and by slack taken in", "J"),
     ("air.dissipated", "energy taken by the air", "J"),
     ("wall.friction_loss", "energy taken by friction in the canister", "J"),
+    ("table.friction_loss", "energy taken by friction on the table", "J"),
     ("wall.emptied", "the last of the net out of its canister at", "s"),
     ("bending.dissipated", "energy taken by the damping of bending", "J"),
     ("gravity.work", "energy given by the change of gravity", "J"),
@@ -70,7 +71,7 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
     yield from _of_hardest(last, result)
     yield from _of_catch(last, result)
     yield from _of_approach(result)
-    yield from closed_report.findings(result.name, last)
+    yield from closed_report.findings(result.name, last, run.left.get(result.name, ()))
     if "chaser.velocity[1]" in last and "chaser.mass" in parameters:
         recoil = result.recorder.vector("chaser.velocity")[0] - _vector(parameters, "chaser.start_velocity")
         size = float(np.linalg.norm(recoil))

@@ -63,6 +63,9 @@ HAND_OFF: Mapping[str, float] = {
     "slack_after": 9e-4,
     "energy_lost": 1e-3,
     "ledger_closure": 0.6,
+    "net_compliance": 0.17,
+    "net_drawn": 0.17,
+    "net_stays": 0.17,
 }
 """The same of what a net hands over."""
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
+from dcone_cosim import pulled
 from dcone_cosim.findings import Finding
 from dcone_cosim.phases.phase import Figure
 from dcone_cosim.plots import style
@@ -35,12 +36,15 @@ _PULL_ROWS = (
 )
 
 
-def findings(phase: str, last: Mapping[str, float]) -> Iterator[Finding]:
-    """What the last row of a phase tells of either."""
+def findings(phase: str, last: Mapping[str, float], left: Container[str] = ()) -> Iterator[Finding]:
+    """What the last row of a phase tells of either; of a pull that came after it, the hand-off tells.
+
+    left          names of what it has left to the next
+    """
     for name, label, unit in _QUALITY_ROWS:
         if name in last and last[name] >= 0.0:
             yield Finding(phase, name, label, last[name], unit)
-    if "pull_off.stands" in last:
+    if "pull_off.stands" in last and pulled.LEFT[0] not in left:
         yield from _of_pull(phase, last)
 
 

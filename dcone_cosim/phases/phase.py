@@ -240,6 +240,11 @@ class Phase:
     def judge(self, stage: Stage, result: PhaseResult) -> None:
         """Let the run fail if the phase did not come to what the next one needs."""
 
+    def probe(self, stage: Stage, component: Steppable, result: PhaseResult) -> dict[str, float]:
+        """What is found out of the FMU of the phase before, `stage`, when all else has been read of it, which may be
+        stepped for that; `HandoffError` where it shows nothing."""
+        return {}
+
     def leaves(self, run: RunResult, phase: PhaseScene, left: Mapping[str, float]) -> dict[str, float]:
         """What the next phase asked for, as it was read from the FMU, in the frame that the next one knows."""
         return dict(left)

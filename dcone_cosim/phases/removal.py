@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from dcone_cosim import build
+from dcone_cosim import build, pulled
 from dcone_cosim.contract import TUG_FIELDS, TUG_PREFIX
 from dcone_cosim.criteria import Criterion, Evidence
 from dcone_cosim.errors import HANDOFF_FAILED, FmuError, Interrupted
@@ -32,6 +32,7 @@ from dcone_cosim.phases import (
     expended,
     hastened,
     passive,
+    pulled_net,
     recoil,
     removal_criteria,
     removal_quantities,
@@ -196,6 +197,8 @@ class Tow(Phase):
         reach = None if record is None else record.reach
         yield from removal_report.meeting(self.name, result, reach)
         yield from removal_report.unsafe(run, self.name, result, reach)
+        if isinstance(record, HandoffRecord) and result.tugs is not None and 1 in result.tugs.rows:
+            yield from pulled.warnings(self.name, record.net, result.tugs.rows[1][1])
 
     def figures(self, run: RunResult, result: PhaseResult) -> Iterator[Figure]:
         """The orbit of both bodies, and the tension of the line."""
@@ -246,6 +249,7 @@ class Removal(Tow):
     handoff_keys: Mapping[str, Expected] = {
         "point_tolerance": Expected("1", example="1 %", minimum=0.0, share=True),
         "compare_without_recoil": Expected("1", kind="Boolean"),
+        pulled.KEY: Expected("1", choices=pulled.HOW),
     }
     handoff_gone: Mapping[str, str] = {
         "spin_tolerance": "is gone: point_tolerance bounds what a point changes of the first tug, its spin and all, "
@@ -258,6 +262,7 @@ class Removal(Tow):
     def faults(self, document: Document) -> Iterator[Mistake]:
         """The same, and orbits on which capture and removal do not fit together."""
         yield from super().faults(document)
+        yield from pulled_net.faults(document, self.name)
         if not document.before(self.name):
             return
         orbit = document.tables.get(SHARED)
@@ -341,6 +346,7 @@ class Removal(Tow):
         earlier = since_first_shot(run, stage.before.name)
         record = HandoffRecord(capture.located, start, capture.located_by, phase, handed, line, earlier)
         run.handovers[self.name] = record
+        record.net = pulled.Pulled.of(left, run.scene.handoff.net_compliance)
         held = run.parameters[stage.before.name]
         main = stage.before.main
         record.shape = {name: held[name] for name in SHAPE if name in held}
@@ -349,6 +355,13 @@ class Removal(Tow):
         check_before(record, run.scene.handoff, build.towed_surface(main.terms.get(GROUP, "")))
         self.foresee(stage)
         return record
+
+    def probe(self, stage: Stage, component: Steppable, result: PhaseResult) -> dict[str, float]:
+        """By how much the captured net gives, if that is wanted."""
+        if stage.run.scene.handoff.net_compliance == pulled.GIVEN:
+            return {}
+        assert result.located is not None, "it has handed over"
+        return pulled.pull(component, result.origin + result.located, stage.phase.macro_step).left()
 
     def afterwards(self, stage: Stage, result: PhaseResult) -> None:
         """The same removal with the shot's momentum left out: what the recoil changes."""

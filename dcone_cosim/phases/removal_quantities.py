@@ -19,6 +19,7 @@ NAMES = (
     "radius",
     "separation",
     "paid_out",
+    "friction_loss",
 )
 TUGS = 5
 """Tugs from the first on that are compared."""
@@ -63,3 +64,8 @@ def quantities(result: PhaseResult, instants: Sequence[float]) -> Iterator[Quant
     if "reel.paid_out" in recorder:
         told, size = at(recorder, "reel.paid_out", instants), float(np.max(recorder["reel.paid_out"]))
         yield Quantity("paid_out", "line paid out over time", told.tolist(), "m", size, "its largest", False)
+    if "friction.loss" in recorder and (lost := float(recorder["friction.loss"][-1])) > 0.0:
+        told = at(recorder, "friction.loss", instants)
+        yield Quantity(
+            "friction_loss", "what friction has taken over time", told.tolist(), "J", lost, "all of it", False
+        )

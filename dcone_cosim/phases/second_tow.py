@@ -37,6 +37,7 @@ from dcone_cosim.line import ATTACHMENT, REST_LENGTH
 from dcone_cosim.phases import removal
 from dcone_cosim.phases.phase import Stage
 from dcone_cosim.phases.removal import EACH, RELATIVE, Tow
+from dcone_cosim.pulled import COMPLIANCE
 from dcone_cosim.results import Handover, PhaseResult, RunResult
 from dcone_cosim.scene.data import PhaseScene
 from dcone_cosim.scene.mistakes import Mistake
@@ -48,7 +49,8 @@ BODIES = ("chaser", "target")
 AXES = ("x", "y", "z")
 TENSION = "tether.tension"
 EPOCH = "orbit.epoch"
-NODES = "lumped"
+NODES, NET = "lumped", "net"
+GIVES = "net.compliance"
 SPIN = tuple(f"target.spin{each}" for each in EACH)
 TURNED = (*(f"target.attitude[{i}]" for i in (1, 2, 3, 4)), *(f"target.rate{each}" for each in EACH))
 ROUNDING = 8.0 * 2.0**-52
@@ -141,6 +143,8 @@ class TowHandover:
         found = begun_again(self.left) | {"start.condition": self.phase.choice("start.condition", HANDED_OVER)}
         if ATTACHMENT in component.variables and ATTACHMENT in self.left:
             found[ATTACHMENT] = self.left[ATTACHMENT]
+        if GIVES in component.variables and GIVES in self.left:
+            found[GIVES] = self.left[GIVES]
         epoch = self.left.get(EPOCH, self.phase.setting(EPOCH))
         if EPOCH in component.variables and epoch is not None:
             found[EPOCH] = epoch + self.time
@@ -157,7 +161,8 @@ class TowHandover:
 
     def close(self, component: Steppable) -> None:
         """Mass, mass moment and momentum of each body by the inertial outputs of both, and the relative state."""
-        held = component.get([*SecondTow.takes, *(SPIN if self.turns else ())])
+        given = (GIVES,) if GIVES in self.left and GIVES in component.variables else ()
+        held = component.get([*SecondTow.takes, *given, *(SPIN if self.turns else ())])
         self.rows = list(_rows(self.left, held))
         moved = []
         for name, of in (("relative.position", "position"), ("relative.velocity", "velocity")):
@@ -201,6 +206,8 @@ def _rows(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[L
             size = float(np.linalg.norm(was))
             for axis, x, y in zip(AXES, was.tolist(), now.tolist(), strict=True):
                 yield LedgerRow(f"{quantity}, {body}, {axis}", unit, x, y, 0.0, "", size)
+    if GIVES in after:
+        yield LedgerRow(COMPLIANCE, "m/N", before[GIVES], after[GIVES], 0.0, "", before[GIVES])
     if SPIN[0] in after:
         was, now = vector(before, "target.spin"), vector(after, "target.spin")
         for axis, x, y in zip(AXES, was.tolist(), now.tolist(), strict=True):
@@ -218,17 +225,23 @@ class SecondTow(Tow):
         *(f"{body}.{of}{each}" for body in (*BODIES, "center") for of in ("position", "velocity") for each in EACH),
         *RELATIVE,
     )
-    takes_too = (ATTACHMENT, EPOCH, *TURNING_SETS, *CENTER, *SHAPE.values(), *SPIN, *TURNED)
+    takes_too = (ATTACHMENT, GIVES, EPOCH, *TURNING_SETS, *CENTER, *SHAPE.values(), *SPIN, *TURNED)
+    taken_over = (*Tow.taken_over, GIVES)
     tugs_file = "second_tow_tugs"
     figure_names = ("second_tow_orbital_radius.png", "second_tow_tether_tension.png")
 
     def value_faults(self, before: PhaseScene | None, own: PhaseScene, tables: Mapping[str, Any]) -> Iterator[Mistake]:
-        """Those of every tow; the mass of a line of nodes would come from nowhere, or be gone."""
+        """Those of every tow; the mass of a line of nodes would come from nowhere, or be gone; the net is in both."""
         yield from super().value_faults(before, own, tables)
         for phase in (before, own):
             if phase is not None and NODES in phase.main.terms:
                 text = "has mass, which is not handed over from one tow to the next; leave it out"
                 yield Mistake((phase.name, NODES), given_at(tables, (phase.name, NODES)), text)
+        has = [phase for phase in (before, own) if phase is not None and NET in phase.main.terms]
+        if before is not None and len(has) == 1 and before.main.fmu is None and own.main.fmu is None:
+            lacks = before.name if has[0] is own else own.name
+            text = f"holds the target in both tows: give [{lacks}.{NET}] as well, or leave this out"
+            yield Mistake((has[0].name, NET), given_at(tables, (has[0].name, NET)), text)
 
     def values_taken(self, before: PhaseScene) -> dict[str, float]:
         return {name: value for body in BODIES if (value := before.setting(name := f"{body}.mass")) is not None}

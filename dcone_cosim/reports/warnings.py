@@ -5,11 +5,12 @@ They change neither the run nor its exit code.
 
 from __future__ import annotations
 
+from collections.abc import Container
 from functools import partial
 
 import numpy as np
 
-from dcone_cosim import build, loads
+from dcone_cosim import build, loads, pulled
 from dcone_cosim.phases import kind_of
 from dcone_cosim.recorder import Recorder
 from dcone_cosim.results import RunResult
@@ -25,15 +26,21 @@ def warnings(run: RunResult) -> list[str]:
             values = {**run.parameters.get(name, {}), **run.inputs.get(name, {})}
             terms = main.terms if main.fmu is None else {}
             found += build.cautions_after(
-                name, kind_of(name).model, values, main.parameters, terms, partial(_range, recorder)
+                name,
+                kind_of(name).model,
+                values,
+                main.parameters,
+                terms,
+                partial(_range, recorder, run.left.get(name, ())),
             )
         found += kind_of(name).warnings(run, result)
         found += loads.warnings(run, name)
     return list(dict.fromkeys(found))
 
 
-def _range(recorder: Recorder, output: str) -> build.Range | None:
-    if output not in recorder:
+def _range(recorder: Recorder, left: Container[str], output: str) -> build.Range | None:
+    """None of what is not seen, nor of a test that came after the phase."""
+    if output not in recorder or (output == pulled.STANDS and pulled.LEFT[0] in left):
         return None
     column = recorder[output]
     return build.Range(float(np.min(column)), float(np.max(column)), float(column[0]), float(column[-1]))

@@ -25,12 +25,15 @@ class HandoffOptions:
     point_tolerance          largest change of the first tug's time and peak, by a bound, with which the target is a
                              point; one that can only be a point is refused above it                      [1]
     compare_without_recoil   run the removal once more without the shot's recoil
+    net_compliance           by how much the captured net gives: as the scene gives it, or measured by a pull, see
+                             `pulled.HOW`
     specific_impulse         of the chaser's engine between two shots                                     [s]
     propellant               of the chaser at the first shot; infinite where that is not asked            [kg]
     """
 
     point_tolerance: float = 0.01
     compare_without_recoil: bool = True
+    net_compliance: str = "given"
     specific_impulse: float = math.inf
     propellant: float = math.inf
 

@@ -150,7 +150,9 @@ def _checked(document: dict[str, Any], name: str, places: Places, folder: File, 
         for after in range(1, len(made)):
             made[after - 1 : after + 1] = kind_of(made[after].name).joined(made[after - 1], made[after])
         flags = {key for key, expected in handoff_keys().items() if expected.kind == "Boolean"}
+        named = {key: expected.choices for key, expected in handoff_keys().items() if expected.choices}
         handoff = {key: bool(value) if key in flags else value for key, value in handoff.items()}
+        handoff |= {key: choices[int(handoff[key])] for key, choices in named.items() if key in handoff}
         parts = [one for read in phases.values() for one in (read.main, *read.others)]
         apart = (note for one in parts for note in set_apart(one.part.path, one.lines, places))
         notes = (*_close_calls(whole, phases), *apart)

@@ -135,6 +135,8 @@ MEANING: Mapping[str, str] = {
     "specific_impulse": "of the chaser's engine between two shots",
     "propellant": "that the chaser has at the first shot; without end if not given",
     "compare_without_recoil": "run the removal once more without the shot's recoil",
+    "net_compliance": "by how much the captured net gives in series with the line: as the removal's table says, or "
+    "measured by the pull of [capture.pull_off], after all else has been handed over",
     "fmu": "an FMI 2.0 co-simulation FMU that takes the place of our model; relative to the scene's file",
     "model": "a model of ours, built on demand",
     "isolate": "run the FMU in a child process: its crash or hang is then an error, and ends nothing else; "

@@ -154,8 +154,9 @@ def found(row: Row) -> Found:
 
 
 def stiffness(values: Values) -> float:
-    """k = E A / l of the line [N/m]."""
-    return values["tether.youngs_modulus"] * section(values["tether.diameter"]) / values["tether.rest_length"]
+    """k = 1/(l/(E A) + C) [N/m] of the line, C of a net in series with it, where there is one."""
+    line = values["tether.youngs_modulus"] * section(values["tether.diameter"]) / values["tether.rest_length"]
+    return line / (1.0 + line * values.get("net.compliance", 0.0))
 
 
 def reduced(values: Values) -> float:

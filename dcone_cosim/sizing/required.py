@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from dcone_cosim.sizing.chaser import Asked
-from dcone_cosim.sizing.ground import Ground, Values, why
+from dcone_cosim.sizing.ground import Ground, Values, stiffness, why
 from orbital import tethers
-from orbital.materials import Material, section
+from orbital.materials import Material
 
 CLOSE = 0.005
 """Share to which the diameter is found [1]."""
@@ -172,7 +172,7 @@ def in_closed_form(
     share = tethers.impact_share(values["tether.damping_ratio"])
     _, peak, speed = tug
     length = values["tether.rest_length"]
-    k = values[MODULUS] * section(values[LINE]) / length
+    k = stiffness(values)
     impact = max(peak * peak - 2.0 * peak * steady, 0.0)  # g^2 k m v^2 of T = P + sqrt(P^2 + g^2 k m v^2)
     mass = impact / (k * (share * speed) ** 2) if speed else 0.0
     softer = material.youngs_modulus * values[MODULUS] / own[MODULUS] * (values[LINE] / own[LINE]) ** 2

@@ -31,6 +31,7 @@ def make_balance(composition: Any) -> Any:
     rubs = composition.terms.get("wrap") == "friction"
     has_air, has_load = composition.air is not None, composition.pull_off is not None
     has_bending, has_wall = composition.bending is not None, composition.wall is not None
+    has_table = composition.sliding is not None
     node_plane = composition.memory.node_plane
 
     @kernel
@@ -95,6 +96,8 @@ def make_balance(composition: Any) -> Any:
             energy += p.bending_dissipated
         if has_wall:
             energy += p.wall_friction_loss
+        if has_table:
+            energy += p.table_friction_loss
         return energy
 
     return energy_balance

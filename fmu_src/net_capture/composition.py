@@ -49,7 +49,8 @@ class Composition:
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
     gravity, net, numbering, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing,
-    tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, pulls, pace, breaking, scheme
+    tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, sliding, pulls, pace, breaking,
+    scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -93,9 +94,15 @@ class Composition:
         self.spin = self._make("spin")
         self.ejection = self._make("ejection")
         self.wrap, self.bending = self._make("wrap"), self._make("bending")
-        self.wall = self._make("wall")
+        self.wall, self.sliding = self._make("wall"), self._make("table")
         self.pulls = _make_pulls(
-            (self.ejection, self.wall), self.closing, self.tether, self.air, self.bending, self.pull_off, self.wrap
+            (self.ejection, self.wall, self.sliding),
+            self.closing,
+            self.tether,
+            self.air,
+            self.bending,
+            self.pull_off,
+            self.wrap,
         )
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")

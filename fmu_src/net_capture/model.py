@@ -53,6 +53,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     tensions = make_tensions(parts) if has_threads else None
     has_hardest, hardest = parts.hardest is not None, parts.hardest
     has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
+    has_table, table = parts.sliding is not None, parts.sliding
     per_double = parts.per_double
     properties = parts.memory.properties
 
@@ -128,6 +129,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         gravity.kick_chaser(p, p.chaser_place, p.chaser_drift, p.pull, h)
         if has_wall:
             wall.rub(p, work, before)
+        if has_table:
+            table.rub(p, work)
         if has_ejection:
             ejection.hold(p, work, before)
         for axis in range(3):
@@ -262,6 +265,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         if has_map:
             force_map.start(p)
         scheme.begin(p, work)
+        if has_table:
+            table.begin(p, work)
         p.thread_loss = -lag * p.solver_substep * p.thread_power
         if has_air:
             p.air_loss = -lag * p.solver_substep * p.air_power

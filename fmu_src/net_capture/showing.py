@@ -27,6 +27,7 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     hardest, has_hardest = parts.hardest, parts.hardest is not None
     has_nodes, has_threads, has_air = "nodes" in parts.terms, tensions is not None, parts.air is not None
     has_bending, has_wall, wall = parts.bending is not None, parts.wall is not None, parts.wall
+    has_table, table = parts.sliding is not None, parts.sliding
     books_turn = parts.ejection is not None or parts.spin is not None or has_wall
     has_wrap, follows = parts.wrap is not None, parts.pace is not None
     has_ejection, ejection = parts.ejection is not None, parts.ejection
@@ -57,6 +58,8 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
                 p.chaser_spin[axis] = p.chaser_turned[axis]
         if has_wall:
             wall.show(p, work)
+        if has_table:
+            table.show(p, work)
         if has_ejection:
             ejection.show(p, work)
         if has_air:

@@ -30,12 +30,13 @@ def unstretched(record: Any) -> float:
     return limit
 
 
-def make_elastic(line: Callable[..., Any]) -> Elastic:
+def make_elastic(line: Callable[..., Any], gives: bool = False) -> Elastic:
     """The kernels of a line with these properties.
 
-        T = k (l - l0) + c (l' - l0')   while l > l0 and T > 0, otherwise 0;   k goes as 1/l0, c as its root
+        T = k (l - l0) + c (l' - l0')   while l > l0 and T > 0, otherwise 0;   k goes as 1/(l0 + g), c as its root
 
     line(record, since) -> (l0, l0', l0'', k, c)   [m], [m/s], [m/s^2], [N/m], [N s/m]
+    gives           a net in series, which gives as g of the line would; without it g is zero
 
     Taut begins when min(l - l0, T) rises through zero. While it is stretching that is l - l0; else it is T, here as a
     length, T/k. Slack begins when T falls through zero, which it does before l - l0.
@@ -44,6 +45,16 @@ def make_elastic(line: Callable[..., Any]) -> Elastic:
     Source   D-CoNe paper, eq. 1 and 3; the clamp at zero and the moving rest length are ours
     Checked  tests/tethered_deorbit/test_snap.py, test_ramps.py, test_winch.py
     """
+
+    @kernel
+    def yielding(record: Any, rest: float) -> float:
+        """Length of line that gives as line and net do [m]: l0 + g.
+
+        Checked  tests/tethered_deorbit/test_net_in_series.py
+        """
+        if gives:
+            return float(rest + record[0].state_give)
+        return rest
 
     @kernel
     def tension(record: Any, length: float, rate: float, since: float) -> float:
@@ -62,7 +73,7 @@ def make_elastic(line: Callable[..., Any]) -> Elastic:
     def tension_rate(record: Any, length: float, rate: float, acceleration: float, since: float) -> float:
         """Its time derivative [N/s].
 
-            T' = k (l' - l0') + c (l'' - l0'') - l0'/l0 (k (l - l0) + c (l' - l0')/2)
+            T' = k (l' - l0') + c (l'' - l0'') - l0'/(l0 + g) (k (l - l0) + c (l' - l0')/2)
 
         Source   derivative of `tension`, with those of k and c
         Checked  tests/tethered_deorbit/test_derivatives.py, test_winch.py, against differences
@@ -70,8 +81,8 @@ def make_elastic(line: Callable[..., Any]) -> Elastic:
         rest, moving, speeding, stiffness, damping = line(record, since)
         slope: float = stiffness * (rate - moving) + damping * (acceleration - speeding)
         if moving != 0.0:
-            # k goes as 1/l0 and c as its root
-            slope -= moving / rest * (stiffness * (length - rest) + 0.5 * damping * (rate - moving))
+            # k goes as 1/(l0 + g) and c as its root
+            slope -= moving / yielding(record, rest) * (stiffness * (length - rest) + 0.5 * damping * (rate - moving))
         return slope
 
     @kernel
@@ -101,7 +112,7 @@ def make_elastic(line: Callable[..., Any]) -> Elastic:
         if stretching < 0.0:
             slope: float = stretching + damping * (acceleration - speeding) / stiffness
             if moving != 0.0:
-                slope += 0.5 * moving / rest * damping * stretching / stiffness
+                slope += 0.5 * moving / yielding(record, rest) * damping * stretching / stiffness
             return slope
         return stretching
 
@@ -129,13 +140,14 @@ def make_elastic(line: Callable[..., Any]) -> Elastic:
     def energy_rate(record: Any, length: float, rate: float, since: float) -> float:
         """Its time derivative [W].
 
-            k d (l' - l0') - k l0'/(2 l0) d^2,   d = l - l0
+            k d (l' - l0') - k l0'/(2 (l0 + g)) d^2,   d = l - l0
 
         Checked  tests/tethered_deorbit/test_derivatives.py, test_winch.py, against differences
         """
         rest, moving, _, stiffness, _ = line(record, since)
         stretch = length - rest
-        power: float = stiffness * stretch * (rate - moving) - 0.5 * stiffness * moving / rest * stretch * stretch
+        shortening = 0.5 * stiffness * moving / yielding(record, rest) * stretch * stretch
+        power: float = stiffness * stretch * (rate - moving) - shortening
         return power
 
     return Elastic(taut, tension, tension_rate, onset, onset_rate, energy, energy_rate)

@@ -29,11 +29,13 @@ def rows(values: Mapping[str, float], terms: Mapping[str, str]) -> Iterator[Impl
     length, stiffness = 0.0, 0.0
     if "tether.youngs_modulus" in values:
         length = values["tether.rest_length"] + (values["reel.length_offset"] if terms["reel"] == "locked" else 0.0)
-        stiffness = line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], length)
         extensional = axial_stiffness(values)
+        given = length + extensional * values.get("net.compliance", 0.0)
+        stiffness = line_stiffness(values["tether.youngs_modulus"], values["tether.diameter"], given)
         yield Implied("line.area", "section of the line", extensional / values["tether.youngs_modulus"], "m2")
         yield Implied("line.axial_stiffness", "EA of the line", extensional, "N")
-        yield Implied("line.stiffness", "stiffness of the line", stiffness, "N/m")
+        whose = "the line with the net in series" if "net" in terms else "the line"
+        yield Implied("line.stiffness", f"stiffness of {whose}", stiffness, "N/m")
         if "lumped" in terms:
             label, damping = "dashpot of the line, its pieces in series", cost(values).dashpot
         else:

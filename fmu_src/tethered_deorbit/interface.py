@@ -25,6 +25,7 @@ from fmu_src.rows import (
 )
 from fmu_src.tethered_deorbit import stress
 from fmu_src.tethered_deorbit.body_rows import APPENDAGE, ATTACHED, NOT_OF_A_BODY, POINT_TARGET, THRUSTER, rigid_body
+from fmu_src.tethered_deorbit.net_rows import SERIES
 from fmu_src.tethered_deorbit.node_rows import NODES
 from fmu_src.tethered_deorbit.optional_rows import AOCS, BREAKING, BURN, ENDS, ENGINES, LEVELS, PLUME, RELEASE, SCHEMES
 from fmu_src.tethered_deorbit.orbit_rows import (
@@ -398,6 +399,7 @@ MODEL = Model(
         "chaser": CHASERS,
         "appendage": APPENDAGE,
         "lumped": NODES,
+        "net": SERIES,
         "aocs": AOCS,
         "ends": ENDS,
         "break": BREAKING,

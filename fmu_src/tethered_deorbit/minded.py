@@ -18,6 +18,7 @@ LIMITED = (
     "tether.youngs_modulus",
     "tether.diameter",
     "tether.damping_ratio",
+    "net.compliance",
     "reel.proportional_gain",
     "reel.derivative_gain",
     *LIMITED_OF_REELS,

@@ -57,6 +57,7 @@ of times that a master adds up."""
 IMPLEMENTED = {
     "reel": (*LAWS, *WINCHES),
     "lumped": ("nodes",),
+    "net": ("series",),
     "thrust": DIRECTIONS,
     "environment": FIELDS,
     "solver": tuple(SCHEMES),
@@ -100,6 +101,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     bodies = make_bodies(terms, environment.place, environment.gradient, layout.size, interface)
     spin = PAIR + ATTITUDE - 3 if terms["target"] != "point" else -1
     sights = Sights(layout.reel, spin, bodies.line, environment.frame, make_loose(terms))
+    if "net" in terms and terms["reel"] != "locked":
+        raise ValueError(f"{MODEL.name}: a net in series goes with reel = locked, not {terms['reel']!r}")
     reel, watch, parting = make_reel(terms["reel"], interface, sights), Watch(), ONE_PIECE
     if "lumped" in terms:
         for group, _, carried in MODEL.unfit(terms):

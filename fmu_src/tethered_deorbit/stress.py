@@ -329,6 +329,17 @@ EXTREMES = (
 )  # fmt: skip
 """Of every pair."""
 
+SERIES = (
+    *(
+        Extreme(f"a net of {compliance:g} m/N", "from a plate to a rubber band", "longer",
+                {"net.compliance": compliance}, chief=compliance == 1.0)
+        for compliance in (0.0, 1e-6, 1.0)
+    ),
+    Extreme("a net that gives, damped ten times critically", "a dashpot faster than its spring", "longer",
+            {"net.compliance": 0.1, "tether.damping_ratio": 10.0}),
+)  # fmt: skip
+"""Of a net in series with the line."""
+
 AS_PAIR, AS_NODE = range(2)
 """Numbers of what the damping ratio of a line of nodes is a share of, see `node_rows.DAMPED_AS`."""
 

@@ -11,6 +11,7 @@ from fmu_src.tethered_deorbit.interface import MODEL
 from fmu_src.tethered_deorbit.model import make_entry
 from tests.plain import PlainInstance, plain
 from tests.tethered_deorbit import lumped as pair
+from tests.tethered_deorbit.test_winch import ROOMY, schedule
 from tests.validation import Validated, closed_form
 
 __all__ = ["plain"]
@@ -115,6 +116,55 @@ def test_a_line_lies_on_the_table() -> None:
     slowed = 0.1 - SLOWING * 0.3
     assert i.array("target_velocity")[1] == pytest.approx(slowed, rel=1e-3)
     assert kinetic(i) + node * slowed**2 + i["friction.loss"] == pytest.approx(before, rel=1e-4)
+
+
+BRAKED = 3.0
+"""Friction of a drum [N]."""
+
+
+def test_a_line_drawn_off_a_brake_stops_its_sled(validated: Validated) -> None:
+    """Reel and tether are deployed on the table: a sled flies off at v and draws line against the drum's friction F.
+
+    The heavier sled with the reel stays, as F < mu m_c g; the other stops after v^2/(2 (F/m + mu g)), to what the line
+    stretches by. Of its energy the drum has F s, the table mu m g s.
+    """
+    speed, mass = 0.4, pair.TARGET
+    stiff = {"tether.youngs_modulus": 4e3 * pair.AXIAL / pair.SECTION, "reel.brake_force": BRAKED}
+    flies = {"start_center_velocity": (0.0, speed * mass / (mass + pair.CHASER), 0.0)}
+    i = on_table(stiff | pair.apart(pair.LENGTH, 0.0, speed, 0.0) | flies, reel="brake")
+    assert BRAKED < MU * pair.CHASER * GRAVITY
+    start = i.array("target_position").copy()
+    i.step(1.5)
+    assert np.linalg.norm(i.array("chaser_velocity")) < 2.0 * CREEP
+    way = float(i.array("target_position")[1] - start[1])
+    law, what = closed_form("v^2/(2 (F/m + mu g))"), "a sled that draws line off a brake on a table: its way"
+    validated(law, what, way, speed**2 / (2.0 * (BRAKED / mass + SLOWING)), "m", rel=1e-2)
+    drawn = i["reel.paid_out"] - pair.LENGTH
+    assert drawn == pytest.approx(way, rel=2e-2)
+    assert i["reel.heat"] == pytest.approx(BRAKED * drawn, rel=1e-3)
+    stretched = BRAKED**2 * pair.LENGTH / (2.0 * 4e3 * pair.AXIAL)
+    left = 0.5 * mass * speed**2 - i["reel.heat"] - i["friction.loss"]
+    assert left == pytest.approx(0.0, abs=stretched + 0.01 * 0.5 * mass * speed**2)
+    assert i["friction.loss"] == pytest.approx(MU * mass * GRAVITY * way, rel=2e-2)
+
+
+def test_a_winch_hauls_a_sled_over_the_table(validated: Validated) -> None:
+    """A schedule hauls at an even rate: the line bears mu m g of the sled it hauls, and the motor gives that times the
+    way, to which the other sled, held by its own friction, adds nothing."""
+    rate = 0.05
+    winch = schedule((0.0, 12.0), (1.0, 12.0), (101.0, 12.0 - 100.0 * rate)) | ROOMY
+    winch |= {"reel.sample_time": 0.1, "tether.damping_ratio": 0.7}
+    winch["tether.youngs_modulus"] = 40.0 * pair.AXIAL / pair.SECTION
+    i = on_table(winch | pair.apart(pair.LENGTH - 1e-3, 0.0, 0.0, 0.0), reel="schedule")
+    i.step(4.0)
+    before = i["reel.work"]
+    at = i.array("target_position").copy()
+    i.step(2.0)
+    way = float(at[1] - i.array("target_position")[1])
+    assert way == pytest.approx(2.0 * rate, rel=2e-2)
+    law, what = closed_form("mu m g"), "a sled hauled over a table by a winch: tension"
+    validated(law, what, i["tether.tension"], MU * pair.TARGET * GRAVITY, "N", rel=2e-2)
+    assert i["reel.work"] - before == pytest.approx(MU * pair.TARGET * GRAVITY * way, rel=3e-2)
 
 
 def test_the_scene_gets_tight_when_the_closed_form_says(validated: Validated) -> None:
