@@ -20,6 +20,9 @@ from orbital.kernel import kernel
 from orbital.vectors import Array
 
 INTERVALS = 8
+SAMPLES, BETWEEN = 16, 0.1
+"""Where the rate of the impulse is looked at, and what it may do in between, over what it spans: over a step of 4
+radians a cosine goes on by 0.008 of itself."""
 ROOT_ITERATIONS = 80
 CROSSING, CROSSING_SLOPE, TENSION, TENSION_SLOPE, SEPARATION, RATE, RATE_SLOPE = range(7)
 """Signals: the crossing signal rises through zero when the line changes between slack and taut."""
@@ -35,7 +38,8 @@ class Events(NamedTuple):
                                                           begin; the line as it is now
     ensure_dense(record, work)                            compute the dense output of the step unless it is there
     find_change(record, work) -> fraction                 of the step at which slack and taut change, or -1
-    tension_range(record, work, first, last) -> (least, largest)   tension [N] between two fractions of the step
+    tension_range(record, work, first, last, known_least, known_largest) -> (least, largest)   tension [N] between two
+                                                          fractions of the step, where it goes beyond what is known
     first_above(record, work, limit) -> fraction          of the step at which the tension first exceeds one [N], or -1
     nearest(record, work, last) -> (fraction, distance)   where the separation turns from less to more and is least
                                                           [m], up to a fraction of the step; infinite if nowhere
@@ -200,8 +204,29 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
         return -1.0
 
     @kernel
-    def tension_range(record: Any, work: Array, first: float, last: float) -> tuple[float, float]:
+    def strays(record: Any, work: Array, first: float, last: float, least: float, largest: float) -> bool:
+        """Whether the tension may leave a range [N] between two fractions of the step, by the rate of its impulse.
+
+        Valid    as `tension_range`; what lies between the samples is a share of what they span
+        Checked  tests/tethered_deorbit/test_settled_wrapped.py: the range of a macro step
+        """
+        r = record[0]
+        found = work[slope_state + impulse : slope_state + impulse + 1]
+        low, high = math.inf, -math.inf
+        for i in range(1, SAMPLES):
+            fraction = first + (last - first) * (i / SAMPLES)
+            scheme.dense_rate(work[dense_begin:work_end], fraction, r.state_step, impulse, 1, found)
+            low, high = min(low, found[0]), max(high, found[0])
+        room = BETWEEN * (high - low) + r.state_stiffness * r.state_taut_tolerance
+        return bool(high + room > largest or low - room < least)
+
+    @kernel
+    def tension_range(
+        record: Any, work: Array, first: float, last: float, known_least: float, known_largest: float
+    ) -> tuple[float, float]:
         """Least and largest tension [N] between two fractions of the step, also at its turns in between.
+
+        known_least, known_largest   what lies between these need not be told [N]
 
         Checked  tests/tethered_deorbit/test_extremes.py: the range of a vibration
         """
@@ -210,6 +235,11 @@ def make_events(reel: Reel, bodies: Bodies, held: Held, scheme: AdaptiveScheme, 
             low, high = held.span(record, first * step, last * step)
             return float(low), float(high)
         ensure_dense(record, work)
+        if held.sways:
+            begin, end = at(record, work, first)[TENSION], at(record, work, last)[TENSION]
+            low, high = min(begin, end), max(begin, end)
+            if not strays(record, work, first, last, min(low, known_least), max(high, known_largest)):
+                return low, high
         low, here = first, at(record, work, first)
         least = largest = here[TENSION]
         slope_low = here[TENSION_SLOPE]

@@ -19,6 +19,10 @@ from fmu_src.tethered_deorbit.outputs import note_pull
 from orbital.kernel import kernel
 from orbital.vectors import Array
 
+MONOTONE = 2.0
+"""Slopes at both ends of a cubic, over its mean slope, up to which it has no turn within; 3 would do: Fritsch and
+Carlson, SIAM J. Numer. Anal. 17 (1980) 238."""
+
 
 class Extremes(NamedTuple):
     """Kernels that keep them.
@@ -130,15 +134,21 @@ def make_extremes(
         begin_change, end_change = r.state_step * begin[TENSION_SLOPE], r.state_step * end[TENSION_SLOPE]
         still = max(abs(begin_change), abs(end_change)) <= 4.0 * r.state_stiffness * r.state_taut_tolerance
         steady = max(abs(begin_change - change), abs(end_change - change)) <= 0.25 * abs(change)
+        if held.sways and held.settled(record):
+            # a load without vibration: the cubic through both ends rises or falls throughout, with room
+            steady = min(begin_change * change, end_change * change) >= 0.0 and (
+                max(abs(begin_change), abs(end_change)) <= MONOTONE * abs(change)
+            )
         short = (begin_change >= 0.0) == (end_change >= 0.0) and r.state_step * r.state_frequency < 1.5
         if held.mapped(record) or not (complete and (still or steady or short)):
-            least, largest = events.tension_range(record, work, 0.0, last)
+            most = min(r.state_peak, r.tug_peak[0])
+            least, largest = events.tension_range(record, work, 0.0, last, r.state_least, most)
         if r.state_taut:
             note_pull(record, largest)
         if complete and r.state_taut and not r.state_tug_begun:
             r.state_tug_peak = r.tug_peak[0]
         if first > 0.0:
-            least, largest = events.tension_range(record, work, first, last)
+            least, largest = events.tension_range(record, work, first, last, r.state_least, r.state_peak)
         r.state_peak = max(r.state_peak, largest)
         r.state_least = min(r.state_least, max(0.0, least))
 

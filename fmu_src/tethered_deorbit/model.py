@@ -121,7 +121,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         derivative, make_squared_error(bodies, held), layout.moving, layout.size - layout.moving
     )
     places = places_of(layout, scheme)
-    level, leap = make_level(terms, derivative, reel, bodies, held, layout, places)
+    level, leap = make_level(terms, derivative, scheme, reel, bodies, held, layout, places)
     leaps = leap is not never
     events = make_events(reel, bodies, held, scheme, places)
     extremes = make_extremes(events, held, places, "release" in terms, watch)

@@ -249,7 +249,7 @@ AOCS = Group(
                 flag("aocs.limited", "the wheels have not the torque or the momentum that is asked of them"),
                 rate("aocs_momentum", "N.m", (3,)),
                 state("state.aocs[#][#]", "1", "room for quaternions", shape=(2, 4)),
-                state("state.aocs_held[#]", "1", "attitude to be held, body axes to orbital frame", shape=(4,)),
+                state("state.aocs_held[#]", "1", "attitude to be held, body axes to orbital frame", shape=(3,)),
                 state("state.aocs_off[#][#]", "1", "deviations, and room", shape=(4, 3)),
                 vector("state.aocs_torque", "N.m", "of the wheels", "state"),
                 state("state.aocs_asked", "N.m", "torque that the loop asks for"),
@@ -282,7 +282,7 @@ _SETTLED = (
     state("state.next_look", "s", "when it may have settled, at the earliest"),
     state("state.course[#]", "1", "stretch over a step, by powers of the time since its begin", shape=(6,)),
     state("state.course_span", "s", "over which that is drawn"),
-    state("state.course_bend[#]", "1", "second and third derivative of the last course, where it ended", shape=(2,)),
+    state("state.course_bend[#]", "1", "second to fourth derivative of the last course, where it ended", shape=(3,)),
     state("state.moved_mass", "kg", "that the line moves at the begin of a settled step"),
 )  # fmt: skip
 
@@ -364,7 +364,7 @@ LEVELS = Group(
                 state("state.average_error", "1", "largest so far"),
                 state("state.revolutions", "1", "taken at once"),
                 state("state.leap[#][#]", "1", "orbit and swing at three instants of a leap", shape=(3, 10)),
-                state("state.leap_range[#]", "1", "tensions, error and revolutions of the last leap", shape=(4,)),
+                state("state.leap_range[#]", "1", "tensions, error and revolutions of the last leap", shape=(3,)),
                 state("state.swing[#]", "1", "see levels.libration", shape=(7,)),
                 state("state.waves[#][#]", "1", "see levels.libration", shape=(2, 24)),
             ),

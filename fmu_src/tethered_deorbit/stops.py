@@ -15,6 +15,7 @@ from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.events import (
     CROSSING,
     CROSSING_SLOPE,
+    INTERVALS,
     SIGNALS,
     TENSION,
     TENSION_SLOPE,
@@ -168,16 +169,17 @@ def make_stop(
         return 0
 
     @kernel
-    def stop_where_ceased(record: Any, work: Array, event: int) -> None:
+    def stop_where_ceased(record: Any, work: Array, event: int, by: float) -> None:
         """Redo the step so that it ends where the line's way over edges, or what a part goes by, has just ceased to
         hold, by halving.
 
-        event         what has ceased by its end, as a number of `state.event`
+        event         what has ceased, as a number of `state.event`
+        by            fraction of the step at which it has           [-]
 
         Checked  tests/tethered_deorbit/test_wrapping.py, test_ends.py
         """
         r = record[0]
-        low, high = 0.0, 1.0
+        low, high = 0.0, by
         here = work[here_state:slope_state]
         events.ensure_dense(record, work)
         while high - low > EDGE:
@@ -195,6 +197,44 @@ def make_stop(
         attempt(record, work, max(high * r.state_step, min(r.state_step, least)))
         keep_end(record, work)
         r.state_event = event
+
+    @kernel
+    def lost_at(record: Any, work: Array, fraction: float) -> bool:
+        """Whether the line's way over edges does not hold at a fraction of the step [-], of which the dense output is.
+
+        Checked  tests/tethered_deorbit/test_settled_wrapped.py: a step that would go over an edge and back
+        """
+        here = work[here_state:slope_state]
+        scheme.dense_value(work[begin_state:end_state], work[dense_begin:work_end], fraction, 0, size, here)
+        return not bodies.holds(record, seen(record, here, fraction * record[0].state_step))
+
+    @kernel
+    def look_between(record: Any, work: Array) -> None:
+        """End a settled step where the line comes over an edge that it has left again by the end of the step.
+
+        Such a step is so long that what the line passes through the body in between counts. It is looked at at eighths,
+        and a straight line where the parabola through its lowest three rises is least.
+
+        Valid    a straight line whose rise is smooth; one over edges that does not hold for an eighth of the step
+        Checked  tests/tethered_deorbit/test_settled_wrapped.py: a step that would go over an edge and back
+        """
+        r = record[0]
+        if bodies.stays(record, work[begin_state:end_state], work[end_state:here_state], r.state_step):
+            return
+        events.ensure_dense(record, work)
+        before, lowest = math.inf, math.inf
+        for k in range(INTERVALS + 1):
+            fraction = k / INTERVALS
+            if lost_at(record, work, fraction) and 0 < k < INTERVALS:
+                stop_where_ceased(record, work, EDGES, fraction)
+                return
+            rise = bodies.rise(record)
+            if k > 1 and lowest < min(before, rise):
+                vertex = (k - 1.0 + 0.5 * (before - rise) / (before - 2.0 * lowest + rise)) / INTERVALS
+                if lost_at(record, work, vertex):
+                    stop_where_ceased(record, work, EDGES, vertex)
+                    return
+            before, lowest = lowest, rise
 
     @kernel
     def stop_at_limit(record: Any, work: Array) -> None:
@@ -239,8 +279,10 @@ def make_stop(
             there = last_seen(record, end)
             event = ceased(record, there, r.state_step)
             if event != 0:
-                stop_where_ceased(record, work, event)
+                stop_where_ceased(record, work, event, 1.0)
             elif r.state_event == 0 and bodies.retry(record, there):
                 r.state_event = EDGES
+            elif r.state_event == 0 and held.settled(record):
+                look_between(record, work)
 
     return keep_begin, stop

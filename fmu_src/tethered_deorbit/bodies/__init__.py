@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from fmu_src.interface import Interface
-from fmu_src.tethered_deorbit.idle import always, never, no_fault, nothing
+from fmu_src.tethered_deorbit.idle import always, never, no_fault, nothing, zero
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 
 
@@ -68,6 +68,10 @@ class Bodies(NamedTuple):
     trouble(record) -> fault                    of a line that could not be followed
     holds(record, state)                        whether the line's way over edges of the body is still the one that was
     renew(record, state)                        take the one that is
+    stays(record, begin, end, step) -> bool     whether a way that holds at both ends of a step [s], states in its
+                                                coordinates, surely holds all along; leaves what `seen` does of the end
+    rise(record) -> s                           sine of the angle at which a straight line rises from the face on which
+                                                it is made fast, else 0; after `seen`
     retry(record, state)                        where none could be found that holds: whether now one could be
     book(record, energy)                        what the line has lost by a change of its way [J]
     """
@@ -110,6 +114,8 @@ class Bodies(NamedTuple):
     trouble: Callable[..., Any] = no_fault
     holds: Callable[..., Any] = always
     renew: Callable[..., Any] = nothing
+    stays: Callable[..., Any] = always
+    rise: Callable[..., Any] = zero
     retry: Callable[..., Any] = never
     book: Callable[..., Any] = nothing
 

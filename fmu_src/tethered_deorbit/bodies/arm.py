@@ -32,7 +32,7 @@ def make_arm(role: str, first: int, sign: float, wrapping: Wrapping) -> Arm:
     Checked  tests/tethered_deorbit/test_rigid.py
     """
     leaving, follow = wrapping.leaving or f"{role}_attachment", wrapping.follow
-    slide, show_rates, pivot = wrapping.relief, wrapping.differentiate, wrapping.pivot
+    slide, slides, show_rates, pivot = wrapping.relief, wrapping.slides, wrapping.differentiate, wrapping.pivot
     inverse, turned, arms = (f"state_{role}_{name}" for name in ("inverse", "turned", "arms"))
     middle, last = first + 4, first + ATTITUDE
 
@@ -162,6 +162,8 @@ def make_arm(role: str, first: int, sign: float, wrapping: Wrapping) -> Arm:
 
         Checked  tests/tethered_deorbit/test_wrapping.py, against differences
         """
+        if not slides(record):
+            return 0.0
         parts(record, state, vector, velocity)
         return float(slide(record, record[0][arms][3]))
 

@@ -88,8 +88,7 @@ def make_attached(
     show, keep, trouble = wrapping.publish, wrapping.keep, wrapping.trouble
     way_holds, renew_way, retry_way, on_body = wrapping.holds, wrapping.renew, wrapping.retry, wrapping.on_body
     lay_out, start_way = wrapping.begin, wrapping.start
-    wrappings = {"target": wrapping, "chaser": Wrapping()}
-    signs = {"target": 1.0, "chaser": -1.0}
+    wrappings, signs = {"target": wrapping, "chaser": Wrapping()}, {"target": 1.0, "chaser": -1.0}
     made = {
         role: make_rigid(role, PAIR + ATTITUDE * at, signs[role], wrappings[role], strength_at, interface)
         for at, role in enumerate(turning)
@@ -139,7 +138,7 @@ def make_attached(
         chaser.reach(record, state, vector, velocity, whole)
         target.reach(record, state, vector, velocity, whole)
 
-    stepping = make_stepping(target, chaser, span, keep, straight, bodies, size)
+    stepping = make_stepping(target, chaser, span, wrapping, bounds.turning, straight, bodies, size)
 
     @kernel
     def measure(record: Any, state: Array) -> tuple[float, float, float]:
@@ -396,4 +395,5 @@ def make_attached(
     )
     if straight:
         return pair
-    return pair._replace(hold=hold, trouble=trouble, holds=holds, renew=renew, retry=retry, book=wrapping.book)
+    pair = pair._replace(stays=stepping.stays, rise=wrapping.rise, book=wrapping.book)
+    return pair._replace(hold=hold, trouble=trouble, holds=holds, renew=renew, retry=retry)

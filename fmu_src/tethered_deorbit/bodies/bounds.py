@@ -24,9 +24,10 @@ WELL_DAMPED = 0.05
 
 
 class Bounds(NamedTuple):
-    """Kernels of the same names as in `Bodies`."""
+    """Kernels of the same names as in `Bodies`; and turning(state) -> rate, at most of a line as the target sees it."""
 
     longest: Callable[..., Any]
+    turning: Callable[..., Any]
     squared_error: Callable[..., Any]
     pace: Callable[..., Any]
     square_across: Callable[..., Any]
@@ -57,18 +58,24 @@ def make_bounds(target: Rigid, chaser: Rigid, straight: bool, followed: float, b
         return rate
 
     @kernel
+    def turning(state: Array) -> float:
+        """How fast the line turns as the target sees it, at most [rad/s]: to first order in arms over its length.
+
+        Checked  tests/tethered_deorbit/test_wrapping.py
+        """
+        apart, rate = norm(state[6:9]), norm(state[PAIR + 4 : PAIR + 7])
+        return rate + norm(state[9:12]) / apart if apart > 0.0 else rate
+
+    @kernel
     def longest(record: Any, state: Array) -> float:
         """Longest step [s]: over which no body turns by more than the series of `evenly_turned` bear, and body and line
         not by more than lets its way be followed.
 
         Checked  tests/tethered_deorbit/test_rigid.py, test_wrapping.py
         """
-        apart, rate = norm(state[6:9]), fastest(state)
+        rate, turns = fastest(state), turning(state)
         step = WIDEST / rate if rate > 0.0 else math.inf
-        turning = norm(state[PAIR + 4 : PAIR + 7])
-        if apart > 0.0:
-            turning += norm(state[9:12]) / apart
-        return min(step, followed / turning) if turning > 0.0 else step
+        return min(step, followed / turns) if turns > 0.0 else step
 
     @kernel
     def squared_error(record: Any, state: Array, error: Array) -> float:
@@ -146,4 +153,4 @@ def make_bounds(target: Rigid, chaser: Rigid, straight: bool, followed: float, b
             return float(r.state_effective_mass)
         return float(1.0 / (1.0 / r.state_reduced_mass + target.ease(record, vector) + chaser.ease(record, vector)))
 
-    return Bounds(longest, squared_error, pace, square_across, moved_mass)
+    return Bounds(longest, turning, squared_error, pace, square_across, moved_mass)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fmu_src.tethered_deorbit.bodies.rigid import Rigid
+from fmu_src.tethered_deorbit.bodies.wrapping import Wrapping
 from fmu_src.tethered_deorbit.idle import nothing
 from fmu_src.tethered_deorbit.layout import ATTITUDE, PAIR
 from orbital.kernel import kernel, view
@@ -27,13 +28,15 @@ class Stepping(NamedTuple):
     last_seen: Callable[..., Any]
     seen_rate: Callable[..., Any]
     enter_rate: Callable[..., Any]
+    stays: Callable[..., Any]
 
 
 def make_stepping(
     target: Rigid,
     chaser: Rigid,
     span: Callable[..., Any],
-    keep: Callable[..., Any],
+    wrapping: Wrapping,
+    turning: Callable[..., Any],
     straight: bool,
     bodies: int,
     size: int,
@@ -41,13 +44,15 @@ def make_stepping(
     """The kernels for two bodies.
 
     span(record, state, whole)   of the line: see `attached`
-    keep          of `Wrapping`
+    wrapping      of the line round the target
+    turning       of `bounds`
     straight      whether the line never wraps
     bodies        how many of them turn
     size          of the state
 
     Checked  tests/tethered_deorbit/test_rigid.py
     """
+    keep, rise = wrapping.keep, wrapping.rise
 
     @kernel
     def leave(record: Any, state: Array, elapsed: float) -> None:
@@ -202,4 +207,19 @@ def make_stepping(
         target.carried.go_on(record, state, rate)
         chaser.carried.go_on(record, state, rate)
 
-    return Stepping(rest, enter, go_on, seen, felt, last_seen, seen_rate, enter_rate)
+    @kernel
+    def stays(record: Any, begin: Array, end: Array, step: float) -> bool:
+        """Whether a straight line rises from its face throughout a step: see `Bodies`.
+
+            a_0 + a_1 > 2 W h,   a the angle at which it rises at both ends, W the faster of its turning there
+
+        From both ends it may sink by W t: at most it comes down to (a_0 + a_1 - W h)/2.
+
+        Checked  tests/tethered_deorbit/test_settled_wrapped.py: a step that would go over an edge and back
+        """
+        seen(record, begin, 0.0)
+        first = rise(record)
+        seen(record, end, step)
+        return bool(first + rise(record) > 2.0 * step * max(turning(begin), turning(end)))
+
+    return Stepping(rest, enter, go_on, seen, felt, last_seen, seen_rate, enter_rate, stays)

@@ -50,6 +50,10 @@ class Wrapping(NamedTuple):
     keep(record)                     the way last followed is where the next is sought from
     trouble(record) -> fault
     book(record, energy)             what the line has lost by a change of its way [J]
+    rise(record) -> s                sine of the angle at which a straight line rises from the face on which it is made
+                                     fast, of the whole way last followed; none where it goes over edges or starts
+                                     elsewhere
+    slides(record) -> bool           whether it runs over an edge, on which it could slide; fills what the others ask
     relief(record, across) -> l''    what the line's sliding takes off the second derivative of its length [m/s^2], for
                                      a velocity across it of the far end, body axes [m/s] (3,)
     pivot(record, across)            the point about which the far end turns, in `state.pivot`
@@ -69,6 +73,8 @@ class Wrapping(NamedTuple):
     keep: Callable[..., Any] = nothing
     trouble: Callable[..., Any] = no_fault
     book: Callable[..., Any] = nothing
+    rise: Callable[..., Any] = zero
+    slides: Callable[..., Any] = never
     relief: Callable[..., Any] = zero
     pivot: Callable[..., Any] = nothing
     publish: Callable[..., Any] = nothing
@@ -234,6 +240,29 @@ def make_wrapping(surface: Surface, terms: Mapping[str, str]) -> Wrapping:
         return found
 
     @kernel
+    def slides(record: Any) -> bool:
+        """Whether the line runs over an edge; fills what a way that was not followed as a whole has left out.
+
+        Checked  tests/tethered_deorbit/test_settled_wrapped.py: a line that settles and slides
+        """
+        if record[0].held_count == 0:
+            return False
+        follow_unfolded(record, True)
+        return True
+
+    @kernel
+    def rise(record: Any) -> float:
+        """Sine of the angle at which the line rises from its face: see `Wrapping`.
+
+        Checked  tests/tethered_deorbit/test_settled_wrapped.py: a step that would go over an edge and back
+        """
+        r = record[0]
+        face = r.state_faces[r.state_own_face]
+        if r.held_count > 0 or dot(face[0:3], r.target_attachment) - face[3] < -DEPTH * r.state_extent:
+            return 0.0
+        return dot(face[0:3], r.path_ways[0])
+
+    @kernel
     def book(record: Any, energy: float) -> None:
         """Add what the line has lost by changing its way [J].
 
@@ -251,6 +280,8 @@ def make_wrapping(surface: Surface, terms: Mapping[str, str]) -> Wrapping:
         keep=hold_way,
         trouble=trouble,
         book=book,
+        rise=rise,
+        slides=slides,
         relief=path.relief,
         pivot=path.pivot,
         publish=publish,

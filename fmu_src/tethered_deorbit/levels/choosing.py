@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.idle import never
 from fmu_src.tethered_deorbit.law import Reel
@@ -50,6 +51,7 @@ def make_held_of(terms: Mapping[str, str], reel: Reel, bodies: Bodies) -> Held:
 def make_level(
     terms: Mapping[str, str],
     derivative: Callable[..., Any],
+    scheme: AdaptiveScheme,
     reel: Reel,
     bodies: Bodies,
     held: Held,
@@ -61,8 +63,8 @@ def make_level(
     if not _settles(terms):
         return (counted(RESOLVED) if named in POINTS_ONLY else RESOLVED), never
     if named not in POINTS_ONLY:
-        return make_settled(derivative, reel, bodies, held, places, _sways(terms)), never
-    level = make_event_map(derivative, reel, bodies, held, places)
+        return make_settled(derivative, scheme, reel, bodies, held, places, _sways(terms)), never
+    level = make_event_map(derivative, scheme, reel, bodies, held, places)
     if named != "averaged":
         return level, never
     return make_averaged(level), make_leap(derivative, "engine" in terms, layout)

@@ -28,6 +28,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
@@ -95,7 +96,9 @@ def mapping(held: Held) -> Held:
     return held._replace(mapped=mapped, bounces=bounces, beyond=beyond, span=tension_span)
 
 
-def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places) -> Level:
+def make_event_map(
+    derivative: Callable[..., Any], scheme: AdaptiveScheme, reel: Reel, bodies: Bodies, held: Held, places: Places
+) -> Level:
     """The kernels of the level for one set of equations, whose rate of the impulse is the tension.
 
     Valid    points; see `refusals`
@@ -104,8 +107,8 @@ def make_event_map(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, h
     begin_state, end_state, stages, size = places.begin, places.end, places.stages, places.size
     here_state, slope_state, low = places.here, places.slope, places.low
     impulse = places.impulse
-    settled = make_settled(derivative, reel, bodies, held, places)
-    draw, _, _, neglected, _, tolerance, off_course, _ = make_slow(derivative, reel, bodies, places)
+    settled = make_settled(derivative, scheme, reel, bodies, held, places)
+    draw, _, _, neglected, _, tolerance, off_course, _ = make_slow(derivative, scheme, reel, bodies, places)
 
     @kernel
     def pushes(record: Any, work: Array) -> float:

@@ -31,6 +31,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
@@ -40,7 +41,7 @@ from fmu_src.tethered_deorbit.tolerances import ROUNDING
 from orbital.kernel import kernel
 from orbital.vectors import Array, norm
 
-GAIN, SWAYING_GAIN = 8.0, 4.0
+GAIN, SWAYING_GAIN = 8.0, 2.0
 """A settled step is at least so many times as long as a resolved one, or it is not worth its preparation: of points,
 and of bodies that turn, whose vibration comes back before a longer one has paid."""
 SURE = 0.25
@@ -53,7 +54,13 @@ it."""
 
 
 def make_settled(
-    derivative: Callable[..., Any], reel: Reel, bodies: Bodies, held: Held, places: Places, sways: bool = False
+    derivative: Callable[..., Any],
+    scheme: AdaptiveScheme,
+    reel: Reel,
+    bodies: Bodies,
+    held: Held,
+    places: Places,
+    sways: bool = False,
 ) -> Level:
     """The kernels of the level for one set of equations, whose rate of the impulse is the tension.
 
@@ -62,9 +69,9 @@ def make_settled(
     Checked  tests/tethered_deorbit/test_settled.py
     """
     begin_state, end_state = places.begin, places.end
-    stages, size, last, impulse = places.stages, places.size, places.last, places.impulse
+    stages, size, last, impulse, high = places.stages, places.size, places.last, places.impulse, places.high
     line, seen = reel.at_rest, bodies.seen
-    slow = make_slow(derivative, reel, bodies, places, sways)
+    slow = make_slow(derivative, scheme, reel, bodies, places, sways)
     draw, course, span_of, neglected, left_over, tolerance, off_course, shift = slow
     gain = SWAYING_GAIN if sways else GAIN
 
@@ -76,6 +83,7 @@ def make_settled(
         """
         record[0].state_course_bend[0] = 0.0
         record[0].state_course_bend[1] = 0.0
+        record[0].state_course_bend[2] = 0.0
 
     @kernel
     def bend(record: Any, elapsed: float) -> None:
@@ -89,6 +97,7 @@ def make_settled(
         c = r.state_course
         _, _, r.state_course_bend[0] = course(record, elapsed)
         r.state_course_bend[1] = 6.0 * c[3] + (24.0 * c[4] + 60.0 * c[5] * elapsed) * elapsed
+        r.state_course_bend[2] = 24.0 * c[4] + 120.0 * c[5] * elapsed
 
     @kernel
     def put(record: Any, on: bool) -> None:
@@ -155,6 +164,9 @@ def make_settled(
         r.state_next_look = soonest if damping > 0.0 else math.inf
         if limit < gain * cap or not damping > 0.0:
             return step
+        if sways:
+            for i in range(size):
+                work[high + i] = work[stages + i]
         mass = draw(record, work, span_of(record, gain * cap))
         longer, faster = off_course(record, work)
         amplitude = math.sqrt(longer * longer + mass / stiffness * faster * faster)
@@ -169,6 +181,9 @@ def make_settled(
             r.state_times_settled += 1
             return float(gain * cap)
         r.state_settled = 0
+        if sways:
+            for i in range(size):
+                work[stages + i] = work[high + i]
         if amplitude > least:
             rate = min(0.5 * damping / mass, stiffness / damping)
             r.state_next_look = max(soonest, r.state_begin + math.log(amplitude / least) / rate)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from fmu_src.integrators.scheme import AdaptiveScheme
 from fmu_src.tethered_deorbit.bodies import Bodies
 from fmu_src.tethered_deorbit.law import Reel
 from fmu_src.tethered_deorbit.layout import Places
@@ -45,7 +46,14 @@ class Slow(NamedTuple):
     shift: Callable[..., Any]
 
 
-def make_slow(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, places: Places, sways: bool = False) -> Slow:
+def make_slow(
+    derivative: Callable[..., Any],
+    scheme: AdaptiveScheme,
+    reel: Reel,
+    bodies: Bodies,
+    places: Places,
+    sways: bool = False,
+) -> Slow:
     """The kernels for one set of equations, whose rate of the impulse is the tension.
 
     sways         whether the load sways with a body that turns: see `quintic`
@@ -165,6 +173,6 @@ def make_slow(derivative: Callable[..., Any], reel: Reel, bodies: Bodies, places
             state[11] -= rate * z
 
     if sways:
-        draw = make_quintic_draw(derivative, reel, bodies, places)
+        draw = make_quintic_draw(derivative, scheme, reel, bodies, places)
         return Slow(draw, at, step_itself, neglected_by_sixth, left_by_quintic, tolerance, off_course, shift)
     return Slow(make_draw(derivative, reel, bodies, places), at, span_of, neglected, left, tolerance, off_course, shift)
