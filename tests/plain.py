@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from numba.np.numpy_support import as_dtype
 from fmu_src import instance
 from fmu_src.instance import Instance
 from fmu_src.interface import Model, Value
+from fmu_src.lanes import REALS, of
 from orbital.kernel import Kernel
 
 
@@ -42,12 +44,21 @@ class _Words(np.ndarray):
 
 
 def _written_out(made: _Intrinsic, *arguments: Any) -> Any:
-    """What an intrinsic of `fmu_src.lanes` for single numbers and whole arrays does."""
+    """What an intrinsic of `fmu_src.lanes` does; lanes are arrays."""
     name = made._name
     if name == "viewed":
         kind = inspect.getclosurevars(made._defn).nonlocals["kind"]
         return arguments[0].view(as_dtype(kind)).view(_Words)
+    if name in OF_A_WIDTH:
+        return OF_A_WIDTH[name](*_width(made), *arguments)
     return INTRINSICS[name](*arguments)
+
+
+@cache
+def _width(made: _Intrinsic) -> tuple[int, Any]:
+    """How many numbers lie side by side where an intrinsic of lanes is used, and their kind."""
+    (lanes,) = (of(precision) for precision in REALS if made in of(precision))
+    return lanes.width, as_dtype(next(real for real, *_, width in REALS.values() if width == lanes.width))
 
 
 INTRINSICS: dict[str, Callable[..., Any]] = {
@@ -56,6 +67,18 @@ INTRINSICS: dict[str, Callable[..., Any]] = {
     "lowest": lambda bits: (int(bits) & -int(bits)).bit_length() - 1,
     "highest": lambda bits: int(bits).bit_length() - 1,
     "population": lambda bits: int(bits).bit_count(),
+    "where": np.where,
+    "root": np.sqrt,
+    "slide": lambda value, before: np.concatenate([before[-1:], value[:-1]]),
+    "bits": lambda flags: sum(1 << int(i) for i in np.flatnonzero(flags)),
+    "lane": lambda value, index: float(value[index]),
+}
+OF_A_WIDTH: dict[str, Callable[..., Any]] = {
+    "load": lambda width, kind, reals, index: np.array(reals[index : index + width]),
+    "store": lambda width, kind, reals, index, value: reals.__setitem__(slice(index, index + width), value),
+    "splat": lambda width, kind, value: np.full(width, value, kind),
+    "ramp": lambda width, kind: np.arange(width, dtype=kind),
+    "flags_of": lambda width, kind, bits: np.array([bool(int(bits) >> i & 1) for i in range(width)]),
 }
 
 

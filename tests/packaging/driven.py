@@ -39,6 +39,33 @@ SMALL = {
 }
 """Terms, parameters and macro step of a short life: for what is done thousands of times, or under valgrind."""
 
+SHORT = {
+    "net_capture": (
+        CAPTURE,
+        {
+            "bullets.speed": 12.0,
+            "chaser.start_position[2]": -2.5,
+            "net.side": 4.0,
+            "net.mesh": 1.0,
+            "net.youngs_modulus": 7e6,
+            **{f"target.size[{axis}]": 1.0 for axis in (1, 2, 3)},
+            "target.start_rate[1]": 0.02,
+            "closing.time": 0.2,
+            "closing.speed": 20.0,
+            "closing.stall_force": 50.0,
+            "closing.axial_stiffness": 9.0,
+        },
+        0.05,
+        12,
+        {"thread.tension_max": 1.0, "contact.impulse": 1.0, "closed": 0},
+    ),
+    "tethered_deorbit": (
+        REMOVAL, {"thrust.level": -0.5, "start.separation": 11.9, "tether.damping_ratio": 0.05}, 20.0, 12,
+        {"tether.tug_count": 1, "solver.steps": 20},
+    ),
+}  # fmt: skip
+"""Terms, parameters, macro step and count of a life in which all happens within moments, and outputs that say so."""
+
 
 def library_of(folder):
     """Path of the FMU's library for this machine, in its unpacked folder."""

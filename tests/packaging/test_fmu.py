@@ -1,4 +1,4 @@
-"""Both FMUs against their kernels in this process and against fmpy: bits, state, refusals, archive."""
+"""Both FMUs against their formulas and against fmpy: bits, state, refusals, archive."""
 
 import json
 import subprocess
@@ -18,41 +18,73 @@ from fmu_src.instance import Instance
 from fmu_src.packaging import builds
 from tests import kernels
 from tests.conftest import CAPTURE
-from tests.packaging.driven import CASES, REMOVAL, Driven
+from tests.packaging.driven import CASES, REMOVAL, SHORT, Driven
+from tests.plain import PlainInstance, plain
+
+__all__ = ["plain"]
 
 
 def test_description_is_valid(case):
     assert validate_fmu(str(case[1])) == []
 
 
-def test_binary_gives_the_kernels_bits(case, monkeypatch):
-    """And so does the library that all other tests run."""
+def test_binary_gives_the_bits_of_the_library_that_the_tests_run(case):
     name, path, folder, terms, parameters, step, count = case
-    shared = Instance(MODELS[name], terms, parameters).initialise()
-    monkeypatch.setattr(instance, "entry_of", instance.compiled)
     driven = Driven(path, folder, parameters)
-    twin = Instance(MODELS[name], terms, parameters).initialise()
+    shared = Instance(MODELS[name], terms, parameters).initialise()
     for _ in range(count):
         driven.step(step)
-        twin.step(step)
+        shared.step(step)
     outputs = driven.outputs()
     assert len(outputs) > 20
-    unequal = {n: (v, twin[n]) for n, v in outputs.items() if np.float64(v).tobytes() != np.float64(twin[n]).tobytes()}
+    unequal = {
+        n: (v, shared[n]) for n, v in outputs.items() if np.float64(v).tobytes() != np.float64(shared[n]).tobytes()
+    }
     assert unequal == {}
     # the twin that must fail: one parameter moved by a millionth
-    moved = next(iter(parameters))
-    other = Instance(MODELS[name], terms, parameters | {moved: parameters[moved] * (1.0 + 1e-6)})
-    if moved != "net.mesh":
-        other.initialise()
-        for _ in range(count):
-            other.step(step)
-        assert any(outputs[n] != other[n] for n in outputs)
-    assert isinstance(shared.entry, kernels.Entry) != kernels.compiled_where_run()
-    assert not isinstance(twin.entry, kernels.Entry)
+    moved = next(name for name in parameters if name != "net.mesh")
+    other = Instance(MODELS[name], terms, parameters | {moved: parameters[moved] * (1.0 + 1e-6)}).initialise()
     for _ in range(count):
-        shared.step(step)
-    assert shared.record.tobytes() == twin.record.tobytes()
-    assert shared.work.tobytes() == twin.work.tobytes()
+        other.step(step)
+    assert any(outputs[n] != other[n] for n in outputs)
+    assert isinstance(shared.entry, kernels.Entry) != kernels.compiled_where_run()
+
+
+def same_bits(one, other, step, count):
+    """Whether two instances are the same in every number of record and work memory, after every step."""
+    for _ in range(count):
+        one.step(step)
+        other.step(step)
+        if (one.record.tobytes(), one.work.tobytes()) != (other.record.tobytes(), other.work.tobytes()):
+            return False
+    return True
+
+
+@pytest.mark.parametrize("name", sorted(SHORT))
+@pytest.mark.filterwarnings("ignore:divide by zero:RuntimeWarning")  # as code without tests of each division has it
+def test_the_library_gives_the_bits_of_the_formulas_as_they_are_written(name, request):
+    """Run as plain Python, where no compiler is that could change them: a whole capture, and a tow with a tug."""
+    terms, parameters, step, count, happened = SHORT[name]
+    model, moved = MODELS[name], next(iter(parameters))
+    library, other = (
+        Instance(model, terms, given).initialise()
+        for given in (parameters, parameters | {moved: parameters[moved] * (1.0 + 1e-12)})
+    )
+    request.getfixturevalue("plain")
+    assert same_bits(library, PlainInstance(model, terms, parameters), step, count)
+    assert all(library[output] > least for output, least in happened.items())
+    assert not same_bits(other, PlainInstance(model, terms, parameters), step, count)
+
+
+@pytest.mark.evidence
+def test_the_library_gives_the_bits_of_the_entry_compiled_in_the_process(case, monkeypatch):
+    """By another compiler, for this processor, over a longer time."""
+    name, _, _, terms, parameters, step, count = case
+    shared = Instance(MODELS[name], terms, parameters).initialise()
+    monkeypatch.setattr(instance, "entry_of", instance.compiled)
+    twin = Instance(MODELS[name], terms, parameters).initialise()
+    assert not isinstance(twin.entry, kernels.Entry)
+    assert same_bits(shared, twin, step, count)
     shared.step(step)
     assert shared.record.tobytes() != twin.record.tobytes()
 
