@@ -2,6 +2,8 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -57,6 +59,16 @@ DEAREST = (
 def pytest_addoption(parser: pytest.Parser) -> None:
     told = "run the tests that compare with independent sources alone, and write their rows here (see tests.validation)"
     parser.addoption(validation.OPTION, metavar="FOLDER", type=Path, default=None, help=told)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    """Of two workers that collect everything one begins at the end, so that each file is compiled by one of them."""
+    config = session.config
+    if config.args_source is config.ArgsSource.TESTPATHS and os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
+        for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+            with suppress(Exception, pytest.skip.Exception):  # which is told where the file is collected
+                import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -12,11 +12,13 @@ import gc
 import itertools
 import json
 import os
+import runpy
 import subprocess
 import sys
 import tempfile
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -46,16 +48,24 @@ class Emitter:
 
     def emit(self, model: Model, terms: Mapping[str, str], path: Path, kept: Path) -> None:
         """As `compile.emit`."""
+        self._ask([model.module, dict(terms), str(path.resolve()), str(kept.resolve())], model.name)
+
+    def run(self, program: Path, arguments: Sequence[str]) -> str:
+        """What a program of Python says that is run in a child."""
+        with tempfile.NamedTemporaryFile(mode="r") as told:
+            self._ask([str(program), [*arguments], told.name], program.name)
+            return told.read()
+
+    def _ask(self, what: Sequence[Any], name: str) -> None:
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         begin = self._words.seek(0, os.SEEK_END)
-        what = [model.module, dict(terms), str(path.resolve()), str(kept.resolve())]
         self._process.stdin.write(json.dumps(what) + "\n")
         self._process.stdin.flush()
         if self._process.stdout.readline() != "0\n":
             self._words.seek(begin)
             words = self._words.read().decode(errors="replace")
-            raise tools.BuildError(f"compiling the kernels of {model.name} failed:\n{words.strip()[-2000:]}")
+            raise tools.BuildError(f"compiling the kernels of {name} failed:\n{words.strip()[-2000:]}")
 
 
 _lock = Lock()
@@ -65,8 +75,18 @@ _emitters: list[Emitter] = []
 def emit(model: Model, terms: Mapping[str, str], path: Path, kept: Path) -> None:
     """As `compile.emit`, one at a time."""
     with _lock:
-        _emitters[:] = [emitter for emitter in _emitters if emitter.is_ours()] or [Emitter()]
-        _emitters[0].emit(model, terms, path, kept)
+        _ours().emit(model, terms, path, kept)
+
+
+def run(program: Path, arguments: Sequence[str]) -> str:
+    """What a program of Python says that is run where the kernels of FMUs are compiled, one at a time."""
+    with _lock:
+        return _ours().run(program, arguments)
+
+
+def _ours() -> Emitter:
+    _emitters[:] = [emitter for emitter in _emitters if emitter.is_ours()] or [Emitter()]
+    return _emitters[0]
 
 
 def _load() -> None:
@@ -88,8 +108,17 @@ def _load() -> None:
     abstract._typecodes = counted
 
 
+def _do(what: str, given: Any, path: str, *kept: str) -> None:
+    if kept:
+        Path(path).write_text(compile._lower(what, given, Path(*kept)))
+        return
+    sys.argv = [what, *given]
+    with open(path, "w") as told, redirect_stdout(told):
+        runpy.run_path(what, run_name="__main__")
+
+
 def _serve() -> None:
-    """A line of JSON for each choice of terms, answered by the exit status of the child that compiles it."""
+    """A line of JSON for each choice of terms, or program, answered by the exit status of the child that does it."""
     gc.disable()
     _load()
     gc.freeze()
@@ -97,8 +126,7 @@ def _serve() -> None:
         child = os.fork()
         if not child:
             try:
-                module, terms, path, kept = json.loads(line)
-                Path(path).write_text(compile._lower(module, terms, Path(kept)))
+                _do(*json.loads(line))
                 os._exit(0)
             except BaseException:
                 traceback.print_exc()

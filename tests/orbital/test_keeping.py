@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
-import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,14 +14,12 @@ import pytest
 from dcone_cosim.api import load_scene
 from dcone_cosim.loading import shipped
 from fmu_src.catalogue import MODELS
-from fmu_src.packaging import compile
 from orbital import vectors
 from orbital.kernel import kernel
 from orbital.keys import Keys, NoKeyError
-from tests import kernels
+from tests import emitting, kernels
 
 pytestmark = pytest.mark.usefixtures("compiled")
-ROOT = Path(__file__).parents[2]
 MODULE = """
 import json
 import sys
@@ -88,7 +83,7 @@ OTHER_ORDER = [("other", "i8"), ("more", "f8", [3]), ("offsets", "f8", [2]), ("s
 
 
 class Compiler:
-    """Compiles the entry in a process of its own, and knows which kernels that took."""
+    """Compiles the entry in a process that has compiled nothing before, and knows which kernels that took."""
 
     def __init__(self, folder: Path) -> None:
         self._folder, self.kept, self.text = folder, folder / "kept", MODULE
@@ -97,10 +92,7 @@ class Compiler:
         """Names of the kernels that were compiled."""
         (self._folder / "module.py").write_text(self.text)
         arguments = [json.dumps(fields), str(self.kept), str(self._folder / "model.ll")]
-        command = [sys.executable, str(self._folder / "module.py"), *arguments]
-        environment = {**os.environ, **compile.ENVIRONMENT, "PYTHONPATH": str(ROOT)}
-        told = subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
-        names: list[str] = json.loads(told)
+        names: list[str] = json.loads(emitting.run(self._folder / "module.py", arguments))
         return names
 
     @property
