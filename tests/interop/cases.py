@@ -18,6 +18,7 @@ from pathlib import Path
 
 from dcone_cosim import build
 from dcone_cosim.fmu.component import Archive, Component
+from dcone_cosim.fmu.steppable import VariableInfo
 from dcone_cosim.loading import load
 from dcone_cosim.scene.data import ComponentScene
 from tests.interop.job import Job, Row, Value
@@ -65,29 +66,33 @@ class Case:
     def path(self) -> Path:
         return build.ensure([(self.main.model, self.terms)], lambda _: None)[0]
 
+    @functools.cached_property
+    def told(self) -> tuple[str, str, Mapping[str, VariableInfo]]:
+        """Identifier, GUID and variables of the FMU."""
+        with Archive(self.path) as archive:
+            return str(archive.description.coSimulation.modelIdentifier), archive.guid, dict(archive.variables)
+
     def job(self, grid: str, coarse: int = 1) -> Job:
         """The run on one of the grids, with steps `coarse` times as long."""
-        scene = {p.name: p for p in load(self.scene).phases}[self.phase]
         kinds = {"Real": float, "Integer": int, "Boolean": bool}
         step = self.steps[grid] * coarse
         steps = round(self.length / step)
         at, name, value = self.command
-        with Archive(self.path) as archive:
-            variables = archive.variables
-            parameters = {**scene.main.parameters, **self.changes}
-            return Job(
-                fmu=str(self.path),
-                identifier=str(archive.description.coSimulation.modelIdentifier),
-                guid=archive.guid,
-                step=step,
-                steps=steps,
-                kinds={v.name: v.kind for v in variables.values()},
-                references={v.name: v.reference for v in variables.values()},
-                parameters={n: kinds[variables[n].kind](v) for n, v in parameters.items()},
-                commands=[(round(at / step), name, value)],
-                looks=[round(steps * (i + 1) / LOOKS) for i in range(LOOKS)],
-                outputs=[v.name for v in variables.values() if v.causality == "output"],
-            )
+        identifier, guid, variables = self.told
+        parameters = {**self.main.parameters, **self.changes}
+        return Job(
+            fmu=str(self.path),
+            identifier=identifier,
+            guid=guid,
+            step=step,
+            steps=steps,
+            kinds={v.name: v.kind for v in variables.values()},
+            references={v.name: v.reference for v in variables.values()},
+            parameters={n: kinds[variables[n].kind](v) for n, v in parameters.items()},
+            commands=[(round(at / step), name, value)],
+            looks=[round(steps * (i + 1) / LOOKS) for i in range(LOOKS)],
+            outputs=[v.name for v in variables.values() if v.causality == "output"],
+        )
 
 
 CAPTURE = Case(

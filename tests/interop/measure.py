@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import functools
+import tempfile
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
+from dcone_cosim import build
+from dcone_cosim.fmu.archive import Archive
 from tests.interop.cases import (
     CASES,
     Points,
@@ -65,8 +69,8 @@ TOOLS = {
         "from i h by h",
     ),
 }
-JOBS = ("binary", "decimal", "moved")
-"""What each tool is asked for: both grids, and the binary one with a parameter moved."""
+JOBS = ("binary", "decimal", "moved", "built")
+"""What each tool is asked for: both grids, and the binary one with a parameter moved, and with nothing to set."""
 
 
 @functools.cache
@@ -74,17 +78,37 @@ def job(tool: str, case: str, which: str) -> Job:
     given = CASES[case]
     if which == "moved":
         return moved(given.job("binary", TOOLS[tool].coarse), given)
+    if which == "built":
+        fmu, guid = built(case, TOOLS[tool].coarse)
+        return replace(given.job("binary", TOOLS[tool].coarse), fmu=fmu, guid=guid, parameters={})
     return given.job(which, TOOLS[tool].coarse)
 
 
 @functools.cache
-def found(tool: str, case: str) -> Found:
+def folder() -> tempfile.TemporaryDirectory[str]:
+    """Where FMUs are that start with the values of a run."""
+    return tempfile.TemporaryDirectory()
+
+
+@functools.cache
+def built(case: str, coarse: int) -> tuple[str, str]:
+    """Path and GUID of an FMU that starts with the parameters of a run, so that none is left to set."""
+    given, about = CASES[case].job("binary", coarse), CASES[case]
+    experiment = build.Experiment(0.0, about.length, given.step, case)
+    wanted = build.Furnished(f"{case}-{coarse}", given.identifier, about.terms, given.parameters, experiment)
+    (path,) = build.write_fmus([wanted], (), Path(folder().name), print)
+    with Archive(path) as archive:
+        return str(path), archive.guid
+
+
+@functools.cache
+def found(tool: str) -> Found:
     """What the tool made of all its jobs; the first call runs it."""
-    return run_tool(f"{tool}_tool", [job(tool, case, which) for which in JOBS])
+    return run_tool(f"{tool}_tool", [job(tool, case, which) for case in CASES for which in JOBS])
 
 
 def theirs(tool: str, case: str, which: str) -> list[Row]:
-    return found(tool, case).rows[JOBS.index(which)]
+    return found(tool).rows[list(CASES).index(case) * len(JOBS) + JOBS.index(which)]
 
 
 @functools.cache
@@ -117,7 +141,7 @@ def rows(tools: Iterable[str]) -> dict[tuple[str, str], str]:
     lines = {}
     for tool in tools:
         for case, about in CASES.items():
-            cells = (TOOLS[tool].title, found(tool, case).version, about.title)
+            cells = (TOOLS[tool].title, found(tool).version, about.title)
             verdicts = [verdict(tool, case, which) for which in ("binary", "decimal")]
             lines[tool, case] = "| " + " | ".join([*cells, *verdicts]) + " |"
     return lines

@@ -33,15 +33,15 @@ def versions(text: str) -> dict[str, str]:
 
 
 def page(text: str, tools: Iterable[str], keep_versions: bool = False) -> str:
-    """The page with the lines of these tools as measured now; the others stay.
+    """The page with the lines of these tools, and of the pair, as measured now; the others stay.
 
     keep_versions    a tool may be newer here than the one that the table tells of, if its numbers are the same
     """
     before = written(text)
     lines = dict(before)
-    tools = list(tools)
-    measured = {key: [cell.strip() for cell in line.strip("|").split("|")] for key, line in rows(tools).items()}
-    if PAIR[0] in tools:
+    own = [tool for tool in tools if tool in TOOLS]
+    measured = {key: [cell.strip() for cell in line.strip("|").split("|")] for key, line in rows(own).items()}
+    if PAIR[1] in tools:
         measured[PAIR] = reel_pair.row()
     for key, cells in measured.items():
         if keep_versions and key in before:
@@ -53,4 +53,4 @@ def page(text: str, tools: Iterable[str], keep_versions: bool = False) -> str:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(PAGE.read_text(encoding="utf-8"), TOOLS), encoding="utf-8")
+    PAGE.write_text(page(PAGE.read_text(encoding="utf-8"), [*TOOLS, PAIR[1]]), encoding="utf-8")

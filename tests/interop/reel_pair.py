@@ -105,22 +105,46 @@ def farthest(found: Rows, ours: Recorder | Rows, late: Iterable[str] = ()) -> fl
 
 
 @functools.cache
-def container(grid: str) -> tuple[Rows, Recorder, Rows]:
-    """What fmu-manipulation-toolbox's container gives, run by fmpy; our own; and ours at its times."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = package(Path(folder), grid)
-        step = GRIDS[grid]
-        return in_tool("container", path, MAIN, step, STEPS), own(path), at_points(path, POINTS["container"], step)
+def folder() -> tempfile.TemporaryDirectory[str]:
+    """Where the packages are that all tools are given."""
+    return tempfile.TemporaryDirectory()
+
+
+@functools.cache
+def packaged(grid: str) -> Path:
+    """The scene's package with the steps of a grid."""
+    place = Path(folder().name) / grid
+    place.mkdir()
+    return package(place, grid)
+
+
+@functools.cache
+def found(tool: str, grid: str) -> Rows:
+    """What a tool makes of it."""
+    return in_tool(tool, packaged(grid), MAIN, GRIDS[grid], STEPS)
+
+
+@functools.cache
+def ours(grid: str) -> Recorder:
+    """What our master makes of it."""
+    return own(packaged(grid))
+
+
+@functools.cache
+def at_its_times(tool: str, grid: str) -> Rows:
+    """What our coupling makes of it at the times of a tool."""
+    return at_points(packaged(grid), POINTS[tool], GRIDS[grid])
 
 
 def verdict(grid: str) -> str:
-    """What the table of tools says of the container."""
+    """What the table of tools says of the container of fmu-manipulation-toolbox, run by fmpy."""
     length = f"{STEPS} steps of {GRIDS[grid]:g} s"
-    found, ours, at_its_times = container(grid)
+    theirs, by_master = found("container", grid), ours(grid)
     late = f"`{DIRECT[0]}` arrives one step late"
-    if not differing(found, ours, DIRECT):
+    if not differing(theirs, by_master, DIRECT):
         return f"same bits as the master's Jacobi over {length}; {late}"
-    if not differing(found, at_its_times, DIRECT) and farthest(found, ours, DIRECT) <= SPREAD:
+    same = not differing(theirs, at_its_times("container", grid), DIRECT)
+    if same and farthest(theirs, by_master, DIRECT) <= SPREAD:
         return (
             f"within {SPREAD:g} over {length}: it steps from i h by h; same bits as the master's at those times; {late}"
         )

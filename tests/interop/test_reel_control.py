@@ -18,19 +18,22 @@ from dcone_cosim.recorder import Recorder
 from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.ssp.export import export_scene
 from tests.cosim.ssp_packages import STRUCTURE, contents
+from tests.interop import readme
 from tests.interop.packages import Rows, in_tool, own
 from tests.interop.reel_pair import (
     DIRECT,
     GRIDS,
     MAIN,
-    POINTS,
     SCENE,
     SPREAD,
     STEPS,
-    at_points,
+    at_its_times,
     differing,
     farthest,
+    found,
+    ours,
     package,
+    packaged,
 )
 
 pytestmark = pytest.mark.interop
@@ -42,28 +45,26 @@ Run = tuple[str, str, Rows, Recorder, Rows]
 
 
 @pytest.fixture(scope="module", params=[(tool, grid) for tool in LATE for grid in GRIDS], ids="-".join)
-def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run(request: pytest.FixtureRequest) -> Run:
     """Tool, grid, what tool and master made of it, and what our coupling makes of it at the tool's times."""
     tool, grid = request.param
-    path = package(tmp_path_factory.mktemp("pair"), grid)
-    found = in_tool(tool, path, MAIN, GRIDS[grid], STEPS)
-    return tool, grid, found, own(path), at_points(path, POINTS[tool], GRIDS[grid])
+    return tool, grid, found(tool, grid), ours(grid), at_its_times(tool, grid)
 
 
 def test_a_removal_and_its_control_have_the_bits_of_our_jacobi(run: Run) -> None:
-    tool, grid, found, ours, at_its_times = run
-    assert len(found) > 50
-    assert differing(found, at_its_times, LATE[tool]) == []
-    assert farthest(found, ours, LATE[tool]) <= SPREAD
-    assert bool(differing(found, ours, LATE[tool])) == (grid == "decimal")
+    tool, grid, theirs, by_master, at_their_times = run
+    assert len(theirs) > 50
+    assert differing(theirs, at_their_times, LATE[tool]) == []
+    assert farthest(theirs, by_master, LATE[tool]) <= SPREAD
+    assert bool(differing(theirs, by_master, LATE[tool])) == (grid == "decimal")
 
 
 def test_what_depends_directly_on_an_input_is_late_where_it_is_read_first(run: Run) -> None:
     """Twin: a shift by one step is seen, so the outputs that are not shifted are told at the right time."""
-    tool, _, found, ours, _ = run
+    tool, _, theirs, by_master, _ = run
     wrong = () if LATE[tool] else DIRECT
-    assert farthest(found, ours, wrong) > 1e-6
-    assert set(DIRECT) <= set(differing(found, ours, wrong))
+    assert farthest(theirs, by_master, wrong) > 1e-6
+    assert set(DIRECT) <= set(differing(theirs, by_master, wrong))
 
 
 @pytest.mark.parametrize(
@@ -73,24 +74,38 @@ def test_what_depends_directly_on_an_input_is_late_where_it_is_read_first(run: R
         "controller.motor.time_constant=5.0001 s",
     ],
 )
-def test_another_control_is_seen(setting: str, tmp_path: Path) -> None:
+def test_another_control_is_seen(setting: str) -> None:
     """Twin: the tool's numbers come from both FMUs, with the package's values."""
-    path = package(tmp_path, "binary")
-    found = in_tool("ecos", path, MAIN, GRIDS["binary"], STEPS)
-    assert farthest(found, own(path)) == 0.0
-    assert farthest(found, own(path, setting)) > SPREAD
+    theirs = found("ecos", "binary")
+    assert farthest(theirs, ours("binary")) == 0.0
+    assert farthest(theirs, own(packaged("binary"), setting)) > SPREAD
+
+
+@pytest.fixture(scope="module")
+def without_motor(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Recorder]:
+    """The pair with a control whose output depends on its inputs directly, and what our master makes of it."""
+    folder = tmp_path_factory.mktemp("direct")
+    text, motor, _ = loading.shipped()[SCENE].read_text().partition("[removal.components.controller.motor]")
+    assert motor
+    (folder / "direct.toml").write_text(text)
+    path = package(folder, "binary", str(folder / "direct.toml"))
+    return path, own(path)
 
 
 @pytest.mark.parametrize("tool", LATE)
-def test_a_control_without_a_motor_acts_a_step_late(tool: str, tmp_path: Path) -> None:
-    """Its output depends on its inputs directly; the tools read it before they set them, our master after."""
-    text, motor, _ = loading.shipped()[SCENE].read_text().partition("[removal.components.controller.motor]")
-    assert motor
-    (tmp_path / "direct.toml").write_text(text)
-    path = package(tmp_path, "binary", str(tmp_path / "direct.toml"))
-    found, ours = in_tool(tool, path, MAIN, GRIDS["binary"], STEPS), own(path)
-    assert differing(found, ours, LATE[tool])
-    assert 1e-3 < farthest(found, ours, LATE[tool]) < 1e-2
+def test_a_control_without_a_motor_acts_a_step_late(tool: str, without_motor: tuple[Path, Recorder]) -> None:
+    """The tools read its output before they set its inputs, our master after."""
+    path, by_master = without_motor
+    theirs = in_tool(tool, path, MAIN, GRIDS["binary"], STEPS)
+    assert differing(theirs, by_master, LATE[tool])
+    assert 1e-3 < farthest(theirs, by_master, LATE[tool]) < 1e-2
+
+
+def test_the_readmes_line_of_the_pair_is_what_was_measured() -> None:
+    text = readme.PAGE.read_text(encoding="utf-8")
+    assert readme.page(text, [readme.PAIR[1]], keep_versions=True) == text
+    wrong = text.replace("the master's Jacobi over 1000 steps", "the master's Jacobi over 999 steps", 1)
+    assert wrong != text == readme.page(wrong, [readme.PAIR[1]], keep_versions=True)
 
 
 def test_the_scenes_package_has_the_scenes_bits_and_its_coupling_step(tmp_path: Path) -> None:

@@ -87,6 +87,19 @@ def test_a_moved_parameter_is_seen(run: tuple[str, str]) -> None:
     assert differing(ours(*run, "moved"), moved) == []
 
 
+def test_with_nothing_set_it_gives_the_masters_bits(run: tuple[str, str]) -> None:
+    """On FMUs that hold the values of their scene."""
+    assert job(*run, "built").parameters == {}
+    assert differing(ours(*run, "binary"), theirs(*run, "built")) == []
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_with_the_models_own_values_the_bits_are_others(case: str) -> None:
+    """The twin: the same with nothing set on an FMU that was given nothing."""
+    plain = replace(job("fmpy", case, "binary"), parameters={})
+    assert differing(ours("fmpy", case, "binary"), by_component(plain, multiples))
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_the_runs_are_worth_repeating(case: str) -> None:
     """All kinds of variables, a command that changes what comes after it and only that, contact and capture, tugs."""
@@ -111,6 +124,7 @@ def test_the_readmes_table_is_what_was_measured() -> None:
     text = readme.PAGE.read_text(encoding="utf-8")
     able = [tool for tool, about in TOOLS.items() if about.version]
     assert readme.page(text, able, keep_versions=True) == text
+    assert len(readme.written(text)) == len(CASES) * len(TOOLS) + 1
     for package, version in readme.versions(text).items():
         assert requirements()[package].specifier.contains(version, prereleases=True)
     wrong = text.replace("same bits over 64 steps of 0.25 s", "same bits over 65 steps of 0.25 s", 1)
