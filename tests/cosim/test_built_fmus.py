@@ -16,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from fmpy.validation import validate_fmu
 
 from dcone_cosim import build
 from dcone_cosim.contract import EXTREMES
@@ -27,6 +26,7 @@ from dcone_cosim.loading import find
 from fmu_src.interface import Model
 from fmu_src.packaging import builds
 from tests.cosim.conftest import Dcone
+from tests.validating import validate_fmu
 
 Columns = dict[str, npt.NDArray[np.float64]]
 OFFSET = ("removal.thrust.offset=0.004 N", "removal.solver.tolerance_stretch=2 pm", "removal.duration=6 h")

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from fmpy.validation import validate_fmu
 from rich.console import Console
 
 from dcone_cosim import build as models
@@ -31,6 +30,7 @@ from dcone_cosim.progress import Progress
 from dcone_cosim.scene.data import Scene
 from tests.cosim.fmus.build import build as build_fmu
 from tests.cosim.mock_components import MockCapture
+from tests.validating import validate_fmu
 
 HANDS_OVER = kinds()["removal"].takes
 """What a capture hands over to a removal."""

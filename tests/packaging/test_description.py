@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from astropy import units
 from fmpy import read_model_description
-from fmpy.validation import validate_model_description
 
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import Model, Variable
 from fmu_src.packaging import builds, c_header, dependence, description
 from tests.conftest import CAPTURE
 from tests.packaging import toy
+from tests.validating import validate_model_description
 
 INTERFACES = {
     "net": MODELS["net_capture"].interface(CAPTURE),

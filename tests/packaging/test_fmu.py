@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
-from fmpy.validation import validate_fmu
 
 from fmu_src import instance
 from fmu_src.catalogue import MODELS
@@ -20,6 +19,7 @@ from tests import kernels
 from tests.conftest import CAPTURE
 from tests.packaging.driven import CASES, REMOVAL, SHORT, Driven
 from tests.plain import PlainInstance, plain
+from tests.validating import validate_fmu
 
 __all__ = ["plain"]
 
