@@ -108,7 +108,9 @@ def test_it_goes_on_with_what_is_missing(swept: Path, dcone: Dcone, drift: Path,
 
 def test_values_may_be_added(swept: Path, dcone: Dcone, drift: Path) -> None:
     more = LENGTHS.replace("15 m:3", "17 m:5")
-    code, out, err = dcone("sweep", str(drift), "--vary", more, "--vary", VELOCITY, "-o", "out", "--no-figures")
+    code, out, err = dcone(
+        "sweep", str(drift), "--vary", more, "--vary", VELOCITY, "-o", "out", "--no-figures", "-j", "1"
+    )
     assert "results in out" in out
     assert (code, "6 of them there before" in err) == (0, True)
     assert len(pd.read_parquet(swept / "table.parquet")) == 10
@@ -194,10 +196,10 @@ def test_failures_are_rows_and_the_exit_code_says_so(dcone: Dcone, drift: Path, 
 
 def test_a_sweep_that_cannot_be_drawn_is_there_all_the_same(dcone: Dcone, drift: Path) -> None:
     three = ("--vary", "removal.chaser.mass=1 t,2 t")
-    code, _, err = dcone("sweep", str(drift), *GRID, *three, "-o", "out")
+    code, _, err = dcone("sweep", str(drift), *GRID, *three, "-o", "out", "-j", "1")
     assert (code, "no figure is drawn of 3 varied keys" in err) == (0, True)
     assert not Path("out/sweep.png").exists()
-    code, _, err = dcone("sweep", str(drift), *three, "-o", "flat")
+    code, _, err = dcone("sweep", str(drift), *three, "-o", "flat", "-j", "1")
     assert (code, "no figure of the summary is a number that changes" in err) == (0, True)
 
 

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from fmu_src.implied import formula
 from fmu_src.instance import Instance
-from fmu_src.net_capture.folding.rolled import pitch, turned
+from fmu_src.net_capture.folding.rolled import CORE, pitch, turned
 from fmu_src.net_capture.folding.zigzag import fold_width, zigzag
 from fmu_src.net_capture.implied import rows
 from fmu_src.net_capture.interface import MODEL, refusals
@@ -96,6 +96,25 @@ def test_layers_of_a_roll_lie_one_on_another():
     for y in rows:
         radius = np.linalg.norm(place[np.abs(meant[:, 1] - y) < 1e-6][:, :2], axis=1)
         assert np.ptp(radius) < step
+
+
+@pytest.mark.parametrize("length", [12.0, 40.0])
+def test_a_band_wound_at_that_pitch_fills_the_roll(length):
+    """Its spiral, from the core to the canister's wall, is as long as the band."""
+    c = formula(pitch)(0.12, length) / math.tau
+    found, _ = quad(lambda a: c * math.sqrt(1.0 + a * a), CORE * 0.12 / c, 0.12 / c)
+    assert found == pytest.approx(length, rel=1e-4)
+
+
+@pytest.mark.parametrize("pattern", ["rolled"])
+def test_the_outermost_turn_of_a_roll_is_where_its_length_ends(pattern):
+    """As far out as a band of the length between its first node and its last is wound, within the turn's thickness."""
+    layer = layer_of("square", pattern)
+    laid = layer.lay(NETS["square"] | SET[pattern])
+    distance = np.linalg.norm(layer.fold(laid)[laid.slots][:, :2], axis=1)
+    step = formula(pitch)(0.12, 12.0)
+    assert 0.12 - 2.0 * step < distance.max() <= 0.12
+    assert CORE * 0.12 - 2.0 * step < distance.min() < CORE * 0.12 + step
 
 
 @pytest.mark.parametrize("length", [1e-3, 0.3, 7.0, 4e3])

@@ -14,17 +14,21 @@ SHAPES = {
     "square": {"net.side": 8.0, "net.mesh": 2.0, "net.segments": 2},
     "hexagon": {"net.radius": 6.0, "net.mesh": 2.0},
 }
-RIGGED = {"edge": "plain", "leads": "plain"}
+STRUNG = {
+    "square": (SHAPES["square"] | {"leads.segments": 3}, {"edge": "plain", "leads": "plain"}),
+    "cone": ({"net.radius": 3.0, "net.depth": 4.0, "net.top_radius": 0.8, "net.mesh": 1.0}, {}),
+}
+"""Values and terms of a square with an edge rope and leads, and of a cone, whose rows have gaps in other places."""
 SPARE = 7
 """Outputs that no thread needs."""
 
 
-@pytest.fixture(scope="module")
-def strung():
-    """A net with an edge rope and leads, pulled about at random: what it is laid in, and the kernel that writes."""
-    values = SHAPES["square"] | {"leads.segments": 3}
-    count = threads_of(*settled("square", values, **RIGGED))
-    layer = Layer("square", **RIGGED, threads=str(count + SPARE))
+@pytest.fixture(scope="module", params=STRUNG)
+def strung(request):
+    """A net pulled about at random: what it is laid in, and the kernel that writes."""
+    values, rigged = STRUNG[request.param]
+    count = threads_of(*settled(request.param, values, **rigged))
+    layer = Layer(request.param, **rigged, threads=str(count + SPARE))
     laid = layer.lay(values)
     assert int(laid.p["net_threads"]) == count, "as many outputs as threads, or what is written goes astray"
     tensions = make_tensions(layer.parts)

@@ -1,10 +1,9 @@
-"""FMUs built once for all processes of a session."""
-
-from pathlib import Path
+"""FMUs built once."""
 
 import pytest
 from fmpy import extract
 
+from dcone_cosim.build import cache_folder
 from fmu_src.catalogue import MODELS
 from fmu_src.packaging import builds
 from tests.packaging import toy
@@ -14,14 +13,13 @@ from tests.packaging.raw import OK, Library, Raw
 
 @pytest.fixture(scope="session")
 def fmu(tmp_path_factory):
-    """Path and unpacked folder of an FMU, by model or variant; built once for all processes of the session."""
-    cache = Path(tmp_path_factory.getbasetemp()).parent / "fmus"
+    """Path and unpacked folder of an FMU, by model or variant, in the cache where runs find it too."""
     made = {}
 
     def make(name):
         if name not in made:
             model, terms = VARIANTS.get(name) or (name, TERMS[name])
-            path = builds.build(MODELS[model].interface(terms), cache)
+            path = builds.build(MODELS[model].interface(terms), cache_folder())
             made[name] = (path, str(extract(str(path), unzipdir=str(tmp_path_factory.mktemp(name)))))
         return made[name]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
+from dcone_cosim.build import cache_folder
 from fmu_src.packaging import builds, kept, link, platforms
 from fmu_src.reel_control.interface import MODEL
 
@@ -62,9 +62,8 @@ def exported(section: Bytes) -> Iterator[str]:
 
 
 @pytest.fixture(scope="module")
-def code(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    cache = Path(tmp_path_factory.getbasetemp()).parent / "fmus"
-    fmu = builds.build(MODEL.interface({}), cache, platform=platforms.PAGE)
+def code() -> bytes:
+    fmu = builds.build(MODEL.interface({}), cache_folder(), platform=platforms.PAGE)
     assert kept.fault(fmu) == ""
     with zipfile.ZipFile(fmu) as archive:
         return archive.read(f"binaries/wasm32-wasi/{MODEL.name}.wasm")

@@ -16,6 +16,7 @@ import pytest
 
 from dcone_cosim import build as door
 from dcone_cosim import cli
+from dcone_cosim.build import cache_folder
 from dcone_cosim.errors import InputError
 from fmu_src.catalogue import MODELS
 from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
@@ -32,9 +33,9 @@ OLDEST = (2, 17)
 
 
 @pytest.fixture(scope="session")
-def cache(tmp_path_factory):
-    """Kept for all processes of the session."""
-    return Path(tmp_path_factory.getbasetemp()).parent / "fmus"
+def cache():
+    """Where runs find FMUs too."""
+    return cache_folder()
 
 
 @pytest.fixture(scope="session")

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dcone_cosim.build import cache_folder
 from fmu_src.instance import Instance
 from fmu_src.packaging import link, platforms
 from tests.packaging import lookup, platform_cases
@@ -29,8 +30,8 @@ ARM_LIBRARIES = Path("/usr/aarch64-linux-gnu")
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return Path(tmp_path_factory.getbasetemp()).parent / "fmus"
+def cache():
+    return cache_folder()
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from dcone_cosim.build import cache_folder
 from fmu_src.packaging import link, platforms
 from tests.packaging import platform_cases
 from tests.packaging.test_fmu import Driven
@@ -22,8 +23,8 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def fmu(tmp_path_factory):
-    return platform_cases.build(MODEL, platforms.host(), Path(tmp_path_factory.getbasetemp()).parent / "fmus")
+def fmu():
+    return platform_cases.build(MODEL, platforms.host(), cache_folder())
 
 
 def outputs(fmu, folder, parameters):
