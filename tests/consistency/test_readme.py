@@ -1,8 +1,8 @@
 """The READMEs' commands do what they say, each run as it stands; and what a README points to is there.
 
 The blocks marked `sh` and `python` of one README run in the order of the page, in a folder of their own that is empty
-at first: a command may use what one above it has written. The first command of each page is run as it is typed, and
-Python too; the other commands run in this process, which has loaded already what a command loads.
+at first: a command may use what one above it has written. The first command of the first page is run as it is typed,
+and its Python too; all else runs in this process, which has loaded already what a command loads.
 """
 
 import os
@@ -20,7 +20,8 @@ ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 PLACES = (".readme", "dcone_cosim", "fmu_src", "orbital", "tests")
 PAGES = [README, *sorted(page for place in PLACES for page in (ROOT / place).rglob("*.md"))]
-HERE = "dcone in this process"
+HERE = "here"
+"""In this process: dcone, or a piece of Python."""
 LONGEST = 200
 """Lines that a newcomer is asked to read."""
 
@@ -30,18 +31,18 @@ def blocks(text, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
 
 
-def steps(text):
+def steps(page):
     """Commands by line and pieces of Python, in the order of the page."""
-    first = True
-    for language, block in re.findall(r"^```(sh|python)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+    alone = page == README
+    for language, block in re.findall(r"^```(sh|python)\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE):
         if language == "python":
-            yield [sys.executable, "-c", block]
+            yield [sys.executable if page == README else HERE, "-c", block]
             continue
         for line in filter(str.strip, block.splitlines()):
             program, *arguments = shlex.split(line)
             assert program == "dcone", f"{line}: only dcone is run here"
-            yield [str(Path(sys.executable).with_name("dcone")) if first else HERE, *arguments]
-            first = False
+            yield [str(Path(sys.executable).with_name("dcone")) if alone else HERE, *arguments]
+            alone = False
 
 
 def named(page):
@@ -91,7 +92,7 @@ def folders(tmp_path_factory):
 STEPS = [
     pytest.param(page, step, id=f"{named(page)}: {' '.join(step[1:]).partition(chr(10))[0]}")
     for page in PAGES
-    for step in steps(page.read_text())
+    for step in steps(page)
 ]
 
 
@@ -99,6 +100,9 @@ STEPS = [
 def test_command_runs(page, command, folders, monkeypatch, capfd):
     if command[0] == HERE:
         monkeypatch.chdir(folders[page])
+        if command[1] == "-c":
+            exec(compile(command[2], f"{named(page)}, Python", "exec"), {"__name__": "__main__"})
+            return
         monkeypatch.setattr(sys, "argv", ["dcone", *command[1:]])
         with pytest.raises(SystemExit) as stop:
             cli.main()
