@@ -205,7 +205,7 @@ class TestPlaces:
     def test_files_for_others_too(
         self, dcone: Dcone, monkeypatch: pytest.MonkeyPatch, command: str, place: str
     ) -> None:
-        monkeypatch.setattr(commands.build, "_built", lambda *_: pytest.fail("the build began"))
+        monkeypatch.setattr("dcone_cosim.ours.fmus._built", lambda *_: pytest.fail("the build began"))
         Path("file").touch()
         code, _, err = dcone(command, "table2-deorbit", "-o", place)
         assert (code, len(err.splitlines())) == (2, 1)

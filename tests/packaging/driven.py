@@ -24,7 +24,7 @@ TERMS = {**{name: case[0] for name, case in CASES.items()}, "reel_control": {}}
 """Every FMU that the tests of this folder may ask for, and its terms."""
 VARIANTS = {
     "removal, linear": ("tethered_deorbit", {"reel": "linear", "thrust": "tether"}),
-    "removal, commanded": ("tethered_deorbit", {"reel": "commanded"}),
+    "removal, commanded": ("tethered_deorbit", {"reel": "commanded", "thrust": "along_track"}),
     "reel control, motor": ("reel_control", {"motor": "lag"}),
 }
 """More of them, each a model with other terms."""
