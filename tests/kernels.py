@@ -5,7 +5,7 @@ that all processes of the run share. An `Instance` loads its entry from a librar
 IR as it is. What compiles has numba loaded already: see `tests.emitting`. A test that judges compiling asks for
 `compiled_anew`, or puts `instance.compiled` back.
 
-Checked  tests/packaging/test_fmu.py: the library's bits are those of the entry compiled in the process
+Checked  tests/packaging/test_fmu.py: the library's bits are those of the formulas run as plain Python
 """
 
 from __future__ import annotations

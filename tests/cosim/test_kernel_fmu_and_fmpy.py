@@ -54,7 +54,7 @@ def test_kernel_and_fmu_give_the_same_bits(run_by_fmu: tuple[Scene, PhaseResult]
 def test_a_kernel_compiled_in_this_process_gives_the_same_bits(
     run_by_fmu: tuple[Scene, PhaseResult], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The thin slice are the two FMUs of tests/packaging/test_fmu.py."""
+    """What is left in the suite: tests/packaging/test_fmu.py, formulas that no compiler has seen."""
     monkeypatch.setattr(instance, "entry_of", instance.compiled)
     test_kernel_and_fmu_give_the_same_bits(run_by_fmu)
 
