@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import fmpy
+import ziglang
 
 from fmu_src.packaging import tools, universal
 from fmu_src.packaging.compile import ENTRY
@@ -41,9 +43,15 @@ SECOND_PATH = {"x86_64_v3": "v3"}
 
 
 def clang(arguments: Sequence[object]) -> None:
-    """Run it; BuildError with its last words if it fails."""
-    command = [sys.executable, "-m", "ziglang", "cc", *map(str, arguments)]
-    tools.run("clang", command)
+    """Run it; BuildError with its last words if it fails.
+
+    It knows a C library that it has built by the paths of its sources as seen from the working directory, and would
+    build it anew, half a minute for a page, wherever it is run from a folder above them: it runs in their own.
+
+    Checked  tests/packaging/test_platforms.py
+    """
+    told = (os.path.abspath(one) if isinstance(one, Path) else str(one) for one in arguments)
+    tools.run("clang", [sys.executable, "-m", "ziglang", "cc", *told], place=Path(ziglang.__file__).parent)
 
 
 def is_page(target: Target) -> bool:

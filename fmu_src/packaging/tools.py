@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from threading import Lock
 
 
@@ -15,10 +16,12 @@ _running: set[subprocess.Popen[str]] = set()
 _lock = Lock()
 
 
-def run(what: str, command: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
-    """Run a tool to its end; BuildError with its last words if it fails."""
-    pipe = subprocess.PIPE
-    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=subprocess.STDOUT, text=True) as process:
+def run(
+    what: str, command: Sequence[str], environment: Mapping[str, str] | None = None, place: Path | None = None
+) -> None:
+    """Run a tool to its end, in a folder if one is named; BuildError with its last words if it fails."""
+    pipe, both = subprocess.PIPE, subprocess.STDOUT
+    with subprocess.Popen(command, env=environment, cwd=place, stdout=pipe, stderr=both, text=True) as process:
         with _lock:
             _running.add(process)
         try:

@@ -94,7 +94,7 @@ def test_what_belongs_to_the_capture_whatever_it_is_called(fmus: Fmus, tmp_path:
             "removal.thrust.level=-1 N",
             "removal.target.body=box",
         ),
-        *("handoff.point_tolerance=0.02", "title=another", "removal.solver.scheme=radau"),
+        *("handoff.point_tolerance=0.02", "title=another", "removal.solver.tolerance_stretch=10 pm"),
     ):
         assert keys((same,), fmus) == own
     for other in ("orbit.altitude=700 km", "capture.bullets.speed=3.1 m/s", "capture.macro_step=0.01 s"):

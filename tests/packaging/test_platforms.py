@@ -127,6 +127,17 @@ def test_windows_library_shows_the_interface_alone(library):
     assert all(n.startswith("api-ms-win-crt-") or n == "KERNEL32.dll" for n in ours)
 
 
+def test_clang_runs_where_its_own_files_are(monkeypatch, tmp_path):
+    """It tells C libraries apart by paths seen from where it runs: from above its files it would build them anew."""
+    told = []
+    monkeypatch.setattr(tools, "run", lambda what, command, place: told.append((command, place)))
+    monkeypatch.chdir(tmp_path)
+    link.clang(["-c", Path("a.c"), "-o", tmp_path / "a.o", "-lm"])
+    ((command, place),) = told
+    assert command[-5:] == ["-c", str(tmp_path / "a.c"), "-o", str(tmp_path / "a.o"), "-lm"]
+    assert (place / "lib" / "libc" / "wasi").is_dir()
+
+
 def part_of(kind, content):
     return struct.pack("<IIII", universal.PART_MAGIC, kind, 3, 6) + content
 
