@@ -118,7 +118,7 @@ def _library(ir: Path, path: Path) -> None:
         visible = Path(folder) / "visible.ll"
         visible.write_text(ir.read_text().replace("define hidden", "define"))
         objects = link.compile_kernels(visible, replace(target, processors=(best,)), Path(folder))
-        link.clang(["-target", target.triple, *link.FLAGS, "-shared", *objects, "-o", path, "-lm"])
+        link.clang(["-target", target.triple, *link.FLAGS, "-s", "-shared", *objects, "-o", path, "-lm"])
 
 
 def share(folder: Path) -> None:

@@ -66,7 +66,8 @@ class Fields(ctypes.Structure):
 def compiled() -> tuple[ctypes.CDLL, str]:
     """The library, and what it was built with: the clang that links the FMUs, or what PLAIN_NET_CC names."""
     named = os.environ.get("PLAIN_NET_CC")
-    command = shlex.split(named) if named else [sys.executable, "-m", "ziglang", "cc"]
+    # without zig's run-time library, of which nothing is called, and which would be built for this processor first
+    command = shlex.split(named) if named else [sys.executable, "-m", "ziglang", "cc", "-nostdlib", "-lc"]
     told = subprocess.run([*command, "--version"], check=True, capture_output=True, text=True).stdout.splitlines()[0]
     with TemporaryDirectory() as folder:
         path = Path(folder) / "plain_net.so"
