@@ -44,7 +44,6 @@ def criteria(evidence: Evidence) -> Iterator[Criterion]:
     yield from _takes(evidence)
     yield from _orbit(evidence)
     yield from _conducts(evidence)
-    yield from _rubs(evidence)
     if evidence.terms.get("reel") == "locked":
         if "lumped" not in evidence.terms:  # a line with mass, toe or compliance has no such closed forms
             yield from _longer(evidence)
@@ -264,25 +263,6 @@ def _orbit(evidence: Evidence) -> Iterator[Criterion]:
     off = float(np.abs(energy - energy[0] - done).max()) - 0.5 * EARTH_MU * (bend + 1e-11) / float(axis.min())
     share = max(0.0, off) / max(float(np.abs(done).max()), 1e-300)
     yield Criterion("orbit", "energy of the orbit from the work of the thrust", share, "1", ACCURATE, STABLE)
-
-
-def _rubs(evidence: Evidence) -> Iterator[Criterion]:
-    """Friction on a table only takes, and holds no body back by more than mu m g.
-
-    Source   Coulomb's law
-    Checked  tests/stability/test_judge.py
-    """
-    columns, values = evidence.columns, evidence.values
-    if not evidence.has("friction.loss", "friction.chaser_force", "friction.target_force"):
-        return
-    full = values["friction.coefficient"] * values["friction.gravity"]
-    lost = columns["friction.loss"]
-    size = max(float(np.abs(lost).max()), 1e-300)
-    yield Criterion("rubs", "what friction gives back", rise(-lost) / size, "1", 1e-9, 1e-6)
-    for body in ("chaser", "target"):
-        most = full * values[f"{body}.mass"]
-        over = float(columns[f"friction.{body}_force"].max()) / max(most, 1e-300) - 1.0
-        yield Criterion(f"rubs_{body}", f"friction on the {body} above mu m g", max(0.0, over), "1", 1e-9, 1e-6)
 
 
 def _conducts(evidence: Evidence) -> Iterator[Criterion]:

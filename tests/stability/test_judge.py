@@ -179,22 +179,6 @@ def test_a_line_neither_pushes_nor_is_longer_than_its_tension_makes_it() -> None
     assert red(tow(math.nan)) >= {"finite"}
 
 
-def test_friction_on_a_table_only_takes_and_holds_back_by_no_more_than_its_law() -> None:
-    full = 0.1 * 9.8
-
-    def sliding(back: float = 0.0, harder: float = 1.0) -> Evidence:
-        held = {f"friction.{body}_force": np.full(3, full * MASSES[f"{body}.mass"]) for body in ("chaser", "target")}
-        held["friction.target_force"] = harder * held["friction.target_force"]
-        columns = {"time": np.arange(3.0), "friction.loss": np.array([0.0, 2.0, 3.0 - back]), **held}
-        values = {**MASSES, "friction.coefficient": 0.1, "friction.gravity": 9.8}
-        return Evidence(columns, values, {"reel": "linear", "friction": "coulomb"}, 2.0)
-
-    assert red(sliding()) == set()
-    assert red(sliding(back=1.001)) == {"rubs"}
-    assert red(sliding(harder=1.001)) == {"rubs_target"}
-    assert {"rubs", "rubs_chaser", "rubs_target"} <= {one.key for one in of_removal(sliding())}
-
-
 def adrift(thrust: float, told: float) -> Evidence:
     """Two bodies and a slack line for ten minutes, by Hill's equations; and the thrust that the scene tells.
 
