@@ -51,6 +51,9 @@ def test_a_node_slides_as_far_as_coulomb_has_it(validated):
     net.step(0.5 * duration)
     assert net["thread.tension_max"] == 0.0
     assert 0.0 < net["wall.friction_loss"] < 0.9 * 0.5 * speed**2 / light
+    # also on the way, between two substeps
+    kinetic = net["energy.kinetic"] + 0.5 * 5.0 * (net.array("chaser_velocity") ** 2).sum()
+    assert kinetic + net["wall.friction_loss"] == pytest.approx(0.5 * mass * speed**2, rel=1e-9)
     net.step(duration)
     validated(
         closed_form("u^2 / 2 F (1/m + 1/M)"),
