@@ -46,6 +46,7 @@ N    thread.tension_max cord.tension_max pull_off.tension_max
 J    contact.loss contact.friction_loss closing.work closing.spring_energy closing.braked thread.dissipated
 J    cord.dissipated air.dissipated bending.dissipated wall.friction_loss gravity.work energy.remainder pull_off.work
 J    table.friction_loss
+s    closing.timeout
 N s  recoil
 1    net.nodes net.threads enclosure.at_capture enclosure.least quality.at_capture quality.index
 """
