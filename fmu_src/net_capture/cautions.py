@@ -6,6 +6,8 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 
+import numpy as np
+
 from fmu_src.cautions import Caution, Seen, heavily_damped, low
 from fmu_src.net_capture.entered import by_the_end
 from fmu_src.net_capture.implied import open_loop, substeps
@@ -40,7 +42,7 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
             "round a union of several pieces threads may still pass through thin ones, where they lie over several at "
             "once: wrap.passed and wrap.passed_slack count it; look at the picture before trusting what is held",
         )
-        if any(row[0] == SHELL for row in values[PIECES]):
+        if SHELL in np.asarray(values[PIECES])[:, 0]:
             yield Caution(
                 "wrap.bends",
                 "the wall of a shell does not hold threads: they go through where they lie over several of the slabs "

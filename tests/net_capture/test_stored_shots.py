@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from tests.net_capture.evidence import indices, launches
+from tests.net_capture.evidence import contact_terms, indices, launches
 from tests.net_capture.evidence.shots import draw
 
 
@@ -36,6 +36,18 @@ def test_launches_scatter_as_their_rows_say():
         assert told["mean"] == pytest.approx(times.mean(), abs=1e-3)
         assert told["deviation"] == pytest.approx(times.std(ddof=1), abs=1e-3)
     assert result["times"]["open"]["mean"] == pytest.approx(9.04, rel=0.03)
+
+
+def test_what_terms_of_contact_change_is_told_as_the_rows_say():
+    result = json.loads(contact_terms.RESULT.read_text())
+    rows, choices = result["rows"], list(contact_terms.CHOICES)
+    assert result["command"] == contact_terms.COMMAND
+    assert [(row["number"], row["choice"]) for row in rows] == [(n, c) for n in range(result["shots"]) for c in choices]
+    assert result["summary"] == contact_terms.summarise(rows)
+    assert result["shots"] >= 24
+    first, friction = (result["summary"][choice] for choice in (choices[0], "law A, wrap with friction"))
+    assert friction["friction_loss"]["mean"] > 5.0
+    assert friction["remainder"]["mean"] == pytest.approx(first["remainder"]["mean"], abs=0.05), "of friction nothing"
 
 
 @pytest.mark.evidence
