@@ -15,6 +15,8 @@ def compile_host(source, folder, *flags):
     """The program of a C file of this folder."""
     program = folder / Path(source).stem
     command = [*toy.COMPILER, "-std=c99", "-D_POSIX_C_SOURCE=200809L", "-D_GNU_SOURCE", "-Wall", "-Wextra", "-Werror"]
-    command += ["-O1", "-gdwarf-4", "-I", link.HEADERS, *flags, HERE / source, "-o", program, "-ldl", "-lm"]
+    # without zig's run-time library, of which nothing is called, and which would be built with its own lines first
+    command += ["-O1", "-gdwarf-4", "-nostdlib", "-lc", "-I", link.HEADERS, *flags]
+    command += [HERE / source, "-o", program, "-ldl", "-lm"]
     subprocess.run(list(map(str, command)), check=True, capture_output=True)
     return program
