@@ -59,6 +59,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(validation.OPTION, metavar="FOLDER", type=Path, default=None, help=told)
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """What is compiled in a process that runs tests is kept, and found by the others; the one that only deals them out
+    has no need of numba."""
+    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
+        kernels.keep()
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     validation.keep_validating(config, items)
     place = {name: k for k, name in enumerate(DEAREST)}
