@@ -24,7 +24,7 @@ def _run(self: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> 
     """Settle a function's blocks; lives of variables are worked out where they are asked for."""
     function = self.func_ir
     if function.is_generator:
-        _whole_run(self, emit_dels, extend_lifetimes)  # type: ignore[no-untyped-call]
+        _whole_run(self, emit_dels, extend_lifetimes)
         return
     function.blocks = transforms.canonicalize_cfg(function.blocks)  # type: ignore[no-untyped-call]
     function.variable_lifetime = postproc.VariableLifetime(function.blocks)  # type: ignore[no-untyped-call]
