@@ -18,6 +18,7 @@ Checked  tests/orbital/test_keeping.py
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import os
 import pickle
@@ -43,7 +44,7 @@ from numba.core.typing.templates import signature
 
 from orbital import linking
 from orbital.keys import Apart, Keys, NoKeyError, digest, source
-from orbital.linking import PartDispatcher, PartLibrary, TextLibrary, callers_first
+from orbital.linking import Linked, PartDispatcher, PartLibrary, TextLibrary, WholeLibrary, callers_first
 from orbital.places import PlacelessContext, Places
 
 OWN, CALLED = "own", "called."
@@ -59,7 +60,7 @@ def _tools() -> str:
     """Hash of what makes code of a kernel: versions, settings, and our own rules of linking."""
     settings = sorted((name, value) for name, value in os.environ.items() if name.startswith("NUMBA_"))
     versions = numba.__version__, llvmlite.__version__, np.__version__, platform.python_version(), platform.machine()
-    rules = (source(f"orbital.{name}") for name in ("kernel", "linking", "places", "keeping", "keys"))
+    rules = (source(f"orbital.{name}") for name in ("kernel", "linking", "places", "keeping", "keys", "bare"))
     return digest(*versions, json.dumps(settings), *rules)
 
 
@@ -210,8 +211,8 @@ class KeptDispatcher(PartDispatcher):
         return entry_point
 
 
-class KeptText(TextLibrary):
-    """An entry's text; it says where the fields of its records lie."""
+class _Placed(Linked):
+    """A kernel with all below it, which says where the fields of its records lie."""
 
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)  # type: ignore[no-untyped-call]
@@ -221,10 +222,38 @@ class KeptText(TextLibrary):
     def finalize(self) -> None:
         parts: list[Any] = [part for part in callers_first(self._linking_libraries) if isinstance(part, KeptLibrary)]
         names = set(self.fields).union(*(part.fields for part in parts))
-        record = next((part.record for part in (self, *parts) if part.record is not None), None)
-        if record is not None:
+        records = {part.record for part in (self, *parts) if part.record is not None}
+        if len(records) > 1:
+            raise TypeError("the kernels that are linked know fields of two records, of which only one can be placed")
+        for record in records:
             self._linking_libraries.insert(0, Places({name: record.offset(name) for name in sorted(names)}))
         super().finalize()
+
+
+class KeptText(_Placed, TextLibrary):
+    """An entry's text."""
+
+
+class KeptWhole(_Placed, WholeLibrary):
+    """A kernel's machine code.
+
+    What it is linked of is its own, and has names of its own: kernels for records of two types have one name, by which
+    the engine would take one for both.
+    """
+
+    _numbers = itertools.count()
+
+    def finalize(self) -> None:
+        module = self._final_module
+        self._own = {one.name for one in (*module.functions, *module.global_variables) if not one.is_declaration}
+        super().finalize()
+
+    def _optimize_final_module(self) -> None:
+        number = next(self._numbers)
+        for one in (*self._final_module.functions, *self._final_module.global_variables):
+            if not (one.is_declaration or one.name in self._own or one.name.startswith("llvm.")):
+                one.linkage, one.name = "internal", f"{one.name}.{number}"
+        super()._optimize_final_module()  # type: ignore[no-untyped-call]
 
 
 class Store:
@@ -341,4 +370,4 @@ def _write(path: Path, kept: _Kept) -> None:
 def keep_in(folder: Path) -> None:
     """From now on have this process look for kernels in a folder, and keep there what it compiles."""
     KeptDispatcher.store = Store(folder)
-    linking.parts = linking.Parts(PlacelessContext, KeptLibrary, KeptText, KeptDispatcher)
+    linking.parts = linking.Parts(PlacelessContext, KeptLibrary, KeptWhole, KeptText, KeptDispatcher)

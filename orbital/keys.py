@@ -113,10 +113,20 @@ def _asked(code: python.CodeType, name: str, value: Any) -> Any:
     fields = getattr(value, "_fields", None)
     if fields is None or any(isinstance(constant, python.CodeType) for constant in code.co_consts):
         return value
-    uses = [then for step, then in pairwise(dis.get_instructions(code)) if step.argval == name]
-    if all(then.opname in ("LOAD_ATTR", "LOAD_METHOD") and then.argval in fields for then in uses):
-        return [(field, getattr(value, field)) for field in sorted({then.argval for then in uses})]
+    uses = _followed(code).get(name, set())
+    if all(step in ("LOAD_ATTR", "LOAD_METHOD") and named in fields for step, named in uses):
+        return [(field, getattr(value, field)) for field in sorted({named for _, named in uses})]
     return value
+
+
+@cache
+def _followed(code: python.CodeType) -> dict[str, set[tuple[str, Any]]]:
+    """What is done next with each name that a function refers to: steps, and what they name."""
+    found: dict[str, set[tuple[str, Any]]] = {}
+    for step, then in pairwise(dis.get_instructions(code)):
+        if isinstance(step.argval, str):
+            found.setdefault(step.argval, set()).add((then.opname, then.argval))
+    return found
 
 
 class Apart(Keys):

@@ -37,7 +37,7 @@ class PartLibrary(CPUCodeLibrary):
         self._finalized = True
 
 
-class _Linked(CPUCodeLibrary):
+class Linked(CPUCodeLibrary):
     """A kernel's module with those of all parts below it."""
 
     def finalize(self) -> None:
@@ -46,11 +46,11 @@ class _Linked(CPUCodeLibrary):
         super().finalize()  # type: ignore[no-untyped-call]
 
 
-class WholeLibrary(_Linked, JITCodeLibrary):
+class WholeLibrary(Linked, JITCodeLibrary):
     """The same as machine code of this process."""
 
 
-class TextLibrary(_Linked):
+class TextLibrary(Linked):
     """The same as LLVM IR."""
 
     def _finalize_final_module(self) -> None:
@@ -141,10 +141,12 @@ def _target(context_class: type, library_class: type) -> Any:
 
 @dataclass
 class Parts:
-    """What numba is to make of kernels that others call, and of the one whose text is asked for."""
+    """What numba is to make of kernels that others call, of the one that is called, and of the one whose text is asked
+    for."""
 
     context: type = PartContext
     library: type = PartLibrary
+    whole: type = WholeLibrary
     text: type = TextLibrary
     dispatcher: type = PartDispatcher
 
@@ -174,7 +176,7 @@ def part(function: Any, options: dict[str, Any]) -> Any:
 
 def whole(function: Any, options: dict[str, Any], signature: Any = None) -> Any:
     """Dispatcher of a kernel that is called from Python, for one signature only if one is given."""
-    dispatcher = _dispatcher(function, options, CPUContext, WholeLibrary)
+    dispatcher = _dispatcher(function, options, CPUContext, parts.whole)
     if signature is not None and dispatcher is not function:
         dispatcher.compile(signature)
         dispatcher.disable_compile()

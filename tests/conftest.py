@@ -64,6 +64,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(validation.OPTION, metavar="FOLDER", type=Path, default=None, help=told)
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """What is compiled in a process that runs tests is kept, and found by the others; the one that only deals them out
+    has no need of numba."""
+    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
+        kernels.keep()
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection(session: pytest.Session) -> None:
     """Of two workers that collect everything one begins at the end, so that each file is compiled by one of them."""

@@ -46,6 +46,14 @@ def compiled_where_run() -> bool:
     return any(os.environ.get(name, "0") != "0" for name in OTHER_CODE)
 
 
+def keep() -> None:
+    """Have this process keep the kernels that it compiles beside those of builds, and look for them there."""
+    from orbital import keeping
+
+    if not compiled_where_run():
+        keeping.keep_in(cache_folder() / builds.COMMON)
+
+
 class Entry:
     """A model's entry in a loaded library, called as numba's is."""
 

@@ -6,6 +6,7 @@ import importlib
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,73 @@ from fmu_src.lanes import REALS, of
 from orbital.kernel import Kernel
 
 
+class _Fields:
+    """A record as its kernels see it, sooner than numpy's own: a property for each field.
+
+    _reals, _whole  its numbers, and the same words as whole numbers
+    _arrays         views of the fields that have a shape, by name
+    """
+
+    __slots__ = "_arrays", "_reals", "_whole"
+
+    def __init__(self, record: np.ndarray) -> None:
+        self._reals, self._whole = record.view(np.ndarray).view(np.float64), record.view(np.ndarray).view(np.int64)
+        shaped = [name for name, (kind, _) in record.dtype.fields.items() if kind.shape]
+        self._arrays = {name: record.view(np.ndarray)[name][0] for name in shaped}
+
+    def __getitem__(self, name: str) -> Any:
+        return getattr(self, name)
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        setattr(self, name, value)
+
+
+def _real(slot: int) -> Any:
+    def put(p: _Fields, value: Any) -> None:
+        p._reals[slot] = value
+
+    return property(lambda p: p._reals[slot], put)
+
+
+def _whole(slot: int) -> Any:
+    def put(p: _Fields, value: Any) -> None:
+        p._whole[slot] = value
+
+    return property(lambda p: p._whole[slot], put)
+
+
+def _array(name: str) -> Any:
+    def put(p: _Fields, value: Any) -> None:
+        p._arrays[name][...] = value
+
+    return property(lambda p: p._arrays[name], put)
+
+
+@cache
+def _fields_of(dtype: np.dtype[Any]) -> type[_Fields]:
+    """The class of a record's type, whose slots all have 8 bytes."""
+    rows: dict[str, Any] = {"__slots__": ()}
+    for name, (kind, offset) in dtype.fields.items():
+        rows[name] = _array(name) if kind.shape else (_real if kind == np.float64 else _whole)(offset // 8)
+    return type("Fields", (_Fields,), rows)
+
+
+def seen(record: np.ndarray) -> list[_Fields]:
+    """An array of one record as its kernels see it."""
+    return [_fields_of(record.dtype)(record)]
+
+
 def _entry(model: Model, terms: Mapping[str, str]) -> Any:
-    return importlib.import_module(model.module).make_entry(dict(terms))
+    entry = importlib.import_module(model.module).make_entry(dict(terms))
+    known: tuple[Any, Any] = None, None
+
+    def call(command: int, record: Any, work: Any, time: float, step: float) -> Any:
+        nonlocal known
+        if known[0] is not record:
+            known = record, seen(record)
+        return entry(command, known[1], work, time, step)
+
+    return call
 
 
 @pytest.fixture
@@ -31,7 +97,7 @@ def plain(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(instance, "entry_of", _entry)
 
 
-PLAIN = property(lambda kernel: kernel.py_func)
+PLAIN = property(attrgetter("py_func"))
 
 
 class _Words(np.ndarray):
@@ -84,6 +150,7 @@ OF_A_WIDTH: dict[str, Callable[..., Any]] = {
 
 def _patched(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(Kernel, "dispatcher", PLAIN)
+    patch.setattr(Kernel, "__call__", PLAIN)
     patch.setattr(_Intrinsic, "__call__", _written_out)
 
 

@@ -60,8 +60,9 @@ def _lower(module: str, terms: Mapping[str, str], kept: Path) -> str:
 
     import llvmlite.binding as llvm
 
-    from orbital import keeping
+    from orbital import bare, keeping
 
+    bare.leave_out()
     _keep_loops_whole(llvm)
     keeping.keep_in(kept)
     name, ir = importlib.import_module(module).make_entry(dict(terms)).module_text()

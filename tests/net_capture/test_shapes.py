@@ -65,7 +65,8 @@ DIRECTIONS = directions(4000)
 
 def far_plane(shape, size, point):
     """Signed distance of a point from a convex body, and its normal: the largest n . x - h(n) over all planes that
-    touch the body, h its support function."""
+    touch the body, h its support function. From a point outside there is one largest, and one start finds it, begun
+    again where it halts."""
     start = DIRECTIONS
     axes = np.vstack([np.eye(3), -np.eye(3)])
     beyond = start @ point - support(shape, size, start)
@@ -74,8 +75,12 @@ def far_plane(shape, size, point):
         n = n / np.linalg.norm(n)
         return support(shape, size, n) - n @ point
 
-    options = {"xatol": 1e-10, "fatol": 1e-14, "maxiter": 4000, "maxfev": 4000}
-    found = [minimize(short, start[i], method="Nelder-Mead", options=options) for i in np.argsort(-beyond)[:3]]
+    def from_(n):
+        options = {"xatol": 1e-10, "fatol": 1e-14, "maxiter": 4000, "maxfev": 4000}
+        return minimize(short, n, method="Nelder-Mead", options=options)
+
+    nearest = start[np.argsort(-beyond)[:3]]
+    found = [from_(from_(nearest[0]).x)] if beyond.max() > 0.0 else [from_(n) for n in nearest]
     best = min(found, key=lambda each: each.fun)
     candidates = np.vstack([best.x / np.linalg.norm(best.x), axes])
     values = candidates @ point - support(shape, size, candidates)

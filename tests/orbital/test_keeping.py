@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import math
 import shutil
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,7 +15,7 @@ import pytest
 from dcone_cosim.api import load_scene
 from dcone_cosim.loading import shipped
 from fmu_src.catalogue import MODELS
-from orbital import vectors
+from orbital import keeping, linking, vectors
 from orbital.kernel import kernel
 from orbital.keys import Keys, NoKeyError
 from tests import emitting, kernels
@@ -305,6 +306,26 @@ def test_what_a_module_holds_is_in_the_key(monkeypatch):
 def test_what_has_no_hash_has_no_key():
     with pytest.raises(NoKeyError, match="no hash of <object"):
         Keys().of((1.0, object()))
+
+
+def test_machine_code_for_one_record_is_never_taken_for_that_of_another(monkeypatch, tmp_path):
+    """What is linked of a kernel has one name for both, and the engine, were it to see that, one function."""
+    monkeypatch.setattr(linking, "parts", linking.parts)
+    monkeypatch.setattr(keeping.KeptDispatcher, "store", None, raising=False)
+    keeping.keep_in(tmp_path)
+    scope = {"kernel": kernel, "math": math, "__name__": __name__}
+    lines = "\n    ".join(f"p.sum += math.sin(p.sum + {k}.0)" for k in range(40))
+    exec(f"@kernel\ndef long(p, x):\n    p.sum = x\n    {lines}\n    p.other = 5", scope)
+    exec("@kernel\ndef both(records, x):\n    long(records[0], x)\n    long(records[0], records[0].sum)", scope)
+    found = []
+    for fields in (FIELDS, OTHER_ORDER):
+        records = np.zeros(1, np.dtype([tuple(field) for field in fields], align=True))
+        scope["both"](records, 0.5)
+        found.append((records["sum"][0], records["other"][0], records["offsets"].any()))
+    expected = 0.5
+    for k in (*range(40), *range(40)):
+        expected += math.sin(expected + k)
+    assert found == [(pytest.approx(expected, rel=1e-12), 5, False)] * 2
 
 
 def test_a_damaged_file_is_compiled_again(compiler: Compiler) -> None:

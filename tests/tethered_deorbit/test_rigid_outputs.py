@@ -52,6 +52,7 @@ def hanging(target: str) -> dict[str, Any]:
     return values
 
 
+@uncompiled
 @pytest.mark.parametrize("target", ["rigid", "box"])
 def test_a_tumbling_target_takes_the_steps_of_a_point(target: str) -> None:
     """Its attachment goes round, and the steps do not have to follow it: in plain coordinates they were 2.5 times as
@@ -97,6 +98,7 @@ def test_the_slope_of_the_tension_is_that_of_its_course(monkeypatch: pytest.Monk
     assert by_slope == pytest.approx(changes, abs=1e-2 * float(np.abs(changes).max()))
 
 
+@uncompiled
 def test_what_a_rate_is_relative_to() -> None:
     """Inertial space; the orbital frame, n about axis 3; the line of centres as it turns."""
     attitude = Rotation.from_euler("xyz", (0.3, -0.5, 0.7))
@@ -120,6 +122,7 @@ def test_what_a_rate_is_relative_to() -> None:
         assert i["target.spin_energy"] == pytest.approx(0.5 * wanted @ INERTIA @ wanted, rel=1e-12)
 
 
+@uncompiled
 def test_length_is_between_the_attachments() -> None:
     i = pair(BOTH, TUMBLING)
     i.step(5.0)
@@ -129,6 +132,7 @@ def test_length_is_between_the_attachments() -> None:
     assert i["separation"] == pytest.approx(float(np.linalg.norm(place)), rel=1e-12)
 
 
+@uncompiled
 def test_macro_steps_change_nothing() -> None:
     """The same bits for steps of 0.7 and of 70 s, through tugs, in which axes turn and attitudes are set to length."""
     ends = []
@@ -142,6 +146,7 @@ def test_macro_steps_change_nothing() -> None:
     assert ends[0] == pytest.approx(ends[1], rel=1e-12)
 
 
+@uncompiled
 @pytest.mark.parametrize(
     "terms", [ON_ORBIT, pytest.param(ON_ORBIT | {"chaser": "rigid"}, marks=pytest.mark.evidence), BOTH]
 )
@@ -170,6 +175,7 @@ def test_rates_of_outputs(terms: dict[str, str]) -> None:
             assert rates[name] == pytest.approx(difference, rel=2e-6, abs=1e-9 + noise), name
 
 
+@uncompiled
 @pytest.mark.parametrize(
     ("arrays", "code"),
     [
@@ -184,6 +190,7 @@ def test_what_no_body_has_is_refused(arrays: dict[str, Any], code: int) -> None:
         pair(FIELD_FREE, arrays)
 
 
+@uncompiled
 def test_a_start_is_stretched_between_the_attachments() -> None:
     """12 m apart with the attachments 1.8 m inside, the line is slack; pointing outwards it would be stretched."""
     values = {"start.condition": 2, "start.separation": 12.0, "tether.rest_length": 11.0}
