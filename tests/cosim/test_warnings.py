@@ -252,6 +252,16 @@ def test_wheels_at_their_limits_are_told() -> None:
         assert not said or "5.73 deg" in told[0].sentence
 
 
+def test_pieces_that_only_touch_are_told(tmp_path: Path) -> None:
+    """A node that slides along the body goes beneath the foot of a boom that only stands on it."""
+    scene = tmp_path / "boom.toml"
+    scene.write_text(shipped()["big-panel"].read_text().replace('"0.84 m"', '"0.8 m"'))
+    told = [line for line in load(str(scene)).cautions if "do not reach into one another" in line]
+    assert [line.partition(" touch")[0] for line in told] == [
+        f"capture.target.parts: pieces {pair}" for pair in ("1 and 2", "2 and 3")
+    ]
+
+
 def test_threads_that_bend_round_a_union_are_not_trusted() -> None:
     """Beforehand; afterwards with how many went through, taut, or slack as far as is known."""
     assert any("thin ones" in sentence for sentence in load("big-panel-wrapped").cautions)

@@ -8,8 +8,9 @@ Masses add, also where pieces overlap. It moves about its principal axes, see `s
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,8 @@ WORDS = 18
 to the body's by rows, and radius of the sphere about its middle."""
 NEAR = 1e-6
 """Distance from the surface, as a share of the body's radius, within which a point lies on it."""
+SEAM = 1e-3
+"""Depth, as a share of the body's radius, by which pieces reach into one another at least: as deep as a node may go."""
 
 
 @kernel
@@ -194,17 +197,60 @@ def _distance(values: Values, point: Point) -> float:
     return float(formula(union_distance)(values[PIECES], normal, own, local, point))
 
 
+def _pieces(values: Values) -> Iterator[of.Piece]:
+    """Pieces in body axes, from the FMU's table; their masses are not in it."""
+    for row in values[PIECES]:
+        kind = int(row[0])
+        sizes = 2.0 * row[1:5] if kind == of.BOX else row[1:5]
+        yield of.Piece(kind, [float(x) for x in sizes], 0.0, row[5:8], row[8:17].reshape(3, 3))
+
+
 def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:
     """Of every piece, whole."""
     corners: list[Point] = []
     faces: list[list[int]] = []
-    for row in values[PIECES]:
-        kind = int(row[0])
-        sizes = 2.0 * row[1:5] if kind == of.BOX else row[1:5]
-        own, sides = of.drawn(of.Piece(kind, [float(x) for x in sizes], 0.0, row[5:8], row[8:17].reshape(3, 3)))
+    for piece in _pieces(values):
+        own, sides = of.drawn(piece)
         faces += [[len(corners) + number for number in side] for side in sides]
         corners += own
     return corners, faces
+
+
+def _outward(piece: of.Piece) -> np.ndarray:
+    """Directions, along the axis and across it, in which what spans a piece lies at its surface, body axes."""
+    own = (of.spanning(piece, False) - piece.place) @ piece.turn
+    out = np.sign(own)
+    if piece.kind != of.BOX:
+        across = np.linalg.norm(own[:, :2], axis=1, keepdims=True)
+        out[:, :2] = np.divide(own[:, :2], across, out=np.zeros_like(own[:, :2]), where=across > 0.0)
+    return np.asarray(out @ piece.turn.T)
+
+
+def only_touching(values: Values) -> list[tuple[int, int]]:
+    """Pairs of pieces, from 1, that meet and reach into one another by less than `SEAM` of the body's radius. Along
+    such a seam a point has no depth in either, so that what slides on the one goes beneath the other.
+
+    Checked  tests/net_capture/test_pieces.py
+    """
+    rows, found = values[PIECES], list(_pieces(values))
+    near = SEAM * values["target.solid"][solids.RADIUS]
+    away, normal = formula(piece_distance), np.empty(3)
+
+    def nearest(inner: int, outer: int, below: float) -> float:
+        """Least distance from a piece of what spans another, moved beneath the other's surface."""
+        piece = found[outer]
+        points = of.spanning(found[inner], False) - below * _outward(found[inner])
+        local = (points - piece.place) @ piece.turn
+        return min(float(away(rows[outer], normal, point)) for point in local)
+
+    pairs = []
+    for one, two in combinations(range(len(found)), 2):
+        ways = (one, two), (two, one)
+        if np.linalg.norm(found[one].place - found[two].place) > rows[one][17] + rows[two][17] + near:
+            continue
+        if min(nearest(*way, 0.0) for way in ways) <= near and min(nearest(*way, near) for way in ways) > 0.0:
+            pairs.append((one + 1, two + 1))
+    return pairs
 
 
 CHECKS = Checks(
