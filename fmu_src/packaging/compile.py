@@ -60,9 +60,8 @@ def _lower(module: str, terms: Mapping[str, str], kept: Path) -> str:
 
     import llvmlite.binding as llvm
 
-    from orbital import bare, keeping
+    from orbital import keeping
 
-    bare.leave_out()
     _keep_loops_whole(llvm)
     keeping.keep_in(kept)
     name, ir = importlib.import_module(module).make_entry(dict(terms)).module_text()
