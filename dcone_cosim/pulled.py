@@ -156,13 +156,13 @@ STEADY = 0.1
 
 
 def warnings(place: str, net: Pulled | None, peak: float) -> Iterator[str]:
-    """That the way of a net depends on how long it is pulled, or that a first tug, its peak [N], is far from the load."""
+    """That the way of a net depends on how long it is pulled, or that a first tug, its peak [N], is far off."""
     if net is None:
         return
     way = net.first_pull * net.load
     if abs(net.gave_way) > STEADY * abs(way):
         yield (
-            f"{place}: under the whole {net.load:g} N the way of the net's vertex changed by {net.gave_way:.3g} m, about "
+            f"{place}: under the whole {net.load:g} N the way of the vertex changed by {net.gave_way:.3g} m, about "
             f"its mean of {way:.3g} m: it was drawn on, or swung, and what is told of how it gives depends on how long "
             "it is pulled; pull it longer, or with a longer ramp, or when it lies still"
         )
