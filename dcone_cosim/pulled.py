@@ -39,7 +39,7 @@ LATE = 4
 """Macro steps by which the test may end late."""
 LEAST = 3
 """Samples from which a slope may be told."""
-LEFT = ("net.first_pull", "net.drawn_tight", "net.load", "net.stays")
+LEFT = ("net.first_pull", "net.drawn_tight", "net.load", "net.stays", "net.gave_way")
 """Under what a capture leaves what was found."""
 TAKES = ("net.compliance", "lumped.end_compliance")
 """Parameters of a removal that take a compliance over, the first that it has."""
@@ -55,6 +55,7 @@ class Pulled:
     drawn_tight   change of that way by the load as this falls, by least squares         [m/N]
     load          of the test                                                            [N]
     stays         of that way, when the load is gone                                     [m]
+    gave_way      by how much that way grew, or shrank, under the whole load             [m]
     how           which is handed over, one of `HOW`
     """
 
@@ -62,6 +63,7 @@ class Pulled:
     drawn_tight: float
     load: float
     stays: float
+    gave_way: float = 0.0
     how: str = FIRST_PULL
 
     @classmethod
@@ -69,11 +71,10 @@ class Pulled:
         """As a capture has left it, None where it is not to be handed over; `HandoffError` where it is none."""
         if how == GIVEN:
             return None
-        if LEFT[0] not in left:
+        if not left.keys() >= set(LEFT):
             text = f'hand-off refused: handoff.{KEY} = "{how}", and this capture ended without a pull; run it again'
             raise HandoffError(text)
-        first_pull, drawn_tight, load, stays = (left[name] for name in LEFT)
-        found = cls(first_pull, drawn_tight, load, stays, how)
+        found = cls(*(left[name] for name in LEFT), how)
         if not found.compliance > 0.0:
             raise HandoffError(
                 f"hand-off refused: pulled with {found.load:g} N, the net's vertex moved by {found.compliance:.3g} m/N "
@@ -87,11 +88,12 @@ class Pulled:
         return self.first_pull if self.how == FIRST_PULL else self.drawn_tight
 
     def left(self) -> dict[str, float]:
-        return dict(zip(LEFT, (self.first_pull, self.drawn_tight, self.load, self.stays), strict=True))
+        values = (self.first_pull, self.drawn_tight, self.load, self.stays, self.gave_way)
+        return dict(zip(LEFT, values, strict=True))
 
     def told(self) -> dict[str, object]:
         """The same with units."""
-        units = dict(zip(LEFT, ("m/N", "m/N", "N", "m"), strict=True))
+        units = dict(zip(LEFT, ("m/N", "m/N", "N", "m", "m"), strict=True))
         told = {name.removeprefix("net."): {"value": v, "unit": units[name]} for name, v in self.left().items()}
         return {"handed_over": self.how, **told}
 
@@ -140,18 +142,31 @@ def pull(component: Steppable, time: float, macro_step: float) -> Pulled:
         raise HandoffError(
             f"hand-off refused: macro steps of {macro_step:g} s do not see {force:g} N at the net's vertex come and go"
         )
-    first = float(drawn[whole].mean()) / force
+    held = drawn[whole]
     slope = float(np.polyfit(loads[whole[-1] :], drawn[whole[-1] :], 1)[0])
-    return Pulled(first, slope, force, float(drawn[-1]))
+    return Pulled(float(held.mean()) / force, slope, force, float(drawn[-1]), float(held[-1] - held[0]))
 
 
 FAR = 2.0
 """How much the first tug may be of the load, or the load of it, without a word [1]."""
 
 
+STEADY = 0.1
+"""Share of the way under the whole load by which it may change there, without a word [1]."""
+
+
 def warnings(place: str, net: Pulled | None, peak: float) -> Iterator[str]:
-    """That a first tug, its peak [N], is far from the load at which the net was measured."""
-    if net is not None and not 1.0 / FAR <= peak / net.load <= FAR:
+    """That the way of a net depends on how long it is pulled, or that a first tug, its peak [N], is far off."""
+    if net is None:
+        return
+    way = net.first_pull * net.load
+    if abs(net.gave_way) > STEADY * abs(way):
+        yield (
+            f"{place}: under the whole {net.load:g} N the way of the vertex changed by {net.gave_way:.3g} m, about "
+            f"its mean of {way:.3g} m: it was drawn on, or swung, and what is told of how it gives depends on how long "
+            "it is pulled; pull it longer, or with a longer ramp, or when it lies still"
+        )
+    if not 1.0 / FAR <= peak / net.load <= FAR:
         yield (
             f"{place}: the first tug is of {peak:.3g} N, and by how much the net gives was measured at {net.load:g} N: "
             "a loose net gives more for each newton the less it is pulled; pull it about as hard"

@@ -77,9 +77,13 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         size = float(np.linalg.norm(recoil))
         late = any(value > 0.0 for name, value in parameters.items() if name.startswith("ejection.delay["))
         label = "momentum of the bullets that left at once" if late else "momentum of the shot"
-        yield Finding(result.name, "recoil", label, size * parameters["chaser.mass"], "N s")
+        momentum = size * parameters["chaser.mass"]
+        whole = parameters.get("bullets.mass", 0.0) * parameters.get("bullets.speed", 0.0)
+        yield Finding(result.name, "recoil", label, momentum if momentum > ROUNDING * whole else 0.0, "N s")
 
 
+ROUNDING = 1e-12
+"""Share of a bullet's momentum that is no recoil: what the cosine of 90 deg leaves [1]."""
 _OPEN_ROWS = (
     ("mouth.area", "mouth.area_at_touch", "mouth area at the first touch of the target", "m2"),
     ("net.volume", "net.volume_at_touch", "volume between net and mouth at the first touch of the target", "m3"),

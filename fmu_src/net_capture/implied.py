@@ -169,6 +169,10 @@ def _of_canister(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
         yield Implied("canister.filled", label, solid / volume, "")
 
 
+ROUNDING = 1e-12
+"""Share of a bullet's speed that is none along the shot: what the cosine of 90 deg leaves [1]."""
+
+
 def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
     """Of the corners, which alone leave at the bullets' speed; relative to the chaser before the shot."""
     bullet = bullet_thread(values, terms) + values["bullets.mass"]
@@ -177,7 +181,7 @@ def _of_shot(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
         ways = ejection.ways(values, int(terms["ejection"]))
     else:
         ways = [(speed * math.cos(angle), speed)] * int(terms.get("bullets", USUAL_BULLETS))
-    momentum = bullet * sum(forward for forward, _ in ways)
+    momentum = bullet * sum(forward for forward, whole in ways if abs(forward) > ROUNDING * whole)
     yield Implied("shot.momentum", "momentum of the shot", momentum, "N.s")
     yield Implied("shot.energy", "energy of the shot", 0.5 * bullet * sum(whole * whole for _, whole in ways), "J")
     yield Implied("shot.recoil", "speed of the chaser's recoil", momentum / values["chaser.mass"], "m/s")

@@ -46,6 +46,19 @@ def test_what_the_momentum_is_of(late: float, label: str) -> None:
     assert (figure.label, figure.value) == (label, 10.0)
 
 
+@pytest.mark.parametrize(("speed", "told"), [(1e-17, 0.0), (2e-9, 1e-9)])
+def test_a_shot_square_to_its_axis_has_no_momentum(speed: float, told: float) -> None:
+    """What rounding leaves of the cosine of 90 deg is none; what is more than that is told as it is."""
+    moves = {f"chaser.velocity[{axis}]": ("m/s", "Real", np.array([own] * 2)) for axis, own in ((1, 0.0), (3, 0.0))}
+    moves["chaser.velocity[2]"] = ("m/s", "Real", np.array([-speed] * 2))
+    rows = Recorder.of({"time": ("s", "Real", np.array([0.0, 1.0])), **moves})
+    given = {"chaser.mass": 0.5, "bullets.mass": 0.3, "bullets.speed": 3.0}
+    given |= {f"chaser.start_velocity[{axis}]": 0.0 for axis in (1, 2, 3)}
+    run = RunResult(scene=Scene("one", "", "", ()), parameters={"capture": given})
+    (figure,) = (one for one in findings(run, PhaseResult("capture", 0.0, rows)) if one.key == "recoil")
+    assert figure.value == told
+
+
 def test_no_touch_and_no_volume_have_none() -> None:
     assert not {"mouth.area_at_touch", "net.volume_at_touch"} & told(9.0).keys()
     assert "net.volume_at_touch" not in told(4.6, volume=False)

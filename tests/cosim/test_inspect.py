@@ -62,6 +62,13 @@ def test_table_1_by_hand() -> None:
     )
 
 
+def test_a_shot_square_to_its_axis_has_no_momentum() -> None:
+    """Bullets thrown in the plane of the mouth: their energy is whole, and nothing recoils."""
+    square, usual = implied("deployment", "capture.bullets.angle=90 deg"), implied("deployment")
+    assert square["shot.momentum"] == square["shot.recoil"] == 0.0 < usual["shot.momentum"]
+    close(square, {"shot.energy": usual["shot.energy"]})
+
+
 def test_table_2_by_hand() -> None:
     close(
         implied("table2-deorbit"),

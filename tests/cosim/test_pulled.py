@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -24,9 +25,11 @@ LOOSE, TIGHT = 0.05, 4e-3
 class PulledCapture(MockCapture):
     """One whose net is drawn by LOOSE at first, of which nothing comes back, and gives as a spring beside that."""
 
-    def __init__(self, ends: float = 2.0, loose: float = LOOSE, tight: float = TIGHT, **more: Any) -> None:
+    def __init__(
+        self, ends: float = 2.0, loose: float = LOOSE, tight: float = TIGHT, creep: float = 0.0, **more: Any
+    ) -> None:
         super().__init__(reports=True, **more)
-        self.stood, self.loose, self.tight = ends, loose, tight
+        self.stood, self.loose, self.tight, self.creep = ends, loose, tight, creep
         values = {"force": FORCE, "delay": DELAY, "ramp": RAMP, "duration": WHOLE}
         for name, value in values.items():
             self.declare([f"pull_off.{name}"], "parameter", value)
@@ -43,7 +46,8 @@ class PulledCapture(MockCapture):
         left = 2.0 * RAMP + WHOLE - since
         load = FORCE * max(0.0, min(1.0, since / RAMP, left / RAMP))
         self.values["pull_off.load"] = load
-        self.values["pull_off.drawn"] = (self.loose if since > 0.0 else 0.0) + self.tight * load
+        crept = self.creep * max(0.0, min(since - RAMP, WHOLE))
+        self.values["pull_off.drawn"] = (self.loose if since > 0.0 else 0.0) + self.tight * load + crept
         self.values["pull_off.stands"] = 0.0 if since <= 0.0 else 1.0 if left > 1e-9 else self.stood
 
 
@@ -133,6 +137,20 @@ def test_a_first_tug_far_from_the_load_is_warned_of() -> None:
     for peak in (4.9, 20.1):
         (said,) = warnings("removal", net, peak)
         assert "measured at 10 N" in said
+
+
+@pytest.mark.parametrize(("creep", "told"), [(0.0, False), (1e-3, False), (4e-3, True), (-4e-3, True)])
+def test_a_net_that_is_drawn_on_under_the_whole_load_is_warned_of(creep: float, told: bool) -> None:
+    """Its way is then that of no load: over WHOLE seconds it changes by `creep` times as many, of (LOOSE + TIGHT F)."""
+    capture = PulledCapture(creep=creep)
+    capture.enter_initialisation(0.0)
+    capture.step(0.0, capture.instant)
+    net = pull(capture, capture.instant, 0.1)
+    assert net.gave_way == pytest.approx(creep * WHOLE, abs=1e-9)
+    assert Pulled.of(net.left(), "drawn_tight") == replace(net, how="drawn_tight")
+    said = list(warnings("removal", net, FORCE))
+    assert len(said) == told
+    assert all(f"changed by {creep * WHOLE:.3g} m" in text for text in said)
 
 
 def test_a_second_tow_has_the_same_net() -> None:
