@@ -14,6 +14,9 @@ BESIDE: tuple[str, ...] = ()
 DETAILS = ("level",)
 DISTURBED = frozenset({"oblateness", "air", "third_bodies", "sunlight", "electrodynamic"})
 """Groups that disturb an orbit."""
+UNEVEN = frozenset({"burn", "engine", "plume", "release", "break", "aocs"})
+"""Groups with which the work of the thrust is not that of one force on a pair that holds together."""
+INTEGRALS = ("orbit", "jacobi", "jacobi_falls")
 ALWAYS = "pushes"
 """A criterion that holds of every line."""
 FACTORS = (1e6, 1e5, 1e4, 1e3, 1e2, 10.0, 1.0, 0.1, 0.01)
@@ -43,14 +46,20 @@ def whole(terms: Mapping[str, str]) -> bool:
 
 def instead(terms: Mapping[str, str]) -> Mapping[str, str]:
     """All criteria mean something with all schemes; an orbit that is disturbed keeps neither its axis nor the integral
-    of the relative motion, and a line that is cut holds nothing."""
+    of the relative motion, without a field there is neither, and a line that is cut holds nothing.
+
+    Checked  tests/stability/test_seeded_parts.py
+    """
     found: dict[str, str] = {}
-    if DISTURBED & terms.keys():
-        found |= dict.fromkeys(("orbit", "jacobi", "jacobi_falls"), ALWAYS)
+    free = terms.get("environment") == "none"
+    even = terms.get("reel") == "locked" and terms.get("thrust", "along_track") == "along_track"
+    kept = "work" if free and even and not UNEVEN & terms.keys() else ALWAYS
+    if free or DISTURBED & terms.keys():
+        found |= dict.fromkeys(INTEGRALS, kept)
     if "lumped" in terms:
-        found |= dict.fromkeys(("longer", "snap"), "jacobi")
+        found |= dict.fromkeys(("longer", "snap"), kept if free else "jacobi")
     if "release" in terms:
-        found |= dict.fromkeys(("longer", "orbit", "jacobi", "jacobi_falls"), ALWAYS)
+        found |= dict.fromkeys(("longer", *INTEGRALS), ALWAYS)
     return found
 
 

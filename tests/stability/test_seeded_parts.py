@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dcone_cosim import build
 from dcone_cosim.criteria import Evidence
 from dcone_cosim.phases.capture_criteria import criteria as of_capture
 from dcone_cosim.phases.capture_criteria import shot_momentum
@@ -98,6 +99,19 @@ def test_sleds_have_what_thrust_gave_and_friction_left() -> None:
     assert red(of_removal, instead(sound, thrust__level=-40.0), asked) == {"work_lost"}
     damped = instead(sound, tether__damping_ratio=0.05, friction__loss=0.9 * loss)
     assert red(of_removal, damped, asked - {"work_lost"}) == set(), "a damped line may take it"
+
+
+@pytest.mark.usefixtures("plain")
+@pytest.mark.parametrize(("thrust", "asked"), [("along_track", "work"), ("tether", "pushes")])
+def test_what_is_asked_of_an_orbit_is_asked_of_the_work_without_a_field(thrust: str, asked: str) -> None:
+    """What stands in the place of another criterion is told of such a tow, and what it stands for is not."""
+    sound = towed(TABLE | {"thrust": thrust}, SLED, 0.05)
+    told = {one.key for one in of_removal(sound)}
+    places = build.instead("tethered_deorbit", sound.terms)
+    assert places == {"orbit": asked, "jacobi": asked, "jacobi_falls": asked}
+    assert asked in told
+    assert not places.keys() & told
+    assert "orbit" not in build.instead("tethered_deorbit", {**sound.terms, "environment": "central"})
 
 
 def test_a_line_of_nodes_whose_dashpots_give_is_red() -> None:
