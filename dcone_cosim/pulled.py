@@ -74,7 +74,8 @@ class Pulled:
         if not left.keys() >= set(LEFT):
             text = f'hand-off refused: handoff.{KEY} = "{how}", and this capture ended without a pull; run it again'
             raise HandoffError(text)
-        found = cls(*(left[name] for name in LEFT), how)
+        first_pull, drawn_tight, load, stays, gave_way = (left[name] for name in LEFT)
+        found = cls(first_pull, drawn_tight, load, stays, gave_way, how)
         if not found.compliance > 0.0:
             raise HandoffError(
                 f"hand-off refused: pulled with {found.load:g} N, the net's vertex moved by {found.compliance:.3g} m/N "

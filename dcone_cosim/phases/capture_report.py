@@ -78,8 +78,8 @@ def findings(run: RunResult, result: PhaseResult) -> Iterator[Finding]:
         late = any(value > 0.0 for name, value in parameters.items() if name.startswith("ejection.delay["))
         label = "momentum of the bullets that left at once" if late else "momentum of the shot"
         momentum = size * parameters["chaser.mass"]
-        whole = parameters.get("bullets.mass", 0.0) * parameters.get("bullets.speed", 0.0)
-        yield Finding(result.name, "recoil", label, momentum if momentum > ROUNDING * whole else 0.0, "N s")
+        least = ROUNDING * parameters.get("bullets.mass", 0.0) * parameters.get("bullets.speed", 0.0)
+        yield Finding(result.name, "recoil", label, momentum if momentum > least else 0.0, "N s")
 
 
 ROUNDING = 1e-12
