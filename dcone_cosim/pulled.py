@@ -39,6 +39,10 @@ LATE = 4
 """Macro steps by which the test may end late."""
 LEAST = 3
 """Samples from which a slope may be told."""
+FAR = 2.0
+"""How much the first tug may be of the load, or the load of it, without a word [1]."""
+STEADY = 0.1
+"""Share of the way under the whole load by which it may change there, without a word [1]."""
 LEFT = ("net.first_pull", "net.drawn_tight", "net.load", "net.stays", "net.gave_way")
 """Under what a capture leaves what was found."""
 TAKES = ("net.compliance", "lumped.end_compliance")
@@ -146,14 +150,6 @@ def pull(component: Steppable, time: float, macro_step: float) -> Pulled:
     held = drawn[whole]
     slope = float(np.polyfit(loads[whole[-1] :], drawn[whole[-1] :], 1)[0])
     return Pulled(float(held.mean()) / force, slope, force, float(drawn[-1]), float(held[-1] - held[0]))
-
-
-FAR = 2.0
-"""How much the first tug may be of the load, or the load of it, without a word [1]."""
-
-
-STEADY = 0.1
-"""Share of the way under the whole load by which it may change there, without a word [1]."""
 
 
 def warnings(place: str, net: Pulled | None, peak: float) -> Iterator[str]:

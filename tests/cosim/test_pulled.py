@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from dcone_cosim import pulled
 from dcone_cosim.errors import HANDOFF_FAILED, SUCCESS, HandoffError, InputError
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
@@ -14,6 +15,7 @@ from dcone_cosim.phases.second_tow import GIVES, SecondTow, TowHandover
 from dcone_cosim.progress import Progress
 from dcone_cosim.pulled import COMPLIANCE, Pulled, pull, warnings
 from dcone_cosim.reports import summary
+from fmu_src.net_capture import pull_off
 from tests.cosim.conftest import scene_of
 from tests.cosim.mock_components import MockCapture, MockRemoval
 
@@ -187,3 +189,8 @@ def test_scenes_in_which_it_means_nothing_are_refused(settings: tuple[str, ...],
     with pytest.raises(InputError) as stop:
         load("mission", ("handoff.net_compliance=first_pull", *settings))
     assert said in str(stop.value)
+
+
+def test_what_the_net_says_of_its_test_is_read_as_it_is_meant() -> None:
+    """The master knows the two outcomes by their numbers alone."""
+    assert (pulled.HELD, pulled.SLIPPED_OFF) == (pull_off.HELD, pull_off.SLIPPED_OFF)

@@ -322,4 +322,4 @@ def test_pieces_that_only_touch_are_found(first, second, place, pairs):
         }
         for one, z in ((first, 0.0), (second, place))
     ]
-    assert union.only_touching(laid(entries)[1].tables) == pairs
+    assert list(union.only_touching(laid(entries)[1].tables)) == pairs

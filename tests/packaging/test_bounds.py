@@ -25,14 +25,15 @@ scene, name, *settings = sys.argv[1:]
 phase = next(one for one in load(scene, settings).phases if one.name == name)
 main = phase.main
 instance = Instance(MODELS[main.model], main.terms, main.parameters, main.numbers)
+instance.initialise()
 try:
-    instance.initialise()
     for _ in range(400):
         instance.step(phase.duration / 400.0)
 except ModelFault as fault:
     print(fault)
 """
-"""Of one phase, in four hundred steps; one that another hands over to has no state to begin with, and says so."""
+"""Of one phase, in four hundred steps, or up to where the model ends; one that another hands over to begins as its own
+defaults say."""
 OTHERS = (
     ("table2-deorbit", "removal.level.detail=averaged", "removal.duration=300 d"),
     ("table2-deorbit", "removal.level.detail=event_map", "removal.duration=12 h"),

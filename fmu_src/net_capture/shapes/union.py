@@ -197,9 +197,9 @@ def _distance(values: Values, point: Point) -> float:
     return float(formula(union_distance)(values[PIECES], normal, own, local, point))
 
 
-def _pieces(values: Values) -> Iterator[of.Piece]:
+def _pieces(rows: np.ndarray) -> Iterator[of.Piece]:
     """Pieces in body axes, from the FMU's table; their masses are not in it."""
-    for row in values[PIECES]:
+    for row in rows:
         kind = int(row[0])
         sizes = 2.0 * row[1:5] if kind == of.BOX else row[1:5]
         yield of.Piece(kind, [float(x) for x in sizes], 0.0, row[5:8], row[8:17].reshape(3, 3))
@@ -209,7 +209,7 @@ def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:
     """Of every piece, whole."""
     corners: list[Point] = []
     faces: list[list[int]] = []
-    for piece in _pieces(values):
+    for piece in _pieces(values[PIECES]):
         own, sides = of.drawn(piece)
         faces += [[len(corners) + number for number in side] for side in sides]
         corners += own
@@ -226,14 +226,20 @@ def _outward(piece: of.Piece) -> np.ndarray:
     return np.asarray(out @ piece.turn.T)
 
 
-def only_touching(values: Values) -> list[tuple[int, int]]:
+def only_touching(values: Values) -> tuple[tuple[int, int], ...]:
     """Pairs of pieces, from 1, that meet and reach into one another by less than `SEAM` of the body's radius. Along
     such a seam a point has no depth in either, so that what slides on the one goes beneath the other.
 
     Checked  tests/net_capture/test_pieces.py
     """
-    rows, found = values[PIECES], list(_pieces(values))
-    near = SEAM * values["target.solid"][solids.RADIUS]
+    rows = np.ascontiguousarray(values[PIECES])
+    return _seams(rows.tobytes(), SEAM * float(values["target.solid"][solids.RADIUS]))
+
+
+@lru_cache(maxsize=8)
+def _seams(content: bytes, near: float) -> tuple[tuple[int, int], ...]:
+    rows = np.frombuffer(content).reshape(-1, WORDS)
+    found = list(_pieces(rows))
     away, normal = formula(piece_distance), np.empty(3)
 
     def nearest(inner: int, outer: int, below: float) -> float:
@@ -243,14 +249,13 @@ def only_touching(values: Values) -> list[tuple[int, int]]:
         local = (points - piece.place) @ piece.turn
         return min(float(away(rows[outer], normal, point)) for point in local)
 
-    pairs = []
-    for one, two in combinations(range(len(found)), 2):
+    def touch(one: int, two: int) -> bool:
         ways = (one, two), (two, one)
         if np.linalg.norm(found[one].place - found[two].place) > rows[one][17] + rows[two][17] + near:
-            continue
-        if min(nearest(*way, 0.0) for way in ways) <= near and min(nearest(*way, near) for way in ways) > 0.0:
-            pairs.append((one + 1, two + 1))
-    return pairs
+            return False
+        return min(nearest(*way, 0.0) for way in ways) <= near and min(nearest(*way, near) for way in ways) > 0.0
+
+    return tuple((one + 1, two + 1) for one, two in combinations(range(len(found)), 2) if touch(one, two))
 
 
 CHECKS = Checks(
