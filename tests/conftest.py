@@ -1,9 +1,8 @@
 """Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
+import gc
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL as NET
 from fmu_src.packaging import compile
+from fmu_src.tethered_deorbit.interface import MODEL as TOW
 from tests import kernels, validation
 
 FREE = {"net": "square", "gravity": "none"}
@@ -26,21 +26,26 @@ CAPTURE = {
 }
 CAPTURE_HILL = {**{k: v for k, v in CAPTURE.items() if k != "settling"}, "gravity": "hill", "nodes": "625"}
 """The mission's, whose kernels a run of the tests has anyway."""
+FLOWN_MOST = (
+    *((NET, terms) for terms in (FREE, FREE | {"solver": "rk4"}, CAPTURE, CAPTURE_HILL)),
+    (TOW, {"reel": "locked", "thrust": "along_track"}),
+)
+"""What makes it worth while to optimise a library."""
 
 DEAREST = (
     "tests/consistency/test_readme.py",
-    "tests/report/test_live.py",
-    "tests/cosim/test_swapped_in.py",
-    "tests/cosim/test_built_fmus.py",
     "tests/net_capture/test_union_wrapping.py",
-    "tests/net_capture/test_free_flight.py",
-    "tests/campaign/test_commands.py",
     "tests/net_capture/test_contact.py",
-    "tests/tethered_deorbit/test_rigid.py",
     "tests/cosim/test_isolation.py",
-    "tests/packaging/test_platforms.py",
-    "tests/net_capture/test_shapes.py",
+    "tests/report/test_live.py",
     "tests/interop/test_tools.py",
+    "tests/packaging/test_platforms.py",
+    "tests/net_capture/test_free_flight.py",
+    "tests/cosim/test_swapped_in.py",
+    "tests/campaign/test_commands.py",
+    "tests/tethered_deorbit/test_rigid.py",
+    "tests/net_capture/test_shapes.py",
+    "tests/cosim/test_built_fmus.py",
     "tests/cosim/test_kills.py",
     "tests/tethered_deorbit/test_way.py",
     "tests/net_capture/test_wrapping.py",
@@ -56,7 +61,8 @@ DEAREST = (
     "tests/stability/test_command.py",
     "tests/benchmarks/test_plain_net.py",
 )
-"""Files that take longest, the longest first, so that no worker is left with one when the others are done."""
+"""Files that take longest, the longest first, so that no worker is left with one when the others are done. Of two that
+want one build, as READMEs and pages want the C library of a page, one comes later, which would else wait."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -69,16 +75,20 @@ def pytest_configure(config: pytest.Config) -> None:
     has no need of numba."""
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         kernels.keep()
+        gc.disable()
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection(session: pytest.Session) -> None:
-    """Of two workers that collect everything one begins at the end, so that each file is compiled by one of them."""
-    config = session.config
-    if config.args_source is config.ArgsSource.TESTPATHS and os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
-        for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
-            with suppress(Exception, pytest.skip.Exception):  # which is told where the file is collected
-                import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Tests and modules live to the end: garbage is not looked for among them, and seldom else, since what compiles
+    makes millions of objects that stay."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)
+    gc.enable()
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Libraries that count what is left of them find it gone."""
+    gc.unfreeze()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -99,7 +109,8 @@ def begins_and_ends_at_the_root(pytestconfig: pytest.Config) -> Iterator[None]:
 @pytest.fixture(scope="session", autouse=True)
 def shared_kernels(tmp_path_factory: pytest.TempPathFactory) -> None:
     """One folder for all processes of a run, and for the runs of a single process."""
-    kernels.share(tmp_path_factory.getbasetemp().parent / "kernels")
+    long = [model.interface(terms).terms for model, terms in FLOWN_MOST]
+    kernels.share(tmp_path_factory.getbasetemp().parent / "kernels", long)
 
 
 @pytest.fixture
@@ -111,8 +122,15 @@ def validated(request: pytest.FixtureRequest) -> validation.Validated:
 
 
 @pytest.fixture
-def compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For a test that judges a build: its kernels are compiled, whether or not the run has them."""
+def numba_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a test that judges a build: processes begin without the settings of builds, which this one has."""
+    for name in compile.ENVIRONMENT:
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture
+def compiled_anew(monkeypatch: pytest.MonkeyPatch, numba_as_it_comes: None) -> None:
+    """The same, and its kernels are compiled, whether or not the run has them."""
     monkeypatch.setattr(compile, "emit", kernels.emit)
 
 
