@@ -152,18 +152,36 @@ def drawn_along(kernels, tables, places, velocity, length, steps):
     return scene
 
 
-def test_a_thread_goes_over_from_one_plate_to_the_next(kernels):
-    """Over the rim it is drawn across the joint, and moves as it does on a plate of one piece."""
-    places = [(0.4, y, -0.05) for y in (0.5 * THICK + 0.001, -0.5 * THICK - 0.001)]
-    length = 2.0 * (1.0 - INSET - 0.4) + THICK + 0.005
+@pytest.mark.parametrize("aslant", [0.0, 0.05, 0.15])
+def test_a_thread_goes_over_from_one_plate_to_the_next(kernels, aslant):
+    """It comes over the rim, however aslant, is drawn across the joint, and moves as on a plate of one piece."""
     whole = laid(box((2.0, THICK, 2.0)))
-    found = [drawn_along(kernels, tables, places, (-0.2, 0.0, 0.3), length, 4000) for tables in (JOINED, whole)]
+    places = [(1.02, y, -0.1 - math.copysign(0.5 * aslant, y)) for y in (0.5 * THICK + 0.001, -0.5 * THICK - 0.001)]
+    length = math.hypot(0.2, aslant)
+    found = [drawn_along(kernels, tables, places, (-0.5, 0.0, 0.6), length, 3000) for tables in (JOINED, whole)]
     for scene in found:
-        assert (scene.p["wrap_passed"], scene.p["wrap_slipped"]) == (0, 0)
-        assert scene.planes[X + 2, 0] > 0.05
+        assert (scene.p["wrap_passed"], scene.p["wrap_passed_slack"], scene.p["wrap_slipped"]) == (0, 0, 0)
+        assert scene.planes[X + 2, 0] > 0.0
         assert scene.p["wrap_impulse"] > 0.1
     one, other = (scene.planes[U : U + 3, :2] for scene in found)
     np.testing.assert_allclose(one, other, atol=1e-9)
+
+
+def test_a_thread_that_comes_off_one_body_still_lies_over_the_other(kernels):
+    """Over the edge of a block, in which that of a smaller one lies beneath it: its nodes go apart along both sides and
+    spring back, and it is clear of the smaller one while it is taut."""
+    larger, alone = box((2.0, 1.0, 1.0), (0.0, 0.0, -0.5)), box((2.0, 1.0, 2.0))
+    both = laid(larger, box((1.94, 0.94, 1.0), (0.0, 0.0, 0.5)))
+    found = []
+    for tables in (both, laid(alone)):
+        scene = kernels.place(tables, **HEAVY | {"wrap_friction": 0.0})
+        scene.put([0.5] * 2, [(0.98, 0.505, -0.1), (1.005, 0.48, -0.1)], [(-1.5, 0.0, 0.0), (0.0, -1.5, 0.0)])
+        ways, speeds = scene.join(2, 0.1, 1000.0, 0.0).go(1e-4, 1000)
+        assert (scene.p["wrap_passed"], scene.p["wrap_passed_slack"]) == (0, 0)
+        assert ways[:, 0].min() < 0.93, "then the straight way cuts the smaller one"
+        assert speeds[-1, 0] > 1.4
+        found.append((ways, speeds))
+    np.testing.assert_allclose(*found, atol=1e-9)
 
 
 def test_of_two_bodies_it_bends_round_that_which_asks_more(kernels):

@@ -310,7 +310,7 @@ def make_way(leans: bool = False) -> Any:
         if first >= 0 and (edges == 0 or not lay_all(p, edges)):
             if known:
                 p.wrap_lost = LOST
-            if not upright(p, first, last):
+            if not upright(p, first, last, middle):
                 return 0
             edges = trim(p, over(p, first, last, middle))
             if leans:
