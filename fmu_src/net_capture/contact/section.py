@@ -27,9 +27,6 @@ MOST = 16
 INSET = 2e-3
 """Metres that a way lies below the surface: so one between two nodes of a face, which lie on it or a little below,
 does not touch it, and no bend comes nearer to a node. An edge is as one rounded to 7 mm."""
-RISEN = 2e-9
-"""Metres by which an end that lies deeper than that is above the surface as the way knows it: else it would see no face
-at all, and how it lies would be lost."""
 PARALLEL = 1e-9
 """Sine of the angle of two faces that do not meet."""
 OVER = 1e-9
@@ -91,7 +88,7 @@ def make_section(leans: bool) -> Section:
         if length == 0.0:
             return -1, -1, 0.0
         p.wrap_inset = 0.0
-        p.wrap_inset = max(INSET, max(-above(p, a), -above(p, b)) + RISEN)
+        p.wrap_inset = max(INSET, max(-above(p, a), -above(p, b)))
         for i in range(3):
             line[i] /= length
         first = -1
