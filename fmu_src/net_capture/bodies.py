@@ -187,13 +187,14 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
                     if words[place] > 0:
                         lose(p, before, edges, expected > length)
                 off = p.wrap_clear
+                if place >= 0 or off == 0.0:
+                    last = body
             if edges == 0:
                 clear = min(clear, off)
                 if place >= 0:
                     words[place] = 0
                 continue
             clear = 0.0
-            last = body
             if place >= 0 and words[place] < 0:
                 continue
             if place < 0:

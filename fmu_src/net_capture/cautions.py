@@ -16,7 +16,8 @@ from fmu_src.net_capture.pull_off import PULLED, WAITING
 from fmu_src.net_capture.schemes import Needs
 from fmu_src.net_capture.shapes import Point
 from fmu_src.net_capture.shapes.pieces import SHELL
-from fmu_src.net_capture.shapes.union import PIECES, only_touching
+from fmu_src.net_capture.shapes.seams import open_seams
+from fmu_src.net_capture.shapes.union import PIECES
 from fmu_src.net_capture.wrapping import CONVEX
 
 Values = Mapping[str, float]
@@ -37,11 +38,11 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
         yield from _open_loops(values, terms)
         yield from _small_nets(values, terms)
     if terms.get("target") == "union":
-        for one, two in only_touching(values):
+        for one, two in open_seams(values):
             yield Caution(
                 "target.parts",
-                f"pieces {one} and {two} touch and do not reach into one another: along that seam nodes of the net "
-                "can slide beneath the one that stands out; let it reach in by a centimetre or two",
+                f"pieces {one} and {two} touch in a line or a point, or leave a narrow slit between them: there nodes "
+                "of the net can slide beneath the one that stands out; let it reach in by a centimetre or two",
             )
     if "wrap" in terms and terms.get("target") == "union":
         yield Caution(

@@ -252,14 +252,15 @@ def test_wheels_at_their_limits_are_told() -> None:
         assert not said or "5.73 deg" in told[0].sentence
 
 
-def test_pieces_that_only_touch_are_told(tmp_path: Path) -> None:
-    """A node that slides along the body goes beneath the foot of a boom that only stands on it."""
+def test_seams_that_nodes_slip_into_are_told(tmp_path: Path) -> None:
+    """A slit of 1 mm beneath both ends of a boom; one that stands on its body face to face has none."""
     scene = tmp_path / "boom.toml"
-    scene.write_text(shipped()["big-panel"].read_text().replace('"0.84 m"', '"0.8 m"'))
-    told = [line for line in load(str(scene)).cautions if "do not reach into one another" in line]
-    assert [line.partition(" touch")[0] for line in told] == [
-        f"capture.target.parts: pieces {pair}" for pair in ("1 and 2", "2 and 3")
-    ]
+    for length, pairs in (("0.798 m", ("1 and 2", "2 and 3")), ("0.8 m", ())):
+        scene.write_text(shipped()["big-panel"].read_text().replace('"0.84 m"', f'"{length}"'))
+        told = [line for line in load(str(scene)).cautions if "narrow slit" in line]
+        assert [line.partition(" touch")[0] for line in told] == [
+            f"capture.target.parts: pieces {pair}" for pair in pairs
+        ]
 
 
 def test_threads_that_bend_round_a_union_are_not_trusted() -> None:

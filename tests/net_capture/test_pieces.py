@@ -289,37 +289,3 @@ def test_contact_moves_a_sphere_and_never_turns_it():
     assert net.array("target_velocity")[0] < -1e-4
     np.testing.assert_allclose(net.array("target_spin"), spin, atol=1e-13 * 50.0)
     assert net["target.energy"] == pytest.approx(energy + 25.0 * speed**2, rel=1e-9)
-
-
-BODY = {"shape": BOX, "size": [1.6, 1.8, 2.0], "mass": 700.0}
-WALL = {"shape": SHELL, "radius": 1.3, "length": 4.5, "thickness": 0.05, "angle": math.pi, "mass": 180.0}
-
-
-@pytest.mark.parametrize(
-    ("first", "second", "place", "pairs"),
-    [
-        (BODY, {"shape": CYLINDER, "radius": 0.04, "length": 0.8}, 1.4, [(1, 2)]),
-        (BODY, {"shape": CYLINDER, "radius": 0.04, "length": 0.84}, 1.4, []),
-        (BODY, {"shape": CYLINDER, "radius": 0.04, "length": 0.8}, 1.5, []),
-        (BODY, BODY, 2.0, [(1, 2)]),
-        (BODY, BODY, 1.98, []),
-        (BODY, {"shape": SPHERE, "radius": 0.5}, 1.5, [(1, 2)]),
-        (BODY, {"shape": SPHERE, "radius": 0.5}, 1.45, []),
-        (WALL, WALL | {"length": 0.05, "thickness": 1.25}, 2.275, [(1, 2)]),
-        (WALL, WALL | {"length": 0.05, "thickness": 1.25}, 2.255, []),
-    ],
-    ids=lambda one: one if isinstance(one, float) else None,
-)
-def test_pieces_that_only_touch_are_found(first, second, place, pairs):
-    """A boom on a body, bodies end to end, a ball, a cap on a shell flush with it: touching, 2 cm in, apart."""
-    turn = Rotation.from_euler("xyz", [0.3, -0.5, 0.8])
-    entries = [
-        one
-        | {
-            "mass": 4.0,
-            "position": turn.apply([0.0, 0.0, z]).tolist(),
-            "attitude": turn.as_quat(scalar_first=True).tolist(),
-        }
-        for one, z in ((first, 0.0), (second, place))
-    ]
-    assert list(union.only_touching(laid(entries)[1].tables)) == pairs

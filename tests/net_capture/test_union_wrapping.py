@@ -1,5 +1,6 @@
 """Threads that bend round the pieces of a union: thin plates, walls and what they stand on."""
 
+import itertools
 import math
 
 import numpy as np
@@ -19,6 +20,9 @@ from orbital.kernel import kernel
 from tests.conftest import CAPTURE
 from tests.net_capture.memory import Bench
 from tests.net_capture.on_target import Kernels
+from tests.plain import plain
+
+__all__ = ["plain"]
 
 TERMS = {"net": "square", "gravity": "none", "target": "union", "contact": "inelastic", "wrap": "friction"}
 THICK, NODE, STIFFNESS = 0.04, 5e-4, 13368.0
@@ -153,18 +157,36 @@ def drawn_along(kernels, tables, places, velocity, length, steps):
     return scene
 
 
-def test_a_thread_goes_over_from_one_plate_to_the_next(kernels):
-    """Over the rim it is drawn across the joint, and moves as it does on a plate of one piece."""
-    places = [(0.4, y, -0.05) for y in (0.5 * THICK + 0.001, -0.5 * THICK - 0.001)]
-    length = 2.0 * (1.0 - INSET - 0.4) + THICK + 0.005
+@pytest.mark.parametrize("aslant", [0.0, 0.05, 0.15])
+def test_a_thread_goes_over_from_one_plate_to_the_next(kernels, aslant):
+    """It comes over the rim, however aslant, is drawn across the joint, and moves as on a plate of one piece."""
     whole = laid(box((2.0, THICK, 2.0)))
-    found = [drawn_along(kernels, tables, places, (-0.2, 0.0, 0.3), length, 4000) for tables in (JOINED, whole)]
+    places = [(1.02, y, -0.1 - math.copysign(0.5 * aslant, y)) for y in (0.5 * THICK + 0.001, -0.5 * THICK - 0.001)]
+    length = math.hypot(0.2, aslant)
+    found = [drawn_along(kernels, tables, places, (-0.5, 0.0, 0.6), length, 3000) for tables in (JOINED, whole)]
     for scene in found:
-        assert (scene.p["wrap_passed"], scene.p["wrap_slipped"]) == (0, 0)
-        assert scene.planes[X + 2, 0] > 0.05
+        assert (scene.p["wrap_passed"], scene.p["wrap_passed_slack"], scene.p["wrap_slipped"]) == (0, 0, 0)
+        assert scene.planes[X + 2, 0] > 0.0
         assert scene.p["wrap_impulse"] > 0.1
     one, other = (scene.planes[U : U + 3, :2] for scene in found)
     np.testing.assert_allclose(one, other, atol=1e-9)
+
+
+def test_a_thread_that_comes_off_one_body_still_lies_over_the_other(kernels):
+    """Over the edge of a block, in which that of a smaller one lies beneath it: its nodes go apart along both sides and
+    spring back, and it is clear of the smaller one while it is taut."""
+    larger, alone = box((2.0, 1.0, 1.0), (0.0, 0.0, -0.5)), box((2.0, 1.0, 2.0))
+    both = laid(larger, box((1.94, 0.94, 1.0), (0.0, 0.0, 0.5)))
+    found = []
+    for tables in (both, laid(alone)):
+        scene = kernels.place(tables, **HEAVY | {"wrap_friction": 0.0})
+        scene.put([0.5] * 2, [(0.98, 0.505, -0.1), (1.005, 0.48, -0.1)], [(-1.5, 0.0, 0.0), (0.0, -1.5, 0.0)])
+        ways, speeds = scene.join(2, 0.1, 1000.0, 0.0).go(1e-4, 1000)
+        assert (scene.p["wrap_passed"], scene.p["wrap_passed_slack"]) == (0, 0)
+        assert ways[:, 0].min() < 0.93, "then the straight way cuts the smaller one"
+        assert speeds[-1, 0] > 1.4
+        found.append((ways, speeds))
+    np.testing.assert_allclose(*found, atol=1e-9)
 
 
 def test_of_two_bodies_it_bends_round_that_which_asks_more(kernels):
@@ -314,3 +336,39 @@ def test_a_cord_that_bends_keeps_all_momenta_and_tells_what_it_loses_where_it_sl
     assert net["wrap.passed"] == 0
     assert net["wrap.slip_loss"] > 1.0
     assert abs(net["energy.remainder"] - before) < 0.01 * net["wrap.slip_loss"]
+
+
+BOOM = {"shape": pieces.CYLINDER, "radius": 0.04, "length": 0.84, "mass": 4.0, "position": [0.0, 0.0, -0.4]}
+STANDING = laid(BOOM, box((1.6, THICK, 1.0), (0.0, 0.0, 0.5)))
+"""A plate whose lower edge is at z = 0, and a boom that reaches 2 cm into it and is thicker."""
+
+
+def test_a_way_over_the_covered_end_of_a_boom_goes_round_with_its_end(plain):
+    """One end goes round the boom beneath the plate, comes up onto the ledge that the boom leaves beside it, goes back
+    over that, and down. Its way is never longer than it was by more than the end has moved, is never lost, and in the
+    end is straight as it was; of one that stays at a corner of the ledge it is none of these."""
+    find, bench = make_way(leans=True), Bench(TERMS, STANDING)
+    p, rows = bench.p, STANDING["target.pieces"]
+    numbers = {union.PIECES: rows}
+    (first, number, *_), planes = union.bodies(numbers)[0], union.planes(numbers)
+    faces = planes[int(first) : int(first + number)]
+    p.wrap_faces, p.wrap_planes[: len(faces)], p.wrap_covered[: len(faces)] = len(faces), faces[:, :4], faces[:, 4]
+    top = rows[0][7] + 0.5 * rows[0][2]
+    corners = [(0.5, 0.041, -0.022), (-2.4, 0.041, -0.022), (-2.4, 0.041, 0.005), (-2.4, 0.032, 0.005),
+               (-0.8, 0.032, 0.005), (-0.8, 0.041, 0.005), (-0.8, 0.041, -0.022), (0.5, 0.041, -0.022)]  # fmt: skip
+    path = np.vstack([np.linspace(*pair, 60) for pair in itertools.pairwise(corners)])
+    ends = np.column_stack([path[:, 1] * np.cos(path[:, 0]), path[:, 1] * np.sin(path[:, 0]), top + path[:, 2]])
+    far, edges, bent, over = np.array((0.4, 0.27, top - 0.6)), 0, 0, 0
+    p.wrap_leans = 0
+    way = np.linalg.norm(ends[0] - far)
+    for end, before in zip(ends[1:], ends, strict=False):
+        p.wrap_a[:], p.wrap_b[:] = end, far
+        edges, longest = int(find(p, edges)), way + np.linalg.norm(end - before) + 1e-9
+        way = p.wrap_pieces[: edges + 1, 3].sum() if edges > 0 else np.linalg.norm(end - far)
+        assert p.wrap_lost == 0
+        assert way < longest
+        bent += edges > 0
+        over += edges > 0 and faces[p.wrap_chain[0], 4] == 1.0
+    assert bent > 100
+    assert over > 30
+    assert edges == 0

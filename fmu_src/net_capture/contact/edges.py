@@ -193,14 +193,14 @@ def make_way(leans: bool = False) -> Any:
         return True
 
     @kernel
-    def barred(p, one, other):
-        """Whether the way may not slide to an edge between these faces, because one of them lies in another body.
+    def barred(p, face):
+        """Whether the way may not slide onto a face, because it lies in another body.
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
         covered = False
         if leans:
-            covered = p.wrap_covered[one] + p.wrap_covered[other] > 0
+            covered = p.wrap_covered[face] > 0
         return covered
 
     @kernel
@@ -213,8 +213,6 @@ def make_way(leans: bool = False) -> Any:
             if p.wrap_pieces[j + 1, 3] < TOGETHER:
                 if draws_in(p, j):
                     return edges
-                if barred(p, p.wrap_pairs[j, 0], p.wrap_pairs[j + 1, 1]):
-                    continue
                 join(p, edges, j)
                 return edges - 1
         for j in range(edges):
@@ -226,16 +224,12 @@ def make_way(leans: bool = False) -> Any:
                 face = pair[3]
             if face < 0:
                 continue
-            if barred(p, face, face):
+            if barred(p, face):
                 continue
             if j + 1 < edges and p.wrap_pairs[j + 1, 0] == pair[1] and p.wrap_pairs[j + 1, 1] == face:
-                if barred(p, pair[0], face):
-                    continue
                 join(p, edges, j)
                 return edges - 1
             if j > 0 and p.wrap_pairs[j - 1, 1] == pair[0] and p.wrap_pairs[j - 1, 0] == face:
-                if barred(p, face, pair[1]):
-                    continue
                 join(p, edges, j - 1)
                 return edges - 1
             if edges < MOST:
@@ -310,7 +304,7 @@ def make_way(leans: bool = False) -> Any:
         if first >= 0 and (edges == 0 or not lay_all(p, edges)):
             if known:
                 p.wrap_lost = LOST
-            if not upright(p, first, last):
+            if not upright(p, first, last, middle):
                 return 0
             edges = trim(p, over(p, first, last, middle))
             if leans:

@@ -39,7 +39,7 @@ class Section(NamedTuple):
     """Kernels for a body whose faces are in `wrap_planes`, and a straight way from `wrap_a` to `wrap_b`.
 
     cut(p) -> (first, last, middle)   faces where the way comes in and goes out, -1: nowhere; its middle inside [m]
-    upright(p, first, last)           direction `wrap_up` across the way to where those faces look; whether there is one
+    upright(p, first, last, middle)   direction `wrap_up` across the way to where those faces look; whether there is one
     over(p, first, last, middle)      how many edges the way goes over on that side: the faces before, between and after
                                       them in `wrap_chain`
     """
@@ -116,13 +116,13 @@ def make_section(leans: bool) -> Section:
         return first, last, 0.5 * (enters + leaves)
 
     @kernel
-    def upright(p, first, last):
+    def upright(p, first, last, middle):
         """Direction across the straight way on which the thread lies; whether there is one.
 
         Checked  tests/net_capture/test_wrapping.py
         """
         line, up, planes = p.wrap_line, p.wrap_up, p.wrap_planes
-        wall = nearest_wall(p)
+        wall = nearest_wall(p, first, last, middle)
         for attempt in range(2):
             if leans:
                 if attempt == 0 and p.wrap_leans == 0 and p.wrap_covered[first] + p.wrap_covered[last] > 0:
@@ -143,20 +143,26 @@ def make_section(leans: bool) -> Section:
         return False
 
     @kernel
-    def nearest_wall(p):
-        """Face that the straight way runs along nearest by.
+    def nearest_wall(p, first, last, middle):
+        """Face that the middle of the straight way inside lies nearest to, of those that it does not go through and
+        that it runs along.
 
-        Checked  tests/net_capture/test_wrapping.py
+        Checked  tests/net_capture/test_wrapping.py, test_union_wrapping.py
         """
-        found = 0
+        found = first
         least = math.inf
         for i in range(p.wrap_faces):
+            if i == first:
+                continue
+            if i == last:
+                continue
             if leans:
                 if p.wrap_covered[i] > 0:
                     continue
+            below = p.wrap_flat[i, 2] - p.wrap_flat[i, 0] * middle
             across = math.sqrt(max(1.0 - p.wrap_flat[i, 0] * p.wrap_flat[i, 0], 0.0))
-            if across > 0.5 and p.wrap_flat[i, 2] < least:
-                least = p.wrap_flat[i, 2]
+            if across > 0.5 and below < least:
+                least = below
                 found = i
         return found
 

@@ -2,6 +2,7 @@
 
 Outside, the distance from it is the least of the distances from its pieces, exactly. Inside, the depth in the piece
 that the point is deepest in is a lower bound: where pieces overlap, faces that lie within another piece count for it.
+Where faces of two pieces lie on one another contact goes by the faces around that seam (`contact_distance`).
 Masses add, also where pieces overlap. It moves about its principal axes, see `solids`.
 """
 
@@ -10,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from fmu_src.net_capture.shapes.sphere import sphere_distance
 from fmu_src.rows import state
 from fmu_src.tables import Table
 from orbital.kernel import kernel
+from orbital.vectors import dot
 
 PARTS, PIECES = "target.parts", "target.pieces"
 BODIES, PLANES = "target.bodies", "target.planes"
@@ -35,8 +36,13 @@ WORDS = 18
 to the body's by rows, and radius of the sphere about its middle."""
 NEAR = 1e-6
 """Distance from the surface, as a share of the body's radius, within which a point lies on it."""
-SEAM = 1e-3
-"""Depth, as a share of the body's radius, by which pieces reach into one another at least: as deep as a node may go."""
+SLIT = 1e-6
+"""Metres between two pieces that are no way out of them: their faces lie on one another."""
+LOOK, LOOKS, WIDER = 1e-4, 7, 4.0
+"""Metres to both sides of a seam at which its other faces are first looked for; how often, and by how much farther each
+time: as deep as a node may come in within a substep."""
+ALIKE = 1e-6
+"""Square of the sine of the angle between faces that have no edge."""
 
 
 @kernel
@@ -89,19 +95,83 @@ def union_distance(rows, normal, own, local, point):
     return nearest
 
 
+@kernel
+def contact_distance(rows, room, normal, point):
+    """Signed distance [m] of a point from a union as what touches it asks, negative inside; outward normal into
+    `normal`.
+
+    That of `union_distance`, but where the nearest face is covered by another piece it is no way out: a point at a seam
+    has no depth in either piece, and would be pushed along it. From its foot on that face it is looked to both sides,
+    ever farther, for another face over which it goes out: one that meets this one at an edge in the open. Its depth is
+    then that of the foot below the plane of this face, if that is more.
+
+        d' = d(f + s n) - s n . n',   f the foot, n and n' both normals, s what it is looked aside
+
+    rows         its pieces, see `WORDS`                       (n, 18)
+    room         for vectors                                   (6, 3)
+    normal       unit vector, body axes                   [1]  (3,)
+    point        in body axes                             [m]  (3,)
+
+    Valid    faces that lie on one another, to `SLIT`; pieces that touch in a line or a point have no such face
+    Checked  tests/net_capture/test_seams.py
+    """
+    own, local, foot, aside, other, spare = room[0], room[1], room[2], room[3], room[4], room[5]
+    found = union_distance(rows, normal, own, local, point)
+    if found > SLIT:
+        return found
+    for i in range(3):
+        foot[i] = point[i] - found * normal[i]
+        aside[i] = foot[i] + SLIT * normal[i]
+    if union_distance(rows, spare, own, local, aside) > 0.5 * SLIT:
+        return found
+    look = LOOK
+    for _ in range(LOOKS):
+        for side in range(2):
+            away = look if side == 0 else -look
+            for i in range(3):
+                aside[i] = foot[i] + away * normal[i]
+            depth = union_distance(rows, other, own, local, aside)
+            alike = dot(normal, other)
+            depth -= away * alike
+            across = 1.0 - alike * alike
+            if depth < 0.0 and across > ALIKE:
+                open_to = -1.0
+                for way in range(2):
+                    for i in range(3):
+                        corner = foot[i] - depth / across * (other[i] - alike * normal[i])
+                        aside[i] = corner + SLIT * (other[i] + (1 - 2 * way) * normal[i])
+                    open_to = max(open_to, union_distance(rows, spare, own, local, aside))
+                if open_to > 0.5 * SLIT:
+                    if depth < found:
+                        found = depth
+                        for i in range(3):
+                            normal[i] = other[i]
+                    return found
+        look *= WIDER
+    return found
+
+
 def make(composition: Any) -> Shape:
     """Kernels of a union."""
     pieces_of = composition.table(PIECES)
 
     @kernel
-    def distance(p, normal, point):
+    def plain_distance(p, normal, point):
         """Signed distance [m] and outward normal, see `union_distance`.
 
         Checked  tests/net_capture/test_pieces.py
         """
-        return union_distance(pieces_of(p), normal, p.piece_normal, p.piece_point, point)
+        return union_distance(pieces_of(p), normal, p.piece_room[0], p.piece_room[1], point)
 
-    solid = samples.make_solid(composition, distance)
+    @kernel
+    def distance(p, normal, point):
+        """Signed distance [m] and outward normal, see `contact_distance`.
+
+        Checked  tests/net_capture/test_seams.py
+        """
+        return contact_distance(pieces_of(p), p.piece_room, normal, point)
+
+    solid = samples.make_solid(composition, plain_distance)._replace(distance=distance)
     if "wrap" not in composition.terms:
         return solid
     return solid._replace(hulls=Hulls(composition.table(BODIES), composition.table(PLANES)))
@@ -197,7 +267,7 @@ def _distance(values: Values, point: Point) -> float:
     return float(formula(union_distance)(values[PIECES], normal, own, local, point))
 
 
-def _pieces(rows: np.ndarray) -> Iterator[of.Piece]:
+def in_body_axes(rows: np.ndarray) -> Iterator[of.Piece]:
     """Pieces in body axes, from the FMU's table; their masses are not in it."""
     for row in rows:
         kind = int(row[0])
@@ -209,53 +279,11 @@ def _surface(values: Values) -> tuple[list[Point], list[list[int]]]:
     """Of every piece, whole."""
     corners: list[Point] = []
     faces: list[list[int]] = []
-    for piece in _pieces(values[PIECES]):
+    for piece in in_body_axes(values[PIECES]):
         own, sides = of.drawn(piece)
         faces += [[len(corners) + number for number in side] for side in sides]
         corners += own
     return corners, faces
-
-
-def _outward(piece: of.Piece) -> np.ndarray:
-    """Directions, along the axis and across it, in which what spans a piece lies at its surface, body axes."""
-    own = (of.spanning(piece, False) - piece.place) @ piece.turn
-    out = np.sign(own)
-    if piece.kind != of.BOX:
-        across = np.linalg.norm(own[:, :2], axis=1, keepdims=True)
-        out[:, :2] = np.divide(own[:, :2], across, out=np.zeros_like(own[:, :2]), where=across > 0.0)
-    return np.asarray(out @ piece.turn.T)
-
-
-def only_touching(values: Values) -> tuple[tuple[int, int], ...]:
-    """Pairs of pieces, from 1, that meet and reach into one another by less than `SEAM` of the body's radius. Along
-    such a seam a point has no depth in either, so that what slides on the one goes beneath the other.
-
-    Checked  tests/net_capture/test_pieces.py
-    """
-    rows = np.ascontiguousarray(values[PIECES])
-    return _seams(rows.tobytes(), SEAM * float(values["target.solid"][solids.RADIUS]))
-
-
-@lru_cache(maxsize=8)
-def _seams(content: bytes, near: float) -> tuple[tuple[int, int], ...]:
-    rows = np.frombuffer(content).reshape(-1, WORDS)
-    found = list(_pieces(rows))
-    away, normal = formula(piece_distance), np.empty(3)
-
-    def nearest(inner: int, outer: int, below: float) -> float:
-        """Least distance from a piece of what spans another, moved beneath the other's surface."""
-        piece = found[outer]
-        points = of.spanning(found[inner], False) - below * _outward(found[inner])
-        local = (points - piece.place) @ piece.turn
-        return min(float(away(rows[outer], normal, point)) for point in local)
-
-    def touch(one: int, two: int) -> bool:
-        ways = (one, two), (two, one)
-        if np.linalg.norm(found[one].place - found[two].place) > rows[one][17] + rows[two][17] + near:
-            return False
-        return min(nearest(*way, 0.0) for way in ways) <= near and min(nearest(*way, near) for way in ways) > 0.0
-
-    return tuple((one + 1, two + 1) for one, two in combinations(range(len(found)), 2) if touch(one, two))
 
 
 CHECKS = Checks(
@@ -270,8 +298,7 @@ CHECKS = Checks(
 PART = Term(
     "union of boxes, cylinders, spheres, frusta and shells",
     (
-        state("piece_normal[#]", "1", "outward normal of a piece, its axes", shape=(3,)),
-        state("piece_point[#]", "m", "a point in the axes of a piece", shape=(3,)),
+        state("piece_room[#][#]", "1", "vectors of the distance from pieces", shape=(6, 3)),
         *samples.ROWS,
     ),
     tables=(Table(PIECES, "1", "pieces of the target in its body axes", dimensions=2), *samples.TABLES),
