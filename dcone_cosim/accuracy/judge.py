@@ -5,7 +5,8 @@ finest setting of another family, a scheme of its own where there is one, else t
 agree, and below what the scatter of chaotic runs lets be told, nothing is claimed: that is the floor.
 
     error  e = max_i |m_i - r_i| / s_i          m, r: means over the runs of setting and reference
-    floor  f = max(agreement, 2 max_i sqrt(d_i^2/n + d_r,i^2/n_r) / s_i)      d: standard deviations
+    floor  f = max(agreement, 2 max_i sqrt(d_i^2/n + d_r,i^2/n_r) / s_i, b / min s_i)
+           d: standard deviations, b: what the quantity is told to at best
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.accuracy.plan import PhasePlan, Planned
-from dcone_cosim.accuracy.settings import NUMERICS, Setting
+from dcone_cosim.accuracy.settings import Setting, judges
 from dcone_cosim.accuracy.work import CPU, STEPS
 from dcone_cosim.cases.rows import Row
 
@@ -168,8 +169,10 @@ def _axis(name: str, samples: list[Sample], base: Sample) -> Axis | None:
         return None
     own = able[0].setting.family
     assert not able[0].setting.peer
-    reference = min((s for s in able if s.setting.family == own), key=lambda s: s.setting.size)
-    second = _second(able, reference)
+    by_setting = {sample.setting: sample for sample in able}
+    reference, *others = (by_setting[setting] for setting in judges(list(by_setting)))
+    # of several schemes the one that agrees best
+    second = min(others, key=lambda s: _judge(s, reference, {}).worst, default=None)
     compared = [_judge(sample, reference, {}) for sample in samples]
     between = _judge(second, reference, {}) if second is not None else None
     agreement = dict(between.errors) if between is not None else {}
@@ -219,27 +222,6 @@ def _families(points: Sequence[Judged]) -> list[str]:
     return list(dict.fromkeys(point.setting.family for point in points))
 
 
-def _second(able: Sequence[Sample], reference: Sample) -> Sample | None:
-    """The finest of another scheme, that which agrees best if there are several; without one the next finer setting."""
-    of = reference.setting
-    others: dict[str, Sample] = {}
-    for sample in able:
-        own = sample.setting
-        if own.family == of.family or own.peer or own.detail or _coarse(sample):
-            continue
-        if own.family not in others or own.size < others[own.family].setting.size:
-            others[own.family] = sample
-    if of.axis == NUMERICS and others:
-        return min(others.values(), key=lambda s: _judge(s, reference, {}).worst)
-    rest = [s for s in able if s.setting.family == of.family and s is not reference]
-    return min(rest, key=lambda s: s.setting.size, default=None)
-
-
-def _coarse(sample: Sample) -> bool:
-    """Whether rounding in single precision makes it no judge of anything."""
-    return "single" in sample.setting.family
-
-
 def _shrunk(value: float, second: Sample, reference: Sample) -> float:
     """What is left of a difference once it falls at first order at least."""
     ratio = reference.setting.size / second.setting.size
@@ -254,7 +236,7 @@ def _judge(sample: Sample, reference: Sample, agreement: Mapping[str, float]) ->
         error, floor = error_of(sample, reference, key)
         if not math.isnan(error):
             errors[key] = error
-            floors[key] = max(floor, agreement.get(key, 0.0))
+            floors[key] = max(floor, agreement.get(key, 0.0), resolution_of(reference, key))
     if not sample.means:
         errors = dict.fromkeys(errors, math.inf)
     return Judged(sample, errors, floors, _worst(errors, reference), _worst(floors, reference))
@@ -282,6 +264,17 @@ def error_of(sample: Sample, reference: Sample, key: str) -> tuple[float, float]
     scatter = scatter + reference.spreads[key] ** 2 / max(reference.runs, 1)
     error = np.abs(own - ref)[both] / sizes[both]
     return float(error.max()), float(SIGMAS * (np.sqrt(scatter[both]) / sizes[both]).max())
+
+
+def resolution_of(sample: Sample, key: str) -> float:
+    """What a quantity is told to at best, however it is computed [1]."""
+    about = sample.about[key]
+    best = float(about.get("resolution", 0.0))
+    if best == 0.0:
+        return 0.0
+    sizes = np.abs(sample.means[key])
+    scale = about["scale"] or float(sizes[sizes > 0.0].min(initial=math.inf))
+    return best / float(scale)
 
 
 def _order(points: Sequence[Judged]) -> float:

@@ -37,7 +37,10 @@ def quantities(result: PhaseResult, instants: Sequence[float]) -> Iterator[Quant
         rows = [result.tugs.rows[number] for number in sorted(result.tugs.rows)]
         first = [row for row in rows if row[0] > begin][:TUGS]
         if first:
-            yield Quantity("tug_times", f"times of the first {TUGS} tugs", [t - begin for t, _, _ in first], "s")
+            times = [t - begin for t, _, _ in first]
+            # a line that begins all but taut tugs at once: its time says nothing of the others
+            between = times[-1] / len(times)
+            yield Quantity("tug_times", f"times of the first {TUGS} tugs", times, "s", between, "their mean interval")
             yield Quantity("tug_peaks", f"peaks of the first {TUGS} tugs", [peak for _, peak, _ in first], "N")
             largest = max(peak for _, peak, _ in rows)
             yield Quantity("largest_tug", "largest tug", [largest], "N", meant=False)

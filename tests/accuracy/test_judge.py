@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from dcone_cosim.accuracy.judge import Report, better_peers, cheapest, front, judge, own
-from dcone_cosim.accuracy.plan import PhasePlan, Planned
+from dcone_cosim.accuracy.plan import DEAR, Effort, PhasePlan, Planned, Planner, plan
 from dcone_cosim.accuracy.settings import MACRO_STEP, NUMERICS, Setting
 from dcone_cosim.accuracy.show import sentences
-from dcone_cosim.accuracy.work import CPU, STEPS
+from dcone_cosim.accuracy.work import CPU, STEPS, Measured
+from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.rows import Row
+from dcone_cosim.progress import Progress
 
 SIZES = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
 TRUE = np.array([3.0, 5.0, 11.0])
@@ -218,6 +221,57 @@ def test_a_level_of_detail_judges_no_scheme() -> None:
     assert axis.second is not None
     assert axis.second.family == "other"
     assert cheapest(axis.points, 0.005).setting.family == "plain, level"  # type: ignore[union-attr]
+
+
+def test_what_shows_the_shape_alone_judges_nothing() -> None:
+    """However well it agrees, and however fine it is; nor does what is rounded to 24 bits."""
+    made = Made()
+    ladder(made, "plain", 2.0, 1e-3, 1.0)
+    for family, of in (("shape", {"partial": True}), ("plain, single", {})):
+        other = made.add(family, 0.01, [TRUE * (1.0 + 1e-3 * SIZES[-1] ** 2)], 0.001)
+        other.setting = replace(other.setting, **of)
+    made.add("other", 0.05, [TRUE * (1.0 + 1e-4)], 99.0)
+    axis = made.judged(made.settings[2]).numerics
+    assert axis.second is not None
+    assert axis.second.family == "other"
+
+
+def test_the_runs_that_tell_most_go_to_the_reference_and_to_what_judges_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a chaotic net twice as many, and not of the finest setting of any family."""
+    counted: dict[Setting, int] = {}
+
+    def cases(_: Planner, planned: Planned, count: int) -> dict[str, Measured]:
+        counted[planned.setting] = count
+        planned.keys.append("one")
+        return {}
+
+    monkeypatch.setattr(Planner, "cases", cases)
+    made = plan(Alone("deployment", [], None), "capture", Effort(runs=5), Progress())
+    twice = {f"{s.family} x {s.size:g}" for s, count in counted.items() if count == 10}
+    own = {"leapfrog, double x 0.25", "rk4, double x 0.25", "ros2, double x 0.25"}
+    assert twice == own | {"macro step x 0.2", "macro step x 0.5", "pieces of a thread x 0.5", "pieces of a thread x 1"}
+    assert {count for count in counted.values()} == {5, 10}
+    assert any(p.setting.partial and p.setting.size < 0.25 for p in made.settings)
+
+
+def test_what_is_dear_is_not_repeated_for_its_cost() -> None:
+    """Of what scatters every run is a sample, and stays."""
+    settings = [Planned(Setting(NUMERICS, "plain", size, ()), [f"{size} {i}" for i in range(3)]) for size in (1.0, 0.1)]
+    base = Planned(Setting("", "", 1.0, ()), ["base 0", "base 1"])
+    rows = {
+        one.keys[0]: Row(one.keys[0], "completed", 0, "", timings={CPU: cpu}, samples={})
+        for one, cpu in zip((base, *settings), (3.0, 3.0, DEAR + 1.0), strict=True)
+    }
+    every = [key for one in (base, *settings) for key in one.keys]
+    cases: Any = [SimpleNamespace(key=key) for key in every]
+    chaotic = PhasePlan("tow", "A tow", True, base, settings, list(cases), [])
+    chaotic.drop_dear(rows)
+    assert [case.key for case in chaotic.cases] == [case.key for case in chaotic.first] == every
+    once = PhasePlan("tow", "A tow", False, base, settings, list(cases), [])
+    assert [case.key for case in once.first] == ["base 0", "1.0 0", "0.1 0"]
+    once.drop_dear(rows)
+    assert [case.key for case in once.cases] == every[:6]
+    assert settings[1].keys == ["0.1 0"]
 
 
 def test_what_shows_the_shape_alone_is_never_advised() -> None:
