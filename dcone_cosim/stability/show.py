@@ -49,6 +49,16 @@ class Matrix:
         """Those of which that became."""
         return [cell for cell in self.cells if cell.verdict.kind == kind]
 
+    def words(self, key: str) -> str:
+        """A criterion as runs of this phase tell of it; its key where none did."""
+        told = (one.label for cell in self.cells for one in cell.verdict.criteria if one.key == key)
+        return next(told, key)
+
+    def about(self, cells: Sequence[Cell]) -> str:
+        """What the cases of an extreme must show above all, in words: schemes may be asked for different things."""
+        cases = [cell for cell in cells if cell.verdict.kind != EXCLUDED] or cells
+        return "; ".join(dict.fromkeys(self.words(cell.planned.asked) for cell in cases))
+
     def shares(self) -> Iterator[tuple[str, int, int]]:
         """Each scheme, how many of its cases were refused, and of how many."""
         for scheme in self.plan.schemes:
@@ -100,12 +110,12 @@ def show(one: Matrix, console: Console) -> None:
     title = f"{one.plan.scene.title}: {one.plan.phase}"
     table = Table(title=Text(title, style="table.title"), title_justify="left", box=None, pad_edge=False)
     table.add_column("extreme", overflow="fold")
-    table.add_column("judged by first", overflow="fold")
+    table.add_column("asked above all", overflow="fold")
     for scheme in one.plan.schemes:
         table.add_column(scheme.name, justify="center", overflow="fold")
     for extreme, cells in by_extreme(one):
         marks = [Text(LETTERS[cell.verdict.kind], style=STYLES[cell.verdict.kind]) for cell in cells]
-        table.add_row(Text(extreme.name), Text(extreme.criterion), *marks)
+        table.add_row(Text(extreme.name), Text(one.about(cells)), *marks)
     console.print(table)
     kinds = {cell.verdict.kind for cell in one.cells}
     console.print(Text(", ".join(f"{LETTERS[k]} {MEANINGS[k]}" for k in LETTERS if k in kinds)), soft_wrap=True)
