@@ -28,8 +28,11 @@ SAME, SAME_STABLE = 1e-9, 1e-6
 """The same of a run with other macro steps."""
 PARTED = 0.002
 """Share from which on a jittered twin of a chaotic run counts as having parted from it."""
+IN_THE = ", in the "
+"""Before the quantity that differs most."""
 ORDER = "order"
 """Criterion that compares the energy books of two steps."""
+NOTHING = "nothing happens in it that an accuracy means: no tug, no pull, no change"
 BOOK = ("energy_gained", "energy_lost")
 SECOND_ORDER = 1.0 / 8.0
 """Share of an error that a four times finer step may leave: that of order 3/2."""
@@ -157,8 +160,8 @@ def agreement(
             if off >= worst:
                 worst, label = off, one.label
     if not compared:
-        return unlike("chaos parts even its twin from it too early" if twins is not None else "nothing to compare")
-    return Criterion("agrees", f"difference from a finer run, in the {label}", worst, "1", AGREE, AGREE_STABLE)
+        return unlike("chaos parts even its twin from it too early" if twins is not None else NOTHING)
+    return Criterion("agrees", f"difference from a finer run{IN_THE}{label}", worst, "1", AGREE, AGREE_STABLE)
 
 
 def falls(here: Sequence[Criterion], finer: Sequence[Criterion], rounding: float) -> Criterion:
@@ -199,4 +202,4 @@ def sameness(here: Sequence[Quantity], other: Sequence[Quantity]) -> Criterion:
                 worst, label = off, one.label
     if not compared:
         return Criterion("same", "nothing to compare at the end", math.inf, "1", SAME, SAME_STABLE)
-    return Criterion("same", f"difference from other macro steps, in the {label}", worst, "1", SAME, SAME_STABLE)
+    return Criterion("same", f"difference from other macro steps{IN_THE}{label}", worst, "1", SAME, SAME_STABLE)

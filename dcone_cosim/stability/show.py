@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from dcone_cosim.cases.rows import FAULT, LOST, Row
 from dcone_cosim.criteria import Criterion
-from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, FAILED, LEFT, REFUSED, STABLE, Verdict
+from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, FAILED, IN_THE, LEFT, REFUSED, STABLE, Verdict
 from dcone_cosim.stability.plan import PhasePlan, Planned
 
 if TYPE_CHECKING:
@@ -52,11 +52,12 @@ class Matrix:
     def words(self, key: str) -> str:
         """A criterion as runs of this phase tell of it; its key where none did."""
         told = (one.label for cell in self.cells for one in cell.verdict.criteria if one.key == key)
-        return next(told, key)
+        return next(told, key).partition(IN_THE)[0]
 
     def about(self, cells: Sequence[Cell]) -> str:
-        """What the cases of an extreme must show above all, in words: schemes may be asked for different things."""
-        cases = [cell for cell in cells if cell.verdict.kind != EXCLUDED] or cells
+        """What the cases of an extreme must show above all, in words, "" where there is none: schemes may be asked for
+        different things."""
+        cases = [cell for cell in cells if cell.verdict.kind != EXCLUDED]
         return "; ".join(dict.fromkeys(self.words(cell.planned.asked) for cell in cases))
 
     def shares(self) -> Iterator[tuple[str, int, int]]:
