@@ -32,7 +32,7 @@ IN_THE = ", in the "
 """Before the quantity that differs most."""
 ORDER = "order"
 """Criterion that compares the energy books of two steps."""
-NOTHING = "nothing happens in it that an accuracy means: no tug, no pull, no change"
+NOTHING = "there is nothing that both tell"
 BOOK = ("energy_gained", "energy_lost")
 SECOND_ORDER = 1.0 / 8.0
 """Share of an error that a four times finer step may leave: that of order 3/2."""
@@ -131,8 +131,8 @@ def size(criterion: Criterion, value: float | None = None) -> str:
 def agreement(
     here: Sequence[Quantity], finer: Sequence[Quantity], jittered: Sequence[Quantity] | None, count: int = 0
 ) -> Criterion:
-    """By how much a finer run differs [1], in what an accuracy means; of a chaotic one as long as a twin that began a
-    micrometre beside it stays with it.
+    """By how much a finer run differs [1], in what an accuracy means, or in all that there is where it means nothing of
+    it; of a chaotic one as long as a twin that began a micrometre beside it stays with it.
 
     jittered   the same of that twin, None for a run that is not chaotic
     count      values of a curve, where of a chaotic one only curves are compared; 0: all that its twin comes to too
@@ -141,9 +141,8 @@ def agreement(
     twins = None if jittered is None else {q.key: q for q in jittered}
     worst, label = 0.0, ""
     compared = False
-    for one in here:
-        if not one.meant or one.key not in others:
-            continue
+    both = [one for one in here if one.key in others]
+    for one in [one for one in both if one.meant] or both:
         mine, other = np.asarray(one.values, dtype=float), np.asarray(others[one.key].values, dtype=float)
         length = min(len(mine), len(other))
         if twins is not None:
