@@ -15,6 +15,8 @@ from dcone_cosim.recorder import Recorder
 
 Array = npt.NDArray[np.float64]
 
+BOUND = "level_bound"
+"""Key of what a run may err by in all others, by a bound that it keeps itself [1]."""
 CLOSE = 1e-6
 """Share of the least distance of two instants by which a row may miss one."""
 

@@ -8,7 +8,8 @@ chaotic one several times each, with jittered starts:
 A step is compared with one twice as coarse (twice as fine where there is none), for errors that fall with its first
 power at least, p = 1. With a tolerance errors fall as they will, not at all where something else holds the steps short,
 so it is compared with the finest there is, for p = 1/2, and `TOLD` is added, by which schemes differ at their finest.
-What a quantity is told to at best is added too. If all that is too much, the next finer setting is tried.
+What a quantity is told to at best, and the bound that a level of detail keeps, are added. If all that is too much, the
+next finer setting is tried.
 What one run scatters no setting mends: its 95 % interval by Student's t is added to the error, and is brought down by
 the mean of n runs where the scene allows so many. A phase that is not chaotic by nature is run once more from a start a
 micrometre beside its own: where that comes to something else, it is taken for chaotic too.
@@ -33,6 +34,7 @@ from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
+from dcone_cosim.quantities import BOUND
 from dcone_cosim.results import Attained
 from dcone_cosim.scene.data import Accuracy, PhaseScene, Scene
 
@@ -266,13 +268,14 @@ class _Attempt:
         ratio = (min(sizes) / max(sizes)) ** POWERS[tolerance]
         factor = (ratio if partner.size > ladder.here.size else 1.0) / (1.0 - ratio)
         least = TOLD if tolerance else 0.0
+        bound = float(here.means[BOUND][0]) if tolerance and BOUND in here.means else 0.0
         told = Estimate(made=min(here.runs, there.runs))
         own, other = scatters(here), scatters(there)
         for key, about in {**there.about, **here.about}.items():
             error = _apart(here, there, key) * factor if self._counts(key, about["meant"]) else math.nan
             if math.isnan(error):
                 continue
-            told.errors[key], told.labels[key] = error, str(about["label"])
+            told.errors[key], told.labels[key] = error + bound, str(about["label"])
             if key not in here.means:
                 continue
             told.lasting[key] = least + resolution_of(here, key)

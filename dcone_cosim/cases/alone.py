@@ -87,7 +87,7 @@ class Alone:
                 turning = with_term(main, GROUP, body)  # the level that carries what was handed over
                 why = refused_by(main, turning)
                 if why:
-                    raise InputError(f"{self.scene.source}: {phase}: {why}")
+                    raise InputError(f"{self.scene.source}\n  {phase}.{why}")
                 main = turning
             own = replace(own, main=replace(main, parameters={**main.parameters, **given}), start=start)
         return replace(scene, phases=(own,))

@@ -25,6 +25,7 @@ from dcone_cosim.loading import load
 from dcone_cosim.measured import Entry
 from dcone_cosim.phases import kind_of
 from dcone_cosim.progress import Progress
+from dcone_cosim.quantities import BOUND
 from dcone_cosim.reports import summary
 from dcone_cosim.results import RunResult
 from dcone_cosim.scene.data import Accuracy
@@ -160,8 +161,9 @@ class Faked:
         accuracy: Accuracy,
         phase: tuple[str, str] = ("deployment", "capture"),
         resolution: float = 0.0,
+        bound: Callable[[float], float] | None = None,
     ) -> None:
-        self.truth, self.made, self.resolution = truth, list[float](), resolution
+        self.truth, self.made, self.resolution, self.bound = truth, list[float](), resolution, bound
         monkeypatch.setattr(_Attempt, "_run", lambda _, planned, runs: [self.sample(one, runs) for one in planned])
         monkeypatch.setattr(_Attempt, "_parts", lambda _: False)
         self.attempt = _Attempt(Alone(phase[0], [], None), phase[1], accuracy, None, Progress())  # type: ignore[arg-type]
@@ -174,6 +176,13 @@ class Faked:
         values = values[:, : None if math.isfinite(values.max()) else 0]
         about: dict[str, Any] = {"label": "mouth area", "scale": 0.0, "meant": True, "unit": "m2"}
         about["resolution"] = self.resolution
+        if self.bound is not None:
+            beside = {BOUND: np.array([self.bound(size)])}
+            spread = np.zeros(1)
+            meant = {"q": about, BOUND: about | {"meant": False}}
+            return Sample(
+                planned.setting, runs, 1.0, 0.0, {"q": values[0]} | beside, dict.fromkeys(meant, spread), meant
+            )
         spread = values.std(axis=0, ddof=1) if runs > 1 else np.zeros(1)
         return Sample(
             planned.setting, runs, 1.0, means={"q": values.mean(axis=0)}, spreads={"q": spread}, about={"q": about}
@@ -247,6 +256,15 @@ def test_a_run_that_lacks_what_a_finer_one_has_is_refined(monkeypatch: pytest.Mo
     _, attained = faked.attempt.attained()
     assert faked.made[-2] == 0.1
     assert attained.error <= 2.0 * TOLD
+
+
+def test_the_bound_of_a_level_of_detail_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of two bounds may come to the same, and both err by what the level leaves out."""
+    asked = Accuracy(1e-3)
+    faked = Faked(monkeypatch, lambda size, _: 5.0, asked, TOW, bound=lambda size: 8e-3 * size)
+    _, attained = faked.attempt.attained()
+    assert faked.made[-2] == 0.1
+    assert attained.error == pytest.approx(8e-4, rel=1e-4)
 
 
 def test_a_level_of_detail_is_compared_with_one_that_errs_less_and_not_with_none() -> None:
