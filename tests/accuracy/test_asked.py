@@ -19,6 +19,7 @@ from dcone_cosim.accuracy.plan import Planned, Planner
 from dcone_cosim.accuracy.settings import NUMERICS, Setting, settings_of
 from dcone_cosim.accuracy.work import measure
 from dcone_cosim.cases.alone import Alone
+from dcone_cosim.cases.ensemble import jitter
 from dcone_cosim.commands import run_and_write
 from dcone_cosim.errors import InputError
 from dcone_cosim.loading import load
@@ -275,6 +276,21 @@ def test_a_level_of_detail_is_compared_with_one_that_errs_less_and_not_with_none
     assert partner is not None
     assert partner.size == FACTORS[-2]
     assert any(change.startswith("removal.level.average_tolerance=0.0") for change in partner.changes)
+
+
+def test_a_start_that_the_scene_gives_in_place_of_a_separation_is_moved_too() -> None:
+    """By up to a micrometre along the line between the bodies, each seed by another way."""
+    scene = load("lumped-tether")
+    values = scene.phases[0].main.parameters
+    start = np.array([values[f"start.relative_position[{axis}]"] for axis in (1, 2, 3)])
+    nearer = []
+    for seed in (1, 2):
+        (change,) = jitter(scene, seed)
+        moved = load("lumped-tether", [change]).phases[0].main.parameters
+        place = np.array([moved[f"start.relative_position[{axis}]"] for axis in (1, 2, 3)])
+        nearer.append(np.linalg.norm(start) - np.linalg.norm(place))
+        assert np.linalg.norm(np.cross(place, start)) == pytest.approx(0.0, abs=1e-9)
+    assert 0.0 < min(nearer) < max(nearer) < 1e-6
 
 
 def test_scatter_known_from_few_runs_counts_for_more() -> None:
