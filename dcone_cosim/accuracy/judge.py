@@ -42,7 +42,7 @@ SMALL, CLEAR = 0.2, 4.0
 class Sample:
     """What the runs of one setting gave.
 
-    means, spreads    of each quantity, value by value; `about` is how it is told
+    means, spreads    of each quantity, value by value; `about` is how it is told, `values` are those of every run
     cpu               median of the steps' CPU time [s]
     steps             median of the solver's steps; 0: its FMU tells of none
     failed            of those that did not come to an end, why
@@ -56,6 +56,7 @@ class Sample:
     spreads: dict[str, Array] = field(default_factory=dict)
     about: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     failed: str = ""
+    values: dict[str, Array] = field(default_factory=dict)
 
 
 @dataclass
@@ -157,6 +158,7 @@ def sample_of(planned: Planned, rows: Mapping[str, Row]) -> Sample:
         told = [row.samples[key] for row in good if key in row.samples]
         longest = max(len(one["values"]) for one in told)
         values = np.array([one["values"] for one in told if len(one["values"]) == longest], dtype=float)
+        found.values[key] = values
         found.means[key] = values.mean(axis=0)
         found.spreads[key] = values.std(axis=0, ddof=1) if len(values) > 1 else np.zeros(longest)
         found.about[key] = told[0]
@@ -258,12 +260,23 @@ def error_of(sample: Sample, reference: Sample, key: str) -> tuple[float, float]
     both = np.isfinite(own) & np.isfinite(ref) & (sizes > 0.0)
     if not both.any():
         return math.nan, 0.0
+    if _alike(sample, reference, key):
+        return 0.0, 0.0
     # a single run scatters as those of the reference do
     spread = reference.spreads[key] if sample.runs == 1 else sample.spreads[key][: len(ref)]
     scatter = spread**2 / max(sample.runs, 1)
     scatter = scatter + reference.spreads[key] ** 2 / max(reference.runs, 1)
     error = np.abs(own - ref)[both] / sizes[both]
     return float(error.max()), float(SIGMAS * (np.sqrt(scatter[both]) / sizes[both]).max())
+
+
+def _alike(sample: Sample, reference: Sample, key: str) -> bool:
+    """Whether runs from the same starts come to the same, bit for bit: then no scatter hides a difference."""
+    one, other = sample.values.get(key), reference.values.get(key)
+    if one is None or other is None or len(one) != sample.runs or len(other) != reference.runs:
+        return False
+    count = min(len(one), len(other))
+    return one.shape[1] == other.shape[1] and np.array_equal(one[:count], other[:count], equal_nan=True)
 
 
 def resolution_of(sample: Sample, key: str) -> float:

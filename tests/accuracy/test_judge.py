@@ -114,6 +114,21 @@ def test_the_scatter_of_runs_is_a_floor() -> None:
     assert "One run scatters by" in lines
 
 
+def test_runs_that_come_to_the_same_from_every_start_differ_by_nothing() -> None:
+    """As of a net in other macro steps: that twice as many starts of the reference scatter says nothing of it."""
+    made = Made(chaotic=True)
+    starts = [[100.0 + 3.0 * d] for d in np.random.default_rng(5).standard_normal(12)]
+    made.add("plain", 1.0, starts[:6], 1.0)
+    made.add("plain", 0.5, starts, 1.0)
+    other = made.add("plain", 2.0, [*starts[:5], [starts[5][0] + 1e-9]], 1.0)
+    axis = made.judged(other).numerics
+    by_size = {point.setting.size: point for point in axis.points}
+    assert (by_size[1.0].worst, by_size[1.0].floor) == (0.0, 0.0)
+    assert axis.agreement == 0.0
+    assert by_size[2.0].floor > 0.01
+    assert by_size[2.0].worst > 1e-3
+
+
 def test_an_error_is_relative_to_what_it_says() -> None:
     made = Made()
     one = made.add("plain", 1.0, [[1.0, 0.0, 7.0]], 1.0, scale=20.0)
