@@ -38,18 +38,21 @@ def row(name: str, asked: float) -> dict[str, Any]:
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> str:
-    """As Markdown."""
-    lines = ["| scene | asked | told | truly | with |", "| --- | --- | --- | --- | --- |"]
+    """As Markdown, what comes to the same in one row."""
+    told: dict[tuple[str, str], list[str]] = {}
     for one in rows:
-        asked = f"| {one['scene']} | {percent(one['asked'])} "
-        if "refused" in one:
-            lines.append(f"{asked}| refused | | {one['refused'].partition(': ')[2].partition(';')[0]} |")
-            continue
-        runs = f", mean of {one['runs']} runs" if one["runs"] > 1 else ""
-        unsure = f" ± {percent(one['unsure'])}" if one["unsure"] > 0.05 * one["true"] else ""
-        told = percent(one["estimated"])
-        lines.append(f"{asked}| {told} | {percent(one['true'])}{unsure} | `{one['setting']}`{runs} |")
+        told.setdefault((one["scene"], _found(one)), []).append(percent(one["asked"]))
+    lines = ["| scene | asked | told | truly | with |", "| --- | --- | --- | --- | --- |"]
+    lines += [f"| {scene} | {', '.join(asked)} | {found} |" for (scene, found), asked in told.items()]
     return "\n".join(lines)
+
+
+def _found(one: Mapping[str, Any]) -> str:
+    if "refused" in one:
+        return f"refused | | {one['refused'].partition(': ')[2].partition(';')[0].partition(' (')[0]}"
+    runs = f", mean of {one['runs']} runs" if one["runs"] > 1 else ""
+    unsure = f" ± {percent(one['unsure'])}" if one["unsure"] > 0.05 * one["true"] else ""
+    return f"{percent(one['estimated'])} | {percent(one['true'])}{unsure} | `{one['setting']}`{runs}"
 
 
 def main(names: Sequence[str]) -> None:
