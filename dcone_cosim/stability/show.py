@@ -57,8 +57,7 @@ class Matrix:
     def about(self, cells: Sequence[Cell]) -> str:
         """What the cases of an extreme must show above all, in words, "" where there is none: schemes may be asked for
         different things."""
-        cases = [cell for cell in cells if cell.verdict.kind != EXCLUDED]
-        return "; ".join(dict.fromkeys(self.words(cell.planned.asked) for cell in cases))
+        return "; ".join(map(self.words, asked(cells)))
 
     def shares(self) -> Iterator[tuple[str, int, int]]:
         """Each scheme, how many of its cases were refused, and of how many."""
@@ -66,6 +65,11 @@ class Matrix:
             own = [cell for cell in self.cells if cell.planned.scheme is scheme]
             tried = [cell for cell in own if cell.verdict.kind not in (EXCLUDED, LEFT)]
             yield scheme.name, sum(cell.verdict.kind == REFUSED for cell in tried), len(tried)
+
+
+def asked(cells: Sequence[Cell]) -> list[str]:
+    """Keys of what the cases among these must show above all."""
+    return list(dict.fromkeys(cell.planned.asked for cell in cells if cell.verdict.kind != EXCLUDED))
 
 
 def matrix(plan: PhasePlan, rows: Mapping[str, Row]) -> Matrix:
@@ -116,8 +120,11 @@ def show(one: Matrix, console: Console) -> None:
         table.add_column(scheme.name, justify="center", overflow="fold")
     for extreme, cells in by_extreme(one):
         marks = [Text(LETTERS[cell.verdict.kind], style=STYLES[cell.verdict.kind]) for cell in cells]
-        table.add_row(Text(extreme.name), Text(one.about(cells)), *marks)
+        table.add_row(Text(extreme.name), Text(", ".join(asked(cells))), *marks)
     console.print(table)
+    for key in asked(one.cells):
+        if one.words(key) != key:
+            console.print(Text(f"  {key}: {one.words(key)}"), highlight=False, soft_wrap=True)
     kinds = {cell.verdict.kind for cell in one.cells}
     console.print(Text(", ".join(f"{LETTERS[k]} {MEANINGS[k]}" for k in LETTERS if k in kinds)), soft_wrap=True)
     for name, how, letter, text in reasons(one):

@@ -84,7 +84,7 @@ SCENES: dict[str, Case] = {
     ),
     "threads that bend round a union": Case(
         "big-panel-wrapped",
-        (*AREA, "solver.runs=200", "capture.net.mesh=2 m", "capture.duration=7 s", "capture.pull_off.time=6.5 s",
+        (*AREA, "solver.runs=300", "capture.net.mesh=2 m", "capture.duration=7 s", "capture.pull_off.time=6.5 s",
          "capture.pull_off.duration=0.4 s", "capture.pull_off.ramp=0.1 s"),
         ("capture.solver.step_ratio=0.2",),
         100,
