@@ -21,6 +21,7 @@ from dcone_cosim.ours.fmus import (
 from dcone_cosim.ours.kept import cache_folder, fault, is_ours
 from dcone_cosim.ours.models import (
     LEAP_REVOLUTIONS,
+    LOOKS_EVERY,
     SETTABLE,
     Refusal,
     air_of,
@@ -29,6 +30,7 @@ from dcone_cosim.ours.models import (
     asked_names,
     asked_variables,
     beside,
+    by_tolerance,
     cannot_work,
     cautions,
     cautions_after,
@@ -84,6 +86,7 @@ __all__ = [
     "CATALOGUE",
     "FAMILIES",
     "LEAP_REVOLUTIONS",
+    "LOOKS_EVERY",
     "PAGE",
     "SETTABLE",
     "STATE_HEAD",
@@ -108,6 +111,7 @@ __all__ = [
     "asked_names",
     "asked_variables",
     "beside",
+    "by_tolerance",
     "cache_folder",
     "cannot_work",
     "cautions",

@@ -28,6 +28,7 @@ import numpy as np
 
 from dcone_cosim import build
 from dcone_cosim.appendage import hinged
+from dcone_cosim.errors import HandoffError
 from dcone_cosim.handoff import Handoff, HeldTurning, Vector, rotation_matrix
 from dcone_cosim.line import Line
 from dcone_cosim.scene.data import ComponentScene, PhaseScene
@@ -132,11 +133,29 @@ def carries_spin(offered: Container[str]) -> bool:
 
 def needed(phase: PhaseScene, surface: str) -> PhaseScene | None:
     """The phase with a target that turns, with the surface of the capture's where there is one like it; None where the
-    scene says what its target is, or its FMU is a file."""
+    scene says what its target is, or its FMU is a file; `HandoffError` where another part of it carries points alone.
+    """
     main = phase.main
     if main.fmu is not None or GROUP not in main.unnamed:
         return None
-    return replace(phase, main=with_term(main, GROUP, carrying(main, surface)))
+    turning = with_term(main, GROUP, carrying(main, surface))
+    why = refused_by(main, turning)
+    if why:
+        raise HandoffError(
+            f"hand-off refused: what is handed over turns, and the {phase.name} cannot carry it\n  {why}"
+        )
+    return replace(phase, main=turning)
+
+
+def refused_by(main: ComponentScene, turning: ComponentScene) -> str:
+    """What a part of it does not go together with once its target turns; "" where all do."""
+    before, after = (
+        build.cannot_work(main.model, {**one.defaults, **main.values}, math.inf, one.terms, True)
+        for one in (main, turning)
+    )
+    known = {(one.variable, one.expected) for one in before}
+    told = [one for one in after if (one.variable, one.expected) not in known]
+    return "; ".join(f"{one.variable} = {one.given}: {one.expected}" for one in told)
 
 
 def carrier(phase: PhaseScene, surface: str) -> str:

@@ -15,6 +15,8 @@ from dcone_cosim.recorder import Recorder
 
 Array = npt.NDArray[np.float64]
 
+BOUND = "level_bound"
+"""Key of what a run may err by in all others, by a bound that it keeps itself [1]."""
 CLOSE = 1e-6
 """Share of the least distance of two instants by which a row may miss one."""
 
@@ -28,6 +30,7 @@ class Quantity:
     scale       what an error is relative to, in `unit`; 0: each value's own size
     relative_to the same in words
     meant       whether the accuracy of a phase means this one too
+    resolution  what each value is told to at best, however it is computed: an instant, to the time between two looks
     """
 
     key: str
@@ -37,6 +40,7 @@ class Quantity:
     scale: float = 0.0
     relative_to: str = "itself"
     meant: bool = True
+    resolution: float = 0.0
 
 
 def at(recorder: Recorder, name: str, instants: Sequence[float]) -> Array:

@@ -24,6 +24,7 @@ class Extreme:
     values       by FMI name, or of a vector by its name without indices
     terms        group: its term, or None where the case goes without
     needs        groups without which it says nothing
+    idle         terms with which nothing would happen in it, by group
     duration     of the phase; 0: as it is [s]
     macro_step   of the phase; 0: as it is [s]
     scatters     why a finer run cannot be asked to come to the same; "" where it can
@@ -36,6 +37,7 @@ class Extreme:
     values: Mapping[str, Given] = field(default_factory=dict)
     terms: Mapping[str, str | None] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
+    idle: Mapping[str, str] = field(default_factory=dict)
     duration: float = 0.0
     macro_step: float = 0.0
     scatters: str = ""

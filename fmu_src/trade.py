@@ -5,6 +5,7 @@ A model that has such settings has a module `trade` with
     NUMERICS                     groups whose terms differ in how a thing is computed, not in what is computed
     BESIDE                       others such, which are tried and told only where they are not the default
     DETAILS                      levels of detail: they carry over what without them is followed
+    BY_TOLERANCE                 whether sizes of settings are tolerances, else they are steps
     rungs(values, terms)         settings of the scheme that the terms name, coarse to fine; the last is for references
     refinements(values, terms)   by name, other settings that refine the model itself, each coarse to fine
     whole(terms)                 whether everything that is shown with these terms is meant, energies too

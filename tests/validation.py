@@ -3,10 +3,10 @@
     python -m tests.validation
 
 runs the tests that use the fixture `validated` and writes `.readme/validation.json` and, from it,
-`.readme/validation.md`; the extra `peers` has to be installed. With test files named after it, these alone are run, and
-the rows of all others stay; the page says which. In any other run the fixture checks the same
-comparisons, and that the page tells of each as it is: so the page says nothing that no test checks, and a test that is
-changed without the page fails.
+`.readme/validation.md`; the extra `peers`, and brahe, have to be installed. With test files named after it, these alone
+are run, and the rows of all others stay; the page says which. In any other run the fixture checks the same comparisons,
+and that the page tells of each as it is: so the page says nothing that no test checks, and a test that is changed
+without the page fails.
 
 Checked  tests/consistency/test_validation.py
 """
@@ -38,6 +38,9 @@ PAGE = RESULT.with_suffix(".md")
 COMMAND = "python -m tests.validation"
 OPTION = "--validation"
 CLOSED_FORM, OTHER_CODE, EXPERIMENT = LEVELS = ("closed form", "code against code", "experiment")
+
+OTHERS = frozenset({"brahe"})
+"""Programs that are compared with and are no extra of ours."""
 
 Row = dict[str, Any]
 Numbers = float | Sequence[float] | npt.NDArray[np.float64]
@@ -249,9 +252,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("tests", nargs="*", help="test files whose rows alone are made anew (default: all)")
     given = parser.parse_args(arguments)
     files = [Path(name).resolve().relative_to(ROOT).as_posix() for name in given.tests]
-    missing = {peer.package for kind in PEERS.values() for peer in kind if find_spec(peer.package) is None}
+    packages = {peer.package for kind in PEERS.values() for peer in kind} | OTHERS
+    missing = {package for package in packages if find_spec(package) is None}
     if missing:
-        told = "their rows would be lost; pip install -e '.[test,peers]' brings them"
+        told = f"their rows would be lost; pip install -e '.[test,peers]' {' '.join(OTHERS)} brings them"
         parser.error(f"not installed: {', '.join(sorted(missing))}: {told}")
     with TemporaryDirectory() as folder:
         markers = "not bench and not release"

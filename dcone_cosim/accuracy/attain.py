@@ -1,13 +1,17 @@
 """The accuracy that a scene asks for: met, and shown to be met by runs of its own; or refused, with what would do.
 
-What was measured of other scenes says where to begin. Each phase is then run with that setting and with one twice as
-coarse (twice as fine where there is none), a chaotic one several times each, with jittered starts:
+What was measured of other scenes says where to begin. Each phase is then run with that setting and with another, a
+chaotic one several times each, with jittered starts:
 
-    error <= |difference| q,   q = r/(1 - r) of a coarser one, 1/(1 - r) of a finer one,   r = finer size/coarser size
+    error <= |difference| q,   q = r/(1 - r) of a coarser one, 1/(1 - r) of a finer one,   r = (finer/coarser size)^p
 
-for errors that fall with the first power of the size at least. If that is too much, the next finer setting is tried.
-What one run scatters no setting mends: two standard deviations are added to the error, and are brought down by the
-mean of n runs where the scene allows so many. A phase that is not chaotic by nature is run once more from a start a
+A step is compared with one twice as coarse (twice as fine where there is none), for errors that fall with its first
+power at least, p = 1. With a tolerance errors fall as they will, not at all where something else holds the steps short,
+so it is compared with the finest there is, for p = 1/2, and `TOLD` is added, by which schemes differ at their finest.
+What a quantity is told to at best, and the bound that a level of detail keeps, are added. If all that is too much, the
+next finer setting is tried.
+What one run scatters no setting mends: its 95 % interval by Student's t is added to the error, and is brought down by
+the mean of n runs where the scene allows so many. A phase that is not chaotic by nature is run once more from a start a
 micrometre beside its own: where that comes to something else, it is taken for chaotic too.
 """
 
@@ -17,7 +21,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from dcone_cosim.accuracy.judge import SIGMAS, Sample, error_of, sample_of, scatters
+from dcone_cosim import build
+from dcone_cosim.accuracy.judge import SIGMAS, Sample, error_of, resolution_of, sample_of, scatters
 from dcone_cosim.accuracy.plan import Planned, Planner
 from dcone_cosim.accuracy.settings import COUPLING, MACRO_STEP, NUMERICS, Setting, settings_of
 from dcone_cosim.accuracy.show import percent
@@ -29,13 +34,20 @@ from dcone_cosim.cases.workers import Workers, cores
 from dcone_cosim.errors import FmuError, InputError
 from dcone_cosim.loading import load
 from dcone_cosim.progress import Progress
+from dcone_cosim.quantities import BOUND
 from dcone_cosim.results import Attained
 from dcone_cosim.scene.data import Accuracy, PhaseScene, Scene
 
 RUNS = 3
 """Of a chaotic phase with each of two settings."""
+TOLD = 1e-8
+"""What the finest tolerances err by themselves at most [1]: by other schemes, tests/accuracy/evidence/bounds.py."""
+POWERS = {False: 1.0, True: 0.5}
+"""With which errors fall at least, of steps and of tolerances [1]."""
 APART = 1.9
 """Ratio of the sizes of two settings whose difference tells an error."""
+RUNS_PARTED = 8
+"""Of one that only a twin shows to be chaotic: it may take one of two courses, which few runs do not show."""
 PARTED = 1e-5
 """Difference [1] from which on a twin has parted: a hundred times what a micrometre is to a line of ten metres."""
 MARGIN = 1.3
@@ -68,8 +80,11 @@ class Ladder:
 
     @property
     def partner(self) -> Setting | None:
-        """The nearest setting that is twice as coarse, or twice as fine."""
+        """The finest tolerance, of that itself the next; of steps the nearest that is twice as coarse, or as fine."""
         size = self.here.size
+        if self.here.tolerance:
+            others = [s for s in self.settings if s is not self.here]
+            return min(others, key=lambda s: s.size, default=None)
         coarser = [s for s in self.settings if s.size >= APART * size]
         finer = [s for s in self.settings if s.size * APART <= size]
         return min(coarser, key=lambda s: s.size, default=max(finer, key=lambda s: s.size, default=None))
@@ -77,30 +92,49 @@ class Ladder:
 
 @dataclass
 class Estimate:
-    """By quantity: error [1], standard deviation of one run [1], how much of the error may be chance [1], how it is
-    called, and mean, standard deviation and unit of those that are one number."""
+    """By quantity: error [1], what of it no setting mends [1], standard deviation of one run [1], how much of the error
+    may be chance [1], how it is called, and mean, standard deviation and unit of those that are one number."""
 
     errors: dict[str, float] = field(default_factory=dict)
+    lasting: dict[str, float] = field(default_factory=dict)
     scatters: dict[str, float] = field(default_factory=dict)
     noises: dict[str, float] = field(default_factory=dict)
     labels: dict[str, str] = field(default_factory=dict)
     means: dict[str, tuple[str, float, float, str]] = field(default_factory=dict)
+    made: int = 1
 
     def add(self, other: Estimate) -> None:
         """Of another axis: errors add up."""
         for key, error in other.errors.items():
             self.errors[key] = self.errors.get(key, 0.0) + error
+        for key, least in other.lasting.items():
+            self.lasting[key] = max(self.lasting.get(key, 0.0), least)
         self.scatters |= other.scatters
         self.noises |= other.noises
         self.labels |= other.labels
         self.means |= other.means
+        self.made = max(self.made, other.made)
 
     def of_mean(self, key: str, runs: int) -> float:
         """What the mean of so many runs errs by [1]."""
-        return self.errors.get(key, 0.0) + SIGMAS * self.scatters.get(key, 0.0) / math.sqrt(runs)
+        scatter = self.scatters.get(key, 0.0)
+        if scatter == 0.0:
+            return self.of_setting(key)
+        return self.of_setting(key) + student(2 * (self.made - 1)) * scatter / math.sqrt(runs)
+
+    def of_setting(self, key: str) -> float:
+        """What it errs by without the scatter [1]."""
+        return self.errors.get(key, 0.0) + self.lasting.get(key, 0.0)
 
     def worst(self, runs: int) -> str:
         return max(self.errors, key=lambda key: self.of_mean(key, runs))
+
+
+def student(degrees: int) -> float:
+    """Standard deviations, known to so many degrees of freedom, within which 95 % lie [1]: 2.8 of 4, 2.0 of 60."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(degrees, 0.975))
 
 
 def attain(
@@ -132,6 +166,7 @@ class _Attempt:
         self._planner = Planner(alone, phase, progress)
         self._ladders = _ladders(self._planner.own)
         self._made: set[str] = set()
+        self._few = RUNS
         self._runner = Runner(Memory(), workers, 2 * cores(), measure)
 
     def attained(self) -> tuple[list[str], Attained]:
@@ -140,12 +175,15 @@ class _Attempt:
         if not self._ladders:
             return [], Attained(asked, "as it is", math.nan, "", 0.0, "")
         begun = [ladder.place for ladder in self._ladders]
-        self._planner.chaotic = self._planner.chaotic or self._parts()
+        if not self._planner.chaotic and self._parts():
+            self._planner.chaotic, self._few = True, RUNS_PARTED
         told, runs = self._refined(), 1
         scatter, noisy = max(((s, told.labels.get(k, "")) for k, s in told.scatters.items()), default=(0.0, ""))
         while told.of_mean(told.worst(runs), runs) > asked:
             # half of what is asked is left to the scatter of the mean
-            needed = max(math.ceil(MARGIN * (2.0 * SIGMAS * scatter / asked) ** 2), RUNS + 1, math.ceil(1.5 * runs))
+            needed = max(
+                math.ceil(MARGIN * (2.0 * SIGMAS * scatter / asked) ** 2), self._few + 1, math.ceil(1.5 * runs)
+            )
             if needed > self._accuracy.runs:
                 raise InputError(self._beyond(scatter, noisy, needed))
             told, runs = self._estimate(needed), needed
@@ -179,6 +217,14 @@ class _Attempt:
             "quantities in solver.quantities"
         )
 
+    def _at_best(self, told: Estimate, best: float) -> str:
+        """Why no setting can tell it."""
+        names = " and ".join(told.labels[key] for key, least in told.lasting.items() if least == best)
+        return (
+            f"solver.accuracy = {percent(self._accuracy.asked)} is more than any setting can tell\n  {self._phase}: "
+            f"{names} is told to {percent(best)} at best; ask for that, or name other quantities in solver.quantities"
+        )
+
     def _estimate(self, runs: int) -> Estimate:
         """Errors of all axes together."""
         told = Estimate()
@@ -190,14 +236,16 @@ class _Attempt:
         """The estimate with settings fine enough that only scatter is left to be too much."""
         asked = self._accuracy.asked
         while True:
-            axes = {ladder.axis: self._axis(ladder, RUNS) for ladder in self._ladders}
+            axes = {ladder.axis: self._axis(ladder, self._few) for ladder in self._ladders}
             told = Estimate()
             for estimate in axes.values():
                 told.add(estimate)
             if not told.errors:
                 raise InputError(f"{self._phase}: it has none of {', '.join(self._accuracy.quantities)}")
-            key = max(told.errors, key=lambda key: told.errors[key])
-            error, noise = told.errors[key], told.noises.get(key, 0.0)
+            if (best := max(told.lasting.values(), default=0.0)) > asked:
+                raise InputError(self._at_best(told, best))
+            key = max(told.errors, key=told.of_setting)
+            error, noise = told.of_setting(key), told.noises.get(key, 0.0)
             if error <= max(asked, noise):
                 return told
             worst = max(self._ladders, key=lambda ladder: axes[ladder.axis].errors.get(key, 0.0))
@@ -216,15 +264,21 @@ class _Attempt:
             return Estimate()
         rest = [change for other in self._ladders if other is not ladder for change in other.here.changes]
         here, there = self._run([_with(rest, ladder.here), _with(rest, partner)], runs if self._planner.chaotic else 1)
-        ratio = min(partner.size, ladder.here.size) / max(partner.size, ladder.here.size)
+        sizes, tolerance = (partner.size, ladder.here.size), ladder.here.tolerance
+        ratio = (min(sizes) / max(sizes)) ** POWERS[tolerance]
         factor = (ratio if partner.size > ladder.here.size else 1.0) / (1.0 - ratio)
-        told = Estimate()
+        least = TOLD if tolerance else 0.0
+        bound = float(here.means[BOUND][0]) if tolerance and BOUND in here.means else 0.0
+        told = Estimate(made=min(here.runs, there.runs))
         own, other = scatters(here), scatters(there)
-        for key, about in here.about.items():
-            error = error_of(there, here, key)[0] * factor if self._counts(key, about["meant"]) else math.nan
+        for key, about in {**there.about, **here.about}.items():
+            error = _apart(here, there, key) * factor if self._counts(key, about["meant"]) else math.nan
             if math.isnan(error):
                 continue
-            told.errors[key], told.labels[key] = error, str(about["label"])
+            told.errors[key], told.labels[key] = error + bound, str(about["label"])
+            if key not in here.means:
+                continue
+            told.lasting[key] = least + resolution_of(here, key)
             if own.get(key, 0.0) > 0.0:
                 scatter = math.sqrt(0.5 * (own[key] ** 2 + other.get(key, own[key]) ** 2))
                 told.scatters[key], told.noises[key] = scatter, SIGMAS * scatter * math.sqrt(2.0 / runs) * factor
@@ -255,6 +309,13 @@ class _Attempt:
         return samples
 
 
+def _apart(here: Sample, there: Sample, key: str) -> float:
+    """Difference of a quantity [1]; infinite where one of them lacks it or has less of it, as a tug less."""
+    if key not in here.means or key not in there.means or len(here.means[key]) != len(there.means[key]):
+        return math.inf
+    return error_of(there, here, key)[0]
+
+
 def _with(rest: Sequence[str], setting: Setting | None) -> Planned:
     own = setting if setting is not None else Setting("", "", 1.0, ())
     return Planned(Setting(own.axis, own.family, own.size, (*rest, *own.changes)))
@@ -269,6 +330,8 @@ def _ladders(phase: PhaseScene) -> list[Ladder]:
     found = []
     for axis, of in axes.items():
         family = [s for s in of if s.family == of[0].family]
+        if axis == NUMERICS and phase.main.terms.keys() & set(build.details(phase.main.model)):
+            family.pop()  # for references: it leaves a level of detail nothing, and follows all
         found.append(Ladder(axis, family, _place(family, phase)))
     return found
 

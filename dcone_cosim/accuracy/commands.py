@@ -96,7 +96,13 @@ def accuracy(
     with interrupts.heeded(TOLD), Store(folder, study) as store:
         interrupts.arm()
         with Workers(count) as workers:
-            rows = run_all(cases, store, workers, 2 * count, progress, measure)
+            first = [case for one in plans for case in one.first]
+            rows = run_all(first, store, workers, 2 * count, progress, measure)
+            for one in plans:
+                one.drop_dear(rows)
+            cases = [case for one in plans for case in one.cases]
+            if len(cases) > len(rows):
+                rows = run_all(cases, store, workers, 2 * count, progress, measure)
         store.gather_if_many()
         reports = [judge(one, rows) for one in plans]
         told = {

@@ -5,7 +5,8 @@ finest setting of another family, a scheme of its own where there is one, else t
 agree, and below what the scatter of chaotic runs lets be told, nothing is claimed: that is the floor.
 
     error  e = max_i |m_i - r_i| / s_i          m, r: means over the runs of setting and reference
-    floor  f = max(agreement, 2 max_i sqrt(d_i^2/n + d_r,i^2/n_r) / s_i)      d: standard deviations
+    floor  f = max(agreement, 2 max_i sqrt(d_i^2/n + d_r,i^2/n_r) / s_i, b / min s_i)
+           d: standard deviations, b: what the quantity is told to at best
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dcone_cosim.accuracy.plan import PhasePlan, Planned
-from dcone_cosim.accuracy.settings import NUMERICS, Setting
+from dcone_cosim.accuracy.settings import Setting, judges
 from dcone_cosim.accuracy.work import CPU, STEPS
 from dcone_cosim.cases.rows import Row
 
@@ -41,7 +42,7 @@ SMALL, CLEAR = 0.2, 4.0
 class Sample:
     """What the runs of one setting gave.
 
-    means, spreads    of each quantity, value by value; `about` is how it is told
+    means, spreads    of each quantity, value by value; `about` is how it is told, `values` are those of every run
     cpu               median of the steps' CPU time [s]
     steps             median of the solver's steps; 0: its FMU tells of none
     failed            of those that did not come to an end, why
@@ -55,6 +56,7 @@ class Sample:
     spreads: dict[str, Array] = field(default_factory=dict)
     about: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     failed: str = ""
+    values: dict[str, Array] = field(default_factory=dict)
 
 
 @dataclass
@@ -156,6 +158,7 @@ def sample_of(planned: Planned, rows: Mapping[str, Row]) -> Sample:
         told = [row.samples[key] for row in good if key in row.samples]
         longest = max(len(one["values"]) for one in told)
         values = np.array([one["values"] for one in told if len(one["values"]) == longest], dtype=float)
+        found.values[key] = values
         found.means[key] = values.mean(axis=0)
         found.spreads[key] = values.std(axis=0, ddof=1) if len(values) > 1 else np.zeros(longest)
         found.about[key] = told[0]
@@ -168,8 +171,10 @@ def _axis(name: str, samples: list[Sample], base: Sample) -> Axis | None:
         return None
     own = able[0].setting.family
     assert not able[0].setting.peer
-    reference = min((s for s in able if s.setting.family == own), key=lambda s: s.setting.size)
-    second = _second(able, reference)
+    by_setting = {sample.setting: sample for sample in able}
+    reference, *others = (by_setting[setting] for setting in judges(list(by_setting)))
+    # of several schemes the one that agrees best
+    second = min(others, key=lambda s: _judge(s, reference, {}).worst, default=None)
     compared = [_judge(sample, reference, {}) for sample in samples]
     between = _judge(second, reference, {}) if second is not None else None
     agreement = dict(between.errors) if between is not None else {}
@@ -219,27 +224,6 @@ def _families(points: Sequence[Judged]) -> list[str]:
     return list(dict.fromkeys(point.setting.family for point in points))
 
 
-def _second(able: Sequence[Sample], reference: Sample) -> Sample | None:
-    """The finest of another scheme, that which agrees best if there are several; without one the next finer setting."""
-    of = reference.setting
-    others: dict[str, Sample] = {}
-    for sample in able:
-        own = sample.setting
-        if own.family == of.family or own.peer or own.detail or _coarse(sample):
-            continue
-        if own.family not in others or own.size < others[own.family].setting.size:
-            others[own.family] = sample
-    if of.axis == NUMERICS and others:
-        return min(others.values(), key=lambda s: _judge(s, reference, {}).worst)
-    rest = [s for s in able if s.setting.family == of.family and s is not reference]
-    return min(rest, key=lambda s: s.setting.size, default=None)
-
-
-def _coarse(sample: Sample) -> bool:
-    """Whether rounding in single precision makes it no judge of anything."""
-    return "single" in sample.setting.family
-
-
 def _shrunk(value: float, second: Sample, reference: Sample) -> float:
     """What is left of a difference once it falls at first order at least."""
     ratio = reference.setting.size / second.setting.size
@@ -254,7 +238,7 @@ def _judge(sample: Sample, reference: Sample, agreement: Mapping[str, float]) ->
         error, floor = error_of(sample, reference, key)
         if not math.isnan(error):
             errors[key] = error
-            floors[key] = max(floor, agreement.get(key, 0.0))
+            floors[key] = max(floor, agreement.get(key, 0.0), resolution_of(reference, key))
     if not sample.means:
         errors = dict.fromkeys(errors, math.inf)
     return Judged(sample, errors, floors, _worst(errors, reference), _worst(floors, reference))
@@ -276,12 +260,34 @@ def error_of(sample: Sample, reference: Sample, key: str) -> tuple[float, float]
     both = np.isfinite(own) & np.isfinite(ref) & (sizes > 0.0)
     if not both.any():
         return math.nan, 0.0
+    if _alike(sample, reference, key):
+        return 0.0, 0.0
     # a single run scatters as those of the reference do
     spread = reference.spreads[key] if sample.runs == 1 else sample.spreads[key][: len(ref)]
     scatter = spread**2 / max(sample.runs, 1)
     scatter = scatter + reference.spreads[key] ** 2 / max(reference.runs, 1)
     error = np.abs(own - ref)[both] / sizes[both]
     return float(error.max()), float(SIGMAS * (np.sqrt(scatter[both]) / sizes[both]).max())
+
+
+def _alike(sample: Sample, reference: Sample, key: str) -> bool:
+    """Whether runs from the same starts come to the same, bit for bit: then no scatter hides a difference."""
+    one, other = sample.values.get(key), reference.values.get(key)
+    if one is None or other is None or len(one) != sample.runs or len(other) != reference.runs:
+        return False
+    count = min(len(one), len(other))
+    return one.shape[1] == other.shape[1] and np.array_equal(one[:count], other[:count], equal_nan=True)
+
+
+def resolution_of(sample: Sample, key: str) -> float:
+    """What a quantity is told to at best, however it is computed [1]."""
+    about = sample.about[key]
+    best = float(about.get("resolution", 0.0))
+    if best == 0.0:
+        return 0.0
+    sizes = np.abs(sample.means[key])
+    scale = about["scale"] or float(sizes[sizes > 0.0].min(initial=math.inf))
+    return best / float(scale)
 
 
 def _order(points: Sequence[Judged]) -> float:

@@ -5,15 +5,16 @@ What is chaotic is run with several jittered starts, what is not several times, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from dcone_cosim.accuracy.peers import peers_of
-from dcone_cosim.accuracy.settings import NUMERICS, Setting, settings_of
-from dcone_cosim.accuracy.work import Measured, OfPeer
+from dcone_cosim.accuracy.settings import NUMERICS, Setting, judges, settings_of
+from dcone_cosim.accuracy.work import CPU, Measured, OfPeer
 from dcone_cosim.cases import ensemble
 from dcone_cosim.cases.alone import Alone, Fmus
 from dcone_cosim.cases.case import digest, key_of
+from dcone_cosim.cases.rows import Row
 from dcone_cosim.errors import InputError
 from dcone_cosim.fmu.component import NUMBERS
 from dcone_cosim.phases import kind_of
@@ -24,6 +25,8 @@ from dcone_cosim.scene_fmus import SceneFmus
 
 INSTANTS = 120
 """At which curves are compared, at most."""
+DEAR = 20.0
+"""CPU time of a run that is told well enough by one [s]."""
 TWIN = 1
 """Seed of the start that a twin has."""
 
@@ -32,8 +35,8 @@ TWIN = 1
 class Effort:
     """How much is done.
 
-    runs       of a chaotic phase, for each setting; its references have twice as many
-    repeats    of any other, for its CPU time
+    runs       of a chaotic phase, for each setting; its references, and what judges them, have twice as many
+    repeats    of any other, for its CPU time, where one takes less than `DEAR`
     thin       every how many-th setting is tried; the finest always is
     refine     whether the model itself is refined too
     peers      whether other programs are tried too
@@ -69,6 +72,24 @@ class PhasePlan:
     settings: list[Planned]
     cases: list[Measured]
     notes: list[str]
+
+    @property
+    def first(self) -> list[Measured]:
+        """The cases that are run in any case: without the repeats of what comes out the same each time."""
+        if self.chaotic:
+            return self.cases
+        keys = {key for planned in (self.base, *self.settings) for key in planned.keys[:1]}
+        return [case for case in self.cases if case.key in keys]
+
+    def drop_dear(self, rows: Mapping[str, Row]) -> None:
+        """Leave out the repeats of what took longer than `DEAR`."""
+        if self.chaotic:
+            return
+        for planned in (self.base, *self.settings):
+            if planned.keys and rows[planned.keys[0]].timings.get(CPU, 0.0) > DEAR:
+                del planned.keys[1:]
+        kept = {key for planned in (self.base, *self.settings) for key in planned.keys}
+        self.cases[:] = [case for case in self.cases if case.key in kept]
 
 
 class Planner:
@@ -146,9 +167,10 @@ def plan(alone: Alone, phase: str, effort: Effort, progress: Progress) -> PhaseP
     cases: dict[str, Measured] = {}
     here = Planned(Setting("", "the scene as it is", 1.0, ()))
     planned = [here, *(Planned(setting) for setting in settings)]
-    finest = {min((s for s in settings if s.axis == axis), key=lambda s: s.size) for axis in {s.axis for s in settings}}
+    axes = dict.fromkeys(s.axis for s in settings)
+    judging = {judge for axis in axes for judge in judges([s for s in settings if s.axis == axis])}
     for one in planned:
-        count = effort.runs * (2 if one.setting in finest else 1) if planner.chaotic else effort.repeats
+        count = effort.runs * (2 if one.setting in judging else 1) if planner.chaotic else effort.repeats
         try:
             cases |= planner.cases(one, count)
         except InputError as error:

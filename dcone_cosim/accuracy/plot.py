@@ -11,6 +11,8 @@ from dcone_cosim.plots import style
 
 WIDTH = 2
 """Panels side by side."""
+WIDE, LINE = 9.2, 0.18
+"""Of the figure, and a line of its title [inch]."""
 COLUMNS, BESIDES = 5, 3
 """Of the legend, and what is in it beside the families: floor, front and the scene as it is."""
 COLOURS = (
@@ -40,21 +42,23 @@ def _draw(report: Report, path: Path) -> None:
     panels += [(f"worst, by {other.name}", other, None) for other in report.axes[1:]]
     panels = panels[:1] + [panel for panel in panels[1:] if _differs(panel[1], panel[2])]
     rows = math.ceil(len(panels) / WIDTH)
-    head = 0.75 + 0.2 * math.ceil((len(axis.families) + BESIDES) / COLUMNS)
-    size = (9.2, 2.7 * rows + head + 0.05)
+    title = f"{report.plan.title}: {report.plan.phase}"
+    longer = LINE * (len(style.wrapped(title, WIDE)[0]) - 1)
+    head = 0.75 + longer + 0.2 * math.ceil((len(axis.families) + BESIDES) / COLUMNS)
+    size = (WIDE, 2.7 * rows + head + 0.05)
     figure = style.new_figure(*size)
     grid = figure.subplots(rows, WIDTH, squeeze=False)
     figure.subplots_adjust(left=0.8 / size[0], right=1.0 - 0.2 / size[0], bottom=0.5 / size[1])
     figure.subplots_adjust(top=1.0 - head / size[1], wspace=0.24, hspace=0.52)
-    for axes, (title, of, key) in zip(grid.flat, panels, strict=False):
+    for axes, (text, of, key) in zip(grid.flat, panels, strict=False):
         _panel(axes, of, key)
-        axes.set_title(title, fontsize=8.5, loc="left", parse_math=False)
+        axes.set_title(text, fontsize=8.5, loc="left", parse_math=False)
     for axes in list(grid.flat)[len(panels) :]:
         axes.set_visible(False)
     handles, labels = grid.flat[0].get_legend_handles_labels()
-    anchor = (0.6 / size[0], 1.0 - 0.4 / size[1])
+    anchor = (0.6 / size[0], 1.0 - (0.4 + longer) / size[1])
     figure.legend(handles, labels, loc="upper left", bbox_to_anchor=anchor, ncols=COLUMNS, fontsize=8)
-    style.head(figure, f"{report.plan.title}: {report.plan.phase}")
+    style.head(figure, title)
     style.save(figure, path)
 
 

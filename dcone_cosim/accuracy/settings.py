@@ -5,7 +5,7 @@ They lie on axes. Along an axis errors are counted from its finest setting; what
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dcone_cosim import build
@@ -30,7 +30,8 @@ class Setting:
     changes    `KEY=VALUE`, as `--set` takes them; none for the scene as it is
     peer       it is another program's
     partial    not everything that it shows is meant, as with a scheme for the net's shape alone: it is never advised
-    detail     it differs from the scene in its level of detail: what it errs by says nothing of a scheme
+    detail     its scheme is the scene's own, on another level of detail or at another pace: it judges none
+    tolerance  its size is a tolerance, not a step: errors fall with it as they will
     """
 
     axis: str
@@ -40,10 +41,33 @@ class Setting:
     peer: bool = False
     partial: bool = False
     detail: bool = False
+    tolerance: bool = False
 
     @property
     def label(self) -> str:
         return f"{self.family} x {self.size:g}"
+
+
+def judges(settings: Sequence[Setting]) -> list[Setting]:
+    """Of an axis: its reference, the finest setting of the scene's own family, and those one of which judges it.
+
+    They are the finest of every other scheme that means all it shows, in full precision; without one, and along other
+    axes, the next finer setting of the family.
+
+    settings    of that axis, those of the scene's own family first
+    """
+    own = [s for s in settings if s.family == settings[0].family]
+    reference = min(own, key=lambda s: s.size)
+    others: dict[str, Setting] = {}
+    for one in settings:
+        if one in own or one.peer or one.detail or one.partial or "single" in one.family:
+            continue
+        if one.family not in others or one.size < others[one.family].size:
+            others[one.family] = one
+    if reference.axis == NUMERICS and others:
+        return [reference, *others.values()]
+    rest = [s for s in own if s is not reference]
+    return [reference, *([min(rest, key=lambda s: s.size)] if rest else [])]
 
 
 def settings_of(phase: PhaseScene, refine: bool, notes: list[str]) -> list[Setting]:
@@ -64,10 +88,10 @@ def _of_model(phase: PhaseScene, notes: list[str]) -> Iterator[Setting]:
     main = phase.main
     yield from _rungs(phase, main.terms, main.values, ())
     groups = build.CATALOGUE[main.model].groups
-    for name in (*build.numerics(main.model), *build.beside(main.model)):
+    for name in build.numerics(main.model):
         if name in groups:
             yield from _others(phase, name, groups[name].terms, notes)
-    for name in build.details(main.model):
+    for name in (*build.beside(main.model), *build.details(main.model)):
         others = _others(phase, name, groups[name].terms, notes)
         yield from (replace(setting, detail=True) for setting in others)
 
@@ -108,10 +132,10 @@ def _rungs(
     named += [terms[name] for name in build.beside(model) if terms[name] != groups[name].default]
     named += [terms[name] for name in build.details(model) if name in terms]
     family = ", ".join(named) or "tolerances"
-    partial = not build.whole(model, terms)
+    partial, tolerance = not build.whole(model, terms), build.by_tolerance(model)
     for rung in build.rungs(model, values, terms):
         made = (*changes, *changes_of(phase, rung.values))
-        yield Setting(NUMERICS, family, rung.size, made, partial=partial)
+        yield Setting(NUMERICS, family, rung.size, made, partial=partial, tolerance=tolerance)
 
 
 def _macro_steps(phase: PhaseScene) -> Iterator[Setting]:
@@ -133,7 +157,8 @@ def _coupling_steps(phase: PhaseScene) -> Iterator[Setting]:
     name = "tolerance" if by_error else "step"
     for factor in COUPLING_FACTORS:
         if factor == 1.0:
-            yield Setting(COUPLING, COUPLING, factor, ())
+            yield Setting(COUPLING, COUPLING, factor, (), tolerance=by_error)
         elif by_error or factor * size <= phase.macro_step * (1.0 + 1e-9):
             value = written(factor * size, "1" if by_error else "s")
-            yield Setting(COUPLING, COUPLING, factor, (f"{phase.name}.coupling.{name}={value}",))
+            changes = (f"{phase.name}.coupling.{name}={value}",)
+            yield Setting(COUPLING, COUPLING, factor, changes, tolerance=by_error)

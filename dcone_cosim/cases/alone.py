@@ -16,7 +16,7 @@ import tomlkit
 from dcone_cosim import build
 from dcone_cosim.cases.case import identities
 from dcone_cosim.errors import InputError
-from dcone_cosim.level import GROUP, with_term
+from dcone_cosim.level import GROUP, refused_by, with_term
 from dcone_cosim.loading import load
 from dcone_cosim.master import run_scene
 from dcone_cosim.phases import kind_of
@@ -84,7 +84,11 @@ class Alone:
             given, start, body = self._taken[phase]
             main = own.main
             if body is not None and GROUP in main.unnamed and main.terms.get(GROUP) != body:
-                main = with_term(main, GROUP, body)  # the level that carries what was handed over
+                turning = with_term(main, GROUP, body)  # the level that carries what was handed over
+                why = refused_by(main, turning)
+                if why:
+                    raise InputError(f"{self.scene.source}\n  {phase}.{why}")
+                main = turning
             own = replace(own, main=replace(main, parameters={**main.parameters, **given}), start=start)
         return replace(scene, phases=(own,))
 

@@ -4,12 +4,14 @@ What is chaotic comes out otherwise each time, and what is not comes out the sam
 
     a capture whose FMU has solver.jitter and solver.seed     folded nodes differ by 1 um, or by what the scene says
     a removal that begins with start.separation               the bodies begin nearer by 0 to 1 um
+    a removal whose scene says start.relative_position        the same, along the line between them
 
 These are the starts from which the scatter of single figures was measured (see `phases.chaos`).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -23,6 +25,7 @@ from dcone_cosim.scene.data import PhaseScene, Scene
 AMPLITUDE = 1e-6
 """Of the jitter of a start [m]."""
 SEED, JITTER = "solver.seed", [f"solver.jitter[{axis}]" for axis in (1, 2, 3)]
+PLACE = tuple(f"start.relative_position[{axis}]" for axis in (1, 2, 3))
 SEPARATION, CONDITION = "start.separation", "start.condition"
 MOST = 100_000
 """Members of an ensemble."""
@@ -43,9 +46,15 @@ def jitter(scene: Scene, seed: int) -> tuple[str, ...]:
     if SEPARATION in known and not _handed_over(first):
         separation = known[SEPARATION] - AMPLITUDE * np.random.default_rng(seed).random()
         return (f"{first.name}.{SEPARATION}={float(separation)!r} m",)
+    place = [known.get(name, 0.0) for name in PLACE]
+    apart = math.hypot(*place)
+    if apart > AMPLITUDE and _handed_over(first) and set(PLACE) <= first.main.given.keys():
+        nearer = 1.0 - AMPLITUDE * float(np.random.default_rng(seed).random()) / apart
+        moved = ", ".join(f'"{nearer * float(at)!r} m"' for at in place)
+        return (f"{first.name}.start.relative_position=[{moved}]",)
     raise InputError(
         f"{scene.source or scene.name}: no ensemble of its {first.name}: its FMU has neither {SEED} with solver.jitter "
-        f"nor a {SEPARATION} to be jittered"
+        f"nor a {SEPARATION} or start.relative_position of its own to be jittered"
     )
 
 

@@ -21,6 +21,7 @@ from fmu_src.net_capture import stress as net_capture_stress
 from fmu_src.net_capture import trade as net_capture_trade
 from fmu_src.net_capture.capacity import FAMILIES
 from fmu_src.net_capture.interface import MODEL as NET_CAPTURE
+from fmu_src.net_capture.stepping import MEASURE_INTERVAL
 from fmu_src.tables import Table, from_files
 from fmu_src.tethered_deorbit import cautions as tethered_deorbit_cautions
 from fmu_src.tethered_deorbit import lines as tethered_deorbit_lines
@@ -41,6 +42,9 @@ TRADES = {NET_CAPTURE.name: net_capture_trade, TETHERED_DEORBIT.name: tethered_d
 
 STRESSES = {NET_CAPTURE.name: net_capture_stress, TETHERED_DEORBIT.name: tethered_deorbit_stress}
 """Ends of the range that belong to no part of a model, by its name."""
+
+LOOKS_EVERY = MEASURE_INTERVAL
+"""Time between two looks of a net at its mouth and its capture, whose instants are those of a look [s]."""
 
 SETTABLE = ("parameter", "input")
 """Causality of what a scene may give a value: an input keeps it from the start."""
@@ -260,6 +264,11 @@ def details(model: str) -> Sequence[str]:
 def rungs(model: str, values: Mapping[str, float], terms: Mapping[str, str]) -> list[Rung]:
     """Settings of the scheme that the terms name, coarse to fine; see `fmu_src.trade`."""
     return TRADES[model].rungs(values, terms) if model in TRADES else []
+
+
+def by_tolerance(model: str) -> bool:
+    """Whether the sizes of a model's settings are tolerances; else they are steps."""
+    return TRADES[model].BY_TOLERANCE if model in TRADES else False
 
 
 def whole(model: str, terms: Mapping[str, str]) -> bool:

@@ -27,7 +27,7 @@ def quantities(result: PhaseResult, parameters: Mapping[str, float], instants: S
         curve = at(recorder, "mouth.area", instants)
         yield Quantity("mouth_area", "mouth area over time", curve.tolist(), "m2", flat, "the flat net's area")
     if last.get("mouth.t80", -1.0) >= 0.0:
-        yield Quantity("t80", "mouth over 80 % from", [last["mouth.t80"]], "s")
+        yield Quantity("t80", "mouth over 80 % from", [last["mouth.t80"]], "s", resolution=build.LOOKS_EVERY)
     names = [f"bullet[{b}].position[{i}]" for b in bullets(recorder.names) for i in EACH]
     if names:
         places = np.concatenate([at(recorder, name, instants) for name in names])
@@ -41,7 +41,7 @@ def quantities(result: PhaseResult, parameters: Mapping[str, float], instants: S
     if "captured" in last and "mouth.girth" in last:
         yield Quantity("captured", "whether it is captured", [float(last["captured"] > 0.0)], "1", 1.0, "1")
         if last.get("t_capture", -1.0) >= 0.0:
-            yield Quantity("t_capture", "captured at", [last["t_capture"]], "s")
+            yield Quantity("t_capture", "captured at", [last["t_capture"]], "s", resolution=build.LOOKS_EVERY)
     if "energy.remainder" in recorder and "energy.kinetic" in recorder:
         entered = float(build.energy_entered(recorder)[-1])
         left = [last["energy.remainder"]]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from dcone_cosim.quantities import Quantity, at
+from dcone_cosim.quantities import BOUND, Quantity, at
 from dcone_cosim.results import PhaseResult
 
 NAMES = (
@@ -27,6 +27,10 @@ LEAST = 1.0
 """Least change of the orbit that an error is relative to [m]: an orbit that stays has none."""
 
 
+LEVEL = ("level.error", "level.average_error")
+"""Outputs with the bound that a level of detail keeps [1]."""
+
+
 def quantities(result: PhaseResult, instants: Sequence[float]) -> Iterator[Quantity]:
     """Times and peaks of the first tugs, the largest, mean tension, orbit and separation."""
     recorder = result.recorder
@@ -37,10 +41,16 @@ def quantities(result: PhaseResult, instants: Sequence[float]) -> Iterator[Quant
         rows = [result.tugs.rows[number] for number in sorted(result.tugs.rows)]
         first = [row for row in rows if row[0] > begin][:TUGS]
         if first:
-            yield Quantity("tug_times", f"times of the first {TUGS} tugs", [t - begin for t, _, _ in first], "s")
+            times = [t - begin for t, _, _ in first]
+            # a line that begins all but taut tugs at once: its time says nothing of the others
+            between = times[-1] / len(times)
+            yield Quantity("tug_times", f"times of the first {TUGS} tugs", times, "s", between, "their mean interval")
             yield Quantity("tug_peaks", f"peaks of the first {TUGS} tugs", [peak for _, peak, _ in first], "N")
             largest = max(peak for _, peak, _ in rows)
             yield Quantity("largest_tug", "largest tug", [largest], "N", meant=False)
+    bounds = [float(recorder.last()[name]) for name in LEVEL if name in recorder]
+    if bounds:
+        yield Quantity(BOUND, "what its level of detail may err by", [max(bounds)], "1", 1.0, "1", False)
     if "lumped.peak_tension" in recorder:
         along = float(np.max(recorder["lumped.peak_tension"]))
         yield Quantity("largest_along", "largest tension along the line", [along], "N", meant=False)

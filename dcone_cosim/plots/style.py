@@ -74,9 +74,8 @@ def legend(axes: Any, columns: int = 3) -> None:
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=8, borderaxespad=0.1)
 
 
-def head(figure: Any, title: str) -> None:
-    """Put the title over the figure as it is written (no mathematics in it), wrapped and made smaller when long."""
-    width = figure.get_figwidth()
+def wrapped(title: str, width: float) -> tuple[list[str], float]:
+    """The lines of a title over a figure so wide [inch], and the size of its letters."""
     size, lines = 11.0, [title]
     for size in (11.0, 9.0, 7.5):
         letters = int(width * 72.0 / (0.56 * size))
@@ -85,6 +84,12 @@ def head(figure: Any, title: str) -> None:
             break
     if len(lines) > MOST_LINES:
         lines = [*lines[: MOST_LINES - 1], lines[MOST_LINES - 1] + " ..."]
+    return lines, size
+
+
+def head(figure: Any, title: str) -> None:
+    """Put the title over the figure as it is written (no mathematics in it), wrapped and made smaller when long."""
+    lines, size = wrapped(title, figure.get_figwidth())
     figure.suptitle("\n".join(lines), fontsize=size, parse_math=False, y=1.0 - 0.1 / figure.get_figheight(), va="top")
 
 

@@ -28,8 +28,11 @@ SAME, SAME_STABLE = 1e-9, 1e-6
 """The same of a run with other macro steps."""
 PARTED = 0.002
 """Share from which on a jittered twin of a chaotic run counts as having parted from it."""
+IN_THE = ", in the "
+"""Before the quantity that differs most."""
 ORDER = "order"
 """Criterion that compares the energy books of two steps."""
+NOTHING = "there is nothing that both tell"
 BOOK = ("energy_gained", "energy_lost")
 SECOND_ORDER = 1.0 / 8.0
 """Share of an error that a four times finer step may leave: that of order 3/2."""
@@ -128,8 +131,8 @@ def size(criterion: Criterion, value: float | None = None) -> str:
 def agreement(
     here: Sequence[Quantity], finer: Sequence[Quantity], jittered: Sequence[Quantity] | None, count: int = 0
 ) -> Criterion:
-    """By how much a finer run differs [1], in what an accuracy means; of a chaotic one as long as a twin that began a
-    micrometre beside it stays with it.
+    """By how much a finer run differs [1], in what an accuracy means, or in all that there is where it means nothing of
+    it; of a chaotic one as long as a twin that began a micrometre beside it stays with it.
 
     jittered   the same of that twin, None for a run that is not chaotic
     count      values of a curve, where of a chaotic one only curves are compared; 0: all that its twin comes to too
@@ -138,9 +141,8 @@ def agreement(
     twins = None if jittered is None else {q.key: q for q in jittered}
     worst, label = 0.0, ""
     compared = False
-    for one in here:
-        if not one.meant or one.key not in others:
-            continue
+    both = [one for one in here if one.key in others]
+    for one in [one for one in both if one.meant] or both:
         mine, other = np.asarray(one.values, dtype=float), np.asarray(others[one.key].values, dtype=float)
         length = min(len(mine), len(other))
         if twins is not None:
@@ -157,8 +159,8 @@ def agreement(
             if off >= worst:
                 worst, label = off, one.label
     if not compared:
-        return unlike("chaos parts even its twin from it too early" if twins is not None else "nothing to compare")
-    return Criterion("agrees", f"difference from a finer run, in the {label}", worst, "1", AGREE, AGREE_STABLE)
+        return unlike("chaos parts even its twin from it too early" if twins is not None else NOTHING)
+    return Criterion("agrees", f"difference from a finer run{IN_THE}{label}", worst, "1", AGREE, AGREE_STABLE)
 
 
 def falls(here: Sequence[Criterion], finer: Sequence[Criterion], rounding: float) -> Criterion:
@@ -199,4 +201,4 @@ def sameness(here: Sequence[Quantity], other: Sequence[Quantity]) -> Criterion:
                 worst, label = off, one.label
     if not compared:
         return Criterion("same", "nothing to compare at the end", math.inf, "1", SAME, SAME_STABLE)
-    return Criterion("same", f"difference from other macro steps, in the {label}", worst, "1", SAME, SAME_STABLE)
+    return Criterion("same", f"difference from other macro steps{IN_THE}{label}", worst, "1", SAME, SAME_STABLE)

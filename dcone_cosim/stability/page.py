@@ -41,7 +41,7 @@ def _phase(one: Matrix, folder: Path) -> dict[str, Any]:
             {
                 "extreme": extreme.name,
                 "text": extreme.text,
-                "asked": cell.planned.asked,
+                "asked": one.about([cell]),
                 "scheme": cell.planned.scheme.name,
                 "kind": MEANINGS[cell.verdict.kind],
                 "bad": cell.verdict.kind == FAILED,

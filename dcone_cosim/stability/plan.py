@@ -209,7 +209,7 @@ class _Maker:
         if handed:
             why = f"goes without a {handed[0]} of its own: the phase before hands it over"
             return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, why))
-        why = self._unsuited(scheme)
+        why = self._idle(extreme) or self._unsuited(scheme)
         if why:
             return Planned(extreme, scheme, (), found=Verdict(EXCLUDED, why))
         try:
@@ -235,6 +235,12 @@ class _Maker:
             found = refusal(_told(error))
             return Planned(draft.extreme, draft.scheme, draft.changes, found=found)
         return Planned(draft.extreme, draft.scheme, draft.changes, case)
+
+    def _idle(self, extreme: build.Extreme) -> str:
+        """Why nothing would happen in it; "" where something would."""
+        terms = self._alone.scene_of(self._phase).phases[0].main.terms
+        found = [f'{group} = "{term}"' for group, term in extreme.idle.items() if terms.get(group) == term]
+        return f"goes without anything that moves: {' and '.join(found)}" if found else ""
 
     def _unsuited(self, scheme: Scheme) -> str:
         """Why a part of the scene, as it is, does not go together with what the scheme changes; "" where all do."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from dcone_cosim.cases.rows import FAULT, LOST, Row
 from dcone_cosim.criteria import Criterion
-from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, FAILED, LEFT, REFUSED, STABLE, Verdict
+from dcone_cosim.stability.judge import ACCURATE, EXCLUDED, FAILED, IN_THE, LEFT, REFUSED, STABLE, Verdict
 from dcone_cosim.stability.plan import PhasePlan, Planned
 
 if TYPE_CHECKING:
@@ -49,12 +49,27 @@ class Matrix:
         """Those of which that became."""
         return [cell for cell in self.cells if cell.verdict.kind == kind]
 
+    def words(self, key: str) -> str:
+        """A criterion as runs of this phase tell of it; its key where none did."""
+        told = (one.label for cell in self.cells for one in cell.verdict.criteria if one.key == key)
+        return next(told, key).partition(IN_THE)[0]
+
+    def about(self, cells: Sequence[Cell]) -> str:
+        """What the cases of an extreme must show above all, in words, "" where there is none: schemes may be asked for
+        different things."""
+        return "; ".join(map(self.words, asked(cells)))
+
     def shares(self) -> Iterator[tuple[str, int, int]]:
         """Each scheme, how many of its cases were refused, and of how many."""
         for scheme in self.plan.schemes:
             own = [cell for cell in self.cells if cell.planned.scheme is scheme]
             tried = [cell for cell in own if cell.verdict.kind not in (EXCLUDED, LEFT)]
             yield scheme.name, sum(cell.verdict.kind == REFUSED for cell in tried), len(tried)
+
+
+def asked(cells: Sequence[Cell]) -> list[str]:
+    """Keys of what the cases among these must show above all."""
+    return list(dict.fromkeys(cell.planned.asked for cell in cells if cell.verdict.kind != EXCLUDED))
 
 
 def matrix(plan: PhasePlan, rows: Mapping[str, Row]) -> Matrix:
@@ -100,13 +115,16 @@ def show(one: Matrix, console: Console) -> None:
     title = f"{one.plan.scene.title}: {one.plan.phase}"
     table = Table(title=Text(title, style="table.title"), title_justify="left", box=None, pad_edge=False)
     table.add_column("extreme", overflow="fold")
-    table.add_column("judged by first", overflow="fold")
+    table.add_column("asked above all", overflow="fold")
     for scheme in one.plan.schemes:
         table.add_column(scheme.name, justify="center", overflow="fold")
     for extreme, cells in by_extreme(one):
         marks = [Text(LETTERS[cell.verdict.kind], style=STYLES[cell.verdict.kind]) for cell in cells]
-        table.add_row(Text(extreme.name), Text(extreme.criterion), *marks)
+        table.add_row(Text(extreme.name), Text(", ".join(asked(cells))), *marks)
     console.print(table)
+    for key in asked(one.cells):
+        if one.words(key) != key:
+            console.print(Text(f"  {key}: {one.words(key)}"), highlight=False, soft_wrap=True)
     kinds = {cell.verdict.kind for cell in one.cells}
     console.print(Text(", ".join(f"{LETTERS[k]} {MEANINGS[k]}" for k in LETTERS if k in kinds)), soft_wrap=True)
     for name, how, letter, text in reasons(one):

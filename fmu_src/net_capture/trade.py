@@ -12,6 +12,7 @@ from fmu_src.trade import Rung
 NUMERICS = ("solver", "precision")
 BESIDE = ("substeps",)
 DETAILS: tuple[str, ...] = ()
+BY_TOLERANCE = False
 ROUNDED = {"energy_gained": "agrees", "energy_lost": "agrees", "energy_rises": "agrees"}
 """Work that is done along rounded ways is booked to nothing, the more the smaller the substep; no bound that is worth
 telling follows from the bits alone, and whether it matters a run of 53 bits tells."""

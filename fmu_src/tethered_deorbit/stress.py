@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from fmu_src.extremes import Extreme, Given, Values
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
@@ -14,6 +14,8 @@ PERIGEE = 800e3
 GEOSTATIONARY = 35786e3
 HANDED_OVER = 3
 """Number of the start that takes given states, see `interface.CONDITIONS`."""
+FREE = {"environment": "none"}
+"""Without a field nothing draws a pair apart that is not pushed."""
 HELD = 1.8
 """Stiffness over the tide's [1]: at 1 the tide has it, and the pair drifts apart until its orbit ends."""
 
@@ -38,13 +40,24 @@ def _length(values: Values) -> float:
     return values["tether.rest_length"]
 
 
+def _begun(length: float) -> Callable[[Values], float]:
+    """Separation at the start [m] on a line so long: five sixths of it in an orbit, which takes up the slack. Without a
+    field a push has to: there it is the scene's own slack."""
+
+    def separation(values: Values) -> float:
+        slack = max(values["tether.rest_length"] - values.get("start.separation", 0.0), 0.0)
+        return 5.0 / 6.0 * length if "orbit.altitude" in values or slack >= length else length - slack
+
+    return separation
+
+
 LOCKED = (
     *(
         Extreme(
             f"line of {length:g} m",
             "from a leash to the longest tether flown",
             "longer",
-            {"tether.rest_length": length, "start.separation": 5.0 / 6.0 * length},
+            {"tether.rest_length": length, "start.separation": _begun(length)},
             chief=length == 20e3,
         )
         for length in (1.0, 100.0, 1e3, 20e3)
@@ -60,9 +73,9 @@ LOCKED = (
         for ratio in (0.0, 1e-3, 0.5, 1.0, 10.0)
     ),
     Extreme("undamped without thrust", "what the pair has it keeps: the Jacobi integral", "jacobi",
-            {"tether.damping_ratio": 0.0, "thrust.level": 0.0}, needs=("thrust",)),
+            {"tether.damping_ratio": 0.0, "thrust.level": 0.0}, needs=("thrust",), idle=FREE),
     Extreme("damped without thrust", "the Jacobi integral only falls", "jacobi",
-            {"thrust.level": 0.0}, needs=("thrust",)),
+            {"thrust.level": 0.0}, needs=("thrust",), idle=FREE),
     Extreme("separation as long as the line", "begins on the edge between slack and taut", "longer",
             {"start.separation": _length}, chief=True),
     Extreme("chatter: at rest on the edge, radial", "exactly as long as the line at no speed, the tide pulls", "longer",
@@ -71,14 +84,15 @@ LOCKED = (
     Extreme("chatter: at rest on the edge, along-track", "the same where no tide pulls, only the thrust", "longer",
             {"start.condition": HANDED_OVER, "start.relative_position": (0.0, 12.0, 0.0), "tether.rest_length": 12.0,
              "tether.damping_ratio": 0.0}, scatters=GRAZES),
-    Extreme("bodies a nanometre apart", "the line has hardly a direction", "longer", {"start.separation": 1e-9}),
+    Extreme("bodies a nanometre apart", "the line has hardly a direction", "longer", {"start.separation": 1e-9},
+            {"ends": None}),
     Extreme("coincident bodies", "the line has no direction: it is to be refused", "refused",
             {"start.condition": HANDED_OVER, "start.relative_position": (0.0, 0.0, 0.0)}),
     Extreme("ten years", "of a stiff line, in the orbit as it is", "longer", {"thrust.level": 0.0},
-            needs=("thrust",), duration=10.0 * YEAR, macro_step=DAY),
+            needs=("thrust",), idle=FREE, duration=10.0 * YEAR, macro_step=DAY),
     Extreme("ten years on a soft line", "of a line as soft as a reel keeps it", "longer",
-            {"thrust.level": 0.0, "tether.youngs_modulus": _soft}, needs=("thrust",), duration=10.0 * YEAR,
-            macro_step=DAY),
+            {"thrust.level": 0.0, "tether.youngs_modulus": _soft}, needs=("thrust",), idle=FREE,
+            duration=10.0 * YEAR, macro_step=DAY),
 )  # fmt: skip
 """Of the elastic line between fixed ends."""
 

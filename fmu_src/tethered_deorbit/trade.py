@@ -12,6 +12,7 @@ LOOSEST = 0.1
 NUMERICS = ("solver",)
 BESIDE: tuple[str, ...] = ()
 DETAILS = ("level",)
+BY_TOLERANCE = True
 DISTURBED = frozenset({"oblateness", "air", "third_bodies", "sunlight", "electrodynamic"})
 """Groups that disturb an orbit."""
 UNEVEN = frozenset({"burn", "engine", "plume", "release", "break", "aocs"})

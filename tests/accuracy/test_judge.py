@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from dcone_cosim.accuracy.judge import Report, better_peers, cheapest, front, judge, own
-from dcone_cosim.accuracy.plan import PhasePlan, Planned
+from dcone_cosim.accuracy.plan import DEAR, Effort, PhasePlan, Planned, Planner, plan
 from dcone_cosim.accuracy.settings import MACRO_STEP, NUMERICS, Setting
 from dcone_cosim.accuracy.show import sentences
-from dcone_cosim.accuracy.work import CPU, STEPS
+from dcone_cosim.accuracy.work import CPU, STEPS, Measured
+from dcone_cosim.cases.alone import Alone
 from dcone_cosim.cases.rows import Row
+from dcone_cosim.progress import Progress
 
 SIZES = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
 TRUE = np.array([3.0, 5.0, 11.0])
@@ -109,6 +112,21 @@ def test_the_scatter_of_runs_is_a_floor() -> None:
     lines = "\n".join(sentences(report))
     assert "nothing tried is known to be within 0.1 %" in lines
     assert "One run scatters by" in lines
+
+
+def test_runs_that_come_to_the_same_from_every_start_differ_by_nothing() -> None:
+    """As of a net in other macro steps: that twice as many starts of the reference scatter says nothing of it."""
+    made = Made(chaotic=True)
+    starts = [[100.0 + 3.0 * d] for d in np.random.default_rng(5).standard_normal(12)]
+    made.add("plain", 1.0, starts[:6], 1.0)
+    made.add("plain", 0.5, starts, 1.0)
+    other = made.add("plain", 2.0, [*starts[:5], [starts[5][0] + 1e-9]], 1.0)
+    axis = made.judged(other).numerics
+    by_size = {point.setting.size: point for point in axis.points}
+    assert (by_size[1.0].worst, by_size[1.0].floor) == (0.0, 0.0)
+    assert axis.agreement == 0.0
+    assert by_size[2.0].floor > 0.01
+    assert by_size[2.0].worst > 1e-3
 
 
 def test_an_error_is_relative_to_what_it_says() -> None:
@@ -218,6 +236,57 @@ def test_a_level_of_detail_judges_no_scheme() -> None:
     assert axis.second is not None
     assert axis.second.family == "other"
     assert cheapest(axis.points, 0.005).setting.family == "plain, level"  # type: ignore[union-attr]
+
+
+def test_what_shows_the_shape_alone_judges_nothing() -> None:
+    """However well it agrees, and however fine it is; nor does what is rounded to 24 bits."""
+    made = Made()
+    ladder(made, "plain", 2.0, 1e-3, 1.0)
+    for family, of in (("shape", {"partial": True}), ("plain, single", {})):
+        other = made.add(family, 0.01, [TRUE * (1.0 + 1e-3 * SIZES[-1] ** 2)], 0.001)
+        other.setting = replace(other.setting, **of)
+    made.add("other", 0.05, [TRUE * (1.0 + 1e-4)], 99.0)
+    axis = made.judged(made.settings[2]).numerics
+    assert axis.second is not None
+    assert axis.second.family == "other"
+
+
+def test_the_runs_that_tell_most_go_to_the_reference_and_to_what_judges_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a chaotic net twice as many, and not of the finest setting of any family."""
+    counted: dict[Setting, int] = {}
+
+    def cases(_: Planner, planned: Planned, count: int) -> dict[str, Measured]:
+        counted[planned.setting] = count
+        planned.keys.append("one")
+        return {}
+
+    monkeypatch.setattr(Planner, "cases", cases)
+    made = plan(Alone("deployment", [], None), "capture", Effort(runs=5), Progress())
+    twice = {f"{s.family} x {s.size:g}" for s, count in counted.items() if count == 10}
+    own = {"leapfrog, double x 0.25", "rk4, double x 0.25", "ros2, double x 0.25"}
+    assert twice == own | {"macro step x 0.2", "macro step x 0.5", "pieces of a thread x 0.5", "pieces of a thread x 1"}
+    assert {count for count in counted.values()} == {5, 10}
+    assert any(p.setting.partial and p.setting.size < 0.25 for p in made.settings)
+
+
+def test_what_is_dear_is_not_repeated_for_its_cost() -> None:
+    """Of what scatters every run is a sample, and stays."""
+    settings = [Planned(Setting(NUMERICS, "plain", size, ()), [f"{size} {i}" for i in range(3)]) for size in (1.0, 0.1)]
+    base = Planned(Setting("", "", 1.0, ()), ["base 0", "base 1"])
+    rows = {
+        one.keys[0]: Row(one.keys[0], "completed", 0, "", timings={CPU: cpu}, samples={})
+        for one, cpu in zip((base, *settings), (3.0, 3.0, DEAR + 1.0), strict=True)
+    }
+    every = [key for one in (base, *settings) for key in one.keys]
+    cases: Any = [SimpleNamespace(key=key) for key in every]
+    chaotic = PhasePlan("tow", "A tow", True, base, settings, list(cases), [])
+    chaotic.drop_dear(rows)
+    assert [case.key for case in chaotic.cases] == [case.key for case in chaotic.first] == every
+    once = PhasePlan("tow", "A tow", False, base, settings, list(cases), [])
+    assert [case.key for case in once.first] == ["base 0", "1.0 0", "0.1 0"]
+    once.drop_dear(rows)
+    assert [case.key for case in once.cases] == every[:6]
+    assert settings[1].keys == ["0.1 0"]
 
 
 def test_what_shows_the_shape_alone_is_never_advised() -> None:

@@ -126,12 +126,18 @@ def test_what_has_no_bound(change: dict[str, Any], why: str) -> None:
     assert point_bound(found, line_of(found, LENGTH), 4.9, 0.0, 0.01).largest == math.inf, why
 
 
-SETTINGS = {"open": (), "a point": ('removal.target.body="point"',), "wider": ('handoff.point_tolerance="100 %"',)}
+SETTINGS = {
+    "open": (),
+    "a point": ('removal.target.body="point"',),
+    "wider": ('handoff.point_tolerance="100 %"',),
+    "of points": ('removal.level.detail="event_map"',),
+}
 
 
 @pytest.mark.parametrize("which", SETTINGS)
 def test_the_level_that_is_needed_is_taken(which: str) -> None:
-    """Of a scene that leaves it open; one that asks for a point is refused, one with a wider tolerance gets it."""
+    """Of a scene that leaves it open; one that asks for a point is refused, one with a wider tolerance gets it, and one
+    with a part that carries two points alone is refused in place of being built."""
     scene = load("tumbling-mission", SETTINGS[which])
     capture, removal = scene.phases
     spin = 1e-6 if which == "wider" else 0.03
@@ -142,8 +148,12 @@ def test_the_level_that_is_needed_is_taken(which: str) -> None:
         np.array([0, 0.02, 0]),
     )
     record = HandoffRecord(10.0, 10.0, "told", removal, found, line_of(found, LENGTH))
-    if which == "a point":
-        with pytest.raises(HandoffError, match=r'\[removal\.target\] body = "box", or none, would carry it'):
+    refused = {
+        "a point": r'\[removal\.target\] body = "box", or none, would carry it',
+        "of points": "level.detail = event_map: does not go with target = box: it carries two points",
+    }
+    if which in refused:
+        with pytest.raises(HandoffError, match=refused[which]):
             check_before(record, scene.handoff, capture.main.terms["target"])
         return
     check_before(record, scene.handoff, capture.main.terms["target"])

@@ -88,6 +88,16 @@ def test_a_tow_is_compared_in_what_its_twin_comes_to_as_well() -> None:
     assert math.isinf(agreement(here, finer, tow([11.0, 12.0, 13.0, 14.0, 15.0], 1.8)).value)
 
 
+def test_what_an_accuracy_does_not_mean_is_compared_where_there_is_nothing_else() -> None:
+    """As of an FMU from elsewhere that has a separation and no line."""
+    apart = [Quantity("separation", "separation over time", [10.0, 10.2], "m", 10.2, "its largest", False)]
+    finer = [Quantity("separation", "separation over time", [10.0, 10.5], "m", 10.5, "its largest", False)]
+    pull, other = ([Quantity("mean_tension", "mean tension", [value], "N")] for value in (1.0, 1.001))
+    assert agreement(apart, finer, None).value == pytest.approx(0.3 / 10.2)
+    assert agreement([*apart, *pull], [*finer, *other], None).value == pytest.approx(0.001 / 1.001)
+    assert math.isinf(agreement(apart, pull, None).value)
+
+
 def test_a_finer_run_that_differs_much_is_red() -> None:
     here = 50.0 + np.linspace(0.0, 10.0, 101)
     for off, kind in ((0.5, ACCURATE), (3.0, STABLE), (6.0, FAILED)):

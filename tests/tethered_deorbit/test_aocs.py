@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from fmu_src.instance import ModelFault
 from fmu_src.tethered_deorbit.interface import HANDED_OVER, MODEL
 from tests.plain import PlainInstance, plain
+from tests.validation import Validated, closed_form
 
 __all__ = ["plain"]
 pytestmark = pytest.mark.usefixtures("plain")
@@ -37,7 +38,7 @@ def attitude(i: PlainInstance) -> Any:
     return Rotation.from_quat([*xyz, w])
 
 
-def test_a_small_turn_swings_back_as_the_loop_says() -> None:
+def test_a_small_turn_swings_back_as_the_loop_says(validated: Validated) -> None:
     """theta'' + 2 zeta w theta' + w^2 theta = 0 from a rate: theta = theta'_0 exp(-zeta w t) sin(w_d t)/w_d."""
     rate, zeta, pace = 1e-6, 0.7, 0.05
     i = chaser(chaser_start_rate=(rate, -2.0 * rate, 3.0 * rate))
@@ -46,11 +47,13 @@ def test_a_small_turn_swings_back_as_the_loop_says() -> None:
         i.step(t - i.time)
         expected = rate * math.exp(-zeta * pace * t) * math.sin(damped * t) / damped
         found = attitude(i).as_rotvec()
-        assert found == pytest.approx(np.array([1.0, -2.0, 3.0]) * expected, rel=1e-4)
+        loop = closed_form("t'_0 exp(-z w t) sin(w_d t)/w_d")
+        what = "attitude control: deviation of a chaser with a rate"
+        validated(loop, what, found, np.array([1.0, -2.0, 3.0]) * expected, "rad", rel=1e-4)
         assert i["aocs.deviation"] == pytest.approx(abs(expected) * math.sqrt(14.0), rel=1e-4)
 
 
-def test_bodies_and_wheels_keep_their_momentum() -> None:
+def test_bodies_and_wheels_keep_their_momentum(validated: Validated) -> None:
     """A large turn, a pull beside the centre, a chaser with its products of inertia: nothing comes from outside."""
     i = chaser(
         chaser_start_rate=(0.05, -0.08, 0.02),
@@ -69,11 +72,13 @@ def test_bodies_and_wheels_keep_their_momentum() -> None:
     for _ in range(20):
         i.step(3.0)
         largest = max(largest, float(np.linalg.norm(i.array("aocs_momentum"))))
-        assert np.linalg.norm(momentum() - begin) < 1e-11 * (np.linalg.norm(begin) + largest)
+        size = float(np.linalg.norm(begin)) + largest
+        kept, what = closed_form("nothing comes from outside"), "attitude control: momentum of bodies and wheels"
+        validated(kept, what, momentum(), begin, "N.m.s", abs=1e-11 * size)
     assert largest > 50.0
 
 
-def test_a_pull_beside_the_centre_fills_the_wheels() -> None:
+def test_a_pull_beside_the_centre_fills_the_wheels(validated: Validated) -> None:
     """T a of torque turns the chaser by T a/(I w_c^2) against its loop and fills the wheels; full, they let go."""
     tension, arm, pace = 0.02, 0.5, 0.05
     i = chaser(
@@ -85,8 +90,11 @@ def test_a_pull_beside_the_centre_fills_the_wheels() -> None:
     torque = tension * arm
     turned = attitude(i).as_rotvec()
     # the arm turns with the chaser, by little
-    assert turned[2] == pytest.approx(torque / (MOMENTS[2] * pace**2), rel=2e-2)
-    assert i["aocs.momentum[3]"] == pytest.approx(torque * 600.0, rel=5e-2)
+    what = "attitude control, a pull beside the centre"
+    angle = torque / (MOMENTS[2] * pace**2)
+    validated(closed_form("T a/(I w^2)"), f"{what}: deviation", turned[2], angle, "rad", rel=2e-2)
+    held = i["aocs.momentum[3]"]
+    validated(closed_form("T a t"), f"{what}: momentum of the wheels", held, torque * 600.0, "N.m.s", rel=5e-2)
     assert not i["aocs.limited"]
     i.step(900.0)
     assert i["aocs.limited"]
@@ -94,13 +102,14 @@ def test_a_pull_beside_the_centre_fills_the_wheels() -> None:
     assert i["aocs.deviation"] > 2.0 * abs(turned[2])
 
 
-def test_torque_is_limited() -> None:
+def test_torque_is_limited(validated: Validated) -> None:
     i = chaser(chaser_start_rate=(0.0, 0.0, 0.05), **{"aocs.torque_limit": 0.5})
     i.step(20.0)
     assert i["aocs.limited"]
     assert np.linalg.norm(i.array("aocs_torque")) == pytest.approx(0.5, rel=1e-12)
-    assert i["chaser.rate[3]"] == pytest.approx(0.05 - 0.5 / MOMENTS[2] * 20.0, rel=1e-6)
-    assert i["aocs.momentum[3]"] == pytest.approx(0.5 * 20.0, rel=1e-6)
+    what, rate = "attitude control at its largest torque", 0.05 - 0.5 / MOMENTS[2] * 20.0
+    validated(closed_form("w_0 - M t/I"), f"{what}: rate", i["chaser.rate[3]"], rate, "rad/s", rel=1e-6)
+    validated(closed_form("M t"), f"{what}: momentum of the wheels", i["aocs.momentum[3]"], 10.0, "N.m.s", rel=1e-6)
 
 
 def test_the_attitude_is_held_in_the_orbital_frame() -> None:
@@ -133,7 +142,7 @@ def test_a_chaser_that_points_along_its_line() -> None:
     assert i["aocs.deviation"] < 1e-4
 
 
-def test_a_thruster_off_the_centre() -> None:
+def test_a_thruster_off_the_centre(validated: Validated) -> None:
     """F p of torque on the chaser, and the wheels that hold it take it up; through the centre there is none."""
     terms = FREE | {"thrust": "along_track"}
     beside, through = (
@@ -142,7 +151,8 @@ def test_a_thruster_off_the_centre() -> None:
     for i in (beside, through):
         i.step(600.0)
     assert beside["aocs.momentum[3]"] == pytest.approx(0.02 * 600.0, rel=6e-2)
-    assert beside["aocs.torque[3]"] == pytest.approx(-0.02, rel=1e-3)
+    what = "thruster beside the centre"
+    validated(closed_form("F p"), f"{what}: torque of the wheels", beside["aocs.torque[3]"], -0.02, "N.m", rel=1e-3)
     assert abs(through["aocs.momentum[3]"]) < 1e-9
     free = PlainInstance(
         MODEL,
@@ -156,7 +166,8 @@ def test_a_thruster_off_the_centre() -> None:
         },
     )
     free.step(10.0)
-    assert free["chaser.rate[3]"] == pytest.approx(0.02 / MOMENTS[2] * 10.0, rel=1e-6)
+    rate = 0.02 / MOMENTS[2] * 10.0
+    validated(closed_form("F p t/I"), f"{what}, no control: rate", free["chaser.rate[3]"], rate, "rad/s", rel=1e-6)
 
 
 def test_what_is_held_in_space_does_not_turn_with_the_line() -> None:

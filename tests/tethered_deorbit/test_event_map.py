@@ -22,6 +22,7 @@ from orbital.oscillators import (
     snap_restitution,
 )
 from tests.plain import PlainInstance, plain
+from tests.validation import Validated, closed_form, other_code
 
 __all__ = ["plain"]
 
@@ -99,13 +100,14 @@ def test_within_a_tug() -> None:
     assert np.abs(rows[0] - rows[1]).max(axis=0) == pytest.approx(0.0, abs=2e-7)
 
 
-def test_energy_of_undamped_tugs() -> None:
+def test_energy_of_undamped_tugs(validated: Validated) -> None:
     """750 tugs in ten days without thrust: the Jacobi integral stays within 1e-5 of itself, 1e-8 a tug."""
     i = tow(MAPPED, tether__damping_ratio=0.0, thrust__level=0.0, start__condition=2)
     begin = i["energy.relative"]
     i.step(864000.0)
     assert i["tether.tug_count"] > 500
-    assert i["energy.relative"] == pytest.approx(begin, rel=1e-5)
+    what = "event to event, ten days of undamped tugs: integral of the relative motion"
+    validated(closed_form("the Jacobi integral stays"), what, i["energy.relative"], begin, "J", rel=1e-5)
 
 
 def test_a_changed_thrust_begins_anew() -> None:
@@ -148,7 +150,7 @@ def test_what_it_cannot_carry_is_refused(more: Mapping[str, str], said: str) -> 
 
 @pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.3, 0.6])
-def test_a_snap_without_a_field(zeta: float) -> None:
+def test_a_snap_without_a_field(validated: Validated, zeta: float) -> None:
     """Peak, duration and restitution of one tug, against their closed forms; nothing else acts on it."""
     speed = 2e-3
     i = PlainInstance(
@@ -159,10 +161,12 @@ def test_a_snap_without_a_field(zeta: float) -> None:
     )  # fmt: skip
     i.step(3.0)
     peak = snap_peak(speed, STIFFNESS, REDUCED) if zeta == 0.0 else damped_snap_peak(speed, STIFFNESS, REDUCED, zeta)
-    assert i["tug[1].peak"] == pytest.approx(peak, rel=1e-8)
-    assert i["level.mapped"] == pytest.approx(snap_duration(STIFFNESS, REDUCED, zeta), rel=1e-8)
-    assert i["tether.length_rate"] == pytest.approx(-speed * snap_restitution(zeta), rel=1e-8)
-    assert i["tether.impulse"] == pytest.approx(REDUCED * speed * (1.0 + snap_restitution(zeta)), rel=1e-8)
+    formula, what = closed_form("one damped half swing"), "event to event, a snap without a field"
+    back = snap_restitution(zeta)
+    validated(formula, f"{what}: peak", i["tug[1].peak"], peak, "N", rel=1e-8)
+    validated(formula, f"{what}: duration", i["level.mapped"], snap_duration(STIFFNESS, REDUCED, zeta), "s", rel=1e-8)
+    validated(formula, f"{what}: speed after it", i["tether.length_rate"], -speed * back, "m/s", rel=1e-8)
+    validated(formula, f"{what}: impulse", i["tether.impulse"], REDUCED * speed * (1.0 + back), "N.s", rel=1e-8)
 
 
 @pytest.mark.usefixtures("plain")
@@ -190,7 +194,7 @@ def test_a_hard_push_across_the_line_is_followed() -> None:
     assert i["level.mapped"] == 0.0 < i["level.followed"]
 
 
-def test_a_free_vibration() -> None:
+def test_a_free_vibration(validated: Validated) -> None:
     """Against its equation, and its integral."""
     mass, damping, stiffness, begin = 667.0, 160.0, 3900.0, (-3e-6, 2e-3)
     found = solve_ivp(
@@ -198,7 +202,9 @@ def test_a_free_vibration() -> None:
         (0.0, 7.0), (*begin, 0.0), rtol=1e-12, atol=1e-16,
     ).y[:, -1]  # fmt: skip
     own = vibration.vibration_at.py_func(*begin, mass, damping, stiffness, 7.0)
-    assert own == pytest.approx(tuple(found[:2]), rel=1e-8)
+    scipy, what = other_code("scipy RK45"), "event to event, a line's vibration after 7 s"
+    validated(scipy, f"{what}: stretch", own[0], found[0], "m", rel=1e-8)
+    validated(scipy, f"{what}: its rate", own[1], found[1], "m/s", rel=1e-8)
     swept = vibration.swept.py_func(*begin, *own, mass, damping, stiffness)
-    assert swept == pytest.approx(found[2], rel=1e-8)
+    validated(scipy, f"{what}: integral of the stretch", swept, found[2], "m.s", rel=1e-8)
     assert math.isclose(vibration.vibration_at.py_func(0.0, 0.0, mass, 9e9, stiffness, 1.0)[0], 0.0)

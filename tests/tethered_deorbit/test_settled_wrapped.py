@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from fmu_src.instance import Instance
 from tests.tethered_deorbit.wrapped import BOX, M_C, REDUCED, SIZE, STIFFNESS, momentum, pair
+from tests.validation import Validated, closed_form
 
 SETTLED = BOX | {"level": "settled"}
 LENGTH = 12.0
@@ -93,7 +94,7 @@ def test_a_step_that_would_go_over_an_edge_and_back_ends_there(faster: float) ->
     assert (np.abs(there - beside)[:, :6].max(axis=0) < WITHIN).all()
 
 
-def test_a_settled_line_over_edges_keeps_angular_momentum() -> None:
+def test_a_settled_line_over_edges_keeps_angular_momentum(validated: Validated) -> None:
     """Without thrust, while it slides: what the pull turns the box by it takes from the pair, to 6e-8 of 207 N m s in a
     minute."""
     i = sliding(SETTLED)
@@ -103,10 +104,11 @@ def test_a_settled_line_over_edges_keeps_angular_momentum() -> None:
     i["thrust.offset"] = 1.0
     before = momentum(i)
     i.step(60.0)
-    assert momentum(i) == pytest.approx(before, abs=2e-7)
+    kept, what = closed_form("angular momentum is kept"), "settled line that slides over an edge: momentum in a minute"
+    validated(kept, what, momentum(i), before, "N.m.s", abs=2e-7)
 
 
-def test_what_shakes_a_line_as_it_meets_an_edge() -> None:
+def test_what_shakes_a_line_as_it_meets_an_edge(validated: Validated) -> None:
     """Its load leaps by J = m w^2 (1/l' - 1/l) as its free length l becomes l', w the speed of its end across it: that
     swings on a shorter radius. So a settled line is followed again there: it shakes by J/k, and its tension has
 
@@ -142,5 +144,9 @@ def test_what_shakes_a_line_as_it_meets_an_edge() -> None:
         swing = math.cos(quick * angle) - share / quick * math.sin(quick * angle)
         wanted = 1.0 - math.exp(-share * angle) * swing
         more = i["tether.tension"] - narrow["tether.tension"] - first
-        assert more / leap == pytest.approx(wanted, abs=0.01)
+        formula, what = (
+            closed_form("m w^2 (1/l' - 1/l), damped"),
+            "line that meets an edge: leap of its load, over its size",
+        )
+        validated(formula, what, more / leap, wanted, "1", abs=0.01)
     assert wanted > 0.9

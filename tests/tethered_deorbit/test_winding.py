@@ -16,6 +16,7 @@ from tests.plain import plain
 from tests.tethered_deorbit.test_design import scene
 from tests.tethered_deorbit.test_regulator import placed, polar
 from tests.tethered_deorbit.test_winch import MASS, ROOMY, SOFT, apart, schedule, winch
+from tests.validation import Validated, closed_form
 
 __all__ = ["plain"]
 
@@ -56,7 +57,7 @@ def test_a_tension_is_held_by_a_stable_loop(zeta: float) -> None:
 
 
 @uncompiled
-def test_constant_tension() -> None:
+def test_constant_tension(validated: Validated) -> None:
     """Two bodies drawn together by 0.5 N while the chaser pulls away with 1 N: held to 1e-4 after ten seconds."""
     i = winch(
         "constant_tension",
@@ -70,7 +71,8 @@ def test_constant_tension() -> None:
         assert i["tether.tension_peak"] == pytest.approx(0.5, rel=1e-4)
         assert i["tether.tension_least"] == pytest.approx(0.5, rel=1e-4)
     # l'' = F/m_c - T/m_r
-    assert i["tether.length_rate"] - speed == pytest.approx(10.0 * (1.0 / 2000.0 - 0.5 / MASS), rel=1e-4)
+    what, gained = "winch that holds a tension: speed in 10 s", 10.0 * (1.0 / 2000.0 - 0.5 / MASS)
+    validated(closed_form("F/m_c - T/m_r"), what, i["tether.length_rate"] - speed, gained, "m/s", rel=1e-4)
     assert i["reel.limited"] == 0
     i["reel.tension_offset"] = 0.25
     i.step(10.0)
@@ -132,7 +134,7 @@ def towed(law: str, parameters: dict[str, Any], **terms: str) -> Instance:
     return i.initialise()
 
 
-def test_a_swing_is_damped() -> None:
+def test_a_swing_is_damped(validated: Validated) -> None:
     """A small swing without thrust, w = sqrt(3) n, dies out by the damping ratio g/sqrt(3); without gain it stays."""
     for gain in (0.1, 0.0):
         start = placed(12.0, 0.0, 0.05, 0.0) | {"tether.rest_length": 12.0 - 6.6e-6, "thrust.level": 0.0}
@@ -152,12 +154,15 @@ def test_a_swing_is_damped() -> None:
                 tops.append(before[2] - (now[2] - past[2]) ** 2 / (8.0 * curve))
         zeta = gain / math.sqrt(3.0)
         decrement = 2.0 * math.pi * zeta / math.sqrt(1.0 - zeta**2)
-        assert np.log(tops[0] / tops[2]) / 2.0 == pytest.approx(decrement, rel=1e-2, abs=1e-4)
+        found = float(np.log(tops[0] / tops[2])) / 2.0
+        what = f"winch that damps a swing, gain {gain:g}: decrement"
+        allowed = max(1e-2 * decrement, 1e-4)
+        validated(closed_form("2 pi z/(1 - z^2)^(1/2), z = g/3^(1/2)"), what, found, decrement, "1", abs=allowed)
         assert i["tether.tug_count"] == 1
 
 
 @pytest.mark.evidence
-def test_a_sampled_loop_decays_by_its_poles() -> None:
+def test_a_sampled_loop_decays_by_its_poles(validated: Validated) -> None:
     """Table 2's pair about its equilibrium, a sample each 30 s: along the slowest oscillation of the sampled loop."""
     values, asked, terms = scene("sampled_linear", gains=LQR)
     found = design.designed(values, asked, terms)
@@ -190,7 +195,8 @@ def test_a_sampled_loop_decays_by_its_poles() -> None:
         i.step(30.0)
     pole = np.log(mode() / first / np.exp(1j * np.angle(poles[slow]) * samples)) / (30.0 * samples)
     expected = float(np.log(abs(poles[slow]))) / 30.0
-    assert pole.real == pytest.approx(expected, rel=1e-2)
+    what = "winch with sampled gains: decay of its slowest swing"
+    validated(closed_form("the sampled loop's pole"), what, pole.real, expected, "1/s", rel=1e-2)
     assert pole.imag == pytest.approx(0.0, abs=1e-2 * abs(np.angle(poles[slow])) / 30.0)
 
 
@@ -207,7 +213,7 @@ TUMBLING = {
 
 
 @uncompiled
-def test_spin_goes_into_the_orbit() -> None:
+def test_spin_goes_into_the_orbit(validated: Validated) -> None:
     """Free, without thrust: what the target's spin loses is angular momentum of the pair's motion, to 1e-9 of it."""
     i = winch("detumble", TUMBLING, target="rigid")
 
@@ -222,7 +228,8 @@ def test_spin_goes_into_the_orbit() -> None:
         i.step(1.0)
     after, swung = momenta()
     assert np.linalg.norm(after) < 0.75 * np.linalg.norm(spin)
-    assert after + swung == pytest.approx(spin + orbit, abs=1e-9 * float(np.linalg.norm(spin)))
+    kept, what = closed_form("angular momentum is kept"), "winch that calms a body: spin and motion of the pair"
+    validated(kept, what, after + swung, spin + orbit, "N.m.s", abs=1e-9 * float(np.linalg.norm(spin)))
     assert np.linalg.norm(swung - orbit) > 0.25 * np.linalg.norm(spin)
     # the attachment recedes by 8 m at most in half a turn: the line takes no more than T_hard times that
     taken = before - i["target.spin_energy"]

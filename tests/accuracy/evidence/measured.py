@@ -5,8 +5,9 @@
 makes `dcone_cosim/measured.json` again, some ten minutes on two cores. Each scene is measured as `dcone accuracy` does;
 of every setting the largest error over the scenes is kept, or what could be told of it if that is more, and the median
 of its cost over that of the default setting. Of a net only the opening is taken: what comes after scatters more than
-any of these settings errs. Schemes that cost ten times the leapfrog there are left out, and so is the one that shows
-the shape alone: a scene that wants them names them.
+any of these settings errs. Schemes that cost ten times the leapfrog there are left out, and so are the one that shows
+the shape alone, levels of detail, and substeps that follow the net, which save nothing there: a scene that wants them
+names them.
 """
 
 from __future__ import annotations
