@@ -54,6 +54,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     has_hardest, hardest = parts.hardest is not None, parts.hardest
     has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
     has_table, table = parts.sliding is not None, parts.sliding
+    has_self, self_contact = parts.self_contact is not None, parts.self_contact
     per_double = parts.per_double
     properties = parts.memory.properties
 
@@ -108,6 +109,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             words += wrap.words(p)
         if has_bending:
             words += bending.words(p)
+        if has_self:
+            words += self_contact.words(p)
         p.work_size = work_size(p, per_double, words)
         return 0
 
@@ -264,6 +267,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             wrap.start(p)
         if has_map:
             force_map.start(p)
+        if has_self:
+            fault = self_contact.start(p, work)
+            if fault != 0:
+                return fault
         scheme.begin(p, work)
         if has_table:
             table.begin(p, work)
