@@ -16,7 +16,7 @@ from fmu_src.net_capture.numbering import make_numbering
 from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
 from fmu_src.net_capture.rigging import riggings
-from fmu_src.net_capture.self_contact.pairs import PLANES as SELF_PLANES
+from fmu_src.net_capture.self_contact.reaches import PLANES as SELF_PLANES
 from fmu_src.net_capture.self_contact.segments import stiffening
 from orbital.kernel import kernel
 

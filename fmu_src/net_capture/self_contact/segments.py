@@ -114,8 +114,8 @@ def passes(ux, uy, uz, vx, vy, vz, wx, wy, wz, pu, pv, pw, qu, qv, qw, ru, rv, r
     b = ux * vx + uy * vy + uz * vz
     e = vx * vx + vy * vy + vz * vz
     if a * e - b * b <= PARALLEL * a * e:
-        s, t, least = closest(ux, uy, uz, vx, vy, vz, wx, wy, wz)
-        i, j, least = closest(bx, by, bz, cx, cy, cz, dx, dy, dz)
+        s, t, _ = closest(ux, uy, uz, vx, vy, vz, wx, wy, wz)
+        i, j, _ = closest(bx, by, bz, cx, cy, cz, dx, dy, dz)
         x = (wx + s * ux - t * vx) * (dx + i * bx - j * cx)
         y = (wy + s * uy - t * vy) * (dy + i * by - j * cy)
         z = (wz + s * uz - t * vz) * (dz + i * bz - j * cz)
