@@ -5,13 +5,16 @@ import math
 import numpy as np
 import pytest
 
+from fmu_src.cautions import Range
 from fmu_src.implied import formula
 from fmu_src.instance import Instance
+from fmu_src.net_capture import cautions
 from fmu_src.net_capture.composition import Composition
 from fmu_src.net_capture.implied import substeps
 from fmu_src.net_capture.interface import MODEL, refusals
 from fmu_src.net_capture.planes import SHOWN_RATE
 from fmu_src.net_capture.self_contact import segments
+from fmu_src.net_capture.self_contact.holding import holding_speed
 from tests.conftest import FREE
 from tests.net_capture.crossing import LIGHT, ONE, OTHER, PAIR, THICKNESS, TOUCHING, Pairs, crossed, put, tangle
 from tests.net_capture.memory import shown
@@ -249,6 +252,34 @@ def test_a_crowd_is_told():
     net = tangle(4, HEAP | {"self_contact.damping_ratio": 0.0, "solver.step_ratio": 0.95}, speed=0.5, size=0.1)
     net.step(0.02)
     assert net["self_contact.margin_least"] < 1.0
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.5, 1.0, 2.0])
+def test_up_to_which_speed_threads_hold_each_other(ratio):
+    """A hundredth slower they come back, a hundredth faster they go through; and that is counted."""
+    most = holding_speed(THICKNESS, DURATION, ratio)
+    for share, passed in ((0.99, 0), (1.01, 1)):
+        changes = {"self_contact.damping_ratio": ratio, "solver.step_ratio": 0.02}
+        net = crossed(share * most, THICKNESS, **changes)
+        net.step(2.5 * DURATION)
+        assert net["self_contact.passed"] == passed
+
+
+def test_what_may_go_through_and_what_did_is_warned_of():
+    values = all_values(TOUCHING, {"bullets.speed": 10.0})
+    terms = MODEL.interface(TOUCHING).terms
+    (told,) = cautions.before(values, (), terms)
+    wide = math.sqrt(4.0 * 0.33 / 1200.0 / (math.pi * 1440.0))
+    most = holding_speed(wide, 5e-4, 0.5)
+    assert told.name == "self_contact.duration"
+    assert f"{1e3 * wide:.3g} mm hold each other up to {most:.3g} m/s" in told.sentence
+    assert f"{5e-4 * most / 10.0:.2g} s would hold" in told.sentence
+    for slower in ({"bullets.speed": 0.99 * most}, {"self_contact.thickness": wide * 10.0 / most * 1.01}):
+        assert not list(cautions.before(values | slower, (), terms))
+    seen = {"self_contact.passed": Range(0.0, 0.0, 7.0, 7.0), "self_contact.margin_least": Range(1.5, 0.8, 1.5, 0.8)}
+    told = {caution.name: caution.sentence for caution in cautions.after(values, (), terms, seen.get)}
+    assert "7 times" in told["self_contact.passed"]
+    assert "1.25 times the bound" in told["self_contact.margin_least"]
 
 
 def test_a_scene_without_it_has_nothing_of_it():
