@@ -271,13 +271,13 @@ def test_what_may_go_through_and_what_did_is_warned_of():
     (told,) = cautions.before(values, (), terms)
     wide = math.sqrt(4.0 * 0.33 / 1200.0 / (math.pi * 1440.0))
     most = holding_speed(wide, 5e-4, 0.5)
-    assert told.name == "self_contact.duration"
+    assert told.about == "self_contact.duration"
     assert f"{1e3 * wide:.3g} mm hold each other up to {most:.3g} m/s" in told.sentence
     assert f"{5e-4 * most / 10.0:.2g} s would hold" in told.sentence
     for slower in ({"bullets.speed": 0.99 * most}, {"self_contact.thickness": wide * 10.0 / most * 1.01}):
         assert not list(cautions.before(values | slower, (), terms))
-    seen = {"self_contact.passed": Range(0.0, 0.0, 7.0, 7.0), "self_contact.margin_least": Range(1.5, 0.8, 1.5, 0.8)}
-    told = {caution.name: caution.sentence for caution in cautions.after(values, (), terms, seen.get)}
+    seen = {"self_contact.passed": Range(0.0, 7.0, 0.0, 7.0), "self_contact.margin_least": Range(0.8, 1.5, 1.5, 0.8)}
+    told = {caution.about: caution.sentence for caution in cautions.after(values, (), terms, seen.get)}
     assert "7 times" in told["self_contact.passed"]
     assert "1.25 times the bound" in told["self_contact.margin_least"]
 

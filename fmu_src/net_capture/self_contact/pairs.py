@@ -5,7 +5,7 @@ Every node has a reach when the list is made. From then on the way w goes on in 
     h |u - u0| / reach   over all nodes,   u0 the mean velocity when the list was made
 
 so no node is ever further than w times its reach from where it was, relative to the others' common flight. The list has
-all pairs that are nearer than their radii and twice their reach, and it is made anew once w is 1. A pair that was found
+all pairs that are nearer than their radii and their reach, and it is made anew once w is 1. A pair that was found
 a gap g apart need not be looked at before w has grown by g over the reach of both its threads. Nothing is assumed of
 accelerations: this holds whatever pulls.
 
@@ -174,7 +174,7 @@ def make_pairs(composition: Any) -> Pairs:
         size = radii(p, work)
         reach = size[2 * one + 1] + size[2 * other + 1]
         gap -= size[2 * one] + size[2 * other]
-        if gap >= 2.0 * reach:
+        if gap >= reach:
             return True
         n = p.self_contact_listed
         if n == places(p):

@@ -109,8 +109,8 @@ def make_reaches(composition: Any, room: Any) -> Reaches:
             size[2 * i + 1] = reach
             for axis in range(3):
                 plane = node_plane(p, work, X + axis)
-                box[6 * i + axis] = min(plane[one], plane[other]) - size[2 * i] - 2.0 * reach
-                box[6 * i + 3 + axis] = max(plane[one], plane[other]) + size[2 * i] + 2.0 * reach
+                box[6 * i + axis] = min(plane[one], plane[other]) - size[2 * i] - reach
+                box[6 * i + 3 + axis] = max(plane[one], plane[other]) + size[2 * i] + reach
 
     @kernel
     def along(p, work):
