@@ -38,7 +38,7 @@ from fmu_src.net_capture.planes import SHOWN, SHOWN_RATE, P, U, X
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.self_contact.pairs import CLEAR, LEFT_OUT, TOUCHES, make_pairs
 from fmu_src.net_capture.self_contact.pushing import make_copy, make_push
-from fmu_src.net_capture.self_contact.reaches import KICK, NEW, RATE
+from fmu_src.net_capture.self_contact.reaches import BEFORE, HELD, KICK, NEW, RATE
 from fmu_src.net_capture.self_contact.rows import EXTREMES, ROWS
 from fmu_src.net_capture.self_contact.segments import closest, passes, stiffening
 from orbital.kernel import kernel
@@ -103,6 +103,25 @@ def make(composition: Any) -> SelfContact:
         beyond = max(0.0, p.self_contact_rate - stiffening(p.self_contact_duration))
         whole = max(0.0, 4.0 * (1.0 - damping * bound) / (bound * bound)) + 2.0 * beyond
         return longest_step(0.5 * whole, 0.5 * damping) / p.solver_substep
+
+    @kernel
+    def book(p, work):
+        """Go on with the list; and book what the dashpots took in the last substep [J], by the mean of the velocities
+        before and after all of its kicks, which are known now.
+
+        Checked  tests/net_capture/test_self_contact.py
+        """
+        if p.self_contact_gone == p.grid:
+            return
+        if p.self_contact_kicked > 0:
+            for axis in range(3):
+                held = node_plane(p, work, first_plane + HELD + axis)
+                before = node_plane(p, work, first_plane + BEFORE + axis)
+                after = node_plane(p, work, U + axis)
+                for node in range(p.node_slots):
+                    p.self_contact_booked += 0.5 * p.solver_substep * held[node] * (before[node] + after[node])
+                    held[node] = 0.0
+        go_on(p, work)
 
     def make_touch(place: int, rate: int, real: bool) -> Any:
         """Kernel of all pairs by the planes of positions and velocities from these on; `real`: for a substep."""
@@ -187,7 +206,7 @@ def make(composition: Any) -> SelfContact:
             if p.self_contact_stirred > 0:
                 copy(p, work, -1, NEW)
                 p.self_contact_stirred = 0
-            go_on(p, work)
+            book(p, work)
             way = p.self_contact_way
             taken = 0.0
             p.self_contact_pairs = 0
@@ -243,7 +262,7 @@ def make(composition: Any) -> SelfContact:
 
         Checked  tests/net_capture/test_self_contact.py
         """
-        for plane in (KICK, NEW):
+        for plane in (KICK, NEW, HELD, BEFORE):
             copy(p, work, -1, plane)
         p.self_contact_touched = 0
         p.self_contact_passed = 0
@@ -279,10 +298,14 @@ def make(composition: Any) -> SelfContact:
             for node in range(p.node_slots):
                 rate[node] = 0.0
         p.self_contact_rate = 0.0
-        p.self_contact_booked += p.solver_substep * touch_now(p, work)
+        touch_now(p, work)
         p.self_contact_kicked = p.self_contact_pairs
         if touched > 0 or p.self_contact_pairs > 0:
             copy(p, work, NEW, KICK)
+            for axis in range(3):
+                before = node_plane(p, work, first_plane + BEFORE + axis)
+                for node in range(p.node_slots):
+                    before[node] = node_plane(p, work, U + axis)[node]
         if p.self_contact_rate > p.self_contact_rate_max:
             p.self_contact_rate_max = p.self_contact_rate
             p.self_contact_margin_least = min(p.self_contact_margin_least, margin(p))

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from fmu_src.net_capture.planes import FX, INVERSE_MASS
-from fmu_src.net_capture.self_contact.reaches import KICK, NEW, RATE
+from fmu_src.net_capture.self_contact.reaches import HELD, KICK, NEW, RATE
 from fmu_src.net_capture.self_contact.segments import pair_mass, spring
 from orbital.kernel import kernel
 
@@ -35,8 +35,10 @@ def make_push(composition: Any, place: int, rate: int, real: bool) -> Any:
     node_plane, first_plane = composition.memory.node_plane, composition.self_contact_plane
 
     @kernel
-    def kick(p, work, node, share):
-        """Change of a node's velocity so far in this substep by the force of this pair and a share of it [m/s].
+    def kick(p, work, node, share, held):
+        """Share of a node in the force of this pair, and the change of its velocity so far in this substep by it.
+
+        held    what the dashpot takes from the spring's force    [N]
 
         Checked  tests/net_capture/test_self_contact.py
         """
@@ -45,6 +47,8 @@ def make_push(composition: Any, place: int, rate: int, real: bool) -> Any:
             force = p.self_contact_force[axis]
             node_plane(p, work, FX + axis)[node] += share * force
             node_plane(p, work, first_plane + NEW + axis)[node] += p.solver_substep * light * force
+            if real:
+                node_plane(p, work, first_plane + HELD + axis)[node] += share * held * p.self_contact_normal[axis]
 
     @kernel
     def crowd(p, work, node, stiffness):
@@ -88,6 +92,7 @@ def make_push(composition: Any, place: int, rate: int, real: bool) -> Any:
             going = (1.0 - s) * parting(p, work, a, axis) + s * parting(p, work, b, axis)
             going -= (1.0 - t) * parting(p, work, c, axis) + t * parting(p, work, d, axis)
             force[axis] = way / gap
+            p.self_contact_normal[axis] = force[axis]
             leaving += going * force[axis]
         counts = 2.0 * p.self_contact_damping_ratio * math.sqrt(stiffness * mass)
         if not held:
@@ -99,10 +104,10 @@ def make_push(composition: Any, place: int, rate: int, real: bool) -> Any:
         size = max(0.0, (elastic - counts * leaving) / (1.0 + 0.5 * h * counts * feel))
         for axis in range(3):
             force[axis] *= size
-        kick(p, work, a, 1.0 - s)
-        kick(p, work, b, s)
-        kick(p, work, c, t - 1.0)
-        kick(p, work, d, -t)
+        kick(p, work, a, 1.0 - s, elastic - size)
+        kick(p, work, b, s, elastic - size)
+        kick(p, work, c, t - 1.0, elastic - size)
+        kick(p, work, d, -t, elastic - size)
         if real:
             crowd(p, work, a, (1.0 - s) * stiffness)
             crowd(p, work, b, s * stiffness)

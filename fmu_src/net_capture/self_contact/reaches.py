@@ -10,9 +10,10 @@ import numpy as np
 from fmu_src.net_capture.planes import INVERSE_MASS, U, X
 from orbital.kernel import kernel
 
-KICK, NEW, RATE, PER_REACH, SPEED, PLANES = 0, 3, 6, 7, 8, 9
-"""Node planes: change of velocity by contact in the last substep, and so far in this one [m/s], three each; stiffness
-over mass of what touches [1/s2]; one over the reach [1/m]; square of the speed in the last substep [m2/s2]."""
+KICK, NEW, HELD, BEFORE, RATE, PER_REACH, SPEED, PLANES = 0, 3, 6, 9, 12, 13, 14, 15
+"""Node planes: change of velocity by contact in the last substep, and so far in this one [m/s], three each; what
+dashpots hold back of the springs' force [N] and velocity before it acts [m/s], three each; stiffness over mass of what
+touches [1/s2]; one over the reach [1/m]; square of the speed in the last substep [m2/s2]."""
 FLOOR_STEPS = 4.0
 """Substeps of the fastest node, that any node may go at least."""
 FLOOR_RADII = 0.25

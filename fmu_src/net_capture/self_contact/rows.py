@@ -66,6 +66,7 @@ ROWS = (
     state("self_contact_stride", "1", "the same in the last substep"),
     state("self_contact_drift[#]", "m/s", "mean velocity of all nodes as the list was made", shape=(3,)),
     state("self_contact_force[#]", "N", "of the present pair on its first thread", shape=(3,)),
+    state("self_contact_normal[#]", "1", "its direction", shape=(3,)),
     state("self_contact_rate", "1/s2", "stiffness over mass that touches at a node in this substep, at most"),
     state("self_contact_rate_max", "1/s2", "the same in any substep so far"),
     state("self_contact_power", "W", "what contact between threads takes now"),
