@@ -111,10 +111,12 @@ def test_passes_of_threads_that_stay_parallel():
         assert PASSES(*end.ravel(), *(end - start).ravel()) == expected
 
 
-def test_threads_that_turn_past_parallel_do_not_pass():
-    """Their volume vanishes there, with the lines apart."""
+@pytest.mark.parametrize("lift", [0.05, 1e-3])
+def test_threads_that_turn_past_parallel_do_not_pass(lift):
+    """Their volume vanishes there, with the lines apart: one turns about its end, or about its middle."""
     u = np.array([1.0, 0.0, 0.0])
-    before = np.array([u, [1.0, 0.1, 0.0], [0.0, 0.0, 0.05]])
-    now = np.array([u, [1.0, -0.1, 0.0], [0.0, 0.0, 0.05]])
-    assert VOLUME(*before.ravel()) * VOLUME(*now.ravel()) < 0.0
-    assert PASSES(*now.ravel(), *(now - before).ravel()) == 0
+    for first in (0.0, 0.5):
+        shapes = [np.array([u, [1.0, tilt, 0.0], [0.2, first * tilt, lift]]) for tilt in (0.1, -0.07)]
+        before, now = shapes
+        assert VOLUME(*before.ravel()) * VOLUME(*now.ravel()) < 0.0
+        assert PASSES(*now.ravel(), *(now - before).ravel()) == 0
