@@ -45,9 +45,10 @@ m3   net.volume_at_touch quality.hull_volume
 N    thread.tension_max cord.tension_max pull_off.tension_max
 J    contact.loss contact.friction_loss closing.work closing.spring_energy closing.braked thread.dissipated
 J    cord.dissipated air.dissipated bending.dissipated wall.friction_loss gravity.work energy.remainder pull_off.work
-J    table.friction_loss
+J    table.friction_loss self_contact.loss
 s    closing.timeout
 N s  recoil
+1    self_contact.touched self_contact.passed self_contact.at_start
 1    net.nodes net.threads enclosure.at_capture enclosure.least quality.at_capture quality.index
 """
 _OF_TOW = """

@@ -72,6 +72,7 @@ def _book(evidence: Evidence) -> Iterator[Criterion]:
         ("thread.dissipated", "threads' dashpots"),
         ("cord.dissipated", "cord's dashpots"),
         ("contact.loss", "contact"),
+        ("self_contact.loss", "contact of threads with each other"),
     ):
         if evidence.has(name):
             back = rise(-columns[name]) / float(size[-1])

@@ -80,21 +80,7 @@ def make(composition: Any) -> Air:
     group = np.uint64((1 << width) - 1)
     from fmu_src.lanes import highest, peek, poke
 
-    has_edge, has_leads = "edge" in composition.terms, "leads" in composition.terms
-
-    @kernel
-    def density_of(p, strip):
-        """Of the material of a strip [kg/m3].
-
-        Checked  tests/net_capture/test_air.py
-        """
-        if has_leads:
-            if strip >= p.leads_strip:
-                return p.leads_density
-        if has_edge:
-            if strip >= p.edge_strip:
-                return p.edge_density
-        return p.net_density
+    density_of = composition.density_of
 
     def make_pull(place: int, rate: int, wake: bool) -> Any:
         """Kernel of the drag by the planes of positions and velocities from these on; `wake`: rows may sleep."""

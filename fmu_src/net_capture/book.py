@@ -31,7 +31,7 @@ def make_balance(composition: Any) -> Any:
     rubs = composition.terms.get("wrap") == "friction"
     has_air, has_load = composition.air is not None, composition.pull_off is not None
     has_bending, has_wall = composition.bending is not None, composition.wall is not None
-    has_table = composition.sliding is not None
+    has_table, has_self = composition.sliding is not None, composition.self_contact is not None
     node_plane = composition.memory.node_plane
 
     @kernel
@@ -52,7 +52,7 @@ def make_balance(composition: Any) -> Any:
 
     @kernel
     def energy_balance(p, work):
-        """Energy of all bodies now [J], with what contact, dashpots, air, bending and breaks took and without what the
+        """Energy of all bodies now [J], with what contacts, dashpots, air, bending and breaks took and without what the
         winches gave, or gravity as it changed.
 
         Checked  tests/net_capture/test_energy_book.py
@@ -98,6 +98,8 @@ def make_balance(composition: Any) -> Any:
             energy += p.wall_friction_loss
         if has_table:
             energy += p.table_friction_loss
+        if has_self:
+            energy += p.self_contact_loss
         return energy
 
     return energy_balance

@@ -14,6 +14,7 @@ from fmu_src.net_capture.implied import open_loop, substeps
 from fmu_src.net_capture.interface import GROUPS, TARGETS
 from fmu_src.net_capture.pull_off import PULLED, WAITING
 from fmu_src.net_capture.schemes import Needs
+from fmu_src.net_capture.self_contact.holding import holding_speed, thread_thickness
 from fmu_src.net_capture.shapes import Point
 from fmu_src.net_capture.shapes.pieces import SHELL
 from fmu_src.net_capture.shapes.seams import open_seams
@@ -58,6 +59,25 @@ def before(values: Values, given: Collection[str], terms: Mapping[str, str]) -> 
             )
     if values.get("solver.step_ratio", 0.0) > 0.0:
         yield from _long_steps(values, terms)
+    if "self_contact" in terms:
+        yield from _too_fast(values, terms)
+
+
+def _too_fast(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
+    """Threads that meet at the bullets' speed go through each other.
+
+    Checked  tests/net_capture/test_self_contact.py
+    """
+    thickness, speed = thread_thickness(values, GROUPS["net"].terms[terms["net"]].checks), values["bullets.speed"]
+    duration, ratio = values["self_contact.duration"], values["self_contact.damping_ratio"]
+    holds = holding_speed(thickness, duration, ratio)
+    if speed > holds:
+        yield Caution(
+            "self_contact.duration",
+            f"threads of {1e3 * thickness:.3g} mm hold each other up to {holds:.3g} m/s, and bullets leave at "
+            f"{speed:.3g} m/s: some may go through, which self_contact.passed counts; {duration * holds / speed:.2g} s "
+            "would hold, at shorter substeps, and so would thicker ones",
+        )
 
 
 def _open_loops(values: Values, terms: Mapping[str, str]) -> Iterator[Caution]:
@@ -128,6 +148,7 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     yield from _not_pulled(seen)
     yield from _passed(seen)
     yield from _unforeseen(seen)
+    yield from _crowded(seen)
 
 
 def _needs(terms: Mapping[str, str]) -> Needs:
@@ -161,11 +182,23 @@ def _unforeseen(seen: Seen) -> Iterator[Caution]:
         )
 
 
+def _crowded(seen: Seen) -> Iterator[Caution]:
+    """More threads in contact at one node than the substep allows for."""
+    margin = seen("self_contact.margin_least")
+    if margin is not None and margin.least < 1.0:
+        yield Caution(
+            "self_contact.margin_least",
+            f"so many threads touched at one node that a substep was {1.0 / margin.least:.3g} times the bound: choose "
+            "a smaller solver.step_ratio, or a longer self_contact.duration",
+        )
+
+
 def _passed(seen: Seen) -> Iterator[Caution]:
     """Threads that went through the target, or may have."""
     for name, said in (
         ("wrap.passed", "taut threads went through the target {} times"),
         ("wrap.passed_slack", "it was lost {} times how a slack thread lies, which may have gone through"),
+        ("self_contact.passed", "threads of the net went through each other {} times"),
     ):
         passed = seen(name)
         if passed is not None and passed.last > 0.0:

@@ -16,6 +16,8 @@ from fmu_src.net_capture.numbering import make_numbering
 from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
 from fmu_src.net_capture.rigging import riggings
+from fmu_src.net_capture.self_contact.reaches import PLANES as SELF_PLANES
+from fmu_src.net_capture.self_contact.segments import stiffening
 from orbital.kernel import kernel
 
 
@@ -45,12 +47,14 @@ class Composition:
                      at any node
     scratch_plane            the first of the node planes that the convex hull may scribble on, where there are any
     wall_plane       the node plane of what lies in the canister, where its wall holds on to it
+    self_contact_plane       the first of those of threads that touch each other
+    density_of(p, strip)     of the material of a strip [kg/m3]
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
     gravity, net, numbering, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing,
-    tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, sliding, pulls, pace, breaking,
-    scheme
+    tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, sliding, self_contact, pulls,
+    pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -65,14 +69,16 @@ class Composition:
         self.clock = traits.clock
         law = self._term("contact").checks if "contact" in terms else None
         self.presses = law is not None and law.stiffening is not None
-        self.everywhere = _make_everywhere(self.presses, "bending" in terms)
+        self.everywhere = _make_everywhere(self.presses, "bending" in terms, "self_contact" in terms)
+        self.density_of = _make_density_of("edge" in terms, "leads" in terms)
         self.contact_planes = NODE_PLANES + needs.planes + traits.planes
         self.scratch_plane = self.contact_planes + (law.planes if law is not None else 0)
         self.lanes = of(terms["precision"])
         self.per_double = self.lanes.width // 4
         scratch = SCRATCH_PLANES * self.per_double if "quality" in terms else 0
         self.wall_plane = self.scratch_plane + scratch
-        self.planes = self.wall_plane + (1 if "wall" in terms else 0)
+        self.self_contact_plane = self.wall_plane + (1 if "wall" in terms else 0)
+        self.planes = self.self_contact_plane + (SELF_PLANES if "self_contact" in terms else 0)
         self.memory = make_memory(terms["precision"])
         self.bullets = int(terms["bullets"])
         self.gravity = self._make("gravity")
@@ -95,6 +101,7 @@ class Composition:
         self.ejection = self._make("ejection")
         self.wrap, self.bending = self._make("wrap"), self._make("bending")
         self.wall, self.sliding = self._make("wall"), self._make("table")
+        self.self_contact = self._make("self_contact")
         self.pulls = _make_pulls(
             (self.ejection, self.wall, self.sliding),
             self.closing,
@@ -103,6 +110,7 @@ class Composition:
             self.bending,
             self.pull_off,
             self.wrap,
+            self.self_contact,
         )
         self.pace, self.breaking = self._make("substeps"), self._make("break")
         self.scheme = self._make("solver")
@@ -135,8 +143,28 @@ def _nothing(p, work):
     """
 
 
-def _make_everywhere(presses: bool, resists: bool) -> Any:
-    """Kernel `everywhere`, of contact that presses and threads that resist bending."""
+def _make_density_of(has_edge: bool, has_leads: bool) -> Any:
+    """Kernel `density_of` of a net with a rope along its edge or leads, or without."""
+
+    @kernel
+    def density_of(p, strip):
+        """Of the material of a strip [kg/m3].
+
+        Checked  tests/net_capture/test_air.py
+        """
+        if has_leads:
+            if strip >= p.leads_strip:
+                return p.leads_density
+        if has_edge:
+            if strip >= p.edge_strip:
+                return p.edge_density
+        return p.net_density
+
+    return density_of
+
+
+def _make_everywhere(presses: bool, resists: bool, touches: bool) -> Any:
+    """Kernel `everywhere`, of contact that presses, threads that resist bending, and threads that touch each other."""
 
     @kernel
     def everywhere(p):
@@ -149,6 +177,8 @@ def _make_everywhere(presses: bool, resists: bool) -> Any:
         if resists:
             stiffness += p.bending_stiffening
             damping = p.bending_damping_time * p.bending_stiffening
+        if touches:
+            stiffness += stiffening(p.self_contact_duration)
         return stiffness, damping
 
     return everywhere

@@ -19,6 +19,7 @@ def make_check(parts: Composition) -> Any:
     capacity = int(terms["nodes"]) if has_nodes else 0
     thread_capacity = int(terms["threads"]) if has_threads else 0
     has_wrap, wrap, has_bending, bending = parts.wrap is not None, parts.wrap, parts.bending is not None, parts.bending
+    has_self, self_contact = parts.self_contact is not None, parts.self_contact
     masks, per_double = parts.traits.masks, parts.per_double
     too_many_nodes, too_many_threads = (parts.code(fault.name) for fault in (TOO_MANY_NODES, TOO_MANY_THREADS))
 
@@ -48,6 +49,8 @@ def make_check(parts: Composition) -> Any:
             words += wrap.words(p)
         if has_bending:
             words += bending.words(p)
+        if has_self:
+            words += self_contact.words(p)
         p.work_size = work_size(p, per_double, words)
         return 0
 

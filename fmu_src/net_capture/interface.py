@@ -38,6 +38,7 @@ from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.release import ejection, ejector, spin
 from fmu_src.net_capture.rigging import riggings
 from fmu_src.net_capture.schemes import schemes
+from fmu_src.net_capture.self_contact import part as self_contact
 from fmu_src.net_capture.shapes import shapes
 from fmu_src.net_capture.stepping import STEP_TOO_SMALL
 from fmu_src.rows import angle, at_least_zero, count, flag, moving, output, parameter, peak, positive, state, vector
@@ -322,6 +323,7 @@ GROUPS = {
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),
     "air": Group({"quadratic": air.PART}, selector="drag", optional=True, follows=lambda terms, values: "quadratic"),
     "bending": _plain(bending.PART),
+    "self_contact": _plain(self_contact.PART),
     "wall": _plain(wall.PART),
     "table": _plain(sliding.PART),
     "break": Group({"breaks": breaking.PART}, optional=True, follows=lambda terms, values: "breaks"),

@@ -53,6 +53,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     has_hardest, hardest = parts.hardest is not None, parts.hardest
     has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
     has_table, table = parts.sliding is not None, parts.sliding
+    has_self, self_contact = parts.self_contact is not None, parts.self_contact
     properties = parts.memory.properties
 
     graph, folding, gravity, scheme, peaks = parts.graph, parts.folding, parts.gravity, parts.scheme, parts.peaks
@@ -231,6 +232,10 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             wrap.start(p)
         if has_map:
             force_map.start(p)
+        if has_self:
+            fault = self_contact.start(p, work)
+            if fault != 0:
+                return fault
         scheme.begin(p, work)
         if has_table:
             table.begin(p, work)

@@ -28,6 +28,7 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     has_nodes, has_threads, has_air = "nodes" in parts.terms, tensions is not None, parts.air is not None
     has_bending, has_wall, wall = parts.bending is not None, parts.wall is not None, parts.wall
     has_table, table = parts.sliding is not None, parts.sliding
+    has_self = parts.self_contact is not None
     books_turn = parts.ejection is not None or parts.spin is not None or has_wall
     has_wrap, follows = parts.wrap is not None, parts.pace is not None
     has_ejection, ejection = parts.ejection is not None, parts.ejection
@@ -67,6 +68,9 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
         if has_bending:
             elastic += p.bending_energy
             p.bending_dissipated = p.bending_loss + late * p.bending_power
+        if has_self:
+            elastic += p.self_contact_stored
+            p.self_contact_loss = p.self_contact_booked + late * p.self_contact_power
         measures.measure_net(p, work)
         p.energy_elastic = elastic
         p.energy_total = p.energy_kinetic + elastic

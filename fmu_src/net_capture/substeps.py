@@ -9,9 +9,10 @@ from fmu_src.implied import formula
 from fmu_src.net_capture import formulas
 from fmu_src.net_capture.bending import stiffening_of
 from fmu_src.net_capture.rigging import riggings
+from fmu_src.net_capture.self_contact.segments import stiffening
 
 Values = Mapping[str, float]
-COUNT = ("net", *riggings(), "solver", "closing", "target", "contact", "bending")
+COUNT = ("net", *riggings(), "solver", "closing", "target", "contact", "bending", "self_contact")
 """Groups on which a substep hangs."""
 
 
@@ -31,7 +32,8 @@ def substeps(values: Values, parts: Mapping[str, Any]) -> tuple[float, float]:
         cord = formula(formulas.cord_stiffness)(values["closing.axial_stiffness"], values["closing.lock_length"])
         cord_dashpot = formula(formulas.cord_damping)(values["closing.damping_ratio"], cord, moved)
     bent, resisting = stiffening_of(values, net) if "bending" in parts else (0.0, 0.0)
-    pressing = _pressing(values, parts, node) + bent
+    touching = formula(stiffening)(values["self_contact.duration"]) if "self_contact" in parts else 0.0
+    pressing = _pressing(values, parts, node) + bent + touching
     needs = parts["solver"].checks
     longest, accurate = formula(needs.longest_step), formula(needs.accurate_step)
     limits = formulas.make_substep_limits(longest, accurate)

@@ -18,6 +18,7 @@ from fmu_src.net_capture.planes import (
     work_size,
 )
 from fmu_src.net_capture.schemes.asleep import ROW_WORDS
+from fmu_src.net_capture.self_contact.reaches import PLANES as SELF_PLANES
 from tests.plain import plainly
 
 
@@ -36,6 +37,7 @@ def planes_of(p, work, terms):
     if "quality" in terms:
         count += SCRATCH_PLANES * 8 // reals.itemsize
     count += 1 if "wall" in terms else 0
+    count += SELF_PLANES if "self_contact" in terms else 0
     return reals[: count * slots].reshape(count, slots)
 
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from tests.net_capture.evidence import contact_terms, indices, launches
+from tests.net_capture.evidence import contact_terms, indices, launches, self_contact
 from tests.net_capture.evidence.shots import draw
 
 
@@ -55,3 +55,14 @@ def test_what_terms_of_contact_change_is_told_as_the_rows_say():
 def test_a_shot_comes_out_as_it_is_stored(module):
     stored = json.loads(module.RESULT.read_text())["rows"][0]
     assert module.follow(0) == stored
+
+
+def test_what_contact_of_threads_changes_is_told_as_the_rows_say():
+    result = json.loads(self_contact.RESULT.read_text())
+    rows, choices = result["rows"], list(self_contact.CHOICES)
+    assert (result["command"], result["starts"]) == (self_contact.COMMAND, self_contact.STARTS)
+    assert [(row["seed"], row["choice"]) for row in rows] == [(n, c) for n in range(result["starts"]) for c in choices]
+    assert result["summary"] == self_contact.summarise(rows)
+    thick = result["summary"]["10 mm"]
+    assert thick["passed"]["mean"] == 0.0
+    assert result["summary"]["as thick as they are"]["passed"]["mean"] > 0.0

@@ -52,6 +52,7 @@ def make_search(composition: Any, longest: int) -> Search:
     stray = gravity.stray
     has_closing, has_tether = "closing" in composition.terms, "tether" in composition.terms
     has_load, drags = "pull_off" in composition.terms, composition.terms.get("tether") == "dragging"
+    has_self = "self_contact" in composition.terms
 
     @kernel
     def within_axis(turn, axis, half, sx, sy, sz, dx, dy, dz):
@@ -213,6 +214,8 @@ def make_search(composition: Any, longest: int) -> Search:
             pulled = pulled or p.tether_drag != 0.0
         if has_load:
             pulled = pulled or p.pull_off_t_start >= 0.0
+        if has_self:
+            pulled = pulled or p.self_contact_pairs > 0
         return pulled
 
     @kernel

@@ -357,7 +357,8 @@ def make(composition: Any) -> Scheme:
                 now = node_plane(p, work, SHOWN_RATE + axis)[i]
                 back[i] = now - share * (node_plane(p, work, SHOWN_BACK + axis)[i] - now)
 
-    return Scheme(LAG, asleep.own_words, begin, step, place, threads.stored, show, change)
+    fault = composition.self_contact.fault if composition.self_contact is not None else None
+    return Scheme(LAG, asleep.own_words, begin, step, place, threads.stored, show, change, fault)
 
 
 PART = Term(
