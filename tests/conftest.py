@@ -2,8 +2,6 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -12,6 +10,7 @@ from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL as NET
 from fmu_src.packaging import compile
+from fmu_src.tethered_deorbit.interface import MODEL as TOW
 from tests import kernels, validation
 
 FREE = {"net": "square", "gravity": "none"}
@@ -26,6 +25,8 @@ CAPTURE = {
 }
 CAPTURE_HILL = {**{k: v for k, v in CAPTURE.items() if k != "settling"}, "gravity": "hill", "nodes": "625"}
 """The mission's, whose kernels a run of the tests has anyway."""
+FLOWN_MOST = ((NET, FREE), (NET, CAPTURE), (NET, CAPTURE_HILL), (TOW, {"reel": "locked", "thrust": "along_track"}))
+"""What makes it worth while to optimise a library."""
 
 DEAREST = (
     "tests/consistency/test_readme.py",
@@ -71,16 +72,6 @@ def pytest_configure(config: pytest.Config) -> None:
         kernels.keep()
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection(session: pytest.Session) -> None:
-    """Of two workers that collect everything one begins at the end, so that each file is compiled by one of them."""
-    config = session.config
-    if config.args_source is config.ArgsSource.TESTPATHS and os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
-        for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
-            with suppress(Exception, pytest.skip.Exception):  # which is told where the file is collected
-                import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
-
-
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     validation.keep_validating(config, items)
     place = {name: k for k, name in enumerate(DEAREST)}
@@ -99,7 +90,8 @@ def begins_and_ends_at_the_root(pytestconfig: pytest.Config) -> Iterator[None]:
 @pytest.fixture(scope="session", autouse=True)
 def shared_kernels(tmp_path_factory: pytest.TempPathFactory) -> None:
     """One folder for all processes of a run, and for the runs of a single process."""
-    kernels.share(tmp_path_factory.getbasetemp().parent / "kernels")
+    long = [model.interface(terms).terms for model, terms in FLOWN_MOST]
+    kernels.share(tmp_path_factory.getbasetemp().parent / "kernels", long)
 
 
 @pytest.fixture
@@ -111,8 +103,15 @@ def validated(request: pytest.FixtureRequest) -> validation.Validated:
 
 
 @pytest.fixture
-def compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For a test that judges a build: its kernels are compiled, whether or not the run has them."""
+def numba_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a test that judges a build: processes begin without the settings of builds, which this one has."""
+    for name in compile.ENVIRONMENT:
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture
+def compiled_anew(monkeypatch: pytest.MonkeyPatch, numba_as_it_comes: None) -> None:
+    """The same, and its kernels are compiled, whether or not the run has them."""
     monkeypatch.setattr(compile, "emit", kernels.emit)
 
 

@@ -14,9 +14,9 @@ import ctypes
 import fcntl
 import os
 import shutil
+import sys
 import tempfile
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,8 @@ OTHER_CODE = ("NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT")
 """Environment variables under which kernels are other code than an FMU's."""
 V3 = {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}
 """What a processor of the second code path has, by LLVM's names."""
+QUICKLY = "-Xclang", "-disable-llvm-passes"
+"""clang turns what numba has optimised into machine code as it is."""
 
 emit = compile.emit
 """What compiles, whatever the run has already, in a process that begins with nothing."""
@@ -47,10 +49,16 @@ def compiled_where_run() -> bool:
 
 
 def keep() -> None:
-    """Have this process keep the kernels that it compiles beside those of builds, and look for them there."""
-    from orbital import keeping
+    """Have this process keep the kernels that it compiles among those of builds, and look for them there.
 
+    numba reads its settings as it is imported. With those of a build it makes the same of a kernel, and in less time.
+    """
     if not compiled_where_run():
+        os.environ |= {name: value for name, value in compile.ENVIRONMENT.items() if name.startswith("NUMBA_")}
+        assert "numba" not in sys.modules
+
+        from orbital import keeping
+
         keeping.keep_in(cache_folder() / builds.COMMON)
 
 
@@ -90,10 +98,14 @@ def made_once(path: Path, make: Callable[[Path], None]) -> Path:
 
 
 class Shared:
-    """What is compiled in one test run, in a folder."""
+    """What is compiled in one test run, in a folder.
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    long    choices of terms that run for long in all: their libraries are optimised as an FMU's; the others' take less
+            than half the time to make and a fifth more to run, with the same bits
+    """
+
+    def __init__(self, folder: Path, long: Sequence[Mapping[str, str]]) -> None:
+        self._folder, self._long = folder, [frozenset(terms.items()) for terms in long]
         self.entry = cache(self._entry)
 
     def _path(self, name: str, terms: tuple[tuple[str, str], ...], suffix: str) -> Path:
@@ -114,25 +126,29 @@ class Shared:
         return made_once(self._path(name, terms, ".ll"), make)
 
     def _entry(self, name: str, terms: tuple[tuple[str, str], ...]) -> Entry:
-        return Entry(made_once(self._path(name, terms, ".so"), lambda path: _library(self.ir(name, terms), path)))
+        passes = () if frozenset(terms) in self._long else QUICKLY
+        library = self._path(name, terms, ".so")
+        return Entry(made_once(library, lambda path: _library(self.ir(name, terms), path, passes)))
 
 
-def _library(ir: Path, path: Path) -> None:
-    """A shared library with the entry alone, for this processor."""
+def _library(ir: Path, path: Path, passes: Sequence[str]) -> None:
+    """A shared library with the entry alone, for this processor; `passes` are for clang."""
     (target, *_) = platforms.host().places[0].targets
     has = {name for name, there in llvm.get_host_cpu_features().items() if there}
     best = target.processors[-1] if has >= V3 else target.processors[0]
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         visible = Path(folder) / "visible.ll"
         visible.write_text(ir.read_text().replace("define hidden", "define"))
-        objects = link.compile_kernels(visible, replace(target, processors=(best,)), Path(folder))
-        link.clang(["-target", target.triple, *link.FLAGS, "-s", "-shared", *objects, "-o", path, "-lm"])
+        machine_code = visible.with_suffix(".o")
+        first = ["-target", target.triple, *link.FLAGS]
+        link.clang([*first, f"-mcpu={best}", *passes, "-c", visible, "-o", machine_code])
+        link.clang([*first, "-s", "-shared", machine_code, "-o", path, "-lm"])
 
 
-def share(folder: Path) -> None:
-    """Have this process take what is compiled from a folder, and put there what it compiles."""
+def share(folder: Path, long: Sequence[Mapping[str, str]] = ()) -> None:
+    """Have this process take what is compiled from a folder, and put there what it compiles; `long` as in `Shared`."""
     folder.mkdir(exist_ok=True)
-    shared = Shared(folder)
+    shared = Shared(folder, long)
 
     def entry_of(model: Model, terms: Mapping[str, str]) -> Any:
         if MODELS.get(model.name) is not model:  # a test's own

@@ -109,7 +109,7 @@ def test_what_is_no_number_is_left_alone(make_scene: Make, tmp_path: Path) -> No
         ("ABORT", ISOLATED, ["ended by SIGABRT"]),
         ("EXIT=3", ISOLATED, ["ended itself with exit code 3"]),
         ("EXIT=0", ISOLATED, ["ended itself with exit code 0"]),
-        ("HANG", ISOLATED, ["did not answer within 3 s and was killed"]),
+        ("HANG", ISOLATED, ["did not answer within 2 s and was killed"]),
         ("NOT_A_NUMBER=SEPARATION", HERE, ["its output separation is nan"]),
         ("NOT_A_NUMBER=SEPARATION", ISOLATED, ["its output separation is nan"]),
         ("INFINITE=RELATIVE_POSITION_2", HERE, ["its output relative.position[2] is -inf"]),
@@ -126,7 +126,7 @@ def test_what_is_no_number_is_left_alone(make_scene: Make, tmp_path: Path) -> No
 )
 def test_one_clear_error(make_scene: Make, tmp_path: Path, switch: str, isolate: bool, words: list[str]) -> None:
     """Each names the instance and the time; what was reached before it is in the folder, marked as failed."""
-    timeout = 3.0 if switch == "HANG" else 20.0
+    timeout = 2.0 if switch == "HANG" else 20.0
     scene = make_scene("capture", "removal")
     result = swap_in(scene, build(tmp_path / "fmu", "removal", switch), isolate, timeout)
     assert result.exit_code == FMU_FAILED

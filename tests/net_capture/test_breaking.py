@@ -13,7 +13,8 @@ from tests.conftest import FREE
 from tests.net_capture.memory import nodes, planes, shown
 from tests.net_capture.taut_pair import PER_MASS, STIFFNESS, pair, state
 
-BREAKS = FREE | {"break": "breaks"}
+BREAKS = FREE | {"break": "breaks", "volume": "plain"}
+"""As in `test_volume`."""
 RATE = 2.0
 """At which the two part [m/s]."""
 OMEGA = math.sqrt(PER_MASS * STIFFNESS)

@@ -10,9 +10,9 @@ from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
 from fmu_src.net_capture.volume import make
 from orbital.kernel import kernel
-from tests.conftest import FREE
 from tests.net_capture.laid import Layer
 from tests.net_capture.memory import graph, nodes, shown
+from tests.net_capture.test_breaking import BREAKS
 from tests.plain import plainly
 
 
@@ -59,7 +59,7 @@ def test_a_cone_with_a_floor():
 def test_a_flying_net():
     """Against sums over its nodes in numpy, and the largest is kept."""
     values = {"net.side": 12.0, "net.mesh": 2.0, "solver.jitter[3]": 1e-3}
-    net = Instance(MODEL, FREE | {"volume": "plain"}, values).initialise()
+    net = Instance(MODEL, BREAKS, values).initialise()
     largest = 0.0
     for _ in range(30):
         net.step(0.2)

@@ -77,7 +77,7 @@ def test_each_choice_of_terms_is_compiled_once(asked, tmp_path):
         pytest.param("net_capture", FREE, CAPTURE, marks=pytest.mark.evidence),
     ],
 )
-def test_the_text_is_that_of_a_process_that_begins_with_nothing(model, before, terms, tmp_path):
+def test_the_text_is_that_of_a_process_that_begins_with_nothing(model, before, terms, numba_as_it_comes, tmp_path):
     """Whatever the one that compiled it has compiled before."""
     made = []
     quickly = kernels.emit_quickly
