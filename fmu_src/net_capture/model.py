@@ -23,8 +23,9 @@ from fmu_src.interface import GO_ON, INITIALISE, SIZE, STEP, UNDER_WAY
 from fmu_src.net_capture import outcome, quality
 from fmu_src.net_capture.closing.triggers import make_reached
 from fmu_src.net_capture.composition import Composition
-from fmu_src.net_capture.interface import MODEL, NOT_FINITE, TOO_MANY_NODES, TOO_MANY_THREADS
-from fmu_src.net_capture.planes import complete_strips, work_size
+from fmu_src.net_capture.counting import make_check
+from fmu_src.net_capture.interface import MODEL, NOT_FINITE
+from fmu_src.net_capture.planes import complete_strips
 from fmu_src.net_capture.shot import NO_AXIS, aim, make_shot
 from fmu_src.net_capture.showing import make_measure
 from fmu_src.net_capture.stepping import MEASURE_INTERVAL, make_choose_substep, make_limit_way
@@ -47,14 +48,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     hold, has_volume = parts.volume, parts.volume is not None
     index, has_index = parts.index, parts.index is not None
     pull_off, has_load = parts.pull_off, parts.pull_off is not None
-    has_nodes, has_threads, has_air = "nodes" in terms, "threads" in terms, parts.air is not None
-    capacity = int(terms["nodes"]) if has_nodes else 0
-    thread_capacity = int(terms["threads"]) if has_threads else 0
-    tensions = make_tensions(parts) if has_threads else None
+    has_threads, has_air = "threads" in terms, parts.air is not None
+    check, tensions = make_check(parts), make_tensions(parts) if has_threads else None
     has_hardest, hardest = parts.hardest is not None, parts.hardest
     has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
     has_table, table = parts.sliding is not None, parts.sliding
-    per_double = parts.per_double
     properties = parts.memory.properties
 
     graph, folding, gravity, scheme, peaks = parts.graph, parts.folding, parts.gravity, parts.scheme, parts.peaks
@@ -65,13 +63,11 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     choose_substep = make_choose_substep(parts)
     judge = outcome.make_judge(parts, measures)
     reached = make_reached(parts, measures) if has_closing else None
-    not_finite, no_axis, too_many_nodes, too_many_threads = (
-        parts.code(f.name) for f in (NOT_FINITE, NO_AXIS, TOO_MANY_NODES, TOO_MANY_THREADS)
-    )
+    not_finite, no_axis = (parts.code(fault.name) for fault in (NOT_FINITE, NO_AXIS))
     measure = make_measure(parts, measures, tensions, not_finite)
     lag, frame_rate = scheme.lag, gravity.rate
     clock, pace = parts.clock, parts.pace
-    now, reach, due, masks, follows = clock.now, clock.reach, clock.due, parts.traits.masks, pace is not None
+    now, reach, due, follows = clock.now, clock.reach, clock.due, pace is not None
     presses, wrap, has_wrap = parts.presses, parts.wrap, parts.wrap is not None
     force_map, has_map = parts.force_map, parts.force_map is not None
     changes, watches, renew, watch = (
@@ -81,35 +77,6 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         gravity.watch,
     )
     can_stop, stopped_by = scheme.fault is not None, scheme.fault
-
-    @kernel
-    def check(p, work):
-        """Fault code of a parameter combination that makes no net, or 0; sets the counts.
-
-        Checked  tests/net_capture/test_free_flight.py
-        """
-        fault = graph.count(p, work)
-        if fault == 0:
-            fault = folding.check(p)
-        if has_ejection and fault == 0:
-            fault = ejection.check(p)
-        if fault != 0:
-            return fault
-        if has_nodes:
-            if p.net_nodes > capacity:
-                p.fault_value = p.net_nodes
-                return too_many_nodes
-        if has_threads:
-            if p.net_threads > thread_capacity:
-                p.fault_value = p.net_threads
-                return too_many_threads
-        words = scheme.own_words(p) + masks * p.strips
-        if has_wrap:
-            words += wrap.words(p)
-        if has_bending:
-            words += bending.words(p)
-        p.work_size = work_size(p, per_double, words)
-        return 0
 
     @kernel
     def substep(p, work):

@@ -9,6 +9,7 @@ from typing import Any
 from fmu_src.interface import DIFFERENTIATE, GO_ON, INITIALISE, REFRESH, SIZE, STEP, UNDER_WAY, check_implemented
 from fmu_src.limits import make_limits
 from fmu_src.tethered_deorbit.acting import IDLE, together
+from fmu_src.tethered_deorbit.answers import make_answer
 from fmu_src.tethered_deorbit.aocs import make_aocs
 from fmu_src.tethered_deorbit.appendage import make_appendage
 from fmu_src.tethered_deorbit.bodies import KINDS, make_bodies
@@ -132,6 +133,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     start_state, freeze = make_start(environment, bodies, interface), make_appendage(terms, interface)
     publish = make_publish(reel, environment, perturbing, bodies, layout)
     differentiate = make_differentiate(inertial, reel, thrust, environment, perturbing, bodies)
+    answer = make_answer(reel, thrust, held, level, trajectory, inputs, publish, differentiate, places, command_slot)
     size, spent, work_size = layout.size, layout.spent, places.total
     end_state, here_state, slope_state, low_error = places.end, places.here, places.slope, places.low
 
@@ -365,51 +367,6 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             return code
         if moving:
             return int(inputs.leave(record, work, duration))
-        return 0
-
-    @kernel
-    def answer(record: Any, work: Array, differentiating: bool) -> int:
-        """Outputs that depend directly on inputs, or derivatives, for the inputs of now; the state stays.
-
-        differentiating  which of the two
-
-        Returns 0 or a fault.
-
-        Checked  tests/tethered_deorbit/test_derivatives.py: asking changes nothing; test_macro_step.py: a changed
-                 length
-        """
-        r = record[0]
-        here = work[here_state:slope_state]
-        separation, length, speed = trajectory.state_at(record, work, r.state_published, here)
-        thrust.weigh(record, here)
-        command, command_rate, taut = r.state_command, r.state_command_rate, r.state_taut
-        force, force_rate = r.state_thrust, r.state_thrust_rate
-        settled = held.settled(record)
-        level.put(record, False)  # the state lies where its stretch gives its tension
-        asked, asked_rate = reel.asked(record)
-        if asked == command and asked_rate == 0.0:
-            asked_rate = command_rate
-        if not (asked == command and asked_rate == command_rate):
-            if not math.isfinite(asked + asked_rate):
-                return fail(record, blame(record, BAD_PARAMETER, command_slot, asked), r.state_published)
-            code = reel.prepare(record, asked, asked_rate, 0.0)
-            if code != 0:
-                return fail(record, code, r.state_published)
-            inputs.judge_line(record, here)
-        if differentiating:
-            asked_force, asked_force_rate = thrust.asked(record)
-            thrust.put(record, asked_force, force_rate if asked_force == force else asked_force_rate)
-            since = r.state_since
-            r.state_since = r.state_begin - r.state_published
-            differentiate(record, here, work[slope_state:low_error], separation, length, speed)
-            thrust.publish_rate(record, r.state_published)
-            r.state_since = since
-            thrust.put(record, force, force_rate)
-        else:
-            publish(record, here, separation, length, speed, 0.0, r.state_published)
-        reel.prepare(record, command, command_rate, 0.0)
-        r.state_taut = taut
-        level.put(record, settled)
         return 0
 
     @entry(interface.dtype)
