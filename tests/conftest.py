@@ -1,5 +1,6 @@
 """Models shared by the tests, whose kernels are compiled once in a run: see `tests.kernels`."""
 
+import gc
 import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -70,6 +71,15 @@ def pytest_configure(config: pytest.Config) -> None:
     has no need of numba."""
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         kernels.keep()
+        gc.disable()
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Tests and modules live to the end: garbage is not looked for among them, and seldom else, since what compiles
+    makes millions of objects that stay."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)
+    gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

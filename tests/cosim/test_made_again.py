@@ -14,6 +14,7 @@ from dcone_cosim.loading import find, load
 from dcone_cosim.progress import Progress
 from dcone_cosim.ssp.export import export_scene
 from tests.cosim.conftest import Dcone
+from tests.runs import COARSE
 
 SHORT = "removal.duration=1 h"
 
@@ -129,7 +130,7 @@ def test_a_package_and_its_settings(dcone: Dcone, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_mission_with_its_hand_over(dcone: Dcone, tmp_path: Path) -> None:
     """What the hand-over set is told apart from what the scene says, and is no input left at nan."""
-    first, _ = again(dcone, tmp_path, "mission", SHORT, "removal.thrust.offset=1 mN")
+    first, _ = again(dcone, tmp_path, "mission", *COARSE[:2], SHORT, "removal.thrust.offset=1 mN")
     removal = told(first)["phases"]["removal"]
     handed = json.loads((first / "ledger.json").read_text())["set_in_removal"]
     assert {name: removal["handed_over"][name] for name in handed} == handed

@@ -22,6 +22,7 @@ from dcone_cosim.scene_fmus import SceneFmus
 from dcone_cosim.ssp import system
 from dcone_cosim.ssp.export import export_scene, identifier
 from tests.cosim.ssp_packages import STRUCTURE, changed, contents, packed
+from tests.runs import COARSE
 
 SHORT = """
 title = "A tow for ten minutes"
@@ -273,8 +274,10 @@ def test_nothing_is_left_where_nothing_can_be_written(tow: Path, tmp_path: Path)
 def test_a_mission_in_two_packages_has_the_bits_of_the_mission(tmp_path: Path) -> None:
     from dcone_cosim.commands import run_and_write
 
-    whole = run_and_write("mission", tmp_path / "run", Progress(), with_figures=False).result
-    capture, removal = export_scene(load("mission"), tmp_path / "out", Progress(), from_run=tmp_path / "run").paths
+    whole = run_and_write("mission", tmp_path / "run", Progress(), with_figures=False, settings=COARSE).result
+    capture, removal = export_scene(
+        load("mission", COARSE), tmp_path / "out", Progress(), from_run=tmp_path / "run"
+    ).paths
     assert same(whole, run(capture), "capture")
     handed_over = run(removal)
     assert handed_over.phases["removal"].origin == whole.handovers["removal"].time

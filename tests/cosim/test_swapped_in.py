@@ -14,7 +14,11 @@ from tests.cosim.fmus.build import build
 
 pytestmark = pytest.mark.slow
 
+MESH, STEP = 'mesh = "0.5 m"', 'macro_step = "0.02 s"'
 MISSION = find("mission").read_text()
+assert (MISSION.count(MESH), MISSION.count(STEP)) == (1, 1)
+COARSE = MISSION.replace(MESH, 'mesh = "2 m"').replace(STEP, 'macro_step = "0.05 s"')
+"""As of `tests.runs`."""
 FOREIGN = """[removal]
 fmu = "{fmu}"
 isolate = {isolate}
@@ -32,21 +36,18 @@ def towed_by(fmu: Path, isolate: bool, timeout: str = "") -> str:
     """The mission on coarse meshes with another removal; whoever wants its results needs nothing else."""
     more = f'timeout = "{timeout}"' if timeout else ""
     part = FOREIGN.format(fmu=fmu, isolate=str(isolate).lower(), more=more)
-    begin, end = MISSION.index("[removal]"), MISSION.index("[handoff]")
-    text = MISSION[:begin] + part + MISSION[end:]
-    for fine, coarse in (('mesh = "0.5 m"', 'mesh = "2 m"'), ('macro_step = "0.02 s"', 'macro_step = "0.05 s"')):
-        assert text.count(fine) == 1
-        text = text.replace(fine, coarse)
-    return text
+    begin, end = COARSE.index("[removal]"), COARSE.index("[handoff]")
+    return COARSE[:begin] + part + COARSE[end:]
 
 
 def test_ours_from_a_file_gives_the_same_bits(dcone: Dcone, tmp_path: Path) -> None:
     """Built, copied away and named in the scene: what comes out is what came out before, to the last bit."""
-    assert dcone("build", "mission", "-o", "fmus")[0] == 0
+    (tmp_path / "mission.toml").write_text(COARSE)
+    assert dcone("build", "mission.toml", "-o", "fmus")[0] == 0
     capture, removal = (Path(f"fmus/mission-{phase}.fmu") for phase in ("capture", "removal"))
-    text = MISSION.replace("[capture]\n", f'[capture]\nfmu = "{capture}"\n')
+    text = COARSE.replace("[capture]\n", f'[capture]\nfmu = "{capture}"\n')
     (tmp_path / "mine.toml").write_text(text.replace("[removal]\n", f'[removal]\nfmu = "{removal}"\n'))
-    assert dcone("run", "mission", "-o", "ours", "--no-figures")[0] == 0
+    assert dcone("run", "mission.toml", "-o", "ours", "--no-figures")[0] == 0
     code, _, err = dcone("run", "mine.toml", "-o", "theirs", "--no-figures")
     assert code == 0, err
     for name in ("capture", "nodes", "removal", "tugs", "removal_without_recoil_tugs"):

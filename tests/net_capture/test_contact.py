@@ -178,7 +178,7 @@ def test_a_node_bounces_with_the_restitution_asked_for(shoot, validated, restitu
 
 
 def test_settled_comes_after_captured(shoot):
-    net = shoot({"closing.time": 11.2, "settling.speed": 0.3}, CAPTURE)
+    net = shoot({"net.mesh": 2.0, "closing.time": 11.2, "settling.speed": 0.3}, CAPTURE)
     while net.time < 60.0 and not net["settled"]:
         net.step(0.5)
     assert net["settled"] == 1
@@ -196,7 +196,7 @@ def test_settled_comes_after_captured(shoot):
     ],
 )
 def test_failed_shots_say_why(shoot, change, outcome):
-    net = shoot(change, CAPTURE)
+    net = shoot({"net.mesh": 2.0} | change, CAPTURE)
     while net.time < 25.0 and int(net["outcome"]) == 0:
         net.step(0.5)
     assert OUTCOMES[int(net["outcome"])] == outcome
@@ -206,7 +206,8 @@ def test_failed_shots_say_why(shoot, change, outcome):
 
 @pytest.mark.parametrize("trigger", ["first_contact", "distance", "command"])
 def test_every_trigger_closes_the_mouth(shoot, trigger):
-    net = shoot({"closing.trigger": ("time", "first_contact", "distance", "command").index(trigger)}, CAPTURE)
+    kind = ("time", "first_contact", "distance", "command").index(trigger)
+    net = shoot({"net.mesh": 2.0, "closing.trigger": kind}, CAPTURE)
     while net.time < 22.0 and not net["captured"]:
         if trigger == "command" and net.time > 11.0:
             net["close.command"] = True

@@ -88,7 +88,7 @@ def test_energy_with_damping_never_rises(shoot, validated):
     validated(own, "damped net: least energy over 16 s, of the start's", share, within=(least, None))
 
 
-@pytest.mark.parametrize("mesh", [1.0, 0.5])
+@pytest.mark.parametrize("mesh", [1.0, pytest.param(0.5, marks=pytest.mark.evidence)])
 def test_opening_meets_the_independent_codes(shoot, validated, mesh):
     net = shoot({"net.mesh": mesh})
     advance(net, 11.68, 0.02)

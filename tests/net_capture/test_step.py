@@ -10,10 +10,10 @@ from tests.net_capture.evidence import steps
 
 @pytest.mark.parametrize("ratio", [0.0, 0.0225, 0.106, 1.0])
 def test_the_default_keeps_area_and_energy(shoot, ratio):
-    """A thin slice: a coarser net, for 6 s. Undamped it is chaotic by then (one sample is off by 0.3 %), so the mean of
-    eight starts counts. The whole is `evidence.steps`."""
+    """A thin slice: a coarser net, for 6 s. With little damping it is chaotic by then (one sample is off by 0.3 %), so
+    the mean of eight starts counts, of three where dashpots are stronger. The whole is `evidence.steps`."""
     areas, energies = [], []
-    for seed in range(1, 9):
+    for seed in range(1, 9 if ratio < 0.1 else 4):
         start = {"net.mesh": 2.0, "net.damping_ratio": ratio, "solver.seed": seed}
         start |= {f"solver.jitter[{i}]": 1e-6 for i in (1, 2, 3)}
         net = shoot(start)

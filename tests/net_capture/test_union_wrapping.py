@@ -288,8 +288,6 @@ DRAWN_IN = {
     "closing.axial_stiffness": 90.0,
 }
 """A small net round it; its cord is soft, so that it holds much."""
-WRAPPED = load("big-panel-wrapped").phases[0].main.terms
-"""What other tests build an FMU of."""
 
 
 def stretches_bent(net):
@@ -301,7 +299,8 @@ def stretches_bent(net):
 
 
 def test_a_cord_that_bends_keeps_all_momenta_and_tells_what_it_loses_where_it_slides_off():
-    net = Instance(MODEL, WRAPPED, DRAWN_IN, NETTED).initialise()
+    terms = load("big-panel-wrapped").phases[0].main.terms  # other tests build an FMU of them
+    net = Instance(MODEL, terms, DRAWN_IN, NETTED).initialise()
     linear, angular = net.array("momentum").copy(), net.array("angular_momentum").copy()
     most, shot = 0, 4.0 * 0.4 * 3.0
     net.step(3.5)

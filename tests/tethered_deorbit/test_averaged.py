@@ -75,28 +75,30 @@ def test_closed_forms_of_a_swing() -> None:
     assert not swing(out, waves, 1.01 * beyond, LENGTH, RATE, 0.0, 0.0, False)
 
 
-def test_a_month_at_once_is_that_which_is_stepped() -> None:
+@pytest.mark.parametrize("days", [5, pytest.param(30, marks=pytest.mark.evidence)])
+def test_days_at_once_are_those_which_are_stepped(days: int) -> None:
     leaping, stepping = tow(), tow(level__average_tolerance=0.0)
     before = []
     for i in (leaping, stepping):
         i.step(DAY)
         before.append(i["solver.steps"])
-        i.step(29.0 * DAY)
+        i.step((days - 1) * DAY)
     assert leaping["level.now"] == 4
     assert stepping["level.averaged"] == 0.0
-    assert leaping["solver.steps"] - before[0] < 30 < 30000 < stepping["solver.steps"] - before[1]
+    assert leaping["solver.steps"] - before[0] < 30 < 1000 * days < stepping["solver.steps"] - before[1]
     assert leaping["level.revolutions"] == pytest.approx(leaping["level.averaged"] * RATE / math.tau, rel=3e-3)
     times = [leaping[f"level.{mode}"] for mode in ("free", "followed", "mapped", "dumbbell", "averaged")]
-    assert sum(times) == pytest.approx(30.0 * DAY, abs=1e-5)
+    assert sum(times) == pytest.approx(days * DAY, abs=1e-5)
     for name, within in (
-        ("center.semi_major_axis", 0.02), ("tether.angle", 0.01), ("tether.tension", 1e-3), ("separation", 1e-6),
+        ("center.semi_major_axis", 0.02 * days / 30.0),
+        ("tether.angle", 0.01), ("tether.tension", 1e-3), ("separation", 1e-6),
         ("chaser.propellant", 1e-12), ("energy.relative", 1e-3), ("tether.tension_peak", 3e-5),
         ("tether.tension_least", 3e-5),
     ):  # fmt: skip
         assert leaping[name] == pytest.approx(stepping[name], abs=within), name
     assert leaping["tether.impulse"] == pytest.approx(stepping["tether.impulse"], rel=5e-6)
     apart = leaping.array("center_position") - stepping.array("center_position")
-    assert np.linalg.norm(apart) < 1e-7 * 29.0 * DAY * RATE * AXIS
+    assert np.linalg.norm(apart) < 1e-7 * (days - 1) * DAY * RATE * AXIS
     assert leaping["level.average_error"] < 1e-4
 
 
