@@ -12,7 +12,9 @@ import sys
 import zipfile
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
+import fmpy.validation
 import pytest
 
 from dcone_cosim.loading import load, shipped
@@ -20,6 +22,7 @@ from fmu_src.catalogue import MODELS
 from fmu_src.packaging import builds, kept
 from fmu_src.packaging.description import Experiment
 from fmu_src.packaging.platforms import host
+from tests import validating
 from tests.interop.cases import CASES
 from tests.interop.measure import TOOLS
 from tests.validating import validate_fmu
@@ -126,6 +129,16 @@ def test_fmpys_validation_finds_nothing(origin: str, fmus: dict[str, Path]) -> N
 
 def test_fmutools_check_finds_nothing(fmus: dict[str, Path]) -> None:
     assert dict(zip(fmus, fmutool(*fmus.values()), strict=True)) == dict.fromkeys(fmus, ("0", []))
+
+
+def test_a_name_that_has_the_numbers_of_another_is_judged_by_itself() -> None:
+    """Whether it is read before or after one that looks alike."""
+    right = ("node[1].x", "node[27].x", "node[3].x", "a1.b22[4,15]", "der(x7)", "der(x,2)", "a[10]")
+    wrong = ("1node", "node[27.x", "node[3]x", "a1.2b", "a.22[4,15]", "der(7x)", "der(x,2", "a[1 0]", "node[].x")
+    told = [SimpleNamespace(name=name, sourceline=1) for name in (*wrong, *right, *wrong)]
+    description = SimpleNamespace(variableNamingConvention="structured", modelVariables=told)
+    complaints = validating.said(fmpy.validation._validate_variable_names, description)
+    assert [complaint.split('"')[1] for complaint in complaints] == [*wrong, *wrong]
 
 
 def test_spoilt_fmus_are_found_out(tmp_path: Path) -> None:

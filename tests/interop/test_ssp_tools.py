@@ -19,7 +19,6 @@ from dcone_cosim.recorder import Recorder
 from dcone_cosim.ssp.export import export_scene
 from tests.interop import packages
 from tests.interop.packages import in_tool
-from tests.runs import COARSE
 
 pytestmark = pytest.mark.interop
 
@@ -85,10 +84,8 @@ def test_a_tool_that_withholds_an_output_is_found_out(tow: Path) -> None:
 @pytest.fixture(scope="module")
 def mission(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
     folder = tmp_path_factory.mktemp("mission")
-    run_and_write("mission", folder / "run", Progress(), with_figures=False, settings=COARSE)
-    return tuple(
-        export_scene(load("mission", COARSE), folder, Progress(), from_run=folder / "run", open_inputs=False).paths
-    )
+    run_and_write("mission", folder / "run", Progress(), with_figures=False)
+    return tuple(export_scene(load("mission"), folder, Progress(), from_run=folder / "run", open_inputs=False).paths)
 
 
 @pytest.fixture(scope="module")
