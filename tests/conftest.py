@@ -31,18 +31,18 @@ FLOWN_MOST = ((NET, FREE), (NET, CAPTURE), (NET, CAPTURE_HILL), (TOW, {"reel": "
 
 DEAREST = (
     "tests/consistency/test_readme.py",
-    "tests/report/test_live.py",
-    "tests/cosim/test_swapped_in.py",
-    "tests/cosim/test_built_fmus.py",
     "tests/net_capture/test_union_wrapping.py",
-    "tests/net_capture/test_free_flight.py",
-    "tests/campaign/test_commands.py",
     "tests/net_capture/test_contact.py",
-    "tests/tethered_deorbit/test_rigid.py",
     "tests/cosim/test_isolation.py",
-    "tests/packaging/test_platforms.py",
-    "tests/net_capture/test_shapes.py",
+    "tests/report/test_live.py",
     "tests/interop/test_tools.py",
+    "tests/packaging/test_platforms.py",
+    "tests/net_capture/test_free_flight.py",
+    "tests/cosim/test_swapped_in.py",
+    "tests/campaign/test_commands.py",
+    "tests/tethered_deorbit/test_rigid.py",
+    "tests/net_capture/test_shapes.py",
+    "tests/cosim/test_built_fmus.py",
     "tests/cosim/test_kills.py",
     "tests/tethered_deorbit/test_way.py",
     "tests/net_capture/test_wrapping.py",
@@ -58,7 +58,8 @@ DEAREST = (
     "tests/stability/test_command.py",
     "tests/benchmarks/test_plain_net.py",
 )
-"""Files that take longest, the longest first, so that no worker is left with one when the others are done."""
+"""Files that take longest, the longest first, so that no worker is left with one when the others are done. Of two that
+want one build, as READMEs and pages want the C library of a page, one comes later, which would else wait."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

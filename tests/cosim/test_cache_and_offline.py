@@ -232,8 +232,10 @@ class TestOffline:
 
     @pytest.mark.slow
     @pytest.mark.skipif(shutil.which("unshare") is None, reason="needs network namespaces of Linux")
-    def test_a_build_needs_no_network(self, tmp_path: Path) -> None:
-        """In a network namespace without any interface, and with an empty cache of clang's too."""
+    @pytest.mark.parametrize("anew", [False, pytest.param(True, marks=pytest.mark.evidence)])
+    def test_a_build_needs_no_network(self, tmp_path: Path, anew: bool) -> None:
+        """In a network namespace without any interface; and with an empty cache of clang's too, which then builds its C
+        library."""
         probe = subprocess.run(["unshare", "-rn", "true"], check=False, capture_output=True)
         if probe.returncode:
             pytest.skip("this system allows no network namespaces")
@@ -241,7 +243,7 @@ class TestOffline:
         environment = {
             **os.environ,
             "DCONE_CACHE": str(tmp_path / "fmus"),
-            "ZIG_GLOBAL_CACHE_DIR": str(tmp_path / "zig"),
+            **({"ZIG_GLOBAL_CACHE_DIR": str(tmp_path / "zig")} if anew else {}),
         }
         done = subprocess.run(
             ["unshare", "-rn", sys.executable, "-c", program],

@@ -27,7 +27,7 @@ from dcone_cosim.run_reading import read_run
 from tests.report.browser import Browser, chromium
 from tests.report.conftest import Page
 from tests.report.test_packing import decoded
-from tests.runs import put
+from tests.runs import COARSE, put
 
 TOW, SHOT = "window.dcone.live", "window.dcone.shot"
 PATIENCE = 60.0
@@ -109,8 +109,8 @@ def table2(place: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def mission(place: Path) -> Path:
-    """As it is shipped, its net of 625 knots."""
-    return put("mission", place / "mission")
+    """On coarse meshes: it is its tow that is looked at."""
+    return put("mission", place / "mission", COARSE[:2])
 
 
 @pytest.mark.parametrize("name", ["table2", "mission"])
