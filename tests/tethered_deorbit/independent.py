@@ -5,6 +5,7 @@ No line of the model is used. What a run begins with is read from the outputs of
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -69,10 +70,20 @@ def start_of(i: Instance) -> Vector:
     return np.concatenate([r, v, basis.T @ relative, basis.T @ rate, [0.0]])
 
 
+def cross(a: Vector, b: Vector) -> Vector:
+    """numpy's, in a tenth of the time."""
+    (a1, a2, a3), (b1, b2, b3) = a.tolist(), b.tolist()
+    return np.array([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1])
+
+
+def size(a: Vector) -> float:
+    return math.sqrt(a @ a)
+
+
 def gravity_difference(r: Vector, d: Vector) -> Vector:
     """g(r + d) - g(r) [m/s^2] = -mu/|r+d|^3 (d + r (1 - (|r+d|/|r|)^3)), the bracket by expm1 and log1p."""
     square = r @ r
-    grown = np.expm1(1.5 * np.log1p((2.0 * (r @ d) + d @ d) / square))
+    grown = math.expm1(1.5 * math.log1p((2.0 * (r @ d) + d @ d) / square))
     return -MU / (square**1.5 * (1.0 + grown)) * (d - grown * r)
 
 
@@ -81,7 +92,7 @@ def integrate(line: Line, start: Vector, end: float) -> Towed:
     reduced = line.chaser * line.target / total
 
     def of_line(y: Vector) -> tuple[float, float, float]:
-        length = float(np.linalg.norm(y[6:9]))
+        length = size(y[6:9])
         rate = float(y[6:9] @ y[9:12]) / length
         return length, rate, line.stiffness * (length - line.length) + line.damping * rate
 
@@ -92,13 +103,15 @@ def integrate(line: Line, start: Vector, end: float) -> Towed:
             own = -MU / (r @ r) ** 1.5 * r
             at_chaser, at_target = gravity_difference(r, to_chaser), gravity_difference(r, to_target)
             place, velocity = r + to_chaser, y[3:6] - line.target / total * y[9:12]
-            across = np.cross(np.cross(place, velocity), place)
-            thrust = line.thrust * across / np.linalg.norm(across)
+            across = cross(cross(place, velocity), place)
+            thrust = line.thrust * across / size(across)
             tension = of_line(y)[2] if taut else 0.0
             center = own + (line.chaser * at_chaser + line.target * at_target + thrust) / total
             apart = at_target - at_chaser - thrust / line.chaser
-            apart -= tension / reduced * rho / np.linalg.norm(rho)
-            return np.concatenate([y[3:6], center, y[9:12], apart, [tension]])
+            apart -= tension / reduced * rho / size(rho)
+            rate = np.empty(13)
+            rate[0:3], rate[3:6], rate[6:9], rate[9:12], rate[12] = y[3:6], center, y[9:12], apart, tension
+            return rate
 
         return rates
 

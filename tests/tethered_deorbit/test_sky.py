@@ -42,6 +42,9 @@ MASSES = 2000.0, 1000.0
 AREAS, COEFFICIENT = (15.0, 40.0), 1.4
 STATE = np.array([5e6, -4e6, 3e6, 5e3, 5e3, -1e3, 7e3, -3e3, 9e3, 0.01, 0.02, -0.005])
 
+LEGENDRE = {n: np.polynomial.legendre.leg2poly([0.0] * n + [1.0]) for n in (2, 3, 4)}
+"""Coefficients of P_n, by rising power."""
+
 
 def zonals(position: Any) -> Any:
     """Third and fourth harmonic with the second, as the gradient of mu/r sum J_n (R/r)^n P_n, written out by cases."""
@@ -50,7 +53,7 @@ def zonals(position: Any) -> Any:
     s = x[2] / r
     out = np.zeros(3, np.longdouble)
     for n, j in ((2, EARTH_J2), (3, EARTH_J3), (4, EARTH_J4)):
-        p = np.polynomial.legendre.leg2poly([0.0] * n + [1.0])
+        p = LEGENDRE[n]
         value = sum(np.longdouble(c) * s**k for k, c in enumerate(p))
         slope = sum(k * np.longdouble(c) * s ** (k - 1) for k, c in enumerate(p) if k)
         strength = np.longdouble(EARTH_MU) * np.longdouble(j) * np.longdouble(R) ** n
