@@ -2,6 +2,7 @@
 body; capture of a cylinder."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -45,6 +46,7 @@ def support(shape, size, n):
     return np.maximum(bottom * across - low * n[..., 2], top * across + high * n[..., 2])
 
 
+@cache
 def ends(size):
     """Radii of both ends of a cylinder or frustum, and how far they are from its centre of mass [m]."""
     bottom, top, length = size if len(size) == 3 else (size[0], *size)
