@@ -131,7 +131,7 @@ class Shared:
         return Entry(made_once(library, lambda path: _library(self.ir(name, terms), path, passes)))
 
 
-def _library(ir: Path, path: Path, passes: Sequence[str]) -> None:
+def _library(ir: Path, path: Path, passes: Sequence[str] = ()) -> None:
     """A shared library with the entry alone, for this processor; `passes` are for clang."""
     (target, *_) = platforms.host().places[0].targets
     has = {name for name, there in llvm.get_host_cpu_features().items() if there}
