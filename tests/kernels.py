@@ -51,14 +51,19 @@ def compiled_where_run() -> bool:
 def keep() -> None:
     """Have this process keep the kernels that it compiles among those of builds, and look for them there.
 
-    numba reads its settings as it is imported. With those of a build it makes the same of a kernel, and in less time.
+    numba reads its settings as it is imported: with those of a build it lowers a kernel to the same module, which is
+    then kept for both. What is linked of modules is machine code for this processor, and optimised.
     """
     if not compiled_where_run():
         os.environ |= {name: value for name, value in compile.ENVIRONMENT.items() if name.startswith("NUMBA_")}
         assert "numba" not in sys.modules
 
+        from numba.core import config
+
         from orbital import keeping
 
+        config.OPT, config.LOOP_VECTORIZE = config._OptLevel(3), 1  # type: ignore[attr-defined]
+        config.CPU_NAME = config.CPU_FEATURES = None
         keeping.keep_in(cache_folder() / builds.COMMON)
 
 
