@@ -5,7 +5,10 @@ import pytest
 
 from fmu_src.instance import Instance, ModelFault
 from fmu_src.net_capture.interface import MODEL
-from tests.conftest import CAPTURE
+from tests.conftest import CAPTURE, FREE
+from tests.plain import PlainInstance, plain
+
+__all__ = ["plain"]
 
 
 def shot(**parameters: float) -> Instance:
@@ -73,3 +76,14 @@ def test_faults_name_the_variable(name: str, value: float, shown: float) -> None
     first = name.replace("[2]", "[1]")
     assert f"({first}, value {shown:g}," in str(caught.value)
     assert shot().initialise().record["fault_index"][0] == 0
+
+
+@pytest.mark.usefixtures("plain")
+@pytest.mark.parametrize(("what", "count"), [("nodes", 9), ("threads", 12)])
+def test_a_net_of_more_than_can_be_told_is_refused(what: str, count: int) -> None:
+    """Two meshes a side have nine knots on twelve threads: there is room for these, or there is none for the last."""
+    values = {"net.side": 4.0, "net.mesh": 2.0}
+    made = PlainInstance(MODEL, FREE | {what: str(count)}, values)
+    assert made[f"net.{what}"] == count
+    with pytest.raises(ModelFault, match=rf"the net has more {what} than this FMU has outputs for.*, value {count:g},"):
+        PlainInstance(MODEL, FREE | {what: str(count - 1)}, values)
