@@ -86,6 +86,11 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     gc.enable()
 
 
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Libraries that count what is left of them find it gone."""
+    gc.unfreeze()
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     validation.keep_validating(config, items)
     place = {name: k for k, name in enumerate(DEAREST)}
