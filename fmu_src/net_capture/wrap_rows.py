@@ -29,6 +29,7 @@ ROWS = (
     count("wrap_lost", "whether a way went on from where it was known, could not, or is wound too far", "state"),
     count("wrap_leans", "whether a way is sought on the side of wrap_lean", "state"),
     count("wrap_chain[#]", "faces over which a way goes", "state", shape=(MOST + 1,)),
+    count("wrap_whole[#]", "the same with faces that lie in other bodies", "state", shape=(MOST + 1,)),
     count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
     count("wrap_covered[#]", "whether a face of the body lies in other bodies", "state", shape=(FACES,)),
     state("wrap_clear", "m", "how far a thread is from the target, at least"),

@@ -249,6 +249,24 @@ def make_way(leans: bool = False) -> Any:
         return whole
 
     @kernel
+    def on_bare(p, edges):
+        """Leave out faces between others that lie in another body, where those before and after them have an edge, and
+        lay the way; how many edges it has, 0 where one is not there.
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        if leans:
+            for j in range(edges + 1):
+                p.wrap_whole[j] = p.wrap_chain[j]
+            left = uncover(p, edges)
+            if left == edges or lay_all(p, left):
+                edges = left
+            else:
+                for j in range(edges + 1):
+                    p.wrap_chain[j] = p.wrap_whole[j]
+        return edges if lay_all(p, edges) else 0
+
+    @kernel
     def note(p, edges):
         """Put the faces between the way's edges into `wrap_chain`.
 
@@ -291,17 +309,13 @@ def make_way(leans: bool = False) -> Any:
             edges = lift(p, edges)
             if edges == 0 and sees(p, p.wrap_chain[0], p.wrap_a) and sees(p, p.wrap_chain[0], p.wrap_b):
                 return 0
-            edges = lengthen(p, edges)
-            if leans:
-                edges = uncover(p, edges)
-            if edges == 0 or not lay_all(p, edges):
+            edges = on_bare(p, lengthen(p, edges))
+            if edges == 0:
                 p.wrap_lost = LOST
                 return 0
         elif edges > 0:
-            edges = lengthen(p, trim(p, edges))
-            if leans:
-                edges = uncover(p, edges)
-        if first >= 0 and (edges == 0 or not lay_all(p, edges)):
+            edges = on_bare(p, lengthen(p, trim(p, edges)))
+        if first >= 0 and edges == 0:
             if known:
                 p.wrap_lost = LOST
             if not upright(p, first, last, middle):
