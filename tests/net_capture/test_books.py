@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from dcone_cosim.loading import shipped
 from tests.net_capture.evidence import books
@@ -57,6 +58,24 @@ def test_under_gravity_the_centre_of_mass_keeps_its_course():
     assert row["open"] < BOOK
     assert row["sums"] < 1e-12 * row["came"]
     assert judged(changed(of, catch__position=1.0 + 1e-6))["course"] > KEPT, "the twin"
+
+
+def test_a_course_in_closed_form_is_that_of_hills_equations():
+    """Two bodies apart, integrated: nothing but the closed form is wrong where they leave it."""
+    n = 1e-3
+
+    def rate(_, s):
+        return [*s[3:], 3.0 * n * n * s[0] + 2.0 * n * s[4], -2.0 * n * s[3], -n * n * s[2]]
+
+    times = np.linspace(0.0, 2000.0, 21)
+    columns = {"time": times, "catch.mass": np.full(21, 5.0)}
+    for body, start in (("chaser", [3.0, -12.0, 2.0, 0.01, -0.02, 0.03]), ("catch", [-1.0, 4.0, 7.0, 0.3, 1.9, -0.2])):
+        flown = solve_ivp(rate, (0.0, 2000.0), start, method="DOP853", t_eval=times, rtol=1e-12, atol=1e-12).y
+        for i in range(3):
+            columns |= {f"{body}.position[{i + 1}]": flown[i], f"{body}.velocity[{i + 1}]": flown[i + 3]}
+    of = Recorded(columns, {"chaser.mass": 2.0}, {"gravity": "hill"})
+    assert books.course(of, n) < KEPT
+    assert books.course(of, 1.0001 * n) > KEPT, "the twin"
 
 
 def test_every_shipped_capture_is_in_the_stored_table():
