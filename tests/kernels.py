@@ -10,6 +10,7 @@ Checked  tests/packaging/test_fmu.py: the library's bits are those of the formul
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import fcntl
 import os
@@ -169,3 +170,10 @@ def share(folder: Path, long: Sequence[Mapping[str, str]] = ()) -> None:
     if not compiled_where_run():
         instance.entry_of = entry_of
     compile.emit = emit_once
+
+
+def alone() -> None:
+    """Have this process make libraries of what it compiles, as a test run does, in a folder that goes with it."""
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    share(Path(folder))

@@ -80,55 +80,85 @@ def make_room(composition: Any) -> Room:
 
     @view
     def ends(p, work):
-        """Nodes of each thread, first and other."""
+        """Nodes of each thread, first and other.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         return whole(work)[begin(p) : begin(p) + 2 * p.thread_numbers]
 
     @view
     def order(p, work):
-        """Threads in the order of their boxes along an axis."""
+        """Threads in the order of their boxes along an axis.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         return whole(work)[begin(p) + 2 * p.thread_numbers : begin(p) + 3 * p.thread_numbers]
 
     @view
     def heads(p, work):
-        """The first pair of each thread among those of which the state is kept, -1 for none."""
+        """The first pair of each thread among those of which the state is kept, -1 for none.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         return whole(work)[begin(p) + 3 * p.thread_numbers : begin(p) + 4 * p.thread_numbers]
 
     @view
     def radii(p, work):
-        """Radius and reach of each thread [m]."""
+        """Radius and reach of each thread [m].
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         return work[begin(p) + 4 * p.thread_numbers : begin(p) + 6 * p.thread_numbers]
 
     @view
     def boxes(p, work):
-        """Least and largest coordinates of where each thread may come [m], six each."""
+        """Least and largest coordinates of where each thread may come [m], six each.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         return work[begin(p) + 6 * p.thread_numbers : begin(p) + 12 * p.thread_numbers]
 
     @view
     def nodes(p, work):
-        """Both threads of each pair, packed."""
+        """Both threads of each pair, packed.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         return whole(work)[begin(p) + 12 * p.thread_numbers : begin(p) + 12 * p.thread_numbers + pairs(p)]
 
     @view
     def dues(p, work):
-        """Way from which on each pair is to be looked at."""
+        """Way from which on each pair is to be looked at.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         first = begin(p) + 12 * p.thread_numbers + pairs(p)
         return work[first : first + pairs(p)]
 
     @view
     def states(p, work):
-        """State of each pair."""
+        """State of each pair.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         first = begin(p) + 12 * p.thread_numbers + 2 * pairs(p)
         return whole(work)[first : first + pairs(p)]
 
     @view
     def kept(p, work):
-        """Pairs of the last list that had a state: the pair, its state, and the next of the same first thread."""
+        """Pairs of the last list that had a state: the pair, its state, and the next of the same first thread.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         first = begin(p) + 12 * p.thread_numbers + 3 * pairs(p)
         return whole(work)[first : first + 3 * pairs(p)]
 
     @view
     def following(p, work):
-        """The next pair in the same bucket."""
+        """The next pair in the same bucket.
+
+        Checked  tests/net_capture/test_near_pairs.py
+        """
         first = begin(p) + 12 * p.thread_numbers + 6 * pairs(p)
         return whole(work)[first : first + pairs(p)]
 

@@ -1,8 +1,9 @@
 """What each term of contact changes in the outcome of Table 1's capture, and how often `captured` and the CQI disagree.
 
-    python -m tests.net_capture.evidence.contact_terms [HOW_MANY]
+    python -m tests.net_capture.evidence.contact_terms [HOW_MANY [CHOICE ...]]
 
-makes `contact_terms.json` again, some four CPU-seconds a shot and half a minute a term. Every shot is drawn once, with
+makes `contact_terms.json` again, some four CPU-seconds a shot; with choices named, these alone and what is not there
+yet, and of the others every tenth shot, which must come out as it is stored. Every shot is drawn once, with
 the launch errors of `launches` (speed and angle of each bullet off by a standard deviation of 1 %), and is followed for
 20 s with each choice of terms, on meshes of 2 m. What is told is the mean over all shots, and the mean difference from
 the first choice shot by shot with its standard error. `envelope` takes the sphere round the box for the box, with the
@@ -24,11 +25,13 @@ import numpy as np
 from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL, OUTCOMES
+from tests import kernels
 from tests.net_capture.evidence.launches import ANGLE, ERROR, SEED, SPEED
 from tests.net_capture.evidence.launches import TERMS as LAUNCHED
 
 RESULT = Path(__file__).with_name("contact_terms.json")
 COMMAND = "python -m tests.net_capture.evidence.contact_terms"
+VERSION = {name: version(name) for name in ("dcone-cosim", "numba", "numpy")}
 SHOTS, MESH, END, LATE, STEP = 100, 2.0, 20.0, 2.0, 0.5
 MASS, SIZE = 1000.0, (4.0, 8.0, 4.0)
 TERMS = {**LAUNCHED, "quality": "plain"}
@@ -122,13 +125,14 @@ def summarise(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def write(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def write(rows: Sequence[Mapping[str, Any]], kept: Mapping[str, Any]) -> dict[str, Any]:
     """Store the shots that were followed with every choice, a row on each line."""
     shots = len(rows) // len(CHOICES)
     rows = rows[: shots * len(CHOICES)]
     result = {
         "command": COMMAND,
-        "version": {name: version(name) for name in ("dcone-cosim", "numba", "numpy")},
+        "version": VERSION,
+        "kept": kept,
         "seed": SEED,
         "shots": shots,
         "summary": summarise(rows),
@@ -139,14 +143,30 @@ def write(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return result
 
 
-def main(how_many: int = SHOTS) -> None:
-    """Follow so many shots; what there is is stored after each, so that a run may be cut short."""
+def main(how_many: int = SHOTS, *anew: str) -> None:
+    """Follow so many shots; what there is is stored after each, so that a run may be cut short.
+
+    anew    choices; those stored of all others are kept, but for every tenth, which must come out as it is stored
+    """
+    stored = json.loads(RESULT.read_text()) if anew else {"rows": [], "version": {}}
+    known = {(row["number"], row["choice"]): row for row in stored["rows"] if row["choice"] not in anew}
+    kept = {"version": stored["version"], "rows": 0, "made_again": 0}
     rows: list[dict[str, Any]] = []
     for number in range(how_many):
-        rows += [follow(number, choice) for choice in CHOICES]
+        for choice in CHOICES:
+            row = known.get((number, choice))
+            if row is None:
+                row = follow(number, choice)
+            elif number % 10 == 0:
+                assert row == follow(number, choice), f"{choice}, shot {number}: not as it is stored"
+                kept["made_again"] += 1
+            else:
+                kept["rows"] += 1
+            rows.append(row)
         print(number, [row["captured"] for row in rows[-len(CHOICES) :]], flush=True)
-        write(rows)
+        write(rows, kept)
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+    kernels.alone()
+    main(*map(int, sys.argv[1:2]), *sys.argv[2:])

@@ -20,6 +20,7 @@ import numpy as np
 from fmu_src.instance import Instance
 from fmu_src.interface import Value
 from fmu_src.net_capture.interface import MODEL, OUTCOMES
+from tests import kernels
 from tests.net_capture.evidence.shots import TABLE_1
 
 RESULT = Path(__file__).with_name("launches.json")
@@ -95,4 +96,5 @@ def main(how_many: int = SHOTS) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
+    kernels.alone()
     main(*map(int, sys.argv[1:]))
