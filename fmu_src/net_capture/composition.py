@@ -49,6 +49,7 @@ class Composition:
     wall_plane       the node plane of what lies in the canister, where its wall holds on to it
     self_contact_plane       the first of those of threads that touch each other
     density_of(p, strip)     of the material of a strip [kg/m3]
+    books_turn       whether what the release gives the chaser of angular momentum is booked, see `release.BOOKED`
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
@@ -63,6 +64,7 @@ class Composition:
 
         self.model, self.terms = model, terms
         self._tables = model.interface(terms).tables
+        self.books_turn = any(v.name == "chaser.spin[#]" for v in model.interface(terms).variables)
         self._codes = {fault.name: fault.code for fault in model.faults}
         self.needs = needs = self._term("solver").checks
         self.traits = traits = self._term("substeps").checks

@@ -15,7 +15,7 @@ from fmu_src.net_capture.planes import INVERSE_MASS, MASS, SHOWN, U, X
 from fmu_src.net_capture.refusal import Refusal, Scene, text
 from fmu_src.net_capture.rigging import at_bullets, riggings
 from orbital.kernel import kernel
-from orbital.vectors import dot
+from orbital.vectors import cross, dot
 
 NO_AXIS = fault(
     "no_axis", "shot.axis[1]", "the chaser stands in the target's centre of mass, and shot.axis names no direction"
@@ -87,9 +87,9 @@ def make_shot(composition: Any) -> Shot:
     memory = composition.memory
     node_plane, bullets, apex = memory.node_plane, memory.bullets, memory.apex
     has_ejection, has_spin = composition.ejection is not None, composition.spin is not None
-    has_wall = composition.wall is not None
+    books_turn = composition.books_turn
     aim_each = composition.ejection.aim if has_ejection else None
-    turn = composition.spin.turn if has_spin else None
+    spin = composition.spin.turn if has_spin else None
 
     @kernel
     def load(p, work):
@@ -129,23 +129,24 @@ def make_shot(composition: Any) -> Shot:
     def shoot(p, work):
         """Every node moves with the chaser, and a bullet away from it, along the diagonal to its place in the open net.
 
-        Checked  tests/net_capture/test_free_flight.py
+        Checked  tests/net_capture/test_free_flight.py; test_folding.py: what the chaser is turned by
         """
         mass = node_plane(p, work, MASS)
         for axis in range(3):
             velocity = node_plane(p, work, U + axis)
             for i in range(p.node_slots):
                 velocity[i] = p.chaser_start_velocity[axis] if mass[i] > 0.0 else 0.0
-        if has_ejection or has_spin or has_wall:
+        if books_turn:
             for axis in range(3):
                 p.chaser_turned[axis] = 0.0
         if has_spin:
-            turn(p, work)
+            spin(p, work)
         if has_ejection:
             aim_each(p, work)
             return
         forward = p.bullets_speed * math.cos(p.bullets_angle)
         outward = p.bullets_speed * math.sin(p.bullets_angle)
+        place, given, turn = p.scratch[0:3], p.scratch[3:6], p.scratch[6:9]
         for corner in range(p.net_corners):
             node = bullets(p, work)[corner]
             along = 1.0 * node_plane(p, work, SHOWN)[node]
@@ -153,7 +154,14 @@ def make_shot(composition: Any) -> Shot:
             diagonal = math.sqrt(along * along + across * across)
             for axis in range(3):
                 away = (along * p.axes[axis] + across * p.axes[3 + axis]) / diagonal
-                node_plane(p, work, U + axis)[node] += forward * p.axes[6 + axis] + outward * away
+                given[axis] = forward * p.axes[6 + axis] + outward * away
+                node_plane(p, work, U + axis)[node] += given[axis]
+            if books_turn:
+                for axis in range(3):
+                    place[axis] = node_plane(p, work, X + axis)[node] - p.muzzle[axis]
+                cross(turn, place, given)
+                for axis in range(3):
+                    p.chaser_turned[axis] -= mass[node] * turn[axis]
 
     return Shot(load, jitter, shoot)
 

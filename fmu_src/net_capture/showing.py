@@ -29,7 +29,7 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     has_bending, has_wall, wall = parts.bending is not None, parts.wall is not None, parts.wall
     has_table, table = parts.sliding is not None, parts.sliding
     has_self = parts.self_contact is not None
-    books_turn = parts.ejection is not None or parts.spin is not None or has_wall
+    books_turn = parts.books_turn
     has_wrap, follows = parts.wrap is not None, parts.pace is not None
     has_ejection, ejection = parts.ejection is not None, parts.ejection
     gravity, scheme, peaks = parts.gravity, parts.scheme, parts.peaks

@@ -149,9 +149,12 @@ def test_a_shot_from_it_opens(pattern):
     net = Instance(MODEL, FREE | {"folding": pattern}, values).initialise()
     assert net["energy.elastic"] == 0.0
     shot = np.linalg.norm(net.array("catch_velocity")) * net["catch.mass"]
+    reach = np.linalg.norm(net.array("chaser_position")) + 0.5
+    assert np.abs(net.array("chaser_spin")).max() > 1e-3 * shot * 0.25, "bullets lie unevenly in the canister"
     for _ in range(10):
         net.step(0.6)
         assert np.abs(net.array("momentum")).max() < 1e-12 * shot
+        assert np.abs(net.array("angular_momentum")).max() < 1e-12 * shot * reach, "as before the shot"
     assert net["mouth.area_max"] > 0.9 * 144.0
     assert abs(net["energy.remainder"]) < 0.01 * 9.0
 

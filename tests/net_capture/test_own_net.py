@@ -126,8 +126,12 @@ def test_no_two_threads_alike_against_an_independent_integration():
         np.add.at(force, b, -pull)
         return np.concatenate([v.ravel(), (force / mass[:, None]).ravel()])
 
+    turned = -(mass[:, None] * np.cross(start - net.array("chaser_position"), velocity)).sum(axis=0)
+    assert np.abs(turned).max() > 0.1, "corners lie unevenly"
+    np.testing.assert_allclose(net.array("chaser_spin"), turned, rtol=0.0, atol=1e-12)
     for _ in range(50):
         net.step(0.01)
+    np.testing.assert_allclose(net.array("angular_momentum"), 0.0, rtol=0.0, atol=1e-10)
     found = solve_ivp(
         rates,
         (0.0, 0.5),

@@ -28,6 +28,7 @@ from fmu_src.net_capture.folding.zigzag import (
 )
 from fmu_src.net_capture.planes import SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.release import BOOKED
 from fmu_src.rows import positive
 from orbital.kernel import kernel
 
@@ -102,6 +103,7 @@ PART = Term(
     (
         positive("canister.width", "m", "of the canister, square across the shot", 0.3),
         positive(DEPTH, "m", "of the canister, along the shot", 0.3),
+        *BOOKED,
     ),
     faults=(TOO_WIDE, TOO_DEEP),
     make=make,

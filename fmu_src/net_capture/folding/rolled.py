@@ -22,6 +22,7 @@ from fmu_src.net_capture.folding.spiral import CANISTER, KEPT, RADIUS, spiral_le
 from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, extremes, fold_width, make_spans, zigzag
 from fmu_src.net_capture.planes import SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.release import BOOKED
 from orbital.kernel import kernel
 
 CORE = 0.25
@@ -104,7 +105,7 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
 
 PART = Term(
     "folded to and fro along one axis and rolled up along the other, into a cylindrical canister",
-    CANISTER,
+    (*CANISTER, *BOOKED),
     faults=(TOO_DEEP, TOO_ROOMY),
     make=make,
     checks=Checks(lambda values, net: values[RADIUS], volume),

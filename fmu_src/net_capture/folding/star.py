@@ -29,6 +29,7 @@ from fmu_src.net_capture.folding.spiral import CANISTER, KEPT, RADIUS, turned, v
 from fmu_src.net_capture.folding.zigzag import DEPTH, TOO_DEEP, extremes, fold_width, zigzag
 from fmu_src.net_capture.planes import MASS, SHOWN, X
 from fmu_src.net_capture.refusal import Refusal, Scene
+from fmu_src.net_capture.release import BOOKED
 from orbital.kernel import kernel
 
 SPREAD = 0.45
@@ -170,7 +171,7 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
 
 PART = Term(
     "drawn into a star with a bullet at the tip of each arm, which are wound up together, into a cylindrical canister",
-    CANISTER,
+    (*CANISTER, *BOOKED),
     faults=(TOO_DEEP, TOO_SHORT),
     make=make,
     checks=Checks(lambda values, net: values[RADIUS], volume),

@@ -61,6 +61,7 @@ from fmu_src.net_capture.planes import (
 )
 from fmu_src.net_capture.planes import LONGEST_ROW as MOST_LANES
 from fmu_src.net_capture.planes import STIFFNESS as STRIP_STIFFNESS
+from fmu_src.net_capture.release import BOOKED
 from fmu_src.rows import state
 from orbital.kernel import kernel
 
@@ -256,6 +257,7 @@ PART = Term(
     (
         *(row for row in THREAD if row.name in _OF_MATERIAL),
         state("net.mesh", "m", "width of a square mesh that is nowhere narrower than the net's"),
+        *BOOKED,
     ),
     faults=(TOO_FINE,),
     tables=TABLES,

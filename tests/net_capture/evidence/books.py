@@ -15,9 +15,7 @@ be held against it: the largest difference is `sums`. Masses are parameters, whi
 
     momentum    largest |P - P0| over the momentum of the shot, without outer forces alone; P0 and L0 are those before
                 the shot, when chaser and catch are one: of parameters, with the spin of the target as it is first told
-    moment      largest |L - L0| over that times the farthest that a body is from the origin, likewise; where the shot
-                itself turns the bodies, since bullets lie unevenly in a canister and no spin of the chaser is booked,
-                `moment_flown` is what L has changed by since the first row, after the shot
+    moment      largest |L - L0| over that times the farthest that a body is from the origin, likewise
     course      under Hill's gravity, in which every body's equation is the same linear one: largest distance of the
                 centre of mass of all from its course in closed form, over how far the catch has flown
     open        largest |E0 + W - E - Q| over what came in, and `left` what that is in the end [J]
@@ -60,6 +58,7 @@ TOOK = (
     "tether.friction_loss",
     "wall.friction_loss",
     "table.friction_loss",
+    "self_contact.loss",
     "break.energy",
 )
 EARTH, RADIUS = 3.986004418e14, 6378137.0
@@ -159,8 +158,6 @@ def judged(of: Recorded) -> dict[str, Any]:
         first, turning = before(of)
         row["momentum"] = float(np.linalg.norm(momentum - first, axis=1).max()) / shot
         row["moment"] = float(np.linalg.norm(moment - turning, axis=1).max()) / (shot * farthest)
-        if row["moment"] > 1e-9:
-            row["moment_flown"] = float(np.linalg.norm(moment - moment[0], axis=1).max()) / (shot * farthest)
         told = np.abs(momentum + of.vector("pull_off.impulse") - of.vector("momentum")).max() / shot
         turned = np.abs(moment + of.vector("pull_off.angular_impulse") - of.vector("angular_momentum")).max()
         row["momentum_sums"] = max(float(told), float(turned) / (shot * farthest))
