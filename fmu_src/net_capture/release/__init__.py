@@ -18,5 +18,5 @@ BOOKED = (
     ),
     state("chaser_turned[#]", "N.m.s", "the same as far back as velocities are kept", shape=(3,)),
 )
-"""Rows of every part that turns the chaser. So do canisters, and nets of one's own: bullets in them may lie unevenly round
-the shot's axis."""
+"""Rows of every part that turns the chaser. So do canisters, and nets of one's own: their bullets may lie unevenly
+round the shot's axis."""
