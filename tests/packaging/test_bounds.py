@@ -35,16 +35,19 @@ except ModelFault as fault:
 """Of one phase, in four hundred steps, or up to where the model ends; one that another hands over to begins as its own
 defaults say."""
 OTHERS = (
-    ("table2-deorbit", "removal.level.detail=averaged", "removal.duration=300 d"),
-    ("table2-deorbit", "removal.level.detail=event_map", "removal.duration=12 h"),
-    ("tumbling-target", "removal.level.detail=settled"),
+    ("table2-deorbit", "removal", "removal.level.detail=averaged", "removal.duration=300 d"),
+    ("table2-deorbit", "removal", "removal.level.detail=event_map", "removal.duration=12 h"),
+    ("tumbling-target", "removal", "removal.level.detail=settled"),
+    ("table1-capture", "capture", "capture.net.mesh=2 m", "capture.self_contact.thickness=1 cm"),
+    ("conical-2m", "capture", "capture.folding.pattern=star", "capture.self_contact.duration=1 ms"),
+    ("planar-2m", "capture", "capture.bending.rigidity=1e-5 N.m2", "capture.wall.friction=0.2"),
 )
 """What no shipped scene has."""
 
 
 def phases() -> list[tuple[str, ...]]:
     own = [(name, one.name) for name in sorted(shipped()) for one in load(name).phases if one.main.fmu is None]
-    return own + [(scene, "removal", *settings) for scene, *settings in OTHERS]
+    return [*own, *OTHERS]
 
 
 @pytest.mark.evidence
