@@ -18,7 +18,7 @@ from dcone_cosim.scene.expected import LARGEST_INTEGER, TEXT, Unexpected
 from dcone_cosim.scene.mistakes import Mistake, unknown
 from dcone_cosim.scene.toml_lines import Path, dotted, given_at
 from dcone_cosim.scenes.fmus import Offer
-from dcone_cosim.scenes.keys import COMPONENT_KEYS, Key, Slot, key_of, phase_keys, read_value
+from dcone_cosim.scenes.keys import COMPONENT_KEYS, SOLVER, SOLVER_KEYS, Key, Slot, key_of, phase_keys, read_value
 from dcone_cosim.scenes.lines import keys_of, read_line
 from dcone_cosim.scenes.read_component import ReadComponent
 from dcone_cosim.scenes.tables import EXAMPLE, entries_of, table_of
@@ -354,6 +354,8 @@ def _unknown(part: ReadComponent, names: tuple[str, ...], value: object) -> Mist
     path, key = (*part.path, *names), names[-1]
     if names[0] == SHARED:
         return Mistake(path, value, f"the orbit is shared by the phases: write it as [{SHARED}]")
+    if names[0] == SOLVER and key in SOLVER_KEYS:
+        return Mistake(path, value, f"is that of all phases: write it under [{SOLVER}], outside the phase")
     group_name = _group_that_has(part, names)
     if group_name is not None:
         group = part.groups[group_name]

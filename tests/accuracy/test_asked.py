@@ -128,6 +128,7 @@ def test_nothing_is_chosen_that_a_part_of_the_scene_refuses(
         (["solver.acuracy=1 %"], "did you mean 'accuracy'"),
         (["solver.runs=4"], "solver.accuracy missing"),
         (["solver.accuracy=1 %", "solver.runs=0"], "must be at least 1"),
+        (['capture.solver.accuracy="1 %"'], "is that of all phases: write it under [solver]"),
     ],
 )
 @pytest.mark.usefixtures("entries")
