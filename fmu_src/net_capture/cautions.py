@@ -147,8 +147,7 @@ def after(values: Values, given: Collection[str], terms: Mapping[str, str], seen
     yield from _taken_back(seen)
     yield from _not_pulled(seen)
     yield from _passed(seen)
-    yield from _unforeseen(seen)
-    yield from _crowded(seen)
+    yield from _short_of_bound(seen)
 
 
 def _needs(terms: Mapping[str, str]) -> Needs:
@@ -171,26 +170,24 @@ def _unbalanced(values: Values, terms: Mapping[str, str], seen: Seen) -> Iterato
         )
 
 
-def _unforeseen(seen: Seen) -> Iterator[Caution]:
-    """A substep that followed the net, and was longer than what was taut then allows."""
-    margin = seen("solver.margin_least")
-    if margin is not None and margin.least < 1.0:
-        yield Caution(
+def _short_of_bound(seen: Seen) -> Iterator[Caution]:
+    """A substep longer than the bound of what turned out to be taut, or to touch."""
+    for name, so, instead in (
+        (
             "solver.margin_least",
-            f"a substep was {1.0 / margin.least:.3g} times the bound of the threads that were taut in truth: choose a "
-            "smaller solver.step_ratio, or leave it out",
-        )
-
-
-def _crowded(seen: Seen) -> Iterator[Caution]:
-    """More threads in contact at one node than the substep allows for."""
-    margin = seen("self_contact.margin_least")
-    if margin is not None and margin.least < 1.0:
-        yield Caution(
+            "a substep was {} times the bound of the threads that were taut in truth",
+            "leave it out",
+        ),
+        (
             "self_contact.margin_least",
-            f"so many threads touched at one node that a substep was {1.0 / margin.least:.3g} times the bound: choose "
-            "a smaller solver.step_ratio, or a longer self_contact.duration",
-        )
+            "so many threads touched at one node that a substep was {} times the bound",
+            "a longer self_contact.duration",
+        ),
+    ):
+        margin = seen(name)
+        if margin is not None and margin.least < 1.0:
+            times = f"{1.0 / margin.least:.3g}"
+            yield Caution(name, f"{so.format(times)}: choose a smaller solver.step_ratio, or {instead}")
 
 
 def _passed(seen: Seen) -> Iterator[Caution]:

@@ -15,6 +15,7 @@ from fmu_src.net_capture.graph import make_graph
 from fmu_src.net_capture.numbering import make_numbering
 from fmu_src.net_capture.peaks import make_peaks
 from fmu_src.net_capture.planes import NODE_PLANES, make_memory
+from fmu_src.net_capture.release import BOOKED
 from fmu_src.net_capture.rigging import riggings
 from fmu_src.net_capture.self_contact.reaches import PLANES as SELF_PLANES
 from fmu_src.net_capture.self_contact.segments import stiffening
@@ -64,7 +65,7 @@ class Composition:
 
         self.model, self.terms = model, terms
         self._tables = model.interface(terms).tables
-        self.books_turn = any(v.name == "chaser.spin[#]" for v in model.interface(terms).variables)
+        self.books_turn = BOOKED[0] in model.interface(terms).variables
         self._codes = {fault.name: fault.code for fault in model.faults}
         self.needs = needs = self._term("solver").checks
         self.traits = traits = self._term("substeps").checks
