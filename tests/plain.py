@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import math
 from collections.abc import Callable, Mapping, Sequence
+from ctypes import c_double, c_int64
 from functools import cache
 from operator import attrgetter
 from typing import Any
@@ -18,6 +20,7 @@ from fmu_src import instance
 from fmu_src.instance import Instance
 from fmu_src.interface import Model, Value
 from fmu_src.lanes import REALS, of
+from fmu_src.tables import ROW
 from orbital.kernel import Kernel
 
 
@@ -117,7 +120,18 @@ def _written_out(made: _Intrinsic, *arguments: Any) -> Any:
         return arguments[0].view(as_dtype(kind)).view(_Words)
     if name in OF_A_WIDTH:
         return OF_A_WIDTH[name](*_width(made), *arguments)
+    if name == "table_at":
+        return _table(
+            int(arguments[0]), **{n: inspect.getclosurevars(made._defn).nonlocals[n] for n in ("place", "dimensions")}
+        )
     return INTRINSICS[name](*arguments)
+
+
+def _table(address: int, place: int, dimensions: int) -> np.ndarray:
+    """One of the tables in the block at an address, see `fmu_src.tables.block`."""
+    first, *extents = (c_int64 * (1 + dimensions)).from_address(address + 8 * ROW * place)
+    size = c_double * math.prod(extents)
+    return np.frombuffer(size.from_address(address + 8 * first)).reshape(extents)
 
 
 @cache

@@ -1,16 +1,15 @@
-"""Round which of several convex bodies a thread bends: that round which its way is the longest.
+"""Round which of several convex bodies a thread bends, and in which order.
 
-A union is made of convex bodies (`shapes/hulls.py`). Round the whole of it the shortest way is at least as long as that
-round any of them, so of these ways the longest is the nearest to it from below, and it is continuous where the thread
-goes over from one body to another: no energy comes or goes there. A thread that truly bends over two bodies at once is
-taken for one that bends over the one which asks more of it, and lies in the other as deep as that lets it. The way is
-continuous there, its slope is not: a light node in such a kink swings across it within few substeps and gains energy,
-3 % of all in the scene `big-panel-wrapped`.
+A union is made of convex bodies (`shapes/hulls.py`). The way of a thread is the shortest that goes through none of
+them, on the side on which it came to lie: it visits one body after another (`visits.py`). A body that comes to lie
+across a piece of it is visited from then on, between the bends at both ends of that piece, and one from which it has
+lifted off no more; both happen where it does not bend there, so neither the way nor its slope jumps.
 
-Of every body that lies across a thread it is remembered on which side it lies, over up to `SLOTS` of them. A body that
-comes to lie across a thread which bends already is met on the side of that bend, if the thread may have come there, and
-else on that of its own faces. A way round a body that a taut thread could not have come to
-in a substep is one that has gone through it, and this body alone is left out until the thread is clear of it.
+An edge that runs into another body ends there. A way that is drawn to such an end is held by the concave corner, unless
+the edge goes on as that of the other body: then it goes over to that.
+
+A body that could not have come to lie across a taut thread in a substep is one that the thread has gone through, and
+this alone is left out until the thread is clear of it.
 
 Checked  tests/net_capture/test_union_wrapping.py
 """
@@ -20,27 +19,39 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from fmu_src.net_capture import visit_list as of
+from fmu_src.net_capture.contact.section import LEAN, make_section
 from fmu_src.net_capture.lying import Lie
-from fmu_src.net_capture.near import BENT, CHAIN_WORDS, FACE_BITS, FINE, JUMP, PACKED, SHARE, WAY
+from fmu_src.net_capture.near import BENT, FINE, JUMP, SHARE, WAY
 from fmu_src.net_capture.planes import P, X
-from fmu_src.net_capture.shapes.hulls import FIRST, MIDDLE, NUMBER, RADIUS
+from fmu_src.net_capture.shapes.hulls import MIDDLE, RADIUS
+from fmu_src.net_capture.visits import make_visits
 from orbital.kernel import kernel
 
-SLOTS = 4
-"""Bodies across one thread that are remembered."""
-SLOT = 2 + CHAIN_WORDS
-"""Whole numbers of each: its number from 1 on, less than 0 where the thread has gone through it and 0 for none; over
-how many edges it bends, and the faces between them."""
-KEPT = 1 + SLOTS * SLOT
-"""Whole numbers kept of each thread behind those that any has: the body round which it bends, from 1 on, and these."""
+KEPT = of.KEPT
+"""Whole numbers kept of each thread behind those that any has."""
+STEP = 1e-3
+"""Metres by which a way may become longer at once where it goes over from body to body: their faces, and what ways lie
+below them, do not fit together better."""
+MEETINGS = 2 * of.VISITS
+"""Bodies that a thread may meet in one substep."""
+SIDES = 3
+"""Of a body on which a way may go round it, see `section`."""
+CORNERS = 24
+"""Corners over which a way may slide in one substep."""
+MARGIN = 0.01
+"""Metres that a way may be longer than it was to be, for bodies that are near."""
+GRAZES = 2e-6
+"""Metres by which a piece of the way may lie deeper in a body than a way round it."""
+LONGER = 1e-6
+"""Metres by which a way that goes over to another body may be longer."""
 
 
 class Rounds(NamedTuple):
     """Kernels of a thread among several bodies; what they find stands as `Lie` says.
 
-    seek(p, work, words, at, a, b, length)             how it lies now, and keep that; which body it bent round before,
-                                                       from 1 on, is in `wrap_round` then
-    again(p, work, words, at, a, b, place, rate)       how it lies by these planes, round the same body
+    seek(p, work, words, at, a, b, length)             how it lies now, and keep that
+    again(p, work, words, at, a, b, place, rate)       how it lies by these planes, round the same bodies
     """
 
     seek: Any
@@ -50,105 +61,221 @@ class Rounds(NamedTuple):
 def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
     """Kernels for the composition's target, behind so many whole numbers kept of each thread."""
     hulls, rubs = composition.target.shape.hulls, remember is not None
-    bodies_of, planes_of = hulls.bodies, hulls.planes
-    find, stand, straight_of, reckon, lose = lie.find, lie.stand, lie.straight, lie.reckon, lie.lose
+    bodies_of, stand, straight_of, reckon = hulls.bodies, lie.stand, lie.straight, lie.reckon
+    listed, cut = of.make_visit_list(), make_section(True).cut
+    recall, keep, name, owner, pass_through = listed.recall, listed.keep, listed.name, listed.owner, listed.remember
+    relax, length_of, ends, take, insert, replace = make_visits(hulls, lie, listed)
 
     @kernel
-    def take(p, body):
-        """Faces of a body into `wrap_planes`, unless they are there.
+    def gather(p, way):
+        """List the bodies near a way of that length [m] from `wrap_from` to `wrap_to`; how far all others are, at least
+        [m].
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        if p.wrap_body == body:
-            return
-        rows, planes = bodies_of(p), planes_of(p)
-        first = int(rows[body, FIRST])
-        p.wrap_faces = int(rows[body, NUMBER])
-        for face in range(p.wrap_faces):
-            for i in range(4):
-                p.wrap_planes[face, i] = planes[first + face, i]
-            p.wrap_covered[face] = int(planes[first + face, 4])
-        p.wrap_body = body
+        rows = bodies_of(p)
+        clear = math.inf
+        p.wrap_others_near = 0
+        for body in range(rows.shape[0]):
+            squared = 0.0
+            for i in range(3):
+                away = 0.5 * (p.wrap_from[i] + p.wrap_to[i]) - rows[body, MIDDLE + i]
+                squared += away * away
+            off = math.sqrt(squared) - rows[body, RADIUS] - 0.5 * way
+            if off > 0.0:
+                clear = min(clear, off)
+            elif p.wrap_others_near < of.OTHERS:
+                p.wrap_others[p.wrap_others_near] = body
+                p.wrap_others_near += 1
+        return clear
 
     @kernel
-    def slot_of(p, words, at, body):
-        """Where a body is remembered, -1: nowhere; 0 as the body finds a free place.
+    def apart(p):
+        """How far both ends of the way are apart [m].
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        for s in range(SLOTS):
-            place = at + (kept + 1 + SLOT * s) * p.wrap_numbers
-            if abs(words[place]) == body + 1 or (body < 0 and words[place] == 0):
-                return place
-        return -1
+        squared = 0.0
+        for i in range(3):
+            squared += (p.wrap_to[i] - p.wrap_from[i]) * (p.wrap_to[i] - p.wrap_from[i])
+        return math.sqrt(squared)
 
     @kernel
-    def recall(p, words, place):
-        """Over how many edges the thread bends there, the faces between them into `wrap_chain`.
+    def take_up(p, work, words, place, a, b, at, reach):
+        """The way of a thread between these nodes as it is kept, to where they are now; over how many edges it bends.
+
+        at         planes of places
+        reach      length that it may have [m]
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        edges = words[place + p.wrap_numbers]
-        for j in range(edges + 1):
-            word = words[place + (2 + j // PACKED) * p.wrap_numbers]
-            p.wrap_chain[j] = (word >> (FACE_BITS * (j % PACKED))) & ((1 << FACE_BITS) - 1)
+        stand(p, work, a, b, at)
+        for i in range(3):
+            p.wrap_from[i] = p.wrap_a[i]
+            p.wrap_to[i] = p.wrap_b[i]
+        p.wrap_far = gather(p, max(reach, straight_of(p)) + MARGIN)
+        recall(p, words, place)
+        if rubs:
+            name(p)
+            remember(p)
+        p.visits_lost = 0
+        p.visits_left = 0
+        return relax(p)
+
+    @kernel
+    def crosses(p, body, piece, edges):
+        """Whether a piece of the way goes through a body that is visited at neither of its ends; else `wrap_near` gets
+        no longer than how far it is from that, at least.
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        for side in range(2):
+            v, _ = owner(p, piece + side)
+            if v >= 0 and p.visit_body[v] == body:
+                p.wrap_near = 0.0
+                return False
+        ends(p, piece, edges)
+        take(p, body)
+        p.wrap_grazes = GRAZES
+        first, _, _ = cut(p)
+        p.wrap_grazes = 0.0
+        if first < 0:
+            p.wrap_near = min(p.wrap_near, p.wrap_clear)
+        return first >= 0
+
+    @kernel
+    def met(p, edges):
+        """Piece of the way that goes through a body, and that body; -1 where there is none. Bodies through which the
+        thread has gone are forgotten where it is clear of them. `wrap_near` gets how far it is from the others.
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        for n in range(p.wrap_others_near):
+            body = p.wrap_others[n]
+            through = -1
+            for s in range(p.visits_passed):
+                if p.visit_passed[s] == body:
+                    through = s
+            hit = -1
+            for piece in range(edges + 1):
+                if crosses(p, body, piece, edges):
+                    hit = piece
+                    break
+            if through < 0 and hit >= 0:
+                return hit, body
+            if through >= 0 and hit < 0:
+                p.visits_passed -= 1
+                p.visit_passed[through] = p.visit_passed[p.visits_passed]
+            elif through >= 0:
+                p.wrap_near = 0.0
+        return -1, -1
+
+    @kernel
+    def rate(p, work, a, b, edges):
+        """How fast the way gets longer [m/s].
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        _, _, going, _, _ = reckon(p, work, a, b, X, P, edges)
+        return going
+
+    @kernel
+    def meet(p, work, words, place, a, b, edges, length, expected, share):
+        """Let the way go round bodies that have come to lie across it; over how many edges it bends then.
+
+        edges      over how many it bends before
+        expected   length of the way as it was to be now             [m]
+        share      of what its ends make in a substep, by which it may be longer
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        for _ in range(MEETINGS):
+            p.wrap_near = math.inf
+            piece, body = met(p, edges)
+            if body < 0:
+                break
+            # of faces, wall and lean the first that is no longer than it may be; leans first where a visit has ended
+            before = max(expected, length_of(p, edges) if edges > 0 else expected)
+            keep(p, words, place)
+            found = 0
+            tried = 0
+            left = p.visits_left
+            for attempt in range(SIDES + 1):
+                side = (left + 2 * attempt) % SIDES
+                if side == LEAN and left == 0 and edges == 0:
+                    continue
+                if attempt > 0:
+                    recall(p, words, place)
+                    edges = relax(p)
+                p.visits_left = left
+                found = relax(p) if insert(p, piece, edges, body, side) else 0
+                if found > 0:
+                    tried += 1
+                    way = length_of(p, found)
+                    within = JUMP + share * p.solver_substep * abs(rate(p, work, a, b, found))
+                    if way <= before + max(within, STEP) or (attempt == SIDES and way <= length):
+                        break
+                    found = 0
+            if found == 0:
+                recall(p, words, place)
+                edges = relax(p)
+                pass_through(p, body)
+                if tried > 0:
+                    p.wrap_passed += 1
+            else:
+                edges = found
         return edges
 
     @kernel
-    def keep(p, words, place, mark, edges):
-        """Keep how the thread lies over a body.
+    def goes_on(p, words, place, bend, edges, body, own):
+        """Whether the way goes over another body in place of its own at a bend, no longer than now and without going
+        through its own; else it stays as it was. Over how many edges it bends then.
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        words[place] = mark
-        words[place + p.wrap_numbers] = edges
-        for n in range(CHAIN_WORDS):
-            words[place + (2 + n) * p.wrap_numbers] = 0
-        for j in range(edges + 1):
-            word = p.wrap_chain[j] << (FACE_BITS * (j % PACKED))
-            words[place + (2 + j // PACKED) * p.wrap_numbers] |= word
+        way = length_of(p, edges)
+        keep(p, words, place)
+        if not replace(p, bend, edges, body):
+            return False, edges
+        found = relax(p)
+        whole = found > 0 and length_of(p, found) <= way + LONGER
+        if whole:
+            for piece in range(found + 1):
+                whole = whole and not crosses(p, own, piece, found)
+        if not whole:
+            recall(p, words, place)
+            found = relax(p)
+        return whole, found
 
     @kernel
-    def apart(p, body, straight):
-        """How far the straight thread is from the sphere round a body, at least [m].
+    def go_over(p, words, place, edges):
+        """Let the way go over to another body where it is held at the end of an edge that goes on as that of the other.
+        Over how many edges it bends then.
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        row = bodies_of(p)[body]
-        squared = 0.0
-        for i in range(3):
-            away = 0.5 * (p.wrap_a[i] + p.wrap_b[i]) - row[MIDDLE + i]
-            squared += away * away
-        return math.sqrt(squared) - row[RADIUS] - 0.5 * straight
-
-    @kernel
-    def meet(p, work, a, b, expected, bent):
-        """Over how many edges a thread goes round a body that it has only just met: on the side of its faces, or, where
-        it bends round another already and may have come there, on the side of that bend.
-
-        expected   length of its way as it was to be now              [m]
-        bent       whether it bends round another
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        if bent:
-            p.wrap_leans = 1
-            edges = find(p, 0)
-            p.wrap_leans = 0
-            if edges > 0:
-                _, way, going, _, _ = reckon(p, work, a, b, X, P, edges)
-                if way <= expected + JUMP + SHARE * p.solver_substep * abs(going):
-                    return edges
-        return find(p, 0)
-
-    @kernel
-    def lean(p, edges):
-        """Where the way bends, from one end of the thread, into `wrap_lean` [m].
-
-        Checked  tests/net_capture/test_union_wrapping.py
-        """
-        for i in range(3):
-            p.wrap_lean[i] = p.wrap_bends[(edges + 1) // 2, i] - p.wrap_a[i]
+        v = 0
+        bend = 1
+        left = of.VISITS
+        while v < p.visits:
+            held = bend + p.visit_barred[v] - 1
+            own = p.visit_body[v]
+            over = False
+            if p.visit_barred[v] > 0 and left > 0:
+                for n in range(p.wrap_others_near):
+                    body = p.wrap_others[n]
+                    if body != own:
+                        over, edges = goes_on(p, words, place, held, edges, body, own)
+                        if over or v >= p.visits or p.visit_barred[v] == 0:
+                            break
+            if over:
+                left -= 1
+                v = 0
+                bend = 1
+            else:
+                bend += p.visit_edges[v]
+                v += 1
+        return edges
 
     @kernel
     def seek(p, work, words, at, a, b, length):
@@ -159,90 +286,49 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        stand(p, work, a, b, X)
-        straight = straight_of(p)
-        held = words[at + kept * p.wrap_numbers]
         bent = words[at] == BENT
-        expected = FINE * words[at + WAY * p.wrap_numbers] if bent else straight
-        best = -1
-        last = -1
-        longest = 0.0
-        clear = math.inf
-        p.wrap_round = held
-        for n in range(-1, bodies_of(p).shape[0]):
-            body = n if n >= 0 else held - 1
-            if body < 0 or (n >= 0 and n == held - 1):
-                continue
-            place = slot_of(p, words, at, body)
-            off = apart(p, body, straight)
-            edges = 0
-            if off <= 0.0 or place >= 0:
-                take(p, body)
-                if place < 0:
-                    edges = meet(p, work, a, b, expected, best >= 0)
-                else:
-                    edges = recall(p, words, place)
-                    if rubs and n < 0:
-                        remember(p)
-                    before = edges
-                    edges = find(p, before if words[place] > 0 else 0)
-                    if words[place] > 0:
-                        lose(p, before, edges, expected > length)
-                off = p.wrap_clear
-                if place >= 0 or off == 0.0:
-                    last = body
-            if edges == 0:
-                clear = min(clear, off)
-                if place >= 0:
-                    words[place] = 0
-                continue
-            clear = 0.0
-            if place >= 0 and words[place] < 0:
-                continue
-            if place < 0:
-                place = slot_of(p, words, at, -1)
-                if place < 0:
-                    p.wrap_passed_slack += 1
-                    continue
-            _, way, going, _, _ = reckon(p, work, a, b, X, P, edges)
-            within = JUMP + (SHARE if bent else SHARE + 2.0) * p.solver_substep * abs(going)
-            if way > length and way > expected + within:
-                keep(p, words, place, -1 - body, edges)
+        share = SHARE if bent else SHARE + 2.0
+        before = FINE * words[at + WAY * p.wrap_numbers] if bent else 0.0
+        place = at + kept * p.wrap_numbers
+        edges = take_up(p, work, words, place, a, b, X, before)
+        lost = p.visits_lost
+        straight = apart(p)
+        expected = before if bent else straight
+        for _ in range(CORNERS):
+            moved = p.visits_moved
+            edges = meet(p, work, words, place, a, b, edges, length, expected, share)
+            if moved == 0 and p.visits_moved == 0:
+                break
+            edges = relax(p)
+        edges = go_over(p, words, place, edges)
+        keep(p, words, place)
+        if rubs:
+            name(p)
+        p.wrap_clear = min(p.wrap_far, p.wrap_near) if edges == 0 else 0.0
+        if edges == 0:
+            if lost > 0 and expected > length:
                 p.wrap_passed += 1
-                continue
-            keep(p, words, place, 1 + body, edges)
-            if n < 0:
-                lean(p, edges)
-            if way > longest:
-                longest = way
-                best = body
-        p.wrap_clear = clear
-        words[at + kept * p.wrap_numbers] = best + 1
-        if best < 0:
+            elif lost > 0:
+                p.wrap_passed_slack += 1
             return 0, straight, 0.0, 0.0, 0.0
-        edges = recall(p, words, slot_of(p, words, at, best))
-        if last != best:
-            take(p, best)
-            edges = find(p, edges)
-            if edges == 0:
-                return 0, straight, 0.0, 0.0, 0.0
-        return reckon(p, work, a, b, X, P, edges)
+        found = reckon(p, work, a, b, X, P, edges)
+        if lost > 0 and expected <= length:
+            if found[1] < expected - JUMP - share * p.solver_substep * abs(found[2]):
+                p.wrap_passed_slack += 1
+        return found
 
     @kernel
     def again(p, work, words, at, a, b, place, rate):
-        """How a thread lies by these planes, round the body round which it bends.
+        """How a thread lies by these planes, round the bodies round which it bends.
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
-        body = words[at + kept * p.wrap_numbers] - 1
-        take(p, body)
-        edges = recall(p, words, slot_of(p, words, at, body))
-        stand(p, work, a, b, place)
+        before = FINE * words[at + WAY * p.wrap_numbers]
+        edges = take_up(p, work, words, at + kept * p.wrap_numbers, a, b, place, before)
         if rubs:
-            remember(p)
-        edges = find(p, edges)
+            name(p)
         if edges == 0:
-            return 0, straight_of(p), 0.0, 0.0, 0.0
+            return 0, apart(p), 0.0, 0.0, 0.0
         return reckon(p, work, a, b, place, rate, edges)
 
     return Rounds(seek, again)

@@ -56,7 +56,7 @@ class Capstan(NamedTuple):
     """Kernels of friction, of a thread whose way over so many edges is in `wrap_pieces` and `wrap_edges`.
 
     start(p)                                  nothing lost yet
-    remember(p)                               keep the faces in `wrap_chain`, before a way is found anew
+    remember(p)                               keep the names of its edges, before a way is found anew
     hold(p, words, at, edges, way, length, stiffness, known)  let it slide, and book that; elastic pulls into
                                               `wrap_pulls` [N]
     let_go(p, words, at)                      it is slack or straight
@@ -77,7 +77,8 @@ def rows() -> Iterator[Variable]:
     )
     yield peak("wrap.friction_loss", "J", "lost by threads that slid over edges along themselves")
     yield peak("wrap.slide", "m", "sum of all lengths of thread that slid over an edge")
-    yield count("wrap_before[#]", "faces over which a way went a substep ago", "state", shape=(MOST + 1,))
+    yield count("wrap_names[#]", "edges over which a way goes, by their bodies and faces", "state", shape=(MOST,))
+    yield count("wrap_before[#]", "edges over which it went a substep ago", "state", shape=(MOST,))
     for name, unit, text, rows in (
         ("parts", "m", "unstretched length in every piece of a way", MOST + 1),
         ("was", "m", "the same before it slides", MOST + 1),
@@ -103,12 +104,12 @@ def make_capstan() -> Capstan:
 
     @kernel
     def remember(p):
-        """Keep the faces over which the way went.
+        """Keep the edges over which the way went.
 
         Checked  tests/net_capture/test_capstan.py
         """
-        for j in range(MOST + 1):
-            p.wrap_before[j] = p.wrap_chain[j]
+        for j in range(MOST):
+            p.wrap_before[j] = p.wrap_names[j]
 
     @kernel
     def share(p, edges, way, length):
@@ -121,18 +122,18 @@ def make_capstan() -> Capstan:
 
     @kernel
     def shift_of(p, edges, before):
-        """By how many places the faces of the way stood farther on a substep ago; MOST + 1 where it is another way.
+        """By how many places the edges of the way stood farther on a substep ago; MOST + 1 where it is another way.
 
         Checked  tests/net_capture/test_capstan.py
         """
         for shift in range(1 - edges, before):
             alike = 0
-            for j in range(max(0, -shift), min(edges, before - shift) + 1):
-                if p.wrap_chain[j] != p.wrap_before[j + shift]:
+            for j in range(max(0, -shift), min(edges, before - shift)):
+                if p.wrap_names[j] != p.wrap_before[j + shift]:
                     alike = 0
                     break
                 alike += 1
-            if alike > 1:
+            if alike > 0:
                 return shift
         return MOST + 1
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.net_capture.contact.chain import KEPT, LOST, WOUND
 from fmu_src.net_capture.contact.edges import make_way
-from fmu_src.net_capture.contact.section import MOST
+from fmu_src.net_capture.contact.section import FACES, MOST
 from fmu_src.net_capture.planes import STRIP_WORDS, A, B
 from orbital.kernel import kernel
 from orbital.rotations import rotate, rotate_inverse
@@ -45,7 +45,7 @@ def make_lie(composition: Any, remember: Any) -> Lie:
     memory = composition.memory
     node_plane, strips = memory.node_plane, memory.strips
     rubs = remember is not None
-    find = make_way(composition.target.shape.hulls is not None)
+    find = make_way(composition.target.shape.hulls)
 
     @kernel
     def ends(p, work, code):
@@ -126,6 +126,15 @@ def make_lie(composition: Any, remember: Any) -> Lie:
         return edges, way, going, straight, closing
 
     @kernel
+    def name(p, edges):
+        """The edges of a way over the faces in `wrap_chain`, by these.
+
+        Checked  tests/net_capture/test_capstan.py
+        """
+        for j in range(edges):
+            p.wrap_names[j] = FACES * p.wrap_chain[j] + p.wrap_chain[j + 1]
+
+    @kernel
     def look(p, work, code, place, rate, edges):
         """How a thread lies now that bent over so many edges before, between the faces in `wrap_chain`.
 
@@ -134,8 +143,11 @@ def make_lie(composition: Any, remember: Any) -> Lie:
         a, b = ends(p, work, code)
         stand(p, work, a, b, place)
         if rubs:
+            name(p, edges)
             remember(p)
         edges = find(p, edges)
+        if rubs:
+            name(p, edges)
         if edges == 0:
             return 0, straight_length(p), 0.0, 0.0, 0.0
         return reckon(p, work, a, b, place, rate, edges)

@@ -24,11 +24,11 @@ LONGEST_LOOK = 200
 """Substeps after which they are in any case."""
 FREE, BENT, PASSED = range(3)
 """States of a thread: clear of the target; round an edge; through it."""
-STATE, WAY, CLEAR, EDGES, CHAIN, KEPT = 0, 1, 2, 3, 4, 7
+STATE, WAY, CLEAR, EDGES, CHAIN, KEPT = 0, 1, 2, 3, 4, 10
 """Whole numbers kept of each thread, one plane of them after another: its state, the length of its way a substep on,
 the substep up to which it is clear of the target, over how many edges it bends, and the faces between them, `PACKED` to
 a number."""
-PACKED, FACE_BITS = 6, 9
+PACKED, FACE_BITS = 7, 9
 CHAIN_WORDS = KEPT - CHAIN
 FINE = 1e-12
 """Metres: lengths are kept in picometres."""

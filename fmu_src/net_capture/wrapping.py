@@ -104,7 +104,7 @@ def make(composition: Any) -> Wrap:
     add_to_map = composition.force_map.add if has_map else None
     rubs = composition.terms["wrap"] == "friction"
     kept_of_way = WITH_FRICTION if rubs else KEPT
-    whole = kept_of_way + (bodies.KEPT if several else 0)
+    whole, step = kept_of_way + (bodies.KEPT if several else 0), bodies.STEP if several else 0.0
     words, list_at, list_near, recall, keep = make_near(composition, whole)
     begin, remember, hold, let_go, stretch_held = make_capstan() if rubs else (None,) * 5
     lie = make_lie(composition, remember)
@@ -129,6 +129,7 @@ def make(composition: Any) -> Wrap:
         if several:
             p.wrap_body = -1
             p.wrap_leans = 0
+            p.wrap_others_near = 0
         else:
             p.wrap_faces = faces(p, p.wrap_planes)
         if rubs:
@@ -136,13 +137,13 @@ def make(composition: Any) -> Wrap:
 
     @kernel
     def slip(p, before, way, length, stiffness):
-        """Book what a taut thread loses as its way gets shorter at once [J].
+        """Book what a taut thread loses as its way gets shorter at once, or gains by a step from body to body [J].
 
         Checked  tests/net_capture/test_wrapping.py
         """
-        kept = max(0.0, way - length)
+        held, kept = max(0.0, before - length), max(0.0, way - length)
         p.wrap_slipped += 1
-        p.wrap_slip_loss += 0.5 * stiffness * ((before - length) * (before - length) - kept * kept)
+        p.wrap_slip_loss += 0.5 * stiffness * (held * held - kept * kept)
 
     @kernel
     def follow(p, words, at, edges, way, going, straight, length, stiffness):
@@ -166,10 +167,10 @@ def make(composition: Any) -> Wrap:
             within += 2.0 * p.solver_substep * abs(going)
             words[at] = BENT
         if before != PASSED:
-            if way > length and way > expected + within:
+            if way > length and way > expected + max(within, step):
                 words[at] = PASSED
                 p.wrap_passed += 1
-            elif expected > length and way < expected - within:
+            elif (way > length and way > expected + within) or (expected > length and way < expected - within):
                 slip(p, expected, way, length, stiffness)
         words[at + WAY * p.wrap_numbers] = np.int64((way + p.solver_substep * going) / FINE)
         if several:
@@ -225,7 +226,6 @@ def make(composition: Any) -> Wrap:
             known, slips = words[kept] == BENT, p.wrap_slipped
             if several:
                 edges, way, going, straight, closing = seek(p, work, words, kept, a, b, length)
-                known = known and p.wrap_round == words[kept + kept_of_way * p.wrap_numbers]
             else:
                 edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
                 if known:

@@ -1,5 +1,6 @@
 """Friction of threads that bend over edges: what holds, what slides, and what that takes."""
 
+import itertools
 import math
 from types import SimpleNamespace
 
@@ -260,7 +261,10 @@ def test_a_piece_keeps_what_it_holds_as_edges_come_and_go(chain, lengths, parts)
     words[HELD], words[PARTS : PARTS + 2] = 3, np.round(np.array((0.3, 0.5)) / FINE)
     planes = {f"wrap_{name}": np.zeros(MOST + 1) for name in ("was", "parts", "pulls", "drags")}
     planes |= {"wrap_spans": np.zeros((MOST, 4)), "wrap_edges": np.zeros((MOST, 3))}
-    p = SimpleNamespace(wrap_numbers=1, wrap_before=np.array((5, 1, 3)), wrap_chain=np.array(chain), **planes)
+    names = {"wrap_before": np.array(((5, 1), (1, 3))), "wrap_names": np.array(list(itertools.pairwise(chain)))}
+    p = SimpleNamespace(
+        wrap_numbers=1, **{name: 10 * faces[:, 0] + faces[:, 1] for name, faces in names.items()}, **planes
+    )
     p.wrap_pieces = np.array([(0.0, 0.0, 0.0, length) for length in lengths])
     energy = make_capstan().stretch(p, words, 0, len(chain) - 1, sum(lengths), 1.0, 100.0)
     assert p.wrap_parts[: len(parts)] == pytest.approx(np.array(parts), abs=1e-12)

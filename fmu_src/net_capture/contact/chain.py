@@ -15,7 +15,11 @@ from orbital.vectors import dot
 
 ABOVE = 1e-9
 """Metres above a face from where it is seen."""
+IN_PLANE = 1e-6
+"""Metres below a face from where it is taken for seen, among several bodies."""
 
+MORE = 6
+"""Edges that may come to a way round one of several bodies in one search."""
 MANY = 4
 """Edges from which on a way may go round more than half of a body."""
 KEPT, LOST, WOUND = range(3)
@@ -40,8 +44,12 @@ class Chain(NamedTuple):
     uncover: Any
 
 
-def make_chain(lay: Any) -> Chain:
-    """Kernels; `lay(p, j, one, other)` of `edges` puts an edge between two faces."""
+def make_chain(lay: Any, several: bool) -> Chain:
+    """Kernels; `lay(p, j, one, other)` of `edges` puts an edge between two faces.
+
+    several    whether an end may be a bend round another body, in the plane of a face
+    """
+    least = -IN_PLANE if several else ABOVE
 
     @kernel
     def sees(p, face, end):
@@ -50,7 +58,7 @@ def make_chain(lay: Any) -> Chain:
         Checked  tests/net_capture/test_wrapping.py
         """
         plane = p.wrap_planes[face]
-        return dot(plane[0:3], end) - plane[3] + p.wrap_inset > ABOVE
+        return dot(plane[0:3], end) - plane[3] + p.wrap_inset > least
 
     @kernel
     def lift(p, edges):
@@ -112,6 +120,17 @@ def make_chain(lay: Any) -> Chain:
         return found
 
     @kernel
+    def covers(p, face):
+        """Whether a face lies in another body, so that no way comes over it: the other is in the way then.
+
+        Checked  tests/net_capture/test_union_wrapping.py
+        """
+        covered = False
+        if several:
+            covered = p.wrap_covered[face] > 0
+        return covered
+
+    @kernel
     def lengthen(p, edges):
         """Put faces before the first that one end does not see, and after the last that the other does not. Works on
         `wrap_chain`; how many edges there are then, 0 where no such face joins. Where it is wound over more edges than
@@ -120,12 +139,16 @@ def make_chain(lay: Any) -> Chain:
         Checked  tests/net_capture/test_wrapping.py
         """
         chain, point = p.wrap_chain, p.wrap_up
+        most = min(edges + MORE, MOST) if several else MOST
         for way in range(2):
             end, other = (p.wrap_a, p.wrap_b) if way == 0 else (p.wrap_b, p.wrap_a)
+            before = edges
             while not sees(p, chain[0 if way == 0 else edges], end):
                 if edges == MOST:
                     p.wrap_lost = WOUND
                     break
+                if edges == most:
+                    return 0
                 for i in range(3):
                     point[i] = other[i]
                 if edges > 0:
@@ -134,9 +157,15 @@ def make_chain(lay: Any) -> Chain:
                         return 0
                     for i in range(3):
                         point[i] = p.wrap_feet[0, i] + p.wrap_spans[0, TAU] * p.wrap_edges[0, i]
+                    if several:
+                        if edges == before and p.wrap_once > 0:
+                            for i in range(3):
+                                point[i] = p.wrap_bent[way, i]
                 face = come_in(p, end, point)
                 if face < 0:
                     return 0
+                if covers(p, face):
+                    break
                 edges += 1
                 if way == 0:
                     for j in range(edges, 0, -1):

@@ -21,6 +21,7 @@ import math
 from typing import Any
 
 from fmu_src.net_capture.contact.chain import KEPT, LOST, make_chain
+from fmu_src.net_capture.contact.hidden import make_hide
 from fmu_src.net_capture.contact.section import MOST, make_section
 from fmu_src.net_capture.contact.shortest import HIGH, LOW, SLOPE, TAU, along, make_shortest
 from orbital.kernel import kernel
@@ -40,14 +41,17 @@ BEYOND = 1e-4
 """Metres from a corner over which it has slid, where a way begins."""
 
 
-def make_way(leans: bool = False) -> Any:
+def make_way(hulls: Any = None) -> Any:
     """Kernel `find(p, edges) -> edges` of the way from `wrap_a` to `wrap_b` in body axes, by the faces `wrap_chain`
     over which it went before, one more than edges; 0: none are known.
 
-    leans     see `make_section`; over the end of an edge it slides onto no face that is covered
+    hulls     of a union (`shapes.Hulls`): what an edge is within another body is no edge, see `hide`, and over its end
+              the way slides onto no face that is covered; for `wrap_leans` see `make_section`
 
     Checked  tests/net_capture/test_wrapping.py
     """
+    leans = hulls is not None
+    hide = make_hide(hulls)
     section, settle = make_section(leans), make_shortest()
     cut, upright, over = section.cut, section.upright, section.over
 
@@ -92,12 +96,15 @@ def make_way(leans: bool = False) -> Any:
                     low = below / rises
                     pair[2] = k
                 beside = beside or (leans and abs(rises) <= PARALLEL and below < -TOGETHER)
-        p.wrap_spans[j, TAU] = min(max(middle, low), high)
         p.wrap_spans[j, LOW] = low
         p.wrap_spans[j, HIGH] = high
+        hide(p, j)
+        low = p.wrap_spans[j, LOW]
+        high = p.wrap_spans[j, HIGH]
+        p.wrap_spans[j, TAU] = min(max(middle, low), high)
         return low <= high + TOGETHER and not beside
 
-    chain = make_chain(lay)
+    chain = make_chain(lay, leans)
     sees, trim, lift, lengthen, uncover = chain.sees, chain.trim, chain.lift, chain.lengthen, chain.uncover
 
     @kernel
@@ -194,13 +201,14 @@ def make_way(leans: bool = False) -> Any:
 
     @kernel
     def barred(p, face):
-        """Whether the way may not slide onto a face, because it lies in another body.
+        """Whether the way may not slide over the end of an edge onto a face there, because that lies in another
+        body, or the end does (face -1).
 
         Checked  tests/net_capture/test_union_wrapping.py
         """
         covered = False
         if leans:
-            covered = p.wrap_covered[face] > 0
+            covered = face < 0 or p.wrap_covered[face] > 0
         return covered
 
     @kernel
@@ -217,12 +225,11 @@ def make_way(leans: bool = False) -> Any:
                 return edges - 1
         for j in range(edges):
             span, pair = p.wrap_spans[j], p.wrap_pairs[j]
-            face = -1
             if span[TAU] <= span[LOW] and span[SLOPE] > PUSH:
                 face = pair[2]
             elif span[TAU] >= span[HIGH] and span[SLOPE] < -PUSH:
                 face = pair[3]
-            if face < 0:
+            else:
                 continue
             if barred(p, face):
                 continue
@@ -302,6 +309,10 @@ def make_way(leans: bool = False) -> Any:
         """
         known = edges > 0
         p.wrap_lost = KEPT
+        rounds = ROUNDS
+        if leans:
+            p.wrap_slid = 0
+            rounds = 2 if p.wrap_once > 0 else ROUNDS
         first, last, middle = cut(p)
         if first < 0:
             if not known:
@@ -329,13 +340,15 @@ def make_way(leans: bool = False) -> Any:
                 lay_all(p, edges)
         for i in range(3):
             p.wrap_bends[0, i] = p.wrap_a[i]
-        for n in range(ROUNDS):
+        for n in range(rounds):
             for i in range(3):
                 p.wrap_bends[edges + 1, i] = p.wrap_b[i]
             settle(p, edges)
-            slid = slide(p, edges) if n + 1 < ROUNDS else 0
+            slid = slide(p, edges) if n + 1 < rounds else 0
             if slid == 0:
                 break
+            if leans:
+                p.wrap_slid = 1
             note(p, slid)
             edges = trim(p, slid) if first >= 0 else lift(p, slid)
             if edges == 0 and first < 0:

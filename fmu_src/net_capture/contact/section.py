@@ -17,22 +17,25 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from fmu_src.net_capture.shapes.hulls import INSET
 from orbital.kernel import kernel
 from orbital.vectors import dot
 
 FACES = 336
 """Faces that a body may have."""
-MOST = 16
+MOST = 40
 """Edges that a way may go over."""
-INSET = 2e-3
-"""Metres that a way lies below the surface: so one between two nodes of a face, which lie on it or a little below,
-does not touch it, and no bend comes nearer to a node. An edge is as one rounded to 7 mm."""
 PARALLEL = 1e-9
 """Sine of the angle of two faces that do not meet."""
 OVER = 1e-9
 """Metres that a point of the surface may seem to lie above it."""
 FAR = 1e3
 """Radii of the body away: where parallel faces meet."""
+
+
+FACES_MET, LEAN, WALL = range(3)
+"""Sides on which a way goes round one of several bodies: that of the faces through which the straight one goes, that of
+`wrap_lean`, and that of the wall nearest to its middle."""
 
 
 class Section(NamedTuple):
@@ -52,7 +55,7 @@ class Section(NamedTuple):
 def make_section(leans: bool) -> Section:
     """Kernels of the section.
 
-    leans     whether `wrap_leans` may ask for the side of `wrap_lean`, and faces marked in `wrap_covered` lie in other
+    leans     whether `wrap_leans` says on which side, see `FACES_MET`, and faces marked in `wrap_covered` lie in other
               bodies, so that no thread comes to lie over them
     """
 
@@ -89,6 +92,8 @@ def make_section(leans: bool) -> Section:
             return -1, -1, 0.0
         p.wrap_inset = 0.0
         p.wrap_inset = max(INSET, max(-above(p, a), -above(p, b)))
+        if leans:
+            p.wrap_inset += p.wrap_grazes
         for i in range(3):
             line[i] /= length
         first = -1
@@ -123,14 +128,16 @@ def make_section(leans: bool) -> Section:
         """
         line, up, planes = p.wrap_line, p.wrap_up, p.wrap_planes
         wall = nearest_wall(p, first, last, middle)
+        bare, met = 1.0, 1.0
         for attempt in range(2):
             if leans:
-                if attempt == 0 and p.wrap_leans == 0 and p.wrap_covered[first] + p.wrap_covered[last] > 0:
+                bare, met = 1.0 - p.wrap_covered[first], 1.0 - p.wrap_covered[last]
+                if attempt == 0 and p.wrap_leans != LEAN and (p.wrap_leans == WALL or bare + met == 0.0):
                     continue
             for i in range(3):
-                up[i] = planes[first, i] + planes[last, i] if attempt == 0 else planes[wall, i]
+                up[i] = bare * planes[first, i] + met * planes[last, i] if attempt == 0 else planes[wall, i]
                 if leans:
-                    if p.wrap_leans != 0 and attempt == 0:
+                    if p.wrap_leans == LEAN and attempt == 0:
                         up[i] = p.wrap_lean[i]
             along = dot(up, line)
             for i in range(3):
@@ -217,13 +224,15 @@ def make_section(leans: bool) -> Section:
         edges = 1
         if leans:
             if p.wrap_covered[first] + p.wrap_covered[last] > 0:
-                top = first
+                top = -1
                 for i in range(p.wrap_faces):
-                    if p.wrap_covered[i] == 0 and i != last and (top == first or flat[i, 1] > flat[top, 1]):
+                    if p.wrap_covered[i] == 0 and (top < 0 or flat[i, 1] > flat[top, 1]):
                         top = i
+                if top < 0 or top in (first, last):
+                    return 1
                 chain[1] = top
                 chain[2] = last
-                return 2 if top != first else 1
+                return 2
         at = 0
         while at < edges:
             one, other = chain[at], chain[at + 1]

@@ -5,8 +5,7 @@ A body lies within its piece. A box is itself, round pieces are polyhedra as rou
 chord of the outside, the inner one a tangent of the inside.
 
 Ways lie a little below the faces of a body. Where one body stands on another, a gap would be left between the two, into
-which a thread could slip: a face that is covered by other bodies is moved out into them, by as much as all of it stays
-inside, and where it is covered in its middle alone, by as much as closes the gap.
+which a thread could slip: a face that is covered by other bodies is moved out into them by as much as closes it.
 
 Checked  tests/net_capture/test_union_wrapping.py
 """
@@ -30,19 +29,18 @@ Array = npt.NDArray[np.float64]
 BODY = 6
 """Numbers of a body: where its faces begin, how many it has, middle and radius of a sphere around it [m]."""
 FIRST, NUMBER, MIDDLE, RADIUS = 0, 1, 2, 5
+INSET = 2e-3
+"""Metres that a way lies below the surface: so one between two nodes of a face, which lie on it or a little below,
+does not touch it, and no bend comes nearer to a node. An edge is as one rounded to 7 mm."""
 COARSE, FEWEST, THIN = 1e-3, 8, 4e-3
 """Metres by which the faces of a round piece may lie within it, half of what ways do; and by which these few may, of a
 thin one: a thread may be wound round it for two turns then, as far as edges are kept."""
 SAGITTA, FLAT = 0.2, 0.009
 """Of a shell's thickness, and of its radius, by which a slab may lie within it at most."""
-STEPS = (0.004, 0.008, 0.016, 0.03, 0.06, 0.12, 0.25)
-"""Metres by which a covered face may be moved out."""
 STAYS = 1.5e-3
 """Metres by which a face moved out may stand out of what covers it, less than what ways lie below the surface."""
-SHARES = (0.02, 0.35, 0.65)
-"""Shares of the way to its middle at which points of a face are looked at, the first of which move it."""
-MOSTLY = 0.5
-"""Share of these outside by which it is not covered: no thread comes to lie over the rest of a covered face."""
+NEARLY = 0.02
+"""Share of the way to its middle, from its corners and from between them, at which a face is looked at."""
 
 
 class Body(NamedTuple):
@@ -136,18 +134,13 @@ def _moved_out(body: Body, distance: Callable[[Array], float]) -> tuple[Array, A
     """Faces of a body, those that are covered moved out, and which are; `distance(point)` from the union [m]."""
     faces, covered = body.faces.copy(), np.zeros(len(body.faces))
     for face in body.movable:
-        for step in STEPS:
-            moved = faces.copy()
-            moved[face, 3] = body.faces[face, 3] + step
-            corners = corners_of(moved, body.inside)
-            on = corners[np.abs(corners @ moved[face, :3] - moved[face, 3]) < 1e-7]
-            between = 0.5 * (on[:, None] + on[None]).reshape(-1, 3)
-            within = [between + share * (on.mean(axis=0) - between) for share in SHARES]
-            out = [np.array([distance(point) > STAYS for point in points]) for points in within]
-            if face in body.plane and step == STEPS[0] and np.mean(out) < MOSTLY:
-                covered[face] = 1.0
-            if out[0].any():
-                break
+        moved = faces.copy()
+        moved[face, 3] += 2.0 * INSET if face in body.plane else INSET
+        corners = corners_of(moved, body.inside)
+        on = corners[np.abs(corners @ moved[face, :3] - moved[face, 3]) < 1e-7]
+        between = 0.5 * (on[:, None] + on[None]).reshape(-1, 3)
+        within = between + NEARLY * (on.mean(axis=0) - between)
+        if not any(distance(point) > STAYS for point in within):
             faces, covered[face] = moved, 1.0
     return faces, covered
 

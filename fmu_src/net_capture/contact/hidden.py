@@ -1,0 +1,96 @@
+"""What of a body's edges lies within other bodies, so that no way bends there.
+
+Checked  tests/net_capture/test_visits.py
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from fmu_src.net_capture.contact.shortest import HIGH, LOW
+from fmu_src.net_capture.shapes.hulls import FIRST, NUMBER
+from orbital.kernel import kernel
+from orbital.vectors import dot
+
+PARALLEL = 1e-9
+"""Sine of the angle of an edge to a face that never meets it."""
+DEEPER = 2e-7
+"""Metres below what ways lie within another body, from where on an edge is in that."""
+APART = 1e-6
+"""Metres of an edge from both ends, no less than that, where they are divided by."""
+
+
+def make_hide(hulls: Any) -> Any:
+    """Kernel `hide(p, j)` of edge number j of a way, among the bodies of a union (`shapes.Hulls`) that are listed in
+    `wrap_others`; it does nothing for None, one body alone.
+
+    Checked  tests/net_capture/test_visits.py
+    """
+    several = hulls is not None
+    bodies_of, planes_of = (hulls.bodies, hulls.planes) if several else (None, None)
+
+    @kernel
+    def crossing(p, j):
+        """Where the way from end to end would cross edge number j if it bent there alone, along it [m].
+
+            tau = (t_a d_b + t_b d_a) / (d_a + d_b),   d the distances of both ends from the edge, t along it
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        edge, foot = p.wrap_edges[j], p.wrap_feet[j]
+        first = 0.0
+        last = 0.0
+        near = 0.0
+        far = 0.0
+        for i in range(3):
+            first += (p.wrap_a[i] - foot[i]) * edge[i]
+            last += (p.wrap_b[i] - foot[i]) * edge[i]
+        for i in range(3):
+            near += (p.wrap_a[i] - foot[i] - first * edge[i]) * (p.wrap_a[i] - foot[i] - first * edge[i])
+            far += (p.wrap_b[i] - foot[i] - last * edge[i]) * (p.wrap_b[i] - foot[i] - last * edge[i])
+        near, far = math.sqrt(near), math.sqrt(far)
+        return (first * far + last * near) / max(near + far, APART)
+
+    @kernel
+    def hide(p, j):
+        """Leave out of an edge what lies within the other bodies in `wrap_others`, or in one of their faces. Of the
+        parts before and behind one the way goes over that which is nearer to it.
+
+        Checked  tests/net_capture/test_visits.py
+        """
+        if several:
+            middle = crossing(p, j)
+            span, pair, edge, foot = p.wrap_spans[j], p.wrap_pairs[j], p.wrap_edges[j], p.wrap_feet[j]
+            rows, planes = bodies_of(p), planes_of(p)
+            for n in range(p.wrap_others_near):
+                body = p.wrap_others[n]
+                if body == p.wrap_body:
+                    continue
+                enters, leaves = span[LOW], span[HIGH]
+                first = int(rows[body, FIRST])
+                flush = 0
+                for k in range(first, first + int(rows[body, NUMBER])):
+                    rises = dot(planes[k, 0:3], edge)
+                    below = planes[k, 3] - p.wrap_inset - dot(planes[k, 0:3], foot)
+                    if rises > PARALLEL:
+                        leaves = min(leaves, (below - DEEPER) / rises)
+                    elif rises < -PARALLEL:
+                        enters = max(enters, (below - DEEPER) / rises)
+                    elif below < -DEEPER:
+                        leaves = -math.inf
+                    elif below < DEEPER:
+                        flush += 1
+                    if enters >= leaves:
+                        break
+                if enters >= leaves or flush > 1:
+                    continue
+                before, behind = enters - span[LOW], span[HIGH] - leaves
+                if behind <= 0.0 or (before > 0.0 and middle < 0.5 * (enters + leaves)):
+                    span[HIGH] = enters if before > 0.0 else -math.inf
+                    pair[3] = -1
+                else:
+                    span[LOW] = leaves
+                    pair[2] = -1
+
+    return hide

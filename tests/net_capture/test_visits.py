@@ -1,0 +1,110 @@
+"""The way of a thread over several bodies of a union at once."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from fmu_src.net_capture import bodies as among
+from fmu_src.net_capture import near
+from fmu_src.net_capture.lying import make_lie
+from fmu_src.net_capture.planes import X
+from fmu_src.net_capture.shapes.hulls import INSET
+from tests.net_capture.memory import Bench, planes_of
+from tests.net_capture.test_union_wrapping import box, laid
+from tests.plain import plainly
+
+TERMS = {"net": "square", "gravity": "none", "target": "union", "contact": "inelastic", "wrap": "plain"}
+LONG, WIDE = 6.0, 1e3
+"""Of a box along the third axis, and of a thread that is slack however it lies [m]."""
+
+
+BASE = np.array((0.0, -0.2, 0.0))
+
+
+def towers(*entries):
+    """Long boxes that stand side by side on y = 0, from their middles, widths and heights, on a base beneath them all
+    into which they reach 2 cm."""
+    entries = [box((wide, high + 0.02, LONG), (x, 0.5 * high - 0.01, 0.0)) for x, wide, high in entries]
+    return laid(box((3.0, 0.4, LONG), tuple(BASE)), *entries)
+
+
+class Seeker:
+    """A thread among the bodies of a union, between two places in design axes."""
+
+    def __init__(self, tables, terms=TERMS):
+        self.bench = Bench(terms, tables)
+        parts, p = self.bench.parts, self.bench.p
+        self.p, self.rounds = p, among.make_bodies(parts, near.KEPT, make_lie(parts, None), None)
+        p.wrap_body, p.wrap_numbers, p.solver_substep, p.envelope_radius = -1, 1, 5e-5, 5.0
+        p.target_pose[:] = 1.0, 0.0, 0.0, 0.0
+        self.words = np.zeros(near.KEPT + among.KEPT, np.int64)
+        self.planes = planes_of(p, self.bench.work, parts.terms)
+        base = tables["target.pieces"][0]
+        self.place, self.turn = base[5:8], base[8:17].reshape(3, 3)
+
+    def __call__(self, a, b, length=WIDE):
+        """Length of its way [m]."""
+        self.planes[X : X + 3, :2] = np.transpose([self.place + self.turn @ (end - BASE) for end in (a, b)])
+        edges, way, *_ = plainly(self.rounds.seek.py_func)(self.p, self.bench.work, self.words, 0, 0, 1, length)
+        self.words[near.STATE], self.words[near.WAY] = near.BENT if edges else near.FREE, round(way / near.FINE)
+        return way
+
+    @property
+    def lost(self):
+        return int(self.p.wrap_passed), int(self.p.wrap_passed_slack)
+
+
+def above(first, middle, last):
+    """Whether the straight way from the first to the last of three points goes above the one between."""
+    (x, y), (u, v), (s, t) = first, middle, last
+    return (u - x) * (t - y) >= (v - y) * (s - x)
+
+
+def over(a, b, corners):
+    """Length of the shortest way from a to b above all corners, whose edges are along the third axis: laid flat it is
+    straight, and across them it is the upper hull."""
+    inner = sorted(tuple(c) for c in corners if min(a[0], b[0]) < c[0] < max(a[0], b[0]))
+    ends = sorted([(a[0], a[1]), (b[0], b[1])])
+    hull = []
+    for point in [ends[0], *inner, ends[1]]:
+        while len(hull) > 1 and above(hull[-2], hull[-1], point):
+            hull.pop()
+        hull.append(point)
+    across = sum(math.dist(p, q) for p, q in itertools.pairwise(hull))
+    return math.hypot(across, a[2] - b[2])
+
+
+STEPS = {
+    "two that stand apart": ((-0.5, 0.3, 0.5), (0.4, 0.2, 0.7)),
+    "a stair of three": ((-0.4, 0.4, 0.3), (0.0, 0.4, 0.6), (0.4, 0.4, 0.5)),
+    "a low one between two": ((-0.6, 0.2, 0.6), (0.0, 0.3, 0.35), (0.7, 0.2, 0.5)),
+    "one inside another": ((0.0, 1.0, 0.4), (0.1, 0.3, 0.55)),
+}
+
+
+@pytest.mark.parametrize("stand", STEPS.values(), ids=STEPS)
+def test_over_several_bodies_it_is_the_upper_hull_of_all(stand):
+    """It is let down on them from above, and then its ends wander on both sides, askew."""
+    seek, draw = Seeker(towers(*stand)), np.random.default_rng(5)
+    corners = [(x + side * (0.5 * wide - INSET), high - INSET) for x, wide, high in stand for side in (-1.0, 1.0)]
+    goals = [(np.array((-1.1, 1.0, -0.3)), np.array((1.2, 1.0, 0.2)))]
+    goals += [
+        (np.array((-1.1, 0.1, -0.3)), np.array((1.2, 0.2, 0.2))),
+        *(
+            (
+                np.array((-draw.uniform(0.85, 1.4), *draw.uniform((0.05, -0.5), (0.9, 0.5)))),
+                draw.uniform((0.9, 0.05, -0.5), (1.4, 0.9, 0.5)),
+            )
+            for _ in range(4)
+        ),
+    ]
+    bends = set()
+    for one, other in itertools.pairwise(goals):
+        for share in np.linspace(0.0, 1.0, 40):
+            a, b = (start + share * (end - start) for start, end in zip(one, other, strict=True))
+            assert seek(a, b) == pytest.approx(over(a, b, corners), abs=1e-9)
+            bends.add(int(seek.p.visits))
+    assert max(bends) > 1
+    assert seek.lost == (0, 0)
