@@ -36,6 +36,8 @@ ALIKE = 1e-8
 """Square of the sine of the angle between faces that have no edge."""
 TOGETHER = 1e-6
 """Metres between two bends that are at one corner."""
+SAME = 1e-12
+"""Metres by which two ways differ that are one: one that has come back to the shortest goes to and fro at a corner."""
 BEYOND = 1e-4
 """Metres from a corner over which it has slid, where a way begins."""
 
@@ -329,10 +331,14 @@ def make_way(leans: bool = False) -> Any:
                 lay_all(p, edges)
         for i in range(3):
             p.wrap_bends[0, i] = p.wrap_a[i]
+        least = math.inf
         for n in range(ROUNDS):
             for i in range(3):
                 p.wrap_bends[edges + 1, i] = p.wrap_b[i]
-            settle(p, edges)
+            way = settle(p, edges)
+            if abs(way - least) <= SAME:
+                break
+            least = min(least, way)
             slid = slide(p, edges) if n + 1 < ROUNDS else 0
             if slid == 0:
                 break

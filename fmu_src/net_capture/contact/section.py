@@ -22,7 +22,7 @@ from orbital.vectors import dot
 
 FACES = 336
 """Faces that a body may have."""
-MOST = 16
+MOST = 40
 """Edges that a way may go over."""
 INSET = 2e-3
 """Metres that a way lies below the surface: so one between two nodes of a face, which lie on it or a little below,

@@ -30,9 +30,6 @@ Array = npt.NDArray[np.float64]
 BODY = 6
 """Numbers of a body: where its faces begin, how many it has, middle and radius of a sphere around it [m]."""
 FIRST, NUMBER, MIDDLE, RADIUS = 0, 1, 2, 5
-COARSE, FEWEST, THIN = 1e-3, 8, 4e-3
-"""Metres by which the faces of a round piece may lie within it, half of what ways do; and by which these few may, of a
-thin one: a thread may be wound round it for two turns then, as far as edges are kept."""
 SAGITTA, FLAT = 0.2, 0.009
 """Of a shell's thickness, and of its radius, by which a slab may lie within it at most."""
 STEPS = (0.004, 0.008, 0.016, 0.03, 0.06, 0.12, 0.25)
@@ -63,10 +60,7 @@ def slabs(radius: float, thickness: float, angle: float) -> int:
 
 def faces_round(radius: float) -> int:
     """How many faces a round piece has round its axis."""
-    if radius * (1.0 - math.cos(math.pi / FEWEST)) <= THIN:
-        return FEWEST
-    most = cylinder.FACES_AROUND
-    return next((n for n in range(FEWEST, most, 4) if radius * (1.0 - math.cos(math.pi / n)) <= COARSE), most)
+    return int(formula(cylinder.faces_round)(radius))
 
 
 def _box(half: Array) -> Array:
