@@ -193,6 +193,7 @@ def measure(p):
     p.half_size[0] = max(bottom, top)
     p.half_size[1] = max(bottom, top)
     p.half_size[2] = max(low, high)
+    p.target_edge = (4.0 * max(bottom, top) + p.target_length) / 3.0
     p.envelope_radius = math.sqrt(max(bottom * bottom + low * low, top * top + high * high))
     p.girth = frustum_girth(bottom, top, p.target_length)
 
