@@ -38,8 +38,8 @@ def of_run(run: RunResult, phase: str) -> Cells | None:
     recorder = run.phases[phase].recorder
     if not len(recorder) or f"{IMPULSE}[1]" not in recorder:
         return None
-    terms = next(dict(one.main.terms) for one in run.scene.phases if one.name == phase)
-    middles = build.force_cells(run.parameters.get(phase, {}), terms)
+    main = next(one.main for one in run.scene.phases if one.name == phase)
+    middles = build.force_cells({**run.parameters.get(phase, {}), **main.made}, main.terms)
     if middles is None:
         return None
     last, number = recorder.last(), len(middles)

@@ -58,5 +58,17 @@ def entries_of(table: build.Table, given: object, path: Path, mistakes: list[Mis
     try:
         return table.numbers(table.gather(read))
     except ValueError as error:
-        mistakes.append(Mistake(path, None, str(error)))
+        place = next((n for n, entry in enumerate(read) if not _stands(table, entry)), None)
+        at, what = (path, given) if place is None else ((*path, place), given[place])
+        mistakes.append(Mistake(at, what, str(error)))
         return None
+
+
+def _stands(table: build.Table, entry: Any) -> bool:
+    """Whether an entry is right by itself."""
+    assert table.gather is not None
+    try:
+        table.gather([entry])
+    except ValueError:
+        return False
+    return True

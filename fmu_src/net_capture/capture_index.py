@@ -135,7 +135,7 @@ def make(composition: Any) -> Index:
         p.quality_at_capture = -1.0
         p.quality_length = p.quality_characteristic_length
         if p.quality_length == 0.0:
-            p.quality_length = 2.0 * (p.half_size[0] + p.half_size[1] + p.half_size[2]) / 3.0
+            p.quality_length = p.target_edge
 
     @kernel
     def measure(p, work):

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fmu_src.net_capture.contact.chain import WOUND
+from fmu_src.net_capture.contact.section import MOST
 from fmu_src.net_capture.planes import FIRST, LANES, LENGTH, STRIP_NUMBERS, STRIP_WORDS, A, B, P, X
 from orbital.kernel import kernel
 from orbital.rotations import rotate_inverse
@@ -30,6 +32,8 @@ the substep up to which it is clear of the target, over how many edges it bends,
 a number."""
 PACKED, FACE_BITS = 7, 9
 CHAIN_WORDS = KEPT - CHAIN
+WOUND_BIT = FACE_BITS * ((MOST + 1) % PACKED)
+"""Of the last of these: whether it is wound over more edges than are kept, behind the faces of all that are."""
 FINE = 1e-12
 """Metres: lengths are kept in picometres."""
 JUMP = 2e-4
@@ -46,6 +50,7 @@ class Near(NamedTuple):
     list_near(p, work)           look up which threads are near
     recall(p, words, at)         over how many edges a thread bends, the faces between them into `wrap_chain`
     keep(p, words, at, edges)    keep these
+    wound(p, words, at)          whether it was wound over more edges than are kept
     """
 
     words: Any
@@ -53,6 +58,7 @@ class Near(NamedTuple):
     list_near: Any
     recall: Any
     keep: Any
+    wound: Any
 
 
 def make_list_at(composition: Any, kept: int) -> Any:
@@ -170,5 +176,15 @@ def make_near(composition: Any, kept: int) -> Near:
             words[at + n * p.wrap_numbers] = 0
         for j in range(edges + 1):
             words[at + (CHAIN + j // PACKED) * p.wrap_numbers] |= p.wrap_chain[j] << (FACE_BITS * (j % PACKED))
+        if p.wrap_lost == WOUND:
+            words[at + (KEPT - 1) * p.wrap_numbers] |= 1 << WOUND_BIT
 
-    return Near(words, list_at, list_near, recall, keep)
+    @kernel
+    def wound(p, words, at):
+        """Whether a thread was wound over more edges than are kept a substep ago.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        return (words[at + (KEPT - 1) * p.wrap_numbers] >> WOUND_BIT) & 1 == 1
+
+    return Near(words, list_at, list_near, recall, keep, wound)

@@ -77,6 +77,7 @@ ROWS = (
     state("half_size[#]", "m", "half the edges of the box around the target", shape=(3,)),
     state("shape_half[#]", "m", "of the box that holds the sample points", shape=(3,)),
     state("envelope_radius", "m", "of the sphere around the target"),
+    state("target_edge", "m", "mean of the edges of the box that holds it, wherever its centre of mass lies in that"),
     state("girth", "m", "smallest girth"),
     state("target_thickness", "m", "least thickness: that of a part, or of the box around the target"),
     output("target.energy", "J", "kinetic energy of translation and spin of the target"),
@@ -280,9 +281,12 @@ def make_target(composition: Any, part: Term) -> Target:
             spin[i] = principal[i] * p.target_rate[i]
         rotate(p.target_spin, p.target_pose, spin)
         p.target_thickness = math.inf
+        p.target_edge = 0.0
         measure_shape(p)
         for i in range(3):
             p.target_thickness = min(p.target_thickness, 2.0 * p.half_size[i])
+        if p.target_edge == 0.0:
+            p.target_edge = 2.0 * (p.half_size[0] + p.half_size[1] + p.half_size[2]) / 3.0
         p.target_reach = p.envelope_radius
         return 0
 

@@ -42,6 +42,8 @@ ROWS = (
     state("wrap_far", "m", "how far it is from all others, at least"),
     state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),
     state("wrap_substep", "s", "the substep then"),
+    state("wrap_soft", "m", "by which the pieces of a way have no creases, while it is sought"),
+    state("wrap_taken[#]", "m", "where a way that is not at rest crosses its edges", shape=(MOST,)),
     state("wrap_inset", "m", "how far below the surface ways lie"),
     *(
         state(f"wrap_{name}[#][#]", "1", text, shape=(rows, columns))

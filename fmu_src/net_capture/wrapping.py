@@ -37,6 +37,7 @@ from fmu_src.interface import Term
 from fmu_src.net_capture import bodies
 from fmu_src.net_capture.capstan import WITH_FRICTION, make_capstan
 from fmu_src.net_capture.capstan import rows as friction_rows
+from fmu_src.net_capture.contact.section import MOST
 from fmu_src.net_capture.lying import make_lie
 from fmu_src.net_capture.near import BENT, CLEAR, EDGES, FINE, FREE, JUMP, KEPT, PASSED, SHARE, WAY, make_near
 from fmu_src.net_capture.planes import (
@@ -105,7 +106,7 @@ def make(composition: Any) -> Wrap:
     rubs = composition.terms["wrap"] == "friction"
     kept_of_way = WITH_FRICTION if rubs else KEPT
     whole, step = kept_of_way + (bodies.KEPT if several else 0), bodies.STEP if several else 0.0
-    words, list_at, list_near, recall, keep = make_near(composition, whole)
+    words, list_at, list_near, recall, keep, wound = make_near(composition, whole)
     begin, remember, hold, let_go, stretch_held = make_capstan() if rubs else (None,) * 5
     lie = make_lie(composition, remember)
     ends, look, lose = lie.ends, lie.look, lie.lose
@@ -230,7 +231,8 @@ def make(composition: Any) -> Wrap:
                 edges, way, going, straight, closing = look(p, work, code, X, P, recall(p, words, kept))
                 if known:
                     taut = FINE * words[kept + WAY * p.wrap_numbers] > length
-                    lose(p, words[kept + EDGES * p.wrap_numbers], edges, taut)
+                    before = min(words[kept + EDGES * p.wrap_numbers], MOST - 1)
+                    lose(p, MOST if wound(p, words, kept) else before, edges, taut)
             follow(p, words, kept, edges, way, going, straight, length, stiffness)
             if words[kept] != BENT or way <= length:
                 if rubs:

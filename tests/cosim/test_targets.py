@@ -19,6 +19,9 @@ from dcone_cosim.scenes.schema import schema
 
 STAGE = find("upper-stage").read_text(encoding="utf-8")
 
+NOZZLE = next(line for line in STAGE.splitlines() if line.startswith("[[capture.target.parts]] # the nozzle"))
+UPPER_DOME = "[[capture.target.parts]] # its upper dome"
+
 
 def changed(*changes):
     text = STAGE
@@ -40,7 +43,8 @@ def test_a_union_weighs_what_its_pieces_do():
     [
         (('radius_top = "0.25 m"', 'radius_topp = "0.25 m"'), 'radius_topp = "0.25 m"', "did you mean 'radius_top'"),
         (('radius_top = "0.25 m"', 'radius_top = "0.25 kg"'), 'radius_top = "0.25 kg"', "is a mass"),
-        (('radius_top = "0.25 m"\n', ""), "[[capture.target.parts]] # the tank", "a frustum, lacks its radius_top"),
+        (('radius_top = "0.25 m"\n', ""), NOZZLE, "parts[4] = a table: piece 4, a frustum, lacks its radius_top"),
+        (('mass = "150 kg"', 'mass = "150 kg"\ndensity = "9 kg/m3"'), UPPER_DOME, "has both mass and density"),
         (('shape = "frustum"', 'shape = "cone"'), 'shape = "cone"', "expected one of box, cylinder, sphere"),
         (('shape = "union"', 'shape = "union"\nmass = "3 kg"'), 'mass = "3 kg"', "follows from what this scene asks"),
     ],

@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from fmu_src.implied import formula
+from fmu_src.net_capture import capture_index
 from fmu_src.net_capture.capture_index import KNOWN, quality_index, told_extent
 from fmu_src.net_capture.interface import GROUPS, MODEL
 from fmu_src.net_capture.refusal import Scene
+from fmu_src.net_capture.shapes import frustum, solids
 from tests.net_capture.holding import HOLDING
 from tests.net_capture.memory import shown
+from tests.net_capture.test_union_wrapping import box, laid
 from tests.validation import other_code
 
 
@@ -41,6 +45,22 @@ def test_the_index_takes_the_scenes_own_figures(shoot):
     net.step(3.0)
     offset = math.dist(net.array("catch_position"), net.array("target_position"))
     assert net["quality.index"] == pytest.approx(expected(shown(net), offset, 100.0, 150.0, 8.0), rel=1e-5)
+
+
+def test_the_length_of_a_target_is_the_mean_of_its_own_edges():
+    """Of the box that holds it, wherever its centre of mass lies in that: a cone's is at a quarter of its length."""
+    sizes = {"target_radius_bottom": 1.2, "target_radius_top": 0.0, "target_length": 3.0}
+    cone = SimpleNamespace(**sizes, half_size=np.zeros(3), quality_characteristic_length=0.0)
+    formula(frustum.measure)(cone)
+    assert cone.half_size[2] == pytest.approx(2.25)
+    memory = SimpleNamespace(node_plane=None)
+    parts = SimpleNamespace(
+        memory=memory, per_double=1, scratch_plane=0, terms={"target": "frustum"}, code=lambda name: 1
+    )
+    formula(capture_index.make(parts).start)(cone)
+    assert cone.quality_length == pytest.approx((2.4 + 2.4 + 3.0) / 3.0)
+    club = laid(box((0.2, 0.2, 0.2), (0.0, 0.0, -1.5), mass=50.0), box((0.1, 0.1, 3.0), (0.0, 0.0, 0.1), mass=1.0))
+    assert club["target.solid"][solids.EDGE] == pytest.approx((0.2 + 0.2 + 3.2) / 3.0)
 
 
 def test_a_net_that_is_the_target_has_index_zero():

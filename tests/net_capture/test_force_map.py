@@ -1,9 +1,14 @@
 """The force map: which cell a point belongs to, and what a node that rests on the target presses there."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from dcone_cosim.loading import load
+from dcone_cosim.phases.force_map import of_run
 from fmu_src.net_capture import force_map
+from fmu_src.net_capture.interface import GROUPS
 from tests.net_capture.on_target import TERMS, Kernels
 
 HALF = [2.0, 4.0, 2.0]
@@ -29,3 +34,22 @@ def test_a_node_that_is_pressed_on_gives_its_cell_the_impulse():
     given = scene.p["force_map_impulse"]
     assert given[cell] == pytest.approx(3.0 * 0.5, rel=1e-3)
     assert given.sum() == given[cell] == pytest.approx(scene.p["contact_impulse"], rel=1e-12)
+
+
+class Recorded(dict):
+    """Figures of the last instant."""
+
+    def last(self):
+        return self
+
+
+def test_the_cells_of_a_union_are_told():
+    """Of one whose sizes its tables alone have: each on the box round the corners that pictures draw."""
+    scene = load("upper-stage", ["capture.force_map.kind=plain"])
+    figures = Recorded({f"force_map.{of}[{n}]": 1.0 * n for of in ("impulse", "peak") for n in range(1, 97)})
+    run = SimpleNamespace(phases={"capture": SimpleNamespace(recorder=figures)}, scene=scene, parameters={})
+    cells = of_run(run, "capture")
+    assert cells.impulse.tolist() == [1.0 * n for n in range(1, force_map.NUMBER + 1)]
+    made = scene.phases[0].main.made
+    half = np.abs(np.array(GROUPS["target"].terms["union"].checks.surface(made)[0])).max(axis=0)
+    assert np.abs(cells.middle).max(axis=0) == pytest.approx(half, rel=0.01)

@@ -26,6 +26,7 @@ def boom_of(radius):
 
 
 BOOM = boom_of(RADIUS)
+ROUND = TERMS | {"target": "cylinder"}
 
 
 @pytest.fixture(scope="module")
@@ -53,8 +54,8 @@ class Thrown:
     least     the least turn of one node about the boom against the other, beyond half a turn [rad]
     """
 
-    def __init__(self, kernels, tables, places, speeds, radius=RADIUS, span=1.5, substep=1e-4, length=LENGTH):
-        self.scene = kernels.place(tables, **HEAVY | {"wrap_friction": 0.0})
+    def __init__(self, kernels, tables, places, speeds, radius=RADIUS, span=1.5, substep=1e-4, length=LENGTH, **sizes):
+        self.scene = kernels.place(tables, **HEAVY | {"wrap_friction": 0.0} | sizes)
         self.scene.put([MASS] * 2, places, speeds).join(2, length, STIFFNESS, 0.0)
         self.p, self.planes = self.scene.p, self.scene.planes
         self.before = 0.5 * MASS * (np.asarray(speeds) ** 2).sum()
@@ -111,11 +112,22 @@ def test_no_thrown_thread_passes_a_boom_by_the_turns_of_its_nodes(kernels):
     assert max(each.most for each in found if each.longest < 0.03) > math.pi
 
 
-def test_a_thread_wound_farther_than_is_kept_is_told(kernels):
-    """Of a cylinder of forty faces edges are kept for less than half a turn: that it is taken for shorter is told."""
+def test_threads_wound_round_a_thick_boom_hold(kernels):
+    """Of a cylinder of forty faces edges are kept for a whole turn."""
     thick = boom_of(0.3)
-    assert hulls.faces_round(0.3) > 2 * MOST
-    found = [thrown_at(kernels, thick, number, 0.3, 1.2) for number in range(12)]
-    for each in found:
-        assert each.longest < 0.03 or sum(each.counted) > 0
-    assert any(sum(each.counted) for each in found)
+    assert hulls.faces_round(0.3) == MOST
+    held = [thrown_at(kernels, thick, number, 0.3, 1.2) for number in range(12)]
+    assert not any(sum(each.counted) for each in held)
+    assert max(each.longest for each in held) < 0.03
+    assert max(each.most for each in held) > 0.3, "wound round more than half of it"
+
+
+@pytest.mark.parametrize(("length", "told"), [(1.5, 0), (2.4, 1)])
+def test_a_thread_wound_farther_than_is_kept_is_told_once(length, told):
+    """Taut, its nodes flung round a cylinder from both sides: they wind it up until they meet the surface."""
+    places = [(0.31, 0.495 * length, 0.0), (0.31, -0.495 * length, 0.0)]
+    sizes = {"target_radius": 0.3, "target_length": 6.0}
+    wound = Thrown(Kernels(ROUND), None, places, [(-2.0, 0.0, 0.0)] * 2, 0.3, 2.0, 2e-4, length, **sizes)
+    assert (wound.most > math.pi) == (told == 1)
+    assert sum(wound.counted) == told
+    assert wound.longest < 0.02, "up to where it is told"

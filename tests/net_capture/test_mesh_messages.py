@@ -46,6 +46,15 @@ def test_a_binary_file_that_is_cut_short(tmp_path, left, there):
         triangles.read(path)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_bytes_that_are_no_mesh_are_not_told_as_a_module_that_is_missing(tmp_path, seed):
+    path = tmp_path / "junk.stl"
+    path.write_bytes(np.random.default_rng(seed).integers(128, 256, 3000, dtype=np.uint8).tobytes())
+    with pytest.raises(ValueError, match="cannot be read as a mesh") as error:
+        triangles.read(path)
+    assert "module" not in str(error.value)
+
+
 def test_a_corner_that_is_no_number(tmp_path):
     corners = box(1.0)
     corners[4, 1, 2] = math.nan
@@ -74,3 +83,27 @@ def test_walls_tell_the_resolution_that_they_need(wall):
 
 def test_a_thick_body_is_as_thick_as_it_is():
     assert triangles.thickness(box(0.5), 0.05) == pytest.approx(1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("reach", [0.03, 0.5, 1.5])
+def test_bodies_that_run_into_one_another_are_told_with_the_place(reach):
+    """As a file of an assembly has them: a finer grid would not help."""
+    where = np.array([1.0 + 0.3 - reach, 0.1, 0.05])
+    both = np.concatenate([box(1.0), 0.3 * box(1.0) + where])
+    for unit in (1.0, 1e-3):
+        with pytest.raises(Undesigned) as error:
+            mesh.lay({"target.mesh_unit": unit, "target.resolution": 0.1}, {"target.mesh": both.reshape(-1, 9) / unit})
+        assert error.value.name == "target.mesh"
+        at = error.value.expected.partition("(")[2].partition(")")[0].split(",")
+        place = unit * np.array([float(x) for x in at])
+        assert (np.abs(place) <= 1.005).all()
+        assert (np.abs(place - where) <= 0.305).all(), "within both"
+
+
+def test_bodies_that_touch_face_to_face_and_hollow_ones_are_none_such():
+    """Of other triangles, so that none stands twice; and a cavity, whose wall faces into it."""
+    touching = np.concatenate([box(1.0), 0.5 * box(1.0) + np.array([1.5, 0.1, 0.05])])
+    hollow = np.concatenate([box(1.0), box(0.5, inward=True)])
+    for corners in (touching, hollow):
+        cell = {"target.mesh_unit": 1.0, "target.resolution": 0.1}
+        assert mesh.lay(cell, {"target.mesh": corners.reshape(-1, 9)}).tables

@@ -226,6 +226,18 @@ TERMS = {"net": "square", "gravity": "none", "target": "box", "contact": "penalt
     [
         ({"precision": "single"}, {}, "solver.precision", "double"),
         ({}, {"contact.damping": 1.0}, "contact.damping", "must come with contact.stiffness"),
+        (
+            {},
+            {"contact.stiffness": 1e4, "contact.duration": 2e-3},
+            "contact.duration",
+            "left out with contact.stiffness",
+        ),
+        (
+            {},
+            {"contact.stiffness": 1e4, "contact.damping": 3.0, "contact.damping_ratio": 0.3},
+            "contact.damping_ratio",
+            "left out with contact.damping",
+        ),
         ({}, {"contact.stiffness": 1.0}, "contact.stiffness", "must be at least 112"),
         ({}, {"contact.duration": 1.0}, "contact.duration", "must be at most 0.209"),
         ({"closing": "winches", "pull_off": "plain"}, {"pull_off.force": 1e5}, "pull_off.force", "must be at most"),

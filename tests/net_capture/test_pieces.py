@@ -205,7 +205,7 @@ def test_sample_points_are_as_deep_as_asked_or_as_there_is():
         ({"shape": SPHERE, "mass": 1.0}, "piece 1, a sphere, lacks its radius"),
         ({"shape": SPHERE, "radius": 1.0, "length": 1.0, "mass": 1.0}, "a sphere, has no length"),
         ({"shape": SPHERE, "radius": 1.0}, "no mass or density"),
-        ({"shape": SPHERE, "radius": 1.0, "mass": 1.0, "density": 1.0}, "both mass or density"),
+        ({"shape": SPHERE, "radius": 1.0, "mass": 1.0, "density": 1.0}, "both mass and density"),
         ({"shape": SPHERE, "radius": 1.0, "mass": 1.0, "attitude": [2.0, 0, 0, 0]}, "an attitude of length 2"),
         ({"shape": FRUSTUM, "radius_bottom": 0.0, "radius_top": 0.0, "length": 1.0, "mass": 1.0}, "two radii of 0"),
         ({"shape": SHELL, "radius": 1.0, "length": 1.0, "thickness": 1.0, "mass": 1.0}, "must be less than its radius"),

@@ -104,6 +104,51 @@ def test_a_way_over_an_edge_is_the_shortest(ways, validated, seed):
         assert length_of(found) <= shortest.fun + 1e-12
 
 
+def shortest_over(planes, faces, a, b):
+    """Length of the shortest way from end to end over the edges between these faces, each on it, by scipy [m]."""
+    ends = []
+    for one, other in pairwise(faces):
+        along = np.cross(planes[one, :3], planes[other, :3])
+        foot = np.linalg.lstsq(planes[[one, other], :3], planes[[one, other], 3] - INSET, rcond=None)[0]
+        others = np.delete(planes, [one, other], axis=0)
+        rises, below = others[:, :3] @ along, others[:, 3] - INSET - others[:, :3] @ foot
+        reach = (below / rises)[rises < 0.0].max(), (below / rises)[rises > 0.0].min()
+        ends.append([foot + t * along for t in reach])
+    low, high = np.swapaxes(ends, 0, 1)
+    shares = np.full(len(low), 0.5)
+
+    def length(shares, soft):
+        points = np.vstack([a, low + shares[:, None] * (high - low), b])
+        return np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1) + soft**2).sum()
+
+    for soft in (1e-2, 1e-3, 1e-4, 1e-5, 1e-7):
+        bounds = [(0.0, 1.0)] * len(low)
+        shares = minimize(length, shares, (soft,), "L-BFGS-B", bounds=bounds, options={"ftol": 1e-15, "gtol": 1e-10}).x
+    return length(shares, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "faces"),
+    [
+        ((0.23372003, 1.34417444, -0.16023094), (-0.05806457, 1.06261469, 0.74664491), (142, 108, 87, 74)),
+        ((0.39265285, 0.50686272, 1.13101479), (-0.43813043, -0.00709385, 1.22393842), (24, 11, 3, 6, 1, 9)),
+        ((0.95607028, 0.80162859, 0.36513758), (1.05126002, 0.56235842, -0.58845843), (126, 139, 160, 173, 194, 207)),
+        ((0.49579279, -0.48728208, 1.09853669), (0.46827283, 0.49335104, 1.10785632), (18, 26, 13, 21, 8, 16)),
+        ((-1.12000116, -0.17054159, -0.64282028), (-0.40006173, -0.737941, -0.99674), (237, 258, 279, 266, 287, 274)),
+    ],
+    ids=["to and fro", "to and fro, from six faces", "two corners at once", "creases", "zigzag"],
+)
+def test_near_corners_a_way_is_no_longer_than_over_the_edges_where_it_lay(kernels, find, a, b, faces):
+    """Of threads that netted a ball of 1.3 m: where such a way seemed to grow, they were let through it."""
+    ways = Ways(kernels, find, sphere, target_radius=1.3)
+    ways.edges = len(faces) - 1
+    ways.p["wrap_chain"][: len(faces)] = faces
+    planes = ways.p["wrap_planes"][: int(ways.p["wrap_faces"])].copy()
+    wanted = shortest_over(planes, faces, a, b)
+    assert 0.9 * math.dist(a, b) < wanted < 1.05 * math.dist(a, b), "the twin finds a way"
+    assert length_of(ways(a, b, anew=False)) <= wanted + 1e-7
+
+
 def test_over_two_edges_it_is_straight_on_the_faces_laid_flat(ways, validated):
     """From above to below, over a side of 4 m; and over a corner, on the side where the thread lay."""
     found = ways((1.0, -0.3, 2.0), (1.0, 0.9, -2.0))

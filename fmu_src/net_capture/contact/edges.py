@@ -37,6 +37,8 @@ ALIKE = 1e-8
 """Square of the sine of the angle between faces that have no edge."""
 TOGETHER = 1e-6
 """Metres between two bends that are at one corner."""
+SAME = 1e-12
+"""Metres by which two ways differ that are one: one that has come back to the shortest goes to and fro at a corner."""
 BEYOND = 1e-4
 """Metres from a corner over which it has slid, where a way begins."""
 
@@ -340,10 +342,14 @@ def make_way(hulls: Any = None) -> Any:
                 lay_all(p, edges)
         for i in range(3):
             p.wrap_bends[0, i] = p.wrap_a[i]
+        least = math.inf
         for n in range(rounds):
             for i in range(3):
                 p.wrap_bends[edges + 1, i] = p.wrap_b[i]
-            settle(p, edges)
+            way = settle(p, edges)
+            if abs(way - least) <= SAME:
+                break
+            least = min(least, way)
             slid = slide(p, edges) if n + 1 < rounds else 0
             if slid == 0:
                 break

@@ -279,6 +279,13 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     if values["contact.damping"] > 0.0 and values["contact.stiffness"] == 0.0:
         expected = "must come with contact.stiffness: a stiffness by the duration grows with the mass of a node"
         yield Refusal("contact.damping", f"{values['contact.damping']:g} N s/m", expected)
+    for name, unit, default, other in (
+        ("duration", " s", DURATION, "stiffness"),
+        ("damping_ratio", "", 1.0, "damping"),
+    ):
+        if values[f"contact.{other}"] > 0.0 and values[f"contact.{name}"] != default:
+            expected = f"must be left out with contact.{other}, which takes its place"
+            yield Refusal(f"contact.{name}", f"{values[f'contact.{name}']:g}{unit}", expected)
     mass, speed = values["bullets.mass"], values["bullets.speed"]
     stiffness = formula(own_stiffness)(values["contact.duration"], values["contact.stiffness"], mass)
     deepest = DEEPEST * min(scene.parts["target"].checks.half(values))

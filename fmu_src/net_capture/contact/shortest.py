@@ -6,6 +6,10 @@ l is convex in all tau together, and its second derivatives couple neighbours al
 would go on stays there. Newton's step is halved where it would make the way longer, and where that does not help, one
 point is moved after another.
 
+Where edges meet at a corner that the way comes near, l has creases, across which all this goes to and fro. A way that
+has not come to rest is sought again with pieces of sqrt(|r_(j+1) - r_j|^2 + soft^2), which have none, and soft is taken
+back to nothing.
+
 Checked  tests/net_capture/test_wrapping.py
 """
 
@@ -18,8 +22,12 @@ from orbital.kernel import kernel
 
 STEPS, HALVES = 40, 4
 """Of Newton's method at most, and how often one is halved."""
+SOFTEST, HARDER, HARDEST = 1e-2, 0.1, 1e-6
+"""Metres at first, of this share the next time, and no less."""
 AT_REST = 1e-11
 """Slope dl/dtau at which a way is the shortest: it is then too long by less than its square times the way."""
+GAIN = 1e-12
+"""Metres by which a way sought again is shorter, or the one before is kept."""
 SHORT = 1e-7
 """Metres: a piece of the way no shorter than that, where it is divided by."""
 TAU, LOW, HIGH, SLOPE = range(4)
@@ -53,7 +61,7 @@ def make_shortest() -> Any:
                 p.wrap_bends[j + 1, i] = p.wrap_feet[j, i] + p.wrap_spans[j, TAU] * p.wrap_edges[j, i]
         total = 0.0
         for j in range(edges + 1):
-            squared = 0.0
+            squared = p.wrap_soft * p.wrap_soft
             piece = p.wrap_pieces[j]
             for i in range(3):
                 piece[i] = p.wrap_bends[j + 1, i] - p.wrap_bends[j, i]
@@ -136,17 +144,15 @@ def make_shortest() -> Any:
         return measure(p, edges)
 
     @kernel
-    def settle(p, edges):
-        """Put every point of the way where it is the shortest, between the ends of its edge; with its slopes.
+    def newton(p, edges, length):
+        """Take Newton's steps from a way of this length [m], with the slopes of where they end; whether it is at rest.
 
         Checked  tests/net_capture/test_wrapping.py
         """
         spans = p.wrap_spans
-        measure(p, edges)
-        length = sweep(p, edges)
         for _ in range(STEPS):
             if step(p, edges) < AT_REST:
-                return
+                return True
             for j in range(edges):
                 p.wrap_steps[j, 1] = spans[j, TAU]
             share = 1.0
@@ -162,11 +168,42 @@ def make_shortest() -> Any:
             if now >= length:
                 for j in range(edges):
                     spans[j, TAU] = p.wrap_steps[j, 1]
-                measure(p, edges)
-                now = sweep(p, edges)
+                now = measure(p, edges)
+                if p.wrap_soft == 0.0:
+                    now = sweep(p, edges)
                 if now >= length:
-                    step(p, edges)
-                    return
+                    break
             length = now
+        return step(p, edges) < AT_REST
+
+    @kernel
+    def settle(p, edges):
+        """Put every point of the way where it is the shortest, between the ends of its edge; its length [m], and its
+        slopes.
+
+        Checked  tests/net_capture/test_wrapping.py
+        """
+        spans = p.wrap_spans
+        p.wrap_soft = 0.0
+        measure(p, edges)
+        if newton(p, edges, sweep(p, edges)):
+            return measure(p, edges)
+        least = measure(p, edges)
+        for j in range(edges):
+            p.wrap_taken[j] = spans[j, TAU]
+        soft = SOFTEST
+        while soft >= HARDEST:
+            p.wrap_soft = soft
+            newton(p, edges, measure(p, edges))
+            soft *= HARDER
+        p.wrap_soft = 0.0
+        newton(p, edges, measure(p, edges))
+        way = measure(p, edges)
+        if way > least - GAIN:
+            for j in range(edges):
+                spans[j, TAU] = p.wrap_taken[j]
+            way = measure(p, edges)
+        step(p, edges)
+        return way
 
     return settle

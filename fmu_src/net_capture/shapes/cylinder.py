@@ -15,6 +15,9 @@ AROUND = 8
 DRAWN_AROUND = 24
 FACES_AROUND = 48
 """Faces of a round side where a thread lies on it: within 0.22 % of the radius, and a way round them within 0.08 %."""
+COARSE, FEWEST, THIN = 1e-3, 8, 4e-3
+"""Metres by which fewer faces may lie within it, half of what ways do; and by which these few may, of what is thin: a
+thread may be wound round it for four turns then, as far as edges are kept."""
 
 
 @kernel
@@ -65,6 +68,22 @@ def cylinder_distance(normal, point, radius, half_length):
     x = point[0] / across if across > 0.0 else 1.0
     y = point[1] / across if across > 0.0 else 0.0
     return of_prism(normal, across - radius, x, y, point[2], half_length)
+
+
+@kernel
+def faces_round(radius):
+    """How many faces a round side has for threads: as few as lie so deep, `COARSE`, within it, up to `FACES_AROUND`.
+
+    radius       the largest, of a frustum     [m]
+
+    Checked  tests/net_capture/test_wrapping.py
+    """
+    if radius * (1.0 - math.cos(math.pi / FEWEST)) <= THIN:
+        return FEWEST
+    around = FEWEST
+    while around < FACES_AROUND and radius * (1.0 - math.cos(math.pi / around)) > COARSE:
+        around += 4
+    return around
 
 
 @kernel
@@ -170,7 +189,8 @@ def faces(p, out):
 
     Checked  tests/net_capture/test_wrapping.py
     """
-    return faces_around(out, FACES_AROUND, p.target_radius, p.target_radius, -p.half_size[2], p.half_size[2])
+    around = faces_round(p.target_radius)
+    return faces_around(out, around, p.target_radius, p.target_radius, -p.half_size[2], p.half_size[2])
 
 
 def _half(values: Values) -> list[float]:

@@ -15,7 +15,7 @@ from fmu_src.implied import formula
 from fmu_src.interface import Term
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.net_capture.shapes import Checks, Point, Shape, Values
-from fmu_src.net_capture.shapes.cylinder import FACES_AROUND, faces_around
+from fmu_src.net_capture.shapes.cylinder import faces_around, faces_round
 from fmu_src.rows import at_least_zero, positive, state
 from orbital.kernel import kernel
 
@@ -193,6 +193,7 @@ def measure(p):
     p.half_size[0] = max(bottom, top)
     p.half_size[1] = max(bottom, top)
     p.half_size[2] = max(low, high)
+    p.target_edge = (4.0 * max(bottom, top) + p.target_length) / 3.0
     p.envelope_radius = math.sqrt(max(bottom * bottom + low * low, top * top + high * high))
     p.girth = frustum_girth(bottom, top, p.target_length)
 
@@ -236,7 +237,8 @@ def faces(p, out):
     Checked  tests/net_capture/test_wrapping.py
     """
     low = -0.5 * p.target_length - p.shape_center
-    return faces_around(out, FACES_AROUND, p.target_radius_bottom, p.target_radius_top, low, low + p.target_length)
+    around = faces_round(max(p.target_radius_bottom, p.target_radius_top))
+    return faces_around(out, around, p.target_radius_bottom, p.target_radius_top, low, low + p.target_length)
 
 
 def _sizes(values: Values) -> tuple[float, float, float]:

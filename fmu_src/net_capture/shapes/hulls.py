@@ -32,9 +32,6 @@ FIRST, NUMBER, MIDDLE, RADIUS = 0, 1, 2, 5
 INSET = 2e-3
 """Metres that a way lies below the surface: so one between two nodes of a face, which lie on it or a little below,
 does not touch it, and no bend comes nearer to a node. An edge is as one rounded to 7 mm."""
-COARSE, FEWEST, THIN = 1e-3, 8, 4e-3
-"""Metres by which the faces of a round piece may lie within it, half of what ways do; and by which these few may, of a
-thin one: a thread may be wound round it for two turns then, as far as edges are kept."""
 SAGITTA, FLAT = 0.2, 0.009
 """Of a shell's thickness, and of its radius, by which a slab may lie within it at most."""
 STAYS = 1.5e-3
@@ -61,10 +58,7 @@ def slabs(radius: float, thickness: float, angle: float) -> int:
 
 def faces_round(radius: float) -> int:
     """How many faces a round piece has round its axis."""
-    if radius * (1.0 - math.cos(math.pi / FEWEST)) <= THIN:
-        return FEWEST
-    most = cylinder.FACES_AROUND
-    return next((n for n in range(FEWEST, most, 4) if radius * (1.0 - math.cos(math.pi / n)) <= COARSE), most)
+    return int(formula(cylinder.faces_round)(radius))
 
 
 def _box(half: Array) -> Array:

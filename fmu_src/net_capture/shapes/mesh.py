@@ -152,7 +152,9 @@ def _laid(content: _Content, unit: float, cell: float) -> Laid:
     nearest = triangles.Nearest(corners, 0.5 * cell)
     axes = [low[i] + cell * np.arange(counts[i]) for i in range(3)]
     nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    within = triangles.inside(corners, low, cell, (counts[0], counts[1], counts[2]))
+    within, overlap = triangles.inside(corners, low, cell, (counts[0], counts[1], counts[2]))
+    if overlap is not None:
+        raise _runs_through(overlap @ body.turn.T + center, unit)
     grid = nearest.distances(nodes.reshape(-1, 3)).reshape(counts) * np.where(within, -1.0, 1.0)
     error = _error(grid, low, cell, nearest)
     lattice = np.array([*low, cell, error])
@@ -166,6 +168,14 @@ def _laid(content: _Content, unit: float, cell: float) -> Laid:
         "target.samples": _samples(grid, lattice, nodes),
     }
     return Laid(tables, {}, {FACES: corners.reshape(-1, 9)})
+
+
+def _runs_through(place: Array, unit: float) -> Undesigned:
+    """Bodies that overlap at a place of the file [m]: their masses would count twice, and be hollow in the grid."""
+    at = ", ".join(f"{x / unit:.3g}" for x in place)
+    return Undesigned(
+        "target.mesh", "", f"bodies in it run into one another, at ({at}): expected one surface round all"
+    )
 
 
 def _too_coarse(corners: Array, cell: float, thickness: float) -> Undesigned:

@@ -87,7 +87,8 @@ def _row(name: str, entry: Mapping[str, Any]) -> list[float]:
         if key not in entry and key not in optional:
             raise ValueError(f"{called} lacks its {key}; expected {', '.join(wanted)}")
     if ("mass" in entry) == ("density" in entry):
-        raise ValueError(f"{called} has {'both' if 'mass' in entry else 'no'} mass or density: expected one of them")
+        said = "both mass and density" if "mass" in entry else "no mass or density"
+        raise ValueError(f"{called} has {said}: expected one of them")
     sizes = [float(x) for x in np.ravel([entry.get(key, math.pi) for key in wanted])]
     _check(called, kind, sizes)
     attitude = np.array(entry.get("attitude", [0.0] * 4), dtype=float)

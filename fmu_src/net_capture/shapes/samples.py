@@ -44,6 +44,7 @@ def make_solid(composition: Any, distance: Any) -> Shape:
         p.girth = solid[14]
         p.sample_depth = -1.0
         p.target_thickness = solid[16]
+        p.target_edge = solid[17]
 
     @kernel
     def inertia(p, out):

@@ -23,8 +23,8 @@ from fmu_src.net_capture.shapes.samples import SAMPLES
 
 Array = npt.NDArray[np.float64]
 
-MOMENTS, TURN, CENTER, HALF, RADIUS, GIRTH, GIRTH_ERROR, THICKNESS = 0, 3, 7, 10, 13, 14, 15, 16
-SOLID = 17
+MOMENTS, TURN, CENTER, HALF, RADIUS, GIRTH, GIRTH_ERROR, THICKNESS, EDGE = 0, 3, 7, 10, 13, 14, 15, 16, 17
+SOLID = 18
 """Numbers of the table `solid`, and where each begins."""
 ALIGNED = 1e-9
 """Products of inertia, as a share of the largest moment, below which the design axes are principal axes."""
@@ -151,6 +151,7 @@ def table(body: Solid, inner: Array, outer: Array, thickness: float) -> Array:
     most, _ = (least, along) if inner is outer else girth(outer, along)
     numbers[GIRTH], numbers[GIRTH_ERROR] = 0.5 * (least + most), 0.5 * (most - least)
     numbers[THICKNESS] = thickness
+    numbers[EDGE] = np.ptp(outer, axis=0).mean()
     return numbers
 
 

@@ -26,6 +26,9 @@ ASIDE = (1.2345e-5, 2.3456e-5)
 """By how much of a cell the lines along which crossings are counted pass beside the grid's points: through no edge."""
 CHUNK = 200_000
 
+APART = 1e-4
+"""Share of a cell by which two crossings differ, where bodies may touch face to face."""
+
 
 def read(path: Path) -> Array:
     """Corners of the triangles of a closed mesh, (n, 9), in the file's unit, all facing outward.
@@ -44,6 +47,8 @@ def read(path: Path) -> Array:
     try:
         as_written = trimesh.load_mesh(path, process=False)
         mesh = trimesh.load_mesh(path, process=True, maintain_order=True)
+    except ImportError:  # of what would guess the encoding of a text
+        raise ValueError("cannot be read as a mesh: it is neither a binary STL nor a text") from None
     except Exception as error:  # whatever the reader stumbles over
         raise ValueError(f"cannot be read as a mesh: {error}") from None
     if isinstance(as_written, trimesh.Trimesh):
@@ -229,17 +234,23 @@ class Nearest:
         return found
 
 
-def inside(corners: Array, low: Array, cell: float, counts: tuple[int, int, int]) -> npt.NDArray[np.bool_]:
+def inside(
+    corners: Array, low: Array, cell: float, counts: tuple[int, int, int]
+) -> tuple[npt.NDArray[np.bool_], Array | None]:
     """Which points of a grid lie within a closed mesh: those with an odd number of crossings on the way along the first
-    axis, for a line that passes just beside them.
+    axis, for a line that passes just beside them. And where such a line comes in twice before it goes out, or goes out
+    first, if anywhere: bodies there run into one another, or triangles face inward [m] (3,).
 
     low       the grid's lowest corner [m] (3,)
     cell      distance of its points [m]
     counts    how many they are along each axis
+
+    Checked  tests/net_capture/test_mesh.py, test_mesh_messages.py
     """
     crossings = np.zeros((counts[0] + 1, counts[1], counts[2]), dtype=np.int32)
     local = (corners - low) / cell
     local[:, :, 1:] -= ASIDE
+    met: list[Array] = []
     for a, b, c in local:
         (y0, z0), (y1, z1) = (
             np.maximum(np.ceil(np.minimum(np.minimum(a, b), c)[1:]).astype(int), 0),
@@ -257,5 +268,21 @@ def inside(corners: Array, low: Array, cell: float, counts: tuple[int, int, int]
         x = a[0] + u[hit] * (b[0] - a[0]) + v[hit] * (c[0] - a[0])
         place = np.clip(np.ceil(x).astype(int), 0, counts[0])
         np.add.at(crossings, (place, y[hit], z[hit]), 1)
+        met.append(np.column_stack([y[hit], z[hit], x, np.full(len(x), -math.copysign(1.0, area))]))
     after = crossings[::-1].cumsum(axis=0)[::-1]
-    return np.asarray(after[1:] % 2 == 1)
+    return np.asarray(after[1:] % 2 == 1), _twice_in(np.vstack(met), low, cell)
+
+
+def _twice_in(met: Array, low: Array, cell: float) -> Array | None:
+    """A place [m] where a line is within more than one body, or fewer than none.
+
+    met    crossings (n, 4): which line, where on it [cells], and 1 inward, -1 outward
+    """
+    y, z, x, inward = met[np.lexsort([met[:, 2], met[:, 1], met[:, 0]])].T
+    depth = np.cumsum(inward)[:-1]
+    same = (np.diff(y) == 0.0) & (np.diff(z) == 0.0)
+    wrong = np.flatnonzero(same & ((depth < 0.0) | (depth > 1.0)) & (np.diff(x) > APART))
+    if len(wrong) == 0:
+        return None
+    at = wrong[np.argmax(np.diff(x)[wrong])]
+    return np.asarray(low + cell * np.array([0.5 * (x[at] + x[at + 1]), y[at] + ASIDE[0], z[at] + ASIDE[1]]))
