@@ -44,7 +44,8 @@ QUALITY_WITHIN = 0.05
 IMPULSE_WITHIN = 0.02
 """By how much the means of the impulse may differ, relative."""
 MASS = 1000.0
-EVERY = 8
+STARTS, EVERY = 60, 8
+"""Starts, and after how many what there is is stored."""
 TOLD = ("quality", "impulse", "held", "sizes", "captured")
 VALUES: Mapping[str, float] = {
     "net.side": 12.0,
@@ -136,5 +137,5 @@ if __name__ == "__main__":
     kernels.alone()
     main(
         Path(sys.argv[1]) if len(sys.argv) > 1 else RESULT,
-        int(sys.argv[2]) if len(sys.argv) > 2 else 16,
+        int(sys.argv[2]) if len(sys.argv) > 2 else STARTS,
     )
