@@ -2,7 +2,8 @@
 
 The grid stands in the body axes, which are principal; see `solids`. Its error is that of the interpolation: none on a
 plane, of the order of the cell's square times the curvature where the body is round, and of a fraction of a cell at its
-edges, which it rounds. It is measured at the middles of the cells round the surface.
+edges and corners, which it rounds, unless its planes lie in the faces beside them. It is measured at the middles of
+the cells round the surface, and from points of the surface to that of the grid.
 """
 
 from __future__ import annotations
@@ -37,7 +38,9 @@ THIN = 0.05
 CELLS = 2.0
 """Cells that have to lie across it."""
 LOOKED_AT = 3000
-"""Points inside from which sample points are led to."""
+"""Points inside from which sample points are led to, and points of the surface from which the grid's may be farthest."""
+BESIDE, LED = 1e-3, 12
+"""Share of a cell to both sides over which a gradient is taken, and steps along it to the grid's surface."""
 ROUND_BALL = 2.5
 """Way to such a point from the surface, over its depth, up to which it lies in the same part of the body."""
 
@@ -154,8 +157,8 @@ def _laid(content: _Content, unit: float, cell: float) -> Laid:
     nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     within = triangles.inside(corners, low, cell, (counts[0], counts[1], counts[2]))
     grid = nearest.distances(nodes.reshape(-1, 3)).reshape(counts) * np.where(within, -1.0, 1.0)
-    error = _error(grid, low, cell, nearest)
-    lattice = np.array([*low, cell, error])
+    lattice = np.array([*low, cell, 0.0])
+    lattice[4] = _error(grid, lattice, nearest)
     thickness = _thickness(corners, grid, lattice)
     if thickness < CELLS * cell:
         raise _too_coarse(corners, cell, min(thickness, triangles.thickness(corners, THIN)))
@@ -190,15 +193,30 @@ def between(grid: Array, lattice: Array, points: Array) -> Array:
     return found
 
 
-def _error(grid: Array, low: Array, cell: float, nearest: triangles.Nearest) -> float:
-    """Largest error of the interpolation [m] in the middles of the cells through which the surface runs.
+def _error(grid: Array, lattice: Array, nearest: triangles.Nearest) -> float:
+    """Largest error of the interpolation [m]: in the middles of the cells through which the surface runs, and from the
+    body's own surface to the grid's, which rounds edges and corners.
 
     Checked  tests/net_capture/test_mesh.py
     """
     eight = np.stack([grid[a : a - 1 or None, b : b - 1 or None, c : c - 1 or None] for a, b, c in np.ndindex(2, 2, 2)])
     there = np.argwhere((eight.min(axis=0) < 0.0) & (eight.max(axis=0) > 0.0))
     told = np.abs(eight.mean(axis=0)[tuple(there.T)])
-    return float(np.abs(told - nearest.distances(low + cell * (there + 0.5))).max())
+    middles = np.abs(told - nearest.distances(lattice[:3] + lattice[3] * (there + 0.5)))
+    off = np.abs(between(grid, lattice, nearest.places))
+    farthest = nearest.places[np.argsort(off)[-LOOKED_AT:]]
+    return max(float(middles.max()), float(_ways(grid, lattice, farthest).max()))
+
+
+def _ways(grid: Array, lattice: Array, points: Array) -> Array:
+    """How far points (n, 3) are from the grid's surface [m], along its gradient."""
+    at, beside = points.copy(), BESIDE * lattice[3] * np.eye(3)
+    for _ in range(LED):
+        slope = np.stack([between(grid, lattice, at + e) - between(grid, lattice, at - e) for e in beside], axis=-1)
+        steep = np.linalg.norm(slope, axis=1, keepdims=True)
+        way = between(grid, lattice, at)[:, None] * slope
+        at -= np.divide(way, steep, out=np.zeros_like(way), where=steep > 0.0)
+    return np.asarray(np.linalg.norm(at - points, axis=1))
 
 
 def _thickness(corners: Array, grid: Array, lattice: Array) -> float:
