@@ -229,12 +229,12 @@ class Nearest:
         return found
 
 
-def inside(corners: Array, low: Array, cell: float, counts: tuple[int, int, int]) -> npt.NDArray[np.bool_]:
+def inside(corners: Array, low: Array, cell: Array, counts: tuple[int, int, int]) -> npt.NDArray[np.bool_]:
     """Which points of a grid lie within a closed mesh: those with an odd number of crossings on the way along the first
     axis, for a line that passes just beside them.
 
     low       the grid's lowest corner [m] (3,)
-    cell      distance of its points [m]
+    cell      distances of its points [m] (3,)
     counts    how many they are along each axis
     """
     crossings = np.zeros((counts[0] + 1, counts[1], counts[2]), dtype=np.int32)

@@ -7,9 +7,11 @@ these alone and what is not there yet, and of the others every tenth start, whic
 row is one start of an ensemble with a jitter of a micrometre, caught with all kinds:
 
     box             by its closed form
-    mesh            on a grid of 5 cm, in whose planes all faces lie, so that its edges are sharp
-    rounded         on a grid of 7 cm, in whose planes half of the faces lie: of four edges one is sharp, and one lies
-                    27 mm within the box's, of eight corners one does by 48 mm
+    mesh, coarse    on grids of 5 and of at most 7 cm, in whose planes the faces lie
+
+`mesh_box_before.json` has the same starts on a grid of 7 cm in whose planes half of the faces lay, as up to 0.16.0
+(`rounded`): of the box's twelve edges nine were rounded, 27 to 29 mm within, of its eight corners seven by 50 mm; `first` are those of `mesh_first`.
+`lines` are the rows of the table in the net's README.
 
 What each has at the end:
 
@@ -43,13 +45,21 @@ from tests.conftest import CAPTURE
 from tests.net_capture.memory import shown
 
 RESULT = Path(__file__).with_name("mesh_box.json")
+BEFORE = Path(__file__).with_name("mesh_box_before.json")
 COMMAND = "python -m tests.net_capture.evidence.mesh_box"
 SIZE = (2.5, 3.9, 2.5)
-CELLS = {"mesh": 0.05, "rounded": 0.07}
+CELLS = {"mesh": 0.05, "coarse": 0.07}
 """Grids of the kinds that are meshes [m]."""
 KINDS = ("box", *CELLS)
 END, HELD, STEP = 12.0, 2.0, 0.1
 """End of a catch, the last seconds of which the mean is told, time between two looks [s]."""
+NAMES = {
+    "box": "closed form: mean, spread",
+    "mesh": "grid of 5 cm, less that",
+    "coarse": "grid of 7 cm, less that",
+    "rounded": "the same with rounded edges, as up to 0.16.0, less that",
+}
+"""What the README's table calls them."""
 QUALITY_WITHIN = 0.05
 """By how much the means of the quality index may differ, relative."""
 IMPULSE_WITHIN = 0.02
@@ -123,7 +133,7 @@ def summarise(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     standard errors."""
     found: dict[str, Any] = {"shots": len(rows)}
     for name in TOLD:
-        columns = {kind: np.array([row[kind][name] for row in rows]) for kind in KINDS}
+        columns = {kind: np.array([row[kind][name] for row in rows]) for kind in rows[0]}
         means, spreads = ({k: float(f(c)) for k, c in columns.items()} for f in (np.mean, lambda c: c.std(ddof=1)))
         found[name] = {
             kind: {
@@ -132,9 +142,33 @@ def summarise(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
                 "apart": means[kind] / means["box"] - 1.0,
                 "error": float(np.hypot(spreads[kind], spreads["box"]) / np.sqrt(len(rows)) / means["box"]),
             }
-            for kind in KINDS
+            for kind in columns
         }
         del found[name]["box"]["apart"], found[name]["box"]["error"]
+    return found
+
+
+def lines(rows: Sequence[Mapping[str, Any]], before: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The rows of the README's table: means and spreads of the box, and of the others how their means differ from it.
+
+    before    rows of what there was before, of the same starts
+    """
+    both = [{**row, **old} for row, old in zip(rows, before, strict=True)]
+    told, found = summarise(both), []
+    for kind, name in NAMES.items():
+        cells = [name]
+        for what, unit, digits in (
+            ("quality", "", 3),
+            ("impulse", " N s", 2),
+            ("held", " N s", 2),
+            ("sizes", " N s", 0),
+        ):
+            value = told[what][kind]
+            if kind == "box":
+                cells.append(f"{value['mean']:.{digits}f}{unit}, {100.0 * value['spread'] / value['mean']:.0f} %")
+            else:
+                cells.append(f"{100.0 * value['apart']:+.1f} +- {100.0 * value['error']:.1f} %")
+        found.append(f"| {' | '.join(cells)} |")
     return found
 
 

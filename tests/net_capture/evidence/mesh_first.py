@@ -1,5 +1,5 @@
 """The first second of contact of the catch of `mesh_box`, before it is chaotic: the box by its closed form, and as a
-mesh with sharp and with rounded edges.
+mesh on a grid of 5 and of 7 cm.
 
     python -m tests.net_capture.evidence.mesh_first
 
