@@ -10,8 +10,8 @@ row is one start of an ensemble with a jitter of a micrometre, caught with all k
     mesh, coarse    on grids of 5 and of at most 7 cm, in whose planes the faces lie
 
 `mesh_box_before.json` has the same starts on a grid of 7 cm in whose planes half of the faces lay, as up to 0.16.0
-(`rounded`): of the box's twelve edges nine were rounded, 27 to 29 mm within, of its eight corners seven by 50 mm; its `first`
-are rows of `mesh_first`. `lines` are the rows of the table in the net's README.
+(`rounded`): of the box's twelve edges nine were rounded, 27 to 29 mm within, of its eight corners seven by 50 mm; its
+`first` are rows of `mesh_first`. `lines` are the rows of the table in the net's README.
 
 What each has at the end:
 
