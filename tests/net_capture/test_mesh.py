@@ -182,6 +182,7 @@ def test_files_that_are_no_meshes_are_told(tmp_path):
         (0.1, 1e-3, "target.mesh_unit", "makes the target 0.003 m long"),
         (0.005, 1.0, "target.resolution", "points; expected 0.0[0-9]* m or more"),
         (1.0, 1.0, "target.resolution", "is too coarse for walls of"),
+        (1e9, 1.0, "target.resolution", "is too coarse for walls of"),
     ],
 )
 def test_units_and_grids_that_cannot_be_meant_are_told(tmp_path, cell, unit, name, text):

@@ -151,7 +151,7 @@ def _laid(content: _Content, unit: float, cell: float) -> Laid:
     body = solids.solid_of(volume, center, tensor)
     points = body.to_body(corners.reshape(-1, 3))
     corners = points.reshape(-1, 3, 3)
-    along = np.ceil(np.ptp(points, axis=0) / cell - WHOLE)
+    along = np.maximum(np.ceil(np.ptp(points, axis=0) / cell - WHOLE), 1.0)
     edges = np.where(np.abs(along * cell - np.ptp(points, axis=0)) < WHOLE * cell, cell, np.ptp(points, axis=0) / along)
     low = points.min(axis=0) - MARGIN * edges
     counts = tuple(int(n) for n in along + 2 * MARGIN + 1)
