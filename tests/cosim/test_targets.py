@@ -97,7 +97,8 @@ def test_a_mesh_is_read_from_its_file(tmp_path):
     assert f'mesh = "{tmp_path / "stage.stl"}"' in scene.text
     told = {row.key: row.value for row in build.implied("net_capture", {**main.values, **main.asked}, main.terms)}
     assert told["target.girth"] == pytest.approx(2.0 * (2.0 + 1.5), rel=1e-6)
-    assert 0.04 < told["target.grid_error"] < 0.1
+    assert told["target.grid_cell"] == pytest.approx(0.2)
+    assert told["target.grid_error"] < 1e-6, "the faces of a box lie in the grid's planes"
     assert told["target.inertia_1"] == pytest.approx(900.0 * (9.0 + 2.25) / 12.0, rel=1e-6)
 
 

@@ -1,10 +1,12 @@
 """Stored results of many shots: what they are made of, and that they add up."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import fmu_src.net_capture
 from tests.net_capture.evidence import contact_terms, indices, launches, self_contact
 from tests.net_capture.evidence.shots import draw
 
@@ -44,10 +46,14 @@ def test_what_terms_of_contact_change_is_told_as_the_rows_say():
     assert result["command"] == contact_terms.COMMAND
     assert [(row["number"], row["choice"]) for row in rows] == [(n, c) for n in range(result["shots"]) for c in choices]
     assert result["summary"] == contact_terms.summarise(rows)
-    assert result["shots"] >= 24
+    assert result["shots"] >= contact_terms.SHOTS
     first, friction = (result["summary"][choice] for choice in (choices[0], "law A, wrap with friction"))
     assert friction["friction_loss"]["mean"] > 5.0
     assert friction["remainder"]["mean"] == pytest.approx(first["remainder"]["mean"], abs=0.05), "of friction nothing"
+    told = contact_terms.lines(result["summary"], result["shots"])
+    page = Path(f"{fmu_src.net_capture.__path__[0]}/README.md").read_text().splitlines()
+    at = page.index(told[0])
+    assert page[at : at + len(told)] == told
 
 
 @pytest.mark.evidence

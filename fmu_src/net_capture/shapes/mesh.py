@@ -1,8 +1,9 @@
 """Any closed mesh: its signed distance on a grid, in the FMU's tables, between whose points it is interpolated.
 
-The grid stands in the body axes, which are principal; see `solids`. Its error is that of the interpolation: none on a
-plane, of the order of the cell's square times the curvature where the body is round, and of a fraction of a cell at its
-edges, which it rounds. It is measured at the middles of the cells round the surface.
+The grid stands in the body axes, which are principal; see `solids`. The body's box is a whole number of cells along
+each of them. Its error is that of the interpolation: none on a plane, of the order of the cell's square times the
+curvature where the body is round, and of a fraction of a cell at its edges and corners, which it rounds, unless its
+planes lie in the faces beside them, as in those of a box. It is measured from points of the body's surface.
 """
 
 from __future__ import annotations
@@ -26,8 +27,12 @@ from orbital.kernel import kernel
 Array = npt.NDArray[np.float64]
 
 MESH, GRID, LATTICE, FACES = "target.mesh", "target.grid", "target.lattice", "target.faces"
+ERROR = 6
+"""Where the table of the lattice has the grid's error."""
 MARGIN = 2
 """Cells of the grid beyond the body."""
+WHOLE = 1e-6
+"""Share of a cell by which the body may be longer than a whole number of them."""
 MOST = 4_000_000
 """Points of the largest grid: 32 MB."""
 SMALLEST, LARGEST = 0.01, 500.0
@@ -37,7 +42,10 @@ THIN = 0.05
 CELLS = 2.0
 """Cells that have to lie across it."""
 LOOKED_AT = 3000
-"""Points inside from which sample points are led to."""
+"""Points inside from which sample points are led to, and points of the surface from which that of the grid may be
+farthest."""
+BESIDE, LED = 1e-3, 12
+"""Share of a cell to both sides over which a gradient is taken, and steps along it to the grid's surface."""
 ROUND_BALL = 2.5
 """Way to such a point from the surface, over its depth, up to which it lies in the same part of the body."""
 
@@ -50,17 +58,16 @@ def grid_distance(grid, lattice, normal, point):
     grid, the distance from the nearest point of the surface as the grid's edge sees it.
 
     grid         signed distances                          [m]  (k, l, m)
-    lattice      lowest corner, and cell                   [m]  (4,) or more
+    lattice      lowest corner, and edges of a cell        [m]  (6,) or more
     point        in body axes                              [m]  (3,)
     normal       unit vector, body axes                    [1]  (3,)
 
     Valid    within the error that `lay` measures; where the gradient vanishes, the first body axis
     Checked  tests/net_capture/test_mesh.py
     """
-    cell = lattice[3]
-    x = (point[0] - lattice[0]) / cell
-    y = (point[1] - lattice[1]) / cell
-    z = (point[2] - lattice[2]) / cell
+    x = (point[0] - lattice[0]) / lattice[3]
+    y = (point[1] - lattice[1]) / lattice[4]
+    z = (point[2] - lattice[2]) / lattice[5]
     u = min(max(x, 0.0), grid.shape[0] - 1.0)
     v = min(max(y, 0.0), grid.shape[1] - 1.0)
     w = min(max(z, 0.0), grid.shape[2] - 1.0)
@@ -79,13 +86,14 @@ def grid_distance(grid, lattice, normal, point):
     distance = (1.0 - w) * low + w * high
     normal[0] = (1.0 - w) * ((1.0 - v) * (b - a) + v * (d - c)) + w * ((1.0 - v) * (f - e) + v * (h - g))
     normal[1] = (1.0 - w) * ((1.0 - u) * (c - a) + u * (d - b)) + w * ((1.0 - u) * (g - e) + u * (h - f))
-    normal[2] = high - low
+    normal[1] *= lattice[3] / lattice[4]
+    normal[2] = (high - low) * (lattice[3] / lattice[5])
     length = math.sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
     for axis in range(3):
         normal[axis] = normal[axis] / length if length > 0.0 else (1.0 if axis == 0 else 0.0)
-    x = cell * (x - i - u)
-    y = cell * (y - j - v)
-    z = cell * (z - k - w)
+    x = lattice[3] * (x - i - u)
+    y = lattice[4] * (y - j - v)
+    z = lattice[5] * (z - k - w)
     if x == 0.0 and y == 0.0 and z == 0.0:
         return distance
     x += distance * normal[0]
@@ -143,21 +151,23 @@ def _laid(content: _Content, unit: float, cell: float) -> Laid:
     body = solids.solid_of(volume, center, tensor)
     points = body.to_body(corners.reshape(-1, 3))
     corners = points.reshape(-1, 3, 3)
-    low = points.min(axis=0) - MARGIN * cell
-    counts = tuple(int(n) for n in np.ceil((points.max(axis=0) - low) / cell).astype(int) + MARGIN + 1)
+    along = np.maximum(np.ceil(np.ptp(points, axis=0) / cell - WHOLE), 1.0)
+    edges = np.where(np.abs(along * cell - np.ptp(points, axis=0)) < WHOLE * cell, cell, np.ptp(points, axis=0) / along)
+    low = points.min(axis=0) - MARGIN * edges
+    counts = tuple(int(n) for n in along + 2 * MARGIN + 1)
     if math.prod(counts) > MOST:
         needed = 1.01 * cell * (math.prod(counts) / MOST) ** (1.0 / 3.0)
         expected = f"makes {math.prod(counts):,} points; expected {needed:.2g} m or more, at most {MOST:,} points"
         raise Undesigned("target.resolution", f"{cell:g} m", expected)
-    nearest = triangles.Nearest(corners, 0.5 * cell)
-    axes = [low[i] + cell * np.arange(counts[i]) for i in range(3)]
+    nearest = triangles.Nearest(corners, 0.5 * float(edges.min()))
+    axes = [low[i] + edges[i] * np.arange(counts[i]) for i in range(3)]
     nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    within, overlap = triangles.inside(corners, low, cell, (counts[0], counts[1], counts[2]))
+    within, overlap = triangles.inside(corners, low, edges, (counts[0], counts[1], counts[2]))
     if overlap is not None:
         raise _runs_through(overlap @ body.turn.T + center, unit)
     grid = nearest.distances(nodes.reshape(-1, 3)).reshape(counts) * np.where(within, -1.0, 1.0)
-    error = _error(grid, low, cell, nearest)
-    lattice = np.array([*low, cell, error])
+    lattice = np.array([*low, *edges, 0.0])
+    lattice[ERROR] = _error(grid, lattice, nearest.places)
     thickness = _thickness(corners, grid, lattice)
     if thickness < CELLS * cell:
         raise _too_coarse(corners, cell, min(thickness, triangles.thickness(corners, THIN)))
@@ -190,7 +200,7 @@ def _too_coarse(corners: Array, cell: float, thickness: float) -> Undesigned:
 
 def between(grid: Array, lattice: Array, points: Array) -> Array:
     """What `grid_distance` has within the grid, for many points (n, 3) [m]."""
-    place = (points - lattice[:3]) / lattice[3]
+    place = (points - lattice[:3]) / lattice[3:6]
     cells = np.clip(place.astype(int), 0, np.array(grid.shape) - 2)
     share = place - cells
     found = np.zeros(len(points))
@@ -200,27 +210,33 @@ def between(grid: Array, lattice: Array, points: Array) -> Array:
     return found
 
 
-def _error(grid: Array, low: Array, cell: float, nearest: triangles.Nearest) -> float:
-    """Largest error of the interpolation [m] in the middles of the cells through which the surface runs.
+def _error(grid: Array, lattice: Array, points: Array) -> float:
+    """How far the grid's surface may be from points of the body's (n, 3) [m], along the gradient: it rounds edges and
+    corners.
 
     Checked  tests/net_capture/test_mesh.py
     """
-    eight = np.stack([grid[a : a - 1 or None, b : b - 1 or None, c : c - 1 or None] for a, b, c in np.ndindex(2, 2, 2)])
-    there = np.argwhere((eight.min(axis=0) < 0.0) & (eight.max(axis=0) > 0.0))
-    told = np.abs(eight.mean(axis=0)[tuple(there.T)])
-    return float(np.abs(told - nearest.distances(low + cell * (there + 0.5))).max())
+    start = points[np.argsort(np.abs(between(grid, lattice, points)))[-LOOKED_AT:]]
+    at, beside = start.copy(), BESIDE * np.diag(lattice[3:6])
+    for _ in range(LED):
+        slope = np.stack([between(grid, lattice, at + e) - between(grid, lattice, at - e) for e in beside], axis=-1)
+        slope /= lattice[3:6]
+        steep = np.linalg.norm(slope, axis=1, keepdims=True)
+        way = between(grid, lattice, at)[:, None] * slope
+        at -= np.divide(way, steep, out=np.zeros_like(way), where=steep > 0.0)
+    return float(np.linalg.norm(at - start, axis=1).max())
 
 
 def _thickness(corners: Array, grid: Array, lattice: Array) -> float:
     """Thickness [m] that `THIN` of the surface falls below, across it from the middles of the triangles inward, as
     large as the body where nothing is met."""
-    cell = lattice[3]
+    cell = lattice[3:6].min()
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(across, axis=1)
     inward = -across / area[:, None]
     middles = corners.mean(axis=1)
     through = np.full(len(corners), math.inf)
-    high = lattice[:3] + cell * (np.array(grid.shape) - 1)
+    high = lattice[:3] + lattice[3:6] * (np.array(grid.shape) - 1)
     for step in range(2, 2 * max(grid.shape)):
         way = 0.5 * step * cell
         at = np.clip(middles + way * inward, lattice[:3], high)
@@ -233,13 +249,13 @@ def _thickness(corners: Array, grid: Array, lattice: Array) -> float:
 
 def _samples(grid: Array, lattice: Array, nodes: Array) -> Array:
     """The table `samples`, from points of the grid."""
-    inner = np.argwhere(grid < -0.25 * lattice[3])
+    inner = np.argwhere(grid < -0.25 * lattice[3:6].max())
     inner = inner[:: max(len(inner) // LOOKED_AT, 1)]
     points = nodes[tuple(inner.T)]
     normals, distance = np.empty_like(points), formula(grid_distance)
     depths = np.array([-distance(grid, lattice, n, p) for n, p in zip(normals, points, strict=True)])
     out = points + depths[:, None] * normals
-    on = np.abs(between(grid, lattice, out)) < 0.25 * lattice[3]
+    on = np.abs(between(grid, lattice, out)) < 0.25 * lattice[3:6].max()
     surface = out[on]
 
     def leads(start: int) -> npt.NDArray[np.bool_]:
@@ -253,10 +269,10 @@ def _samples(grid: Array, lattice: Array, nodes: Array) -> Array:
 
 def rows(values: Values) -> Iterator[Implied]:
     """The grid and its error."""
-    counts = values[GRID].shape
+    counts, lattice = values[GRID].shape, values[LATTICE]
     yield Implied("target.grid_points", "points of the grid of its distances", float(math.prod(counts)), "1")
-    yield Implied("target.grid_cell", "their distance", float(values[LATTICE][3]), "m")
-    yield Implied("target.grid_error", "by which the surface may be off, at its edges", float(values[LATTICE][4]), "m")
+    yield Implied("target.grid_cell", "their distance, the largest", float(lattice[3:6].max()), "m")
+    yield Implied("target.grid_error", "by which the surface may be off, at its edges", float(lattice[ERROR]), "m")
 
 
 def _distance(values: Values, point: Point) -> float:
@@ -273,7 +289,7 @@ PART = Term(
     samples.ROWS,
     tables=(
         Table(GRID, "m", "signed distances from the target's surface", dimensions=3),
-        Table(LATTICE, "m", "lowest corner of that grid in body axes, its cell, and its error"),
+        Table(LATTICE, "m", "lowest corner of that grid in body axes, edges of its cells, and its error"),
         *samples.TABLES,
     ),
     sources=(

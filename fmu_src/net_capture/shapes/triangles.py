@@ -235,14 +235,14 @@ class Nearest:
 
 
 def inside(
-    corners: Array, low: Array, cell: float, counts: tuple[int, int, int]
+    corners: Array, low: Array, cell: Array, counts: tuple[int, int, int]
 ) -> tuple[npt.NDArray[np.bool_], Array | None]:
     """Which points of a grid lie within a closed mesh: those with an odd number of crossings on the way along the first
     axis, for a line that passes just beside them. And where such a line comes in twice before it goes out, or goes out
     first, if anywhere: bodies there run into one another, or triangles face inward [m] (3,).
 
     low       the grid's lowest corner [m] (3,)
-    cell      distance of its points [m]
+    cell      distances of its points [m] (3,)
     counts    how many they are along each axis
 
     Checked  tests/net_capture/test_mesh.py, test_mesh_messages.py
@@ -273,7 +273,7 @@ def inside(
     return np.asarray(after[1:] % 2 == 1), _twice_in(np.vstack(met), low, cell)
 
 
-def _twice_in(met: Array, low: Array, cell: float) -> Array | None:
+def _twice_in(met: Array, low: Array, cell: Array) -> Array | None:
     """A place [m] where a line is within more than one body, or fewer than none.
 
     met    crossings (n, 4): which line, where on it [cells], and 1 inward, -1 outward

@@ -2,8 +2,9 @@
 
     python -m tests.net_capture.evidence.contact_terms [HOW_MANY [CHOICE ...]]
 
-makes `contact_terms.json` again, some four CPU-seconds a shot; with choices named, these alone and what is not there
-yet, and of the others every tenth shot, which must come out as it is stored. Every shot is drawn once, with
+makes `contact_terms.json` again, some six CPU-seconds a shot; with choices named, these alone and what is not there
+yet, and of the others every tenth shot, which must come out as it is stored. `lines` are the rows of the table in the
+net's README. Every shot is drawn once, with
 the launch errors of `launches` (speed and angle of each bullet off by a standard deviation of 1 %), and is followed for
 20 s with each choice of terms, on meshes of 2 m. What is told is the mean over all shots, and the mean difference from
 the first choice shot by shot with its standard error. `envelope` takes the sphere round the box for the box, with the
@@ -122,6 +123,29 @@ def summarise(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
             **{name: mean([row[name] for row in shots]) for name in TOLD},
             "difference": {name: mean([other[name] - one[name] for one, other in both]) for name in TOLD},
         }
+    return found
+
+
+TABLE = (("t_capture", "s", 3), ("index", "", 3), ("impulse", "N s", 1), ("thread", "N", 0), ("cord", "N", 0))
+TABLE += (("contact_loss", "J", 1),)
+"""What the README's table has of them: name, unit, and digits behind the point."""
+TABLE_THRESHOLDS = ("0.6", "0.7", "0.8", "1.0")
+
+
+def lines(summary: Mapping[str, Any], shots: int) -> list[str]:
+    """The rows of the README's table: means of the first choice, and of the others how they differ from it."""
+    found = []
+    for choice, told in summary.items():
+        first = not found
+        values, sign = (told, "") if first else (told["difference"], "+")
+        cells = [
+            f"{values[name]['mean']:{sign}.{digits}f} +- {values[name]['error']:.{digits}f} {unit}".strip()
+            for name, unit, digits in TABLE
+        ]
+        disagree = ", ".join(str(told["disagree"][threshold]) for threshold in TABLE_THRESHOLDS)
+        name = f"{choice}, as it is" if first else f"{choice}, less that"
+        cells = [name, f"{told['captured']} of {shots}", *cells, str(told["passed"]), disagree]
+        found.append(f"| {' | '.join(cells)} |")
     return found
 
 

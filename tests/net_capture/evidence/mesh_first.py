@@ -1,11 +1,11 @@
 """The first second of contact of the catch of `mesh_box`, before it is chaotic: the box by its closed form, and as a
-mesh.
+mesh on a grid of 5 and of 7 cm.
 
     python -m tests.net_capture.evidence.mesh_first
 
 makes `mesh_first.json` again, a minute on one core. Each row is one start: the sum of the sizes of all impulses [N s]
-so long after the first touch, with both; what the target has taken up then; and the instants of the first touch, which
-are the same, since up to there both are one flight.
+so long after the first touch, with each; what the target has taken up then; and the instants of the first touch, which
+are the same, since up to there all are one flight.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 from fmu_src.instance import Instance
 from fmu_src.net_capture.interface import MODEL
 from tests.conftest import CAPTURE
-from tests.net_capture.evidence.mesh_box import SIZE, VALUES, laid
+from tests.net_capture.evidence.mesh_box import KINDS, SIZE, VALUES, laid
 
 RESULT = Path(__file__).with_name("mesh_first.json")
 COMMAND = "python -m tests.net_capture.evidence.mesh_first"
@@ -33,7 +33,8 @@ def first(kind: str, seed: int, tables: Mapping[str, Any]) -> dict[str, Any]:
     given = {**VALUES, "solver.seed": seed}
     if kind == "box":
         given |= {f"target.size[{i + 1}]": edge for i, edge in enumerate(SIZE)}
-    net = Instance(MODEL, {**CAPTURE, "target": kind}, given, tables if kind == "mesh" else {}).initialise()
+    terms = {**CAPTURE, "target": "box" if kind == "box" else "mesh"}
+    net = Instance(MODEL, terms, given, tables).initialise()
     while net["contact.first_time"] < 0.0:
         net.step(0.01)
     impulses = []
@@ -45,8 +46,8 @@ def first(kind: str, seed: int, tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def main() -> None:
-    tables = laid()
-    rows = [{kind: first(kind, seed, tables) for kind in ("box", "mesh")} for seed in range(SHOTS)]
+    tables = {kind: laid(kind) for kind in KINDS}
+    rows = [{kind: first(kind, seed, tables[kind]) for kind in KINDS} for seed in range(SHOTS)]
     versions = {name: version(name) for name in ("dcone-cosim", "numba", "numpy", "trimesh")}
     RESULT.write_text(json.dumps({"command": COMMAND, "versions": versions, "rows": rows}, indent=1) + "\n")
 
