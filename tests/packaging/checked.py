@@ -1,0 +1,30 @@
+"""Programs of Python whose kernels are compiled with a check of every index."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+STRICT = """
+from numba.core import types
+from numba.np import arrayobj
+
+def as_it_is(context, builder, kind, index, size):
+    return context.cast(builder, index, kind, types.intp if kind.signed else types.uintp)
+
+arrayobj.fix_integer_index = as_it_is
+"""
+"""Has an index below zero, which numba counts from the end, stay as it is: no kernel of ours means the end by it."""
+
+
+def run(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """What a program did with these arguments; an index beyond its array ends it with "out of bounds"."""
+    return subprocess.run(
+        [sys.executable, "-c", STRICT + code, *arguments],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env={"NUMBA_BOUNDSCHECK": "1", "PYTHONPATH": str(ROOT)},
+    )
