@@ -8,21 +8,30 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 STRICT = """
+import sys
+from pathlib import Path
+
 from numba.core import types
 from numba.np import arrayobj
+
+from orbital import keeping
 
 def as_it_is(context, builder, kind, index, size):
     return context.cast(builder, index, kind, types.intp if kind.signed else types.uintp)
 
 arrayobj.fix_integer_index = as_it_is
+keeping.keep_in(Path(sys.argv.pop(1)))
 """
 """Has an index below zero, which numba counts from the end, stay as it is: no kernel of ours means the end by it."""
 
 
-def run(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """What a program did with these arguments; an index beyond its array ends it with "out of bounds"."""
+def run(kept: Path, code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """What a program did with these arguments; an index beyond its array ends it with "out of bounds".
+
+    kept    folder of the kernels that such programs have in common
+    """
     return subprocess.run(
-        [sys.executable, "-c", STRICT + code, *arguments],
+        [sys.executable, "-c", STRICT + code, str(kept), *arguments],
         capture_output=True,
         text=True,
         cwd=ROOT,

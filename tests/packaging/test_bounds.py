@@ -123,7 +123,7 @@ def test_every_term_has_a_case(folder: Path) -> None:
 @pytest.mark.evidence
 @pytest.mark.parametrize("cases", together().values(), ids=together())
 def test_every_index_is_within_its_array(cases: list[tuple[str, ...]], folder: Path) -> None:
-    done = checked.run(CODE, json.dumps([placed(case, folder) for case in cases]))
+    done = checked.run(folder / "kept", CODE, json.dumps([placed(case, folder) for case in cases]))
     print(done.stdout)
     assert "out of bounds" not in done.stderr
     assert done.returncode == 0, done.stderr

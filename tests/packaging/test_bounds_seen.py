@@ -80,8 +80,8 @@ print(json.dumps(seen))
 
 
 @pytest.fixture(scope="module")
-def seen() -> list[bool]:
-    done = checked.run(CODE)
+def seen(tmp_path_factory: pytest.TempPathFactory) -> list[bool]:
+    done = checked.run(tmp_path_factory.mktemp("kept"), CODE)
     assert done.returncode == 0, done.stderr
     found: list[bool] = json.loads(done.stdout)
     return found
