@@ -11,7 +11,7 @@ STRICT = """
 import sys
 from pathlib import Path
 
-from numba.core import types
+from numba.core import config, types
 from numba.np import arrayobj
 
 from orbital import keeping
@@ -20,9 +20,11 @@ def as_it_is(context, builder, kind, index, size):
     return context.cast(builder, index, kind, types.intp if kind.signed else types.uintp)
 
 arrayobj.fix_integer_index = as_it_is
+config.OPT, config.LOOP_VECTORIZE, config.SLP_VECTORIZE = config._OptLevel(1), 0, 0
 keeping.keep_in(Path(sys.argv.pop(1)))
 """
-"""Has an index below zero, which numba counts from the end, stay as it is: no kernel of ours means the end by it."""
+"""Has an index below zero, which numba counts from the end, stay as it is: no kernel of ours means the end by it.
+Optimised little, which takes less time than it saves."""
 
 
 def run(kept: Path, code: str, *arguments: str) -> subprocess.CompletedProcess[str]:

@@ -31,9 +31,17 @@ for scene, name, *settings in json.loads(sys.argv[1]):
     one = next(one for one in phase.components if one.name == (part or name))
     instance = Instance(MODELS[one.model], one.terms, one.parameters, one.numbers)
     instance.initialise()
+    inputs = [v for v in instance.interface.variables if v.causality == "input" and v.kind == "Real"]
     done, words = 0, ""
     try:
         while done < 400:
+            if done % 100 == 50:
+                for v in inputs:
+                    instance[v.name] += 1e-6 * v.nominal
+                instance.refresh()
+            if done % 100 == 75:
+                instance.set_rates({v.name: 1e-9 * v.nominal for v in inputs if v.rate})
+                instance.differentiate()
             instance.step(phase.duration / 400.0)
             done += 1
     except ModelFault as fault:
@@ -44,8 +52,8 @@ for scene, name, *settings in json.loads(sys.argv[1]):
     print(scene, name, *settings, "-", done, "steps", words, flush=True)
     assert done > 0
 """
-"""Of phases, each in four hundred steps, or up to where the model ends; one that another hands over to begins as its
-own defaults say."""
+"""Of phases, each in four hundred steps, or up to where the model ends, with inputs that change and move now and then;
+one that another hands over to begins as its own defaults say."""
 OTHERS = (
     ("table2-deorbit", "removal", "removal.level.detail=averaged", "removal.duration=300 d"),
     ("table2-deorbit", "removal", "removal.level.detail=event_map", "removal.duration=12 h"),
