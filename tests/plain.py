@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib
 import inspect
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from operator import attrgetter
@@ -18,6 +20,7 @@ from fmu_src import instance
 from fmu_src.instance import Instance
 from fmu_src.interface import Model, Value
 from fmu_src.lanes import REALS, of
+from fmu_src.tables import ROW
 from orbital.kernel import Kernel
 
 
@@ -115,9 +118,23 @@ def _written_out(made: _Intrinsic, *arguments: Any) -> Any:
     if name == "viewed":
         kind = inspect.getclosurevars(made._defn).nonlocals["kind"]
         return arguments[0].view(as_dtype(kind)).view(_Words)
+    if name == "table_at":
+        return _table(made, *arguments)
     if name in OF_A_WIDTH:
         return OF_A_WIDTH[name](*_width(made), *arguments)
     return INTRINSICS[name](*arguments)
+
+
+def _table(made: _Intrinsic, address: int) -> Any:
+    """A table of those that lie at an address, see `fmu_src.tables.make_reader`; it can not be written to."""
+    names = inspect.getclosurevars(made._defn).nonlocals
+    place, dimensions = names["place"], names["dimensions"]
+    row = (ctypes.c_int64 * (1 + dimensions)).from_address(int(address) + 8 * ROW * place)
+    shape = tuple(row[1:])
+    numbers = (ctypes.c_double * math.prod(shape)).from_address(int(address) + 8 * row[0])
+    found = np.ctypeslib.as_array(numbers).reshape(shape)
+    found.flags.writeable = False
+    return found
 
 
 @cache

@@ -1,7 +1,7 @@
 """No kernel reads or writes beyond the arrays that it is handed: our models compiled with numba's check of every index.
 
 The FMUs have no such check: a row that is declared a number too short lets a kernel write over the one behind it, and
-nothing tells. What the check sees: `test_bounds_seen`.
+nothing tells. What the check sees: `test_bounds_seen`; tows in seconds: `test_bounds_of_tows`.
 """
 
 from __future__ import annotations
