@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib
 import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
-from ctypes import c_double, c_int64
 from functools import cache
 from operator import attrgetter
 from typing import Any
@@ -118,20 +118,23 @@ def _written_out(made: _Intrinsic, *arguments: Any) -> Any:
     if name == "viewed":
         kind = inspect.getclosurevars(made._defn).nonlocals["kind"]
         return arguments[0].view(as_dtype(kind)).view(_Words)
+    if name == "table_at":
+        return _table(made, *arguments)
     if name in OF_A_WIDTH:
         return OF_A_WIDTH[name](*_width(made), *arguments)
-    if name == "table_at":
-        return _table(
-            int(arguments[0]), **{n: inspect.getclosurevars(made._defn).nonlocals[n] for n in ("place", "dimensions")}
-        )
     return INTRINSICS[name](*arguments)
 
 
-def _table(address: int, place: int, dimensions: int) -> np.ndarray:
-    """One of the tables in the block at an address, see `fmu_src.tables.block`."""
-    first, *extents = (c_int64 * (1 + dimensions)).from_address(address + 8 * ROW * place)
-    size = c_double * math.prod(extents)
-    return np.frombuffer(size.from_address(address + 8 * first)).reshape(extents)
+def _table(made: _Intrinsic, address: int) -> Any:
+    """A table of those that lie at an address, see `fmu_src.tables.make_reader`; it can not be written to."""
+    names = inspect.getclosurevars(made._defn).nonlocals
+    place, dimensions = names["place"], names["dimensions"]
+    row = (ctypes.c_int64 * (1 + dimensions)).from_address(int(address) + 8 * ROW * place)
+    shape = tuple(row[1:])
+    numbers = (ctypes.c_double * math.prod(shape)).from_address(int(address) + 8 * row[0])
+    found = np.ctypeslib.as_array(numbers).reshape(shape)
+    found.flags.writeable = False
+    return found
 
 
 @cache
