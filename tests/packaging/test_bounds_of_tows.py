@@ -23,6 +23,8 @@ LONGEST = 120.0
 """Of the steps [s]."""
 DEAR = "nodes"
 """Takes a minute as plain Python; compiled, `test_bounds` has it."""
+SLOW = {"round", "hull", "radau", "settled round", "settled hull", "sampled", "schedule"}
+"""Those that take 4 to 32 s: evidence."""
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +68,14 @@ def within(plain: None, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("within")
-@pytest.mark.parametrize("name", [name for name in compositions.TOWS if name != DEAR])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.evidence) if name in SLOW else name
+        for name in compositions.TOWS
+        if name != DEAR
+    ],
+)
 def test_the_first_steps_of_a_tow_are_within_its_rows(name: str, folder: Path) -> None:
     """What a compiled shot takes minutes for, a tow run as plain Python shows in seconds."""
     (phase,) = load(str(folder / "tow.toml"), compositions.TOWS[name]).phases
