@@ -18,8 +18,15 @@ ROWS = (
         "how often it was lost how a slack thread lies round the target, so that it may be through, or a thread came "
         "to be wound over more edges than are kept",
     ),
-    count("wrap.slipped", "how often a taut thread has slid over a corner"),
-    peak("wrap.slip_loss", "J", "lost by threads that slid over a corner"),
+    count(
+        "wrap.slipped",
+        "how often a taut thread has slid over a corner, or its way has grown by a step from body to body",
+    ),
+    peak(
+        "wrap.slip_loss",
+        "J",
+        "lost by threads that slid over a corner, less what they gained by steps from body to body",
+    ),
     peak("wrap.impulse", "N.s", "sum of the sizes of all impulses of bent threads on the target so far"),
     output("wrap.stored", "J", "stored in bent threads beyond what they would as straight ones"),
     count("wrap_numbers", "threads of which the way is kept, and stretches of cord", "state"),

@@ -16,8 +16,9 @@ over the corner where there is none left on its side: its way is shorter at once
 taut thread that is found inside the body, has gone through: it stays straight until it is clear of the target, and is
 counted in `wrap.passed`.
 
-A union is made of convex bodies, and a thread bends round that which asks most of it (`bodies.py`); so does the
-closing cord (`cord_bends.py`).
+A union is made of convex bodies, and a thread bends round one after another (`bodies.py`); so does the closing cord
+(`cord_bends.py`). Where these do not fit together a way may grow by a step, and what the thread gains is taken from
+that loss.
 
 Which threads are near is looked up now and then, ahead of how fast anything moves. In what is shown the pull round an
 edge counts up to the middle of the last substep, as that of contact by penalty does.
