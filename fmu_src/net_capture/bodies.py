@@ -87,6 +87,8 @@ def make_bodies(composition: Any, kept: int, lie: Lie, remember: Any) -> Rounds:
             elif p.wrap_others_near < of.OTHERS:
                 p.wrap_others[p.wrap_others_near] = body
                 p.wrap_others_near += 1
+            else:
+                p.wrap_passed_slack += 1
         return clear
 
     @kernel

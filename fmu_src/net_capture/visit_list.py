@@ -16,8 +16,8 @@ from fmu_src.net_capture.near import CHAIN_WORDS, FACE_BITS, FINE, PACKED
 from fmu_src.rows import count, state
 from orbital.kernel import kernel
 
-OTHERS = 64
-"""Bodies near one thread."""
+OTHERS = 256
+"""Bodies near one thread that are looked at."""
 VISITS = 8
 """Visits of one thread, and bodies through which it has gone, that are remembered."""
 SLOT = 2 + CHAIN_WORDS + 6
