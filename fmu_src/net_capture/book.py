@@ -24,7 +24,7 @@ def make_balance(composition: Any) -> Any:
     drags = composition.terms.get("tether") == "dragging"
     has_break = composition.breaking is not None
     has_ejection = composition.ejection is not None
-    gravity = composition.gravity
+    gravity, has_gradient = composition.gravity, composition.gradient is not None
     potential_at, bends, given, changes = gravity.potential, gravity.bends, gravity.given, gravity.given is not None
     chaser_potential, target_potential = gravity.chaser_potential, gravity.target_potential
     has_wrap = composition.wrap is not None
@@ -86,6 +86,8 @@ def make_balance(composition: Any) -> Any:
             potential += chaser_potential(p)
             if has_target:
                 potential += target_potential(p)
+            if has_gradient:
+                potential += p.gravity_gradient_energy
             p.energy_potential = potential
             energy += potential
         if changes:

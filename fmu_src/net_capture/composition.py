@@ -54,9 +54,9 @@ class Composition:
     traits, clock, meeting   of the pace, see `pace.Traits`
     presses          whether the contact adds to the stiffness at a node, and stores energy
     contact_planes   the first node plane that is the contact's own
-    gravity, net, numbering, rigging, graph, peaks, folding, target, force_map, contact, cord_bends, jam, closing,
-    tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, sliding, self_contact, pulls,
-    pace, breaking, scheme
+    gravity, net, numbering, rigging, graph, peaks, folding, target, gradient, force_map, contact, cord_bends, jam,
+    closing, tether, air, wrap, spin, ejection, volume, index, pull_off, hardest, bending, wall, sliding, self_contact,
+    pulls, pace, breaking, scheme
                  kernels of these parts; None for what the scene leaves out
     """
 
@@ -91,7 +91,7 @@ class Composition:
         self.numbering = make_numbering(self)
         self.rigging = [self._make(group) for group in riggings() if group in terms]
         self.graph, self.peaks = make_graph(self), make_peaks(self)
-        self.target = self._make("target")
+        self.target, self.gradient = self._make("target"), self._make("gravity_gradient")
         self.force_map = self._make("force_map")
         self.contact = self._make("contact")
         self.cord_bends = make_cord_bends(self)

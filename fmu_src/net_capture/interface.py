@@ -12,6 +12,7 @@ from fmu_src.net_capture import (
     breaking,
     capture_index,
     force_map,
+    gradient,
     hardest,
     pull_off,
     section,
@@ -310,6 +311,7 @@ GROUPS = {
     "precision": Group(PRECISION, selector="precision", default="double", table="solver"),
     "substeps": Group(paces(), selector="substeps", default="fixed", table="solver"),
     "target": Group(TARGETS, selector="shape", optional=True),
+    "gravity_gradient": _plain(gradient.PART),
     "contact": Group(CONTACTS, optional=True),
     "force_map": _plain(force_map.PART),
     "wrap": Group(

@@ -6,7 +6,7 @@ From grid time n h to (n + 1) h:
     nodes                forces of the threads, closing cord, air and a tension at the vertex; the scheme's step;
                          impulses on the nodes that ended below the target's surface, which they then have not done
     chaser               kicked by gravity and the tension
-    both                 drift
+    both                 drift; the target turns, between two halves of the gravity gradient's kick
     reels                the cord out and the work done at (n + 1) h
 
 The grid is counted in integers from the start, whatever the macro step, so a scene gives the same bits in every tool;
@@ -53,6 +53,7 @@ def make_entry(terms: Mapping[str, str]) -> Any:
     has_hardest, hardest = parts.hardest is not None, parts.hardest
     has_bending, bending, has_wall, wall = parts.bending is not None, parts.bending, parts.wall is not None, parts.wall
     has_table, table = parts.sliding is not None, parts.sliding
+    has_gradient, gradient = parts.gradient is not None, parts.gradient
     has_self, self_contact = parts.self_contact is not None, parts.self_contact
     properties = parts.memory.properties
 
@@ -88,6 +89,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
         h = p.solver_substep
         if has_target:
             gravity.kick_target(p, p.target_place, p.target_drift, p.rest, h)
+        if has_gradient:
+            gradient.kick(p, 0.5 * h)
         scheme.step(p, work)
         if has_tether:
             tether.kick_chaser(p)
@@ -107,6 +110,9 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             p.chaser_place[axis] += h * (p.chaser_drift[axis] - (0.5 - lag) * change)
         if has_target:
             target.drift(p, frame_rate(p), h)
+        if has_gradient:
+            gradient.carry(p, frame_rate(p), h)
+            gradient.kick(p, 0.5 * h)
         p.grid += 1
         if changes:
             renew(p)
@@ -184,6 +190,8 @@ def make_entry(terms: Mapping[str, str]) -> Any:
             fault = target.place(p)
             if fault != 0:
                 return fault
+        if has_gradient:
+            gradient.start(p)
         if has_contact:
             limit_way(p)
         graph.lay_out(p, work)

@@ -33,6 +33,7 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     has_wrap, follows = parts.wrap is not None, parts.pace is not None
     has_ejection, ejection = parts.ejection is not None, parts.ejection
     gravity, scheme, peaks = parts.gravity, parts.scheme, parts.peaks
+    gradient, has_gradient = parts.gradient, parts.gradient is not None
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
     lag, frame_rate, now, write_nodes = scheme.lag, gravity.rate, parts.clock.now, parts.numbering.write
     energy_balance = make_balance(parts)
@@ -84,6 +85,8 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
             quality.add_body_momenta(p, p.target_mass, p.target_position, p.target_velocity)
             for axis in range(3):
                 p.angular_momentum[axis] += p.target_spin[axis]
+            if has_gradient:
+                gradient.measure(p)
             if has_closing:
                 p.mouth_girth = p.girth
         if has_contact:

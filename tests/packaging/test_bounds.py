@@ -60,6 +60,7 @@ OTHERS = (
     ("tumbling-target", "removal", "removal.level.detail=settled"),
     ("table1-capture", "capture", "capture.net.mesh=2 m", "capture.self_contact.thickness=1 cm"),
     ("conical-2m", "capture", "capture.folding.pattern=star", "capture.self_contact.duration=1 ms"),
+    ("mission", "capture", "capture.gravity_gradient.kind=plain"),
     ("planar-2m", "capture", "capture.bending.rigidity=1e-5 N.m2", "capture.wall.friction=0.2"),
     (
         "reel-control",

@@ -34,6 +34,8 @@ class Gravity(NamedTuple):
     accelerate(p, out, position, velocity)      out = acceleration [m/s2] of a free node
     potential(p, position)                      potential energy per mass [J/kg] of a node
     chaser_potential(p), target_potential(p)    potential energy of these bodies [J]
+    gradient(p)                                 3 mu/r^3 [1/s2] of the orbit, whose first axis points away from the
+                                                Earth; None: there is no orbit
     watch(p, work)                              a look at the net, whose nodes are placed; None: there is nothing to see
     given(p, work)                              energy that came in because the law itself changed with time [J], of the
                                                 nodes as shown; None: it does not change
@@ -55,6 +57,7 @@ class Gravity(NamedTuple):
     potential: Any = still.potential
     chaser_potential: Any = still.body_potential
     target_potential: Any = still.body_potential
+    gradient: Any = None
     watch: Any = None
     given: Any = None
 

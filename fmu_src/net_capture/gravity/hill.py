@@ -37,6 +37,15 @@ def rate(p):
 
 
 @kernel
+def gradient(p):
+    """3 mu/r^3 of the target's orbit [1/s2].
+
+    Checked  tests/net_capture/test_gradient.py
+    """
+    return 3.0 * p.mean_motion * p.mean_motion
+
+
+@kernel
 def kick_body(p, place, velocity, pull, h):
     """Kick a body that feels gravity and an acceleration of its own [m/s2], as `kick_group` does.
 
@@ -230,6 +239,7 @@ def make(composition: Any) -> Gravity:
         potential=potential,
         chaser_potential=chaser_potential,
         target_potential=target_potential,
+        gradient=gradient,
     )
 
 
