@@ -76,8 +76,14 @@ def test_a_line_that_settles_and_slides_is_that_whose_vibration_is_followed() ->
     assert over.sum() > 10
     assert np.ptp(there[over, 3]) > 0.5
     assert (np.abs(there - beside)[:, :6].max(axis=0) < WITHIN).all()
-    # the least and the largest tension of each macro step
-    assert np.abs(there - beside)[:, 6:8].max() < WITHIN[0]
+    # the largest and the least tension of each macro step; where it comes off the largest is that of this instant, of
+    # which both runs know the tension's course, 0.024 N/s, but the time no better than to half a millisecond
+    off = np.flatnonzero(np.diff(there[:, 8]) < 0.0) + 1
+    assert len(off) == 1
+    extremes = np.abs(there - beside)[:, 6:8]
+    assert extremes[off].max() < 0.024 * 5e-4
+    extremes[off] = 0.0
+    assert extremes.max() < WITHIN[0]
     last = np.flatnonzero(over)[-1]
     assert 2 * there[last, 9] < beside[last, 9]
     at_once.step(92.0)
