@@ -8,12 +8,16 @@ import pytest
 
 from fmu_src.net_capture import bodies as among
 from fmu_src.net_capture import near
+from fmu_src.net_capture.contact.edges import make_way
 from fmu_src.net_capture.lying import make_lie
 from fmu_src.net_capture.planes import X
+from fmu_src.net_capture.shapes import pieces, union
 from fmu_src.net_capture.shapes.hulls import INSET
 from tests.net_capture.memory import Bench, planes_of
-from tests.net_capture.test_union_wrapping import box, laid
-from tests.plain import plainly
+from tests.net_capture.test_union_wrapping import THICK, box, laid
+from tests.plain import plain, plainly
+
+__all__ = ["plain"]
 
 TERMS = {"net": "square", "gravity": "none", "target": "union", "contact": "inelastic", "wrap": "plain"}
 LONG, WIDE = 6.0, 1e3
@@ -108,3 +112,50 @@ def test_over_several_bodies_it_is_the_upper_hull_of_all(stand):
             bends.add(int(seek.p.visits))
     assert max(bends) > 1
     assert seek.lost == (0, 0)
+
+
+BOOM = {"shape": pieces.CYLINDER, "radius": 0.04, "length": 0.84, "mass": 4.0, "position": [0.0, 0.0, -0.4]}
+STANDING = laid(BOOM, box((1.6, THICK, 1.0), (0.0, 0.0, 0.5)))
+"""A plate whose lower edge is at z = 0, and a boom that reaches 2 cm into it and is thicker."""
+
+
+ROUND_AND_BACK = [
+    *((0.5, 0.041, -0.022), (-2.4, 0.041, -0.022), (-2.4, 0.041, 0.005), (-2.4, 0.032, 0.005)),
+    *((-0.8, 0.032, 0.005), (-0.8, 0.041, 0.005), (-0.8, 0.041, -0.022), (0.5, 0.041, -0.022)),
+]
+ACROSS = [(math.atan2(-0.021, x), math.hypot(0.021, x), 0.001) for x in np.linspace(-0.045, 0.04, 30)]
+ACROSS = [(*ACROSS[0][:2], -0.022), *ACROSS, (*ACROSS[-1][:2], -0.01)]
+"""Ways of an end about the end of the boom: angle, distance from its axis, height above its end."""
+
+
+@pytest.mark.parametrize(
+    ("aside", "corners", "straight"), [((0.4, 0.27), ROUND_AND_BACK, True), ((-0.63, 0.0417), ACROSS, False)]
+)
+def test_a_way_over_the_covered_end_of_a_boom_goes_round_with_its_end(plain, aside, corners, straight):
+    """One end goes round the boom beneath the plate, comes up onto the ledge that the boom leaves beside it, goes back
+    over that, and down; or across it, and down. Its way is never longer than it was by more than the end has moved, is
+    never lost, and in the end is straight as it was; of one that stays at a corner of the ledge it is none of these."""
+    bench = Bench(TERMS | {"wrap": "friction"}, STANDING)
+    find = make_way(bench.parts.target.shape.hulls)
+    p, rows = bench.p, STANDING["target.pieces"]
+    numbers = {union.PIECES: rows}
+    (first, number, *_), planes = union.bodies(numbers)[0], union.planes(numbers)
+    faces = planes[int(first) : int(first + number)]
+    p.wrap_faces, p.wrap_planes[: len(faces)], p.wrap_covered[: len(faces)] = len(faces), faces[:, :4], faces[:, 4]
+    top = rows[0][7] + 0.5 * rows[0][2]
+    path = np.vstack([np.linspace(*pair, 60) for pair in itertools.pairwise(corners)])
+    ends = np.column_stack([path[:, 1] * np.cos(path[:, 0]), path[:, 1] * np.sin(path[:, 0]), top + path[:, 2]])
+    far, edges, bent, over = np.array((*aside, top - 0.6)), 0, 0, 0
+    p.wrap_leans = 0
+    way = np.linalg.norm(ends[0] - far)
+    for end, before in zip(ends[1:], ends, strict=False):
+        p.wrap_a[:], p.wrap_b[:] = end, far
+        edges, longest = int(find(p, edges)), way + np.linalg.norm(end - before) + 1e-9
+        way = p.wrap_pieces[: edges + 1, 3].sum() if edges > 0 else np.linalg.norm(end - far)
+        assert p.wrap_lost == 0
+        assert way < longest
+        bent += edges > 0
+        over += edges > 0 and len(faces) - 1 in p.wrap_chain[: edges + 1]
+    assert bent > 100
+    assert over > 30
+    assert (edges == 0) is straight
