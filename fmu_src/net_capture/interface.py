@@ -29,6 +29,7 @@ from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
 from fmu_src.net_capture.graph import WRONG_NUMBER
 from fmu_src.net_capture.gravity import gravities
+from fmu_src.net_capture.hinge import part as hinge
 from fmu_src.net_capture.nets import USUAL_BULLETS, nets
 from fmu_src.net_capture.outcome import OUTCOMES
 from fmu_src.net_capture.pace import paces
@@ -310,6 +311,7 @@ GROUPS = {
     "precision": Group(PRECISION, selector="precision", default="double", table="solver"),
     "substeps": Group(paces(), selector="substeps", default="fixed", table="solver"),
     "target": Group(TARGETS, selector="shape", optional=True),
+    "hinge": _plain(hinge.PART),
     "contact": Group(CONTACTS, optional=True),
     "force_map": _plain(force_map.PART),
     "wrap": Group(
