@@ -23,13 +23,13 @@ from fmu_src.net_capture import (
     wall,
     wrapping,
 )
+from fmu_src.net_capture.appendage import part as hinge
 from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES, MOST_THREADS
 from fmu_src.net_capture.closing import closings, jam
 from fmu_src.net_capture.contact import contacts
 from fmu_src.net_capture.folding import foldings
 from fmu_src.net_capture.graph import WRONG_NUMBER
 from fmu_src.net_capture.gravity import gravities
-from fmu_src.net_capture.hinge import part as hinge
 from fmu_src.net_capture.nets import USUAL_BULLETS, nets
 from fmu_src.net_capture.outcome import OUTCOMES
 from fmu_src.net_capture.pace import paces

@@ -28,9 +28,7 @@ def make_push(composition: Any) -> Push:
     """Kernels for the composition's memory."""
     node_plane, hinge = composition.memory.node_plane, composition.target.hinge
     swings = hinge is not None
-    swing, along, feel_both, push_both = (
-        (hinge.swing, hinge.along, hinge.feel, hinge.push) if swings else [None] * 4
-    )
+    swing, along, feel_both, push_both = (hinge.swing, hinge.along, hinge.feel, hinge.push) if swings else [None] * 4
 
     @kernel
     def relative(p, work, node, back, out):

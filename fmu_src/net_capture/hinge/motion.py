@@ -31,6 +31,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from fmu_src.net_capture.hinge.matrix import NUMBER, assemble, derive, take_rates, times, turned
+from fmu_src.net_capture.hinge.meeting import make_meeting
 from fmu_src.net_capture.hinge.numbers import (
     ARM,
     AXIS,
@@ -38,27 +40,22 @@ from fmu_src.net_capture.hinge.numbers import (
     GIRTH,
     HALF,
     HINGE,
-    INERTIA,
     LIMIT,
     PIECES,
     RADIUS,
     REACH,
-    REST,
-    REST_INERTIA,
     SAMPLES,
     SHARE,
     YIELDS,
 )
 from orbital.kernel import kernel
-from orbital.rotations import multiply, normalise, rotate, rotate_inverse
-from orbital.vectors import cross, dot
+from orbital.rotations import multiply, normalise, rotate
+from orbital.vectors import dot
 
 FINE = 0.1
 """Radians, or share of the dashpot's time, that an inner step is long at most."""
 RECOVERY = 1.0
 """Per second: speed over overshoot at which the hinge comes back to its stop, small against any that it had."""
-NUMBER = 9
-"""Of what is integrated: attitude (4), cosine and sine, angle, its momentum, what the dashpot took."""
 
 
 class Hinge(NamedTuple):
@@ -93,133 +90,6 @@ class Hinge(NamedTuple):
     push: Any
     reach: Any
     largest_share: Any
-
-
-@kernel
-def turned(out, axis, c, s, v):
-    """out = a vector turned about a unit axis by the angle with this cosine and sine: c v + s e x v + (1 - c) e.v e.
-
-    Source   Rodrigues' formula
-    Checked  tests/net_capture/test_hinge.py
-    """
-    along = (1.0 - c) * (axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2])
-    x = c * v[0] + s * (axis[1] * v[2] - axis[2] * v[1]) + along * axis[0]
-    y = c * v[1] + s * (axis[2] * v[0] - axis[0] * v[2]) + along * axis[1]
-    z = c * v[2] + s * (axis[0] * v[1] - axis[1] * v[0]) + along * axis[2]
-    out[0] = x
-    out[1] = y
-    out[2] = z
-
-
-@kernel
-def times(out, matrix, v):
-    """out = matrix times vector (3,), symmetric; not in place.
-
-    Checked  tests/net_capture/test_hinge.py
-    """
-    for i in range(3):
-        out[i] = matrix[i, 0] * v[0] + matrix[i, 1] * v[1] + matrix[i, 2] * v[2]
-
-
-@kernel
-def assemble(p, body, c, s):
-    """Matrix of the masses and its inverse at the angle with this cosine and sine; r, s and the turned inertia beside.
-
-    Checked  tests/net_capture/test_hinge.py
-    """
-    axis, arm, slope, room = body[AXIS : AXIS + 3], p.hinge_room[0], p.hinge_room[1], p.hinge_room[2]
-    own, whole, small, inverse = p.hinge_own, p.hinge_whole, p.hinge_small, p.hinge_inverse
-    turned(room, axis, c, s, body[ARM : ARM + 3])
-    cross(slope, axis, room)
-    for i in range(3):
-        arm[i] = body[HINGE + i] + room[i] - body[REST + i]
-    # R I R': turn the columns, then the rows
-    for j in range(3):
-        for i in range(3):
-            room[i] = p.target_mass * body[INERTIA + 3 * i + j]
-        turned(room, axis, c, s, room)
-        for i in range(3):
-            own[i, j] = room[i]
-    for i in range(3):
-        turned(own[i], axis, c, s, own[i])
-    reduced = p.target_mass * body[SHARE] * (1.0 - body[SHARE])
-    square = dot(arm, arm)
-    for i in range(3):
-        for j in range(3):
-            whole[i, j] = p.target_mass * body[REST_INERTIA + 3 * i + j] + own[i, j] - reduced * arm[i] * arm[j]
-        whole[i, i] += reduced * square
-    coupling, eased = p.hinge_coupling, p.hinge_eased
-    times(coupling, own, axis)
-    own_moment = dot(axis, coupling) + reduced * dot(slope, slope)
-    cross(room, arm, slope)
-    for i in range(3):
-        coupling[i] += reduced * room[i]
-    for i in range(3):
-        a, b = (i + 1) % 3, (i + 2) % 3
-        for j in range(3):
-            k, m = (j + 1) % 3, (j + 2) % 3
-            small[j, i] = whole[a, k] * whole[b, m] - whole[a, m] * whole[b, k]
-    volume = whole[0, 0] * small[0, 0] + whole[0, 1] * small[1, 0] + whole[0, 2] * small[2, 0]
-    for i in range(3):
-        for j in range(3):
-            small[i, j] /= volume
-    times(eased, small, coupling)
-    light = 1.0 / (own_moment - dot(coupling, eased))
-    for i in range(3):
-        for j in range(3):
-            inverse[i, j] = small[i, j] + light * eased[i] * eased[j]
-        inverse[i, 3] = -light * eased[i]
-        inverse[3, i] = inverse[i, 3]
-    inverse[3, 3] = light
-
-
-@kernel
-def take_rates(p, attitude, momentum):
-    """Rate of the rest in its axes, and of the hinge, into `hinge_rates` [rad/s], from the momenta.
-
-    momentum      of the hinge                                  [N m s]
-
-    Checked  tests/net_capture/test_hinge.py
-    """
-    rates, spin, inverse = p.hinge_rates, p.hinge_room[3], p.hinge_inverse
-    rotate_inverse(spin, attitude, p.target_spin)
-    for i in range(4):
-        rates[i] = inverse[i, 3] * momentum
-        for j in range(3):
-            rates[i] += inverse[i, j] * spin[j]
-
-
-@kernel
-def derive(p, body, y, out):
-    """out = rates of what is integrated, (9,), see `NUMBER`; those of now are left in `hinge_rates`.
-
-    Checked  tests/net_capture/test_hinge.py
-    """
-    assemble(p, body, y[4], y[5])
-    take_rates(p, y[0:4], y[7])
-    w, speed, axis = p.hinge_rates[0:3], p.hinge_rates[3], body[AXIS : AXIS + 3]
-    arm, slope, own = p.hinge_room[0], p.hinge_room[1], p.hinge_own
-    turning, moving, other = p.hinge_room[2], p.hinge_room[3], p.hinge_room[4]
-    out[0] = -0.5 * (y[1] * w[0] + y[2] * w[1] + y[3] * w[2])
-    out[1] = 0.5 * (y[0] * w[0] + y[2] * w[2] - y[3] * w[1])
-    out[2] = 0.5 * (y[0] * w[1] + y[3] * w[0] - y[1] * w[2])
-    out[3] = 0.5 * (y[0] * w[2] + y[1] * w[1] - y[2] * w[0])
-    out[4] = -y[5] * speed
-    out[5] = y[4] * speed
-    out[6] = speed
-    for i in range(3):
-        turning[i] = w[i] + speed * axis[i]
-    times(moving, own, turning)
-    cross(other, axis, moving)
-    pull = dot(turning, other)
-    cross(moving, w, arm)
-    cross(turning, w, slope)
-    cross(other, axis, slope)
-    reduced = p.target_mass * body[SHARE] * (1.0 - body[SHARE])
-    for i in range(3):
-        pull += reduced * (moving[i] + speed * slope[i]) * (turning[i] + speed * other[i])
-    out[7] = pull - p.hinge_stiffness * y[6] - p.hinge_damping * speed
-    out[8] = p.hinge_damping * speed * speed
 
 
 def make_hinge(composition: Any) -> Hinge:
@@ -416,50 +286,6 @@ def make_hinge(composition: Any) -> Hinge:
             out[i] -= p.hinge_shift[i]
 
     @kernel
-    def take(p, frame_rate):
-        """Rate of the rest relative to the frame, frame axes, and that of the hinge [rad/s].
-
-        Checked  tests/net_capture/test_hinge.py
-        """
-        take_rates(p, p.target_pose, p.hinge_now[7])
-        turn = p.target_turn
-        for i in range(3):
-            p.target_omega[i] = dot(turn[i], p.hinge_rates[0:3])
-        p.target_omega[2] -= frame_rate
-        p.hinge_speed = p.hinge_rates[3]
-
-    @kernel
-    def way(p, point, out):
-        """out = way of a point of the body found nearest per radian of the hinge [m], body axes, from the centre of mass.
-
-        Checked  tests/net_capture/test_hinge.py
-        """
-        body, from_hinge = body_of(p), p.hinge_room[5]
-        for i in range(3):
-            out[i] = 0.0
-        if p.hinge_touched != 0:
-            for i in range(3):
-                from_hinge[i] = point[i] + p.hinge_shift[i] - body[HINGE + i]
-            cross(out, body[AXIS : AXIS + 3], from_hinge)
-        for i in range(3):
-            out[i] -= p.hinge_recoil[i]
-
-    @kernel
-    def swing(p, arm):
-        """Velocity that the hinge gives a point of the body found nearest, frame axes [m/s].
-
-        arm           from the centre of mass, frame axes           [m]  (3,)
-
-        Checked  tests/net_capture/test_hinge.py
-        """
-        point, turn = p.hinge_point, p.target_turn
-        for i in range(3):
-            point[i] = turn[0, i] * arm[0] + turn[1, i] * arm[1] + turn[2, i] * arm[2]
-        way(p, point, p.hinge_room[6])
-        for i in range(3):
-            p.hinge_moved[i] = p.hinge_speed * dot(turn[i], p.hinge_room[6])
-
-    @kernel
     def reach(p):
         """Largest way of a point per radian of the hinge [m], at any angle.
 
@@ -475,42 +301,4 @@ def make_hinge(composition: Any) -> Hinge:
         """
         return body_of(p)[YIELDS]
 
-    @kernel
-    def along(p, point, direction):
-        """Way of a point per radian along a direction, body axes, kept for the impulse [m].
-
-        Checked  tests/net_capture/test_hinge.py
-        """
-        way(p, point, p.hinge_room[6])
-        p.hinge_lever = dot(p.hinge_room[6], direction)
-        return p.hinge_lever
-
-    @kernel
-    def feel(p, lever):
-        """What 1 N s changes of the speed along it by turning and swinging [1/kg]: (l, g.n) . M^-1 (l, g.n).
-
-        lever         l = x x n, body axes                          [m]  (3,)
-
-        Checked  tests/net_capture/test_hinge.py
-        """
-        gain, inverse = p.hinge_gain, p.hinge_inverse
-        for i in range(4):
-            gain[i] = inverse[i, 3] * p.hinge_lever
-            for j in range(3):
-                gain[i] += inverse[i, j] * lever[j]
-        return dot(lever, gain[0:3]) + p.hinge_lever * gain[3]
-
-    @kernel
-    def push(p, impulse):
-        """Give the target an impulse of this size [N s] against the direction that `feel` was asked for: rates and the
-        hinge's momentum; that of the whole is the law's.
-
-        Checked  tests/net_capture/test_hinge.py
-        """
-        turn = p.target_turn
-        for i in range(3):
-            p.target_omega[i] -= impulse * dot(turn[i], p.hinge_gain[0:3])
-        p.hinge_speed -= impulse * p.hinge_gain[3]
-        p.hinge_now[7] -= impulse * p.hinge_lever
-
-    return Hinge(place, drift, measure, show, extent, follow, take, swing, along, feel, push, reach, largest_share)
+    return Hinge(place, drift, measure, show, extent, follow, *make_meeting(composition), reach, largest_share)

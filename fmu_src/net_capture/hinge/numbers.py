@@ -1,8 +1,8 @@
 """The table of a hinged appendage: what kernels know of it besides the pieces of the target.
 
-SI, in the body axes of the rest of the target, which are the principal axes of the whole at angle 0, from the
-centre of mass of the whole at angle 0. Masses and moments are shares of the mass of the whole. Behind the `NUMBERS` stand a flag
-for each sample point and one for each piece of the target: 1 where it belongs to the appendage.
+SI, in the body axes of the rest of the target, which are the principal axes of the whole at angle 0, from the centre of
+mass of the whole at angle 0. Masses and moments are shares of the mass of the whole. Behind these numbers stand flags,
+1 for what belongs to the appendage: from `PIECES` on of the pieces, from `SAMPLES` on of the sample points.
 """
 
 from __future__ import annotations

@@ -50,7 +50,9 @@ def lay(values: Mapping[str, float], sources: Mapping[str, Array]) -> Laid:
         expected = "one or more of them must not be hinged: [capture.hinge] joins two bodies"
         raise Undesigned("target.parts", f"{len(rows)} pieces, all of them hinged", expected)
     if len(rows) > at.MOST_PIECES:
-        raise Undesigned("target.parts", f"{len(rows)} pieces", f"must be at most {at.MOST_PIECES} with [capture.hinge]")
+        raise Undesigned(
+            "target.parts", f"{len(rows)} pieces", f"must be at most {at.MOST_PIECES} with [capture.hinge]"
+        )
     place, axis = (np.array([values[f"hinge.{name}[{i}]"] for i in (1, 2, 3)]) for name in ("position", "axis"))
     if not axis.any():
         raise Undesigned("hinge.axis", "[0, 0, 0]", "must be a direction, of any length, in the target's design axes")
@@ -101,7 +103,9 @@ def matrix(table: Array, angle: float) -> tuple[Array, Array]:
     return found, s
 
 
-def _reach(table: Array, whole: solids.Solid, found: list[of.Piece], swings: npt.NDArray[np.bool_], limit: float) -> None:
+def _reach(
+    table: Array, whole: solids.Solid, found: list[of.Piece], swings: npt.NDArray[np.bool_], limit: float
+) -> None:
     """Numbers of the table that hold at any angle."""
     hinge, axis, share = table[at.HINGE : at.AXIS], table[at.AXIS : at.ARM], table[at.SHARE]
     inner, outer = (
@@ -146,5 +150,7 @@ def _belongs(
     belongs = np.empty(len(samples), dtype=bool)
     for number, end in enumerate(samples[:, 3:]):
         local = ((end - row[5:8]) @ row[8:17].reshape(3, 3) for row in rows)
-        belongs[number] = swings[int(np.argmin([away(row, normal, place) for row, place in zip(rows, local, strict=True)]))]
+        belongs[number] = swings[
+            int(np.argmin([away(row, normal, place) for row, place in zip(rows, local, strict=True)]))
+        ]
     return belongs

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from fmu_src.interface import Term
-from fmu_src.net_capture.hinge.laying import lay
+from fmu_src.net_capture.appendage.laying import lay
 from fmu_src.net_capture.hinge.numbers import BODY, MOST_PIECES
 from fmu_src.net_capture.hinge.numbers import LIMIT as AT_LIMIT
 from fmu_src.net_capture.refusal import Refusal, Scene, text
@@ -28,7 +28,9 @@ ROWS = (
         0.0,
         display_unit="deg/s",
     ),
-    output("hinge.angle", "rad", "of the appendage from the target as it is drawn", rate="hinge.rate", display_unit="deg"),
+    output(
+        "hinge.angle", "rad", "of the appendage from the target as it is drawn", rate="hinge.rate", display_unit="deg"
+    ),
     output("hinge.rate", "rad/s", "of that angle", display_unit="deg/s"),
     output("hinge.energy", "J", "in the spring of the hinge"),
     peak("hinge.loss", "J", "taken so far by its dashpot, and by its stops"),
@@ -72,7 +74,10 @@ def refuses(scene: Scene) -> Iterator[Refusal]:
     if any(told):
         expected = "must be left out: with [capture.hinge] they follow from the pieces of both bodies"
         yield Refusal("target.principal_inertia", text(told, " kg m2"), expected)
-    limit, start = float(scene.values[BODY][AT_LIMIT]) if BODY in scene.values else math.pi, scene.values["hinge.start_angle"]
+    limit, start = (
+        float(scene.values[BODY][AT_LIMIT]) if BODY in scene.values else math.pi,
+        scene.values["hinge.start_angle"],
+    )
     if abs(start) > limit:
         expected = f"must be within hinge.limit, {math.degrees(limit):.4g} deg"
         yield Refusal("hinge.start_angle", f"{math.degrees(start):.4g} deg", expected)
