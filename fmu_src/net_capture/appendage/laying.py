@@ -8,18 +8,27 @@ passes over the target in none of them holds it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from fmu_src.implied import formula
+from fmu_src.implied import Implied, formula
 from fmu_src.interface import Laid, Undesigned
 from fmu_src.net_capture.hinge import numbers as at
 from fmu_src.net_capture.shapes import pieces as of
 from fmu_src.net_capture.shapes import solids
-from fmu_src.net_capture.shapes.union import PARTS, body_of, piece_distance, pieces_table, swinging
+from fmu_src.net_capture.shapes.union import (
+    PARTS,
+    PIECES,
+    body_of,
+    in_body_axes,
+    piece_distance,
+    pieces_table,
+    swinging,
+)
 from fmu_src.net_capture.shapes.union import lay as lay_union
 
 Array = npt.NDArray[np.float64]
@@ -82,6 +91,37 @@ def _table(content: bytes, shape: tuple[int, int], place: bytes, axis: bytes, li
     table[at.PIECES : at.PIECES + len(rows)] = swings
     table[at.SAMPLES :] = _belongs(np.frombuffer(samples).reshape(-1, 6), whole, found, swings)
     return table
+
+
+def corners_at(values: Mapping[str, Any], angle: float) -> Array:
+    """Corners of the pieces (n, 3) [m], in the order in which they are drawn, at an angle; body axes, from the centre
+    of mass as it is then.
+
+    Checked  tests/net_capture/test_hinged_contact.py
+    """
+    table = values[at.BODY]
+    hinge, turn = table[at.HINGE : at.AXIS], turn_about(table[at.AXIS : at.ARM], angle)
+    shift = table[at.SHARE] * (turn - np.eye(3)) @ table[at.ARM : at.REST]
+    found = []
+    for number, piece in enumerate(in_body_axes(values[PIECES])):
+        corners = np.array(of.drawn(piece)[0])
+        found.append(hinge + (corners - hinge) @ turn.T if table[at.PIECES + number] else corners)
+    return np.asarray(np.vstack(found) - shift)
+
+
+def rows(values: Mapping[str, Any]) -> Iterator[Implied]:
+    """What a scene's hinge comes to: the moment that its spring feels, its frequency and damping, the least girth."""
+    table, mass = values[at.BODY], values["target.mass"]
+    moment = mass / float(np.linalg.inv(matrix(table, 0.0)[0])[3, 3])
+    stiffness, damping = values["hinge.stiffness"], values["hinge.damping"]
+    yield Implied("hinge.mass", "mass of the hinged appendage", mass * table[at.SHARE], "kg")
+    yield Implied("hinge.moment", "moment of inertia that the hinge feels, the target free", moment, "kg.m2")
+    if stiffness > 0.0:
+        rate = math.sqrt(stiffness / moment)
+        yield Implied("hinge.frequency", "at which it swings on its spring", rate / (2.0 * math.pi), "Hz")
+        if damping > 0.0:
+            yield Implied("hinge.dies_out", "time in which that falls to 1/e", 2.0 * moment / damping, "s")
+    yield Implied("hinge.girth", "smallest girth of the target at any angle", table[at.GIRTH], "m")
 
 
 def matrix(table: Array, angle: float) -> tuple[Array, Array]:
