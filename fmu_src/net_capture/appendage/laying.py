@@ -20,6 +20,7 @@ from fmu_src.interface import Laid, Undesigned
 from fmu_src.net_capture.hinge import numbers as at
 from fmu_src.net_capture.shapes import pieces as of
 from fmu_src.net_capture.shapes import solids
+from fmu_src.net_capture.shapes.samples import SAMPLES
 from fmu_src.net_capture.shapes.union import (
     PARTS,
     PIECES,
@@ -77,7 +78,7 @@ def _table(content: bytes, shape: tuple[int, int], place: bytes, axis: bytes, li
     plain = rows[:, : of.ROW]
     whole, rest, appendage = (body_of(part) for part in (plain, plain[~swings], plain[swings]))
     along = whole.turn.T @ (np.frombuffer(axis) / np.linalg.norm(np.frombuffer(axis)))
-    table = np.zeros(at.SAMPLES + solids.SAMPLES)
+    table = np.zeros(at.SAMPLES + SAMPLES)
     table[at.SHARE] = appendage.mass / whole.mass
     hinge, centre, back = whole.to_body(np.array([np.frombuffer(place), appendage.center, rest.center]))
     table[at.HINGE : at.AXIS], table[at.AXIS : at.ARM] = hinge, along

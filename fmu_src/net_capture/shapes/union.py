@@ -279,8 +279,8 @@ def lay(values: Mapping[str, float], sources: Mapping[str, np.ndarray]) -> Laid:
     rows = sources[PARTS]
     if HINGED not in values and swinging(rows).any():
         number = 1 + int(np.argmax(swinging(rows)))
-        expected = "is said of pieces that swing about the hinge of [capture.hinge], which this scene has not"
-        raise Undesigned("target.parts", f"hinged = true of piece {number}", expected)
+        expected = f"piece {number} says `hinged = true`, which needs the table [capture.hinge]"
+        raise Undesigned("target.parts", f"{len(rows)} pieces", expected)
     return _laid(np.ascontiguousarray(rows[:, : of.ROW]).tobytes())
 
 
