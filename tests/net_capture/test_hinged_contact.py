@@ -11,7 +11,7 @@ from fmu_src.implied import formula
 from fmu_src.instance import Instance
 from fmu_src.net_capture.hinge import numbers as at
 from fmu_src.net_capture.interface import MODEL
-from fmu_src.net_capture.planes import U, X
+from fmu_src.net_capture.planes import SHOWN, SHOWN_RATE, P, U, X
 from fmu_src.net_capture.shapes import pieces, union
 from orbital.kernel import kernel
 from tests.conftest import CAPTURE
@@ -126,6 +126,28 @@ def test_a_spring_at_the_surface_feels_the_mass_of_both_bodies(laws, spot, ratio
     back = math.exp(-2.0 * ratio * math.acos(ratio) / math.sqrt(1.0 - ratio**2))
     impulse = NODE * (speeds[-1] - hit.speed) @ hit.out
     assert impulse * hit.feel / 2.0 - 1.0 == pytest.approx(back, abs=6e-3)
+
+
+@pytest.mark.parametrize("spot", SPOTS)
+def test_what_its_springs_store_is_what_the_bodies_have_lost(laws, spot):
+    """Half way through a contact without a dashpot, with the surface as fast as the hinge makes it."""
+    hit = Hit(laws, "penalty", spot, 0.0)
+    hit.scene.p["contact_stiffness"] = (math.pi / 1e-3) ** 2 / hit.feel
+    hit.scene.p["contact_damping_ratio"] = hit.scene.p["contact_friction"] = 0.0
+    measure = laws["penalty"].bench.parts.contact.measure
+
+    @kernel
+    def tell(record, work):
+        measure(record[0], work)
+
+    _, energy = hit.momenta()
+    hit.scene.go(4e-6, 60)
+    _, left = hit.momenta()
+    planes = hit.scene.planes
+    planes[SHOWN : SHOWN + 3], planes[SHOWN_RATE : SHOWN_RATE + 3] = planes[X : X + 3], planes[P : P + 3]
+    tell(hit.scene.record, hit.scene.work)
+    assert energy - left > 2.0
+    assert hit.scene.p["contact_stored"] == pytest.approx(energy - left, rel=1e-3)
 
 
 @pytest.mark.parametrize("spot", SPOTS)
@@ -258,6 +280,16 @@ def test_a_capture_keeps_all_momenta_and_its_book_closes():
         **{f"target.start_rate[{i + 1}]": x for i, x in enumerate((0.08, 0.05, -0.06))},
     }
     net = Instance(MODEL, CAPTURE | {"target": "union", "hinge": "plain"}, given, tables).initialise()
+    # before it is touched the net opens as it does before a rigid target, and its own book is as far off
+    drawn = {name: value for name, value in given.items() if not name.startswith("hinge")}
+    rigid = {name: table for name, table in tables.items() if name != at.BODY}
+    alone = Instance(MODEL, CAPTURE | {"target": "union"}, drawn, rigid).initialise()
+    for one in (net, alone):
+        one.step(5.0)
+    assert net["contact.impulse"] == 0.0
+    assert net["hinge.loss"] > 0.1
+    assert net["energy.remainder"] == pytest.approx(alone["energy.remainder"], abs=1e-9)
+    assert abs(net["target.energy"] - alone["target.energy"]) > 0.05
     spin, loss, angles = net.array("angular_momentum").copy(), 0.0, []
     before = 0.0
     while net.time < 12.0 - 1e-9:
