@@ -162,6 +162,39 @@ def test_friction_keeps_momenta_and_books_what_it_takes(laws, spot):
     assert energy - left == pytest.approx(p["contact_loss"], rel=2e-3)
 
 
+def test_a_node_that_sticks_swings_with_its_body(laws):
+    """Where a light one holds on turns with the wing: pressed and pulled by a steady force it hangs from there in the
+    spring along the surface, F_t / c_t, in the wing's own axes."""
+    stiffness, mass, force = 4e3, 0.01, np.array([0.5, 0.2, 0.3])
+    hit = Hit(laws, "penalty", "on the wing", -5e-4, contact_friction=5.0, contact_stiffness=stiffness)
+    scene, two = hit.scene, hit.two
+    own = Rotation.from_quat(WING[2]["attitude"], scalar_first=True)
+    pull = force - 2.0 * hit.out - (force @ hit.out) * hit.out
+
+    def wing():
+        """Attitude of the wing, and where the node is in it."""
+        turn = design_attitude(scene, tables) * Rotation.from_rotvec(float(scene.p["hinge_now"][6]) * two.axis)
+        edge = Rotation.from_quat(scene.p["target_pose"], scalar_first=True).apply(
+            tables[at.BODY][at.HINGE : at.AXIS] - scene.p["hinge_shift"]
+        )
+        return turn, turn.inv().apply(scene.planes[X : X + 3, 0] - scene.p["target_place"] - edge)
+
+    tables = hit.tables
+    scene.put([mass], [hit.at - 5e-4 * hit.out], [hit.surface])
+    first, held = wing()
+    scene.go(1e-5, 60000, pulls=[pull])
+    turn, now = wing()
+    swung = (turn * first.inv()).magnitude()
+    assert swung > 0.12
+    normal = own.apply([0.0, 1.0, 0.0])
+    wanted = turn.inv().apply(pull)
+    wanted -= (wanted @ normal) * normal
+    moved = now - held
+    moved -= (moved @ normal) * normal
+    size = np.linalg.norm(wanted) / (0.82 * stiffness)
+    np.testing.assert_allclose(moved, wanted / (0.82 * stiffness), atol=0.02 * size)
+
+
 @pytest.fixture(scope="module")
 def told(laws):
     """Kernels of the target that the tests ask."""

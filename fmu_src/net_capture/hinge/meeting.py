@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from fmu_src.net_capture.hinge.matrix import take_rates
+from fmu_src.net_capture.hinge.matrix import take_rates, turned
 from fmu_src.net_capture.hinge.numbers import AXIS, BODY, HINGE
 from orbital.kernel import kernel
 from orbital.vectors import cross, dot
@@ -18,6 +18,8 @@ class Meeting(NamedTuple):
     along: Any
     feel: Any
     push: Any
+    along_own: Any
+    along_body: Any
 
 
 def make_meeting(composition: Any) -> Meeting:
@@ -108,4 +110,22 @@ def make_meeting(composition: Any) -> Meeting:
         p.hinge_speed -= impulse * p.hinge_gain[3]
         p.hinge_now[7] -= impulse * p.hinge_lever
 
-    return Meeting(take, swing, along, feel, push)
+    @kernel
+    def along_own(p, vector):
+        """A vector of the body axes along the axes that the body touched had at angle 0, in place.
+
+        Checked  tests/net_capture/test_hinged_contact.py
+        """
+        if p.hinge_touched != 0:
+            turned(vector, body_of(p)[AXIS : AXIS + 3], p.hinge_now[4], -p.hinge_now[5], vector)
+
+    @kernel
+    def along_body(p, vector):
+        """The way back of `along_own`, in place.
+
+        Checked  tests/net_capture/test_hinged_contact.py
+        """
+        if p.hinge_touched != 0:
+            turned(vector, body_of(p)[AXIS : AXIS + 3], p.hinge_now[4], p.hinge_now[5], vector)
+
+    return Meeting(take, swing, along, feel, push, along_own, along_body)

@@ -73,6 +73,8 @@ class Hinge(NamedTuple):
     along(p, point, direction)   g.n of that point, kept for the impulse [m]
     feel(p, lever)               what 1 N s changes of the speed there, beside 1/m of both [1/kg]; lever in body axes
     push(p, impulse)             give the target that impulse [N s] with the opposite sign, to its rates and the hinge
+    along_own(p, vector), along_body(p, vector)   from the body axes to those that the body touched had at angle 0, and
+                                 back
     reach(p)                     largest way of a point per radian of the hinge [m]
     largest_share(p)             what an impulse gives at most where it acts, over what it gives the centre of mass [1]
     """
@@ -88,6 +90,8 @@ class Hinge(NamedTuple):
     along: Any
     feel: Any
     push: Any
+    along_own: Any
+    along_body: Any
     reach: Any
     largest_share: Any
 
