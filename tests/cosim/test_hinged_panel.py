@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from dcone_cosim import build
+from dcone_cosim.errors import HandoffError
+from dcone_cosim.handoff import require_rigid
 from dcone_cosim.loading import load, shipped
 from dcone_cosim.scene.mistakes import SceneError
 from tests.cosim.test_warnings import cautions
@@ -66,6 +68,13 @@ def test_another_shape_is_refused(tmp_path: Path) -> None:
     scene = text()
     scene = scene[: scene.index("[[capture.target.parts]]")] + scene[scene.index("[capture.hinge]") :]
     assert "capture.target.shape" in refused(tmp_path, scene.replace('shape = "union"', 'shape = "sphere"'))
+
+
+def test_a_capture_that_tells_of_a_hinge_hands_nothing_over() -> None:
+    """Also an FMU in a file, of which no scene knows what is in it."""
+    require_rigid(("target.attitude[1]",))
+    with pytest.raises(HandoffError, match="an appendage that swings"):
+        require_rigid(("target.attitude[1]", "hinge.angle"))
 
 
 def test_pictures_follow_the_angle() -> None:
