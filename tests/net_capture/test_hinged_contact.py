@@ -310,18 +310,20 @@ def test_a_capture_keeps_all_momenta_and_its_book_closes():
         "hinge.damping": 2.0,
         "hinge.start_angle": 0.3,
         "hinge.start_rate": -0.1,
+        "solver.step_ratio": 0.3,
         **{f"target.start_rate[{i + 1}]": x for i, x in enumerate((0.08, 0.05, -0.06))},
     }
     net = Instance(MODEL, CAPTURE | {"target": "union", "hinge": "plain"}, given, tables).initialise()
-    # before it is touched the net opens as it does before a rigid target, and its own book is as far off
+    # at first the net opens as it does before a rigid target, and its own book is as far off: later it is chaotic
     drawn = {name: value for name, value in given.items() if not name.startswith("hinge")}
     rigid = {name: table for name, table in tables.items() if name != at.BODY}
     alone = Instance(MODEL, CAPTURE | {"target": "union"}, drawn, rigid).initialise()
     for one in (net, alone):
-        one.step(5.0)
+        one.step(1.0)
     assert net["contact.impulse"] == 0.0
-    assert net["hinge.loss"] > 0.1
-    assert net["energy.remainder"] == pytest.approx(alone["energy.remainder"], abs=1e-9)
+    assert net["hinge.loss"] > 0.02
+    assert net["solver.substep"] == alone["solver.substep"], "not shortened for the speed of the wing"
+    assert net["energy.remainder"] == pytest.approx(alone["energy.remainder"], abs=1e-6)
     assert abs(net["target.energy"] - alone["target.energy"]) > 0.05
     spin, loss, angles = net.array("angular_momentum").copy(), 0.0, []
     before = 0.0
