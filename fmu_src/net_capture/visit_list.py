@@ -63,7 +63,7 @@ def rows() -> Iterator[Variable]:
     yield count("visit_barred[#]", "bend that is held at a concave corner, counted from 1", "state", shape=(VISITS,))
     yield count("visit_chain[#][#]", "the faces between them", "state", shape=(VISITS, MOST + 1))
     yield count("visit_passed[#]", "bodies through which the thread has gone", "state", shape=(VISITS,))
-    yield count("wrap_others_near", "bodies near a thread", "state")
+    yield count("wrap_others_near", "bodies near a thread that are looked at", "state")
     yield count("wrap_others[#]", "which these are, counted from 0", "state", shape=(OTHERS,))
     yield state("visit_ends[#][#]", "m", "first and last bend of each, raised, body axes", shape=(VISITS, 6))
     yield state("joint_edges[#][#]", "1", "directions of the edges of all, body axes", shape=(MOST, 3))
@@ -134,7 +134,7 @@ def make_visit_list() -> VisitList:
 
     @kernel
     def remember(p, body):
-        """The thread has gone through a body; of more than are remembered the last is forgotten.
+        """The thread has gone through a body; one more than are remembered is counted anew in each substep.
 
         Checked  tests/net_capture/test_visits.py
         """

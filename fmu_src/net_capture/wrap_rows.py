@@ -44,7 +44,7 @@ ROWS = (
     count("wrap_pairs[#][#]", "faces on both sides and at both ends of its edges", "state", shape=(MOST, 4)),
     count("wrap_covered[#]", "whether a face of the body lies in other bodies", "state", shape=(FACES,)),
     state("wrap_clear", "m", "how far a thread is from the target, at least"),
-    state("wrap_grazes", "m", "by how much deeper than that a piece of a way may graze a body"),
+    state("wrap_grazes", "m", "by how much deeper than ways lie a piece of one may graze a body"),
     state("wrap_near", "m", "how far it is from bodies near it, at least"),
     state("wrap_far", "m", "how far it is from all others, at least"),
     state("wrap_haste", "m", "twice what any node moved against the target in a substep, at the last look"),

@@ -13,6 +13,8 @@ from fmu_src.net_capture.lying import make_lie
 from fmu_src.net_capture.planes import X
 from fmu_src.net_capture.shapes import pieces, union
 from fmu_src.net_capture.shapes.hulls import INSET
+from fmu_src.net_capture.visit_list import make_visit_list
+from fmu_src.net_capture.visits import make_visits
 from tests.net_capture.memory import Bench, planes_of
 from tests.net_capture.test_union_wrapping import THICK, box, laid
 from tests.plain import plain, plainly
@@ -40,7 +42,8 @@ class Seeker:
     def __init__(self, tables, terms=TERMS):
         self.bench = Bench(terms, tables)
         parts, p = self.bench.parts, self.bench.p
-        self.p, self.rounds = p, among.make_bodies(parts, near.KEPT, make_lie(parts, None), None)
+        self.p, self.lie, self.hulls = p, make_lie(parts, None), parts.target.shape.hulls
+        self.rounds = among.make_bodies(parts, near.KEPT, self.lie, None)
         p.wrap_body, p.wrap_numbers, p.solver_substep, p.envelope_radius = -1, 1, 5e-5, 5.0
         p.target_pose[:] = 1.0, 0.0, 0.0, 0.0
         self.words = np.zeros(near.KEPT + among.KEPT, np.int64)
@@ -112,6 +115,23 @@ def test_over_several_bodies_it_is_the_upper_hull_of_all(stand):
             bends.add(int(seek.p.visits))
     assert max(bends) > 1
     assert seek.lost == (0, 0)
+
+
+def test_an_edge_ends_where_it_runs_into_another_body():
+    """Round the upright edge of a block, between ends that would have it cross that below the base on which it stands:
+    there it is held as deep in the base as ways lie."""
+    seek = Seeker(towers((0.0, 0.6, 0.8)))
+    p, depths = seek.p, []
+    take = make_visits(seek.hulls, seek.lie, make_visit_list()).take
+    for others in (0, 1):
+        p.wrap_others_near, p.wrap_others[0] = others, 0
+        plainly(take.py_func)(p, 1)
+        ends = (np.array((0.4, 0.0, 0.5 * LONG - 0.5)), np.array((0.0, -0.022, 0.5 * LONG + 0.3)))
+        p.wrap_a[:], p.wrap_b[:] = (seek.place + seek.turn @ (end - BASE) for end in ends)
+        assert int(plainly(seek.lie.find.py_func)(p, 0)) == 1
+        depths.append((seek.turn.T @ (p.wrap_bends[1] - seek.place) + BASE)[1])
+    assert depths[1] == pytest.approx(-INSET, abs=1e-6)
+    assert depths[0] < depths[1] - 1e-3, "alone it reaches 2 cm into the base"
 
 
 BOOM = {"shape": pieces.CYLINDER, "radius": 0.04, "length": 0.84, "mass": 4.0, "position": [0.0, 0.0, -0.4]}
