@@ -67,6 +67,7 @@ from dcone_cosim.ours.shapes import (
     shot_frame,
     target_distance,
     target_surface,
+    target_swing,
     towed_surface,
 )
 from fmu_src.catalogue import MODELS as CATALOGUE
@@ -150,6 +151,7 @@ __all__ = [
     "shot_frame",
     "target_distance",
     "target_surface",
+    "target_swing",
     "term_rows",
     "towed_surface",
     "whole",

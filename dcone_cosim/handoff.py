@@ -12,12 +12,13 @@ seen in that turning frame; spins are relative to inertial space, along the orbi
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from dcone_cosim.errors import HandoffError
 from dcone_cosim.scene.data import PhaseScene
 from orbital import plain
 from orbital.constants import EARTH_EQUATORIAL_RADIUS, EARTH_MU
@@ -37,6 +38,9 @@ CAPTURE_OUTPUTS = (
     "energy.kinetic",
 )
 """Outputs of the capture FMU that the hand-off reads."""
+
+SWINGS = "hinge.angle"
+"""Output of a capture whose target has a hinged appendage."""
 
 CAPTURE_PARAMETERS = (
     "chaser.mass",
@@ -159,6 +163,15 @@ def pair_parameters(chaser: Body, target: Body) -> dict[str, float]:
     for name, vector in vectors.items():
         parameters |= {f"start.{name}[{i + 1}]": float(vector[i]) for i in range(3)}
     return parameters
+
+
+def require_rigid(names: Container[str]) -> None:
+    """`HandoffError` where a capture, perhaps an FMU in a file, tells by its outputs that its target swings."""
+    if SWINGS in names:
+        raise HandoffError(
+            f"hand-off refused: the capture's target has an appendage that swings ({SWINGS}); "
+            "what is handed over is one rigid target"
+        )
 
 
 def prepare(capture: Values, frame_rate: float) -> Handoff:

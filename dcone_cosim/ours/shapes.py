@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from fmu_src.interface import Term
 from fmu_src.net_capture import force_map
+from fmu_src.net_capture.appendage.laying import corners_at
+from fmu_src.net_capture.hinge.numbers import BODY
 from fmu_src.net_capture.interface import NETS, TARGETS, rigged_of
 from fmu_src.tethered_deorbit.surfaces import SURFACES
 from fmu_src.tethered_deorbit.surfaces.hull import CORNERS
@@ -67,6 +70,11 @@ def target_surface(values: Mapping[str, float], terms: Mapping[str, str]) -> Sur
     """Corners (n, 3) [m] and faces of the target with these values, body axes; None for none of ours."""
     part = _part(TARGETS, terms.get("target"), values)
     return None if part is None else part.checks.surface(values)
+
+
+def target_swing(values: Mapping[str, Any], terms: Mapping[str, str]) -> Callable[[float], Any] | None:
+    """Function of the angle of its hinge [rad]: corners of the target (n, 3) [m], body axes; None of one rigid body."""
+    return partial(corners_at, values) if "hinge" in terms and BODY in values else None
 
 
 def towed_surface(term: str) -> str:

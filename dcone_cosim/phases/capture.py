@@ -99,6 +99,11 @@ class Capture(Phase):
         group = NEEDED_FOR.get(given) if isinstance(given, str) else None
         if part.fmu is None and group is not None and group not in part.terms:
             yield Mistake(path, given, f"needs the table [capture.{group}], which this scene lacks")
+        mine = document.mains[self.name]
+        if mine.fmu is None and "hinge" in mine.terms and (document.before(self.name) or document.after(self.name)):
+            other = document.after(self.name) or document.before(self.name)
+            text = f"goes with this phase alone: what is handed over to or from a {other} is one rigid target"
+            yield Mistake((self.name, "hinge"), None, text)
         every = document.tables["capture"].get("replay_every")
         if every is not None and part.fmu is None and "nodes" not in part.terms:
             yield Mistake(("capture", "replay_every"), every, "needs the table [capture.nodes], which this scene lacks")

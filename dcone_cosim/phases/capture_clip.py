@@ -40,6 +40,10 @@ def clip(run: RunResult, phase: PhaseScene, result: PhaseResult, marks: Sequence
     net, rows, notes = _net(result, build.net_drawing(values, terms))
     notes += _between(net, result)
     surface = build.target_surface(values, terms) if "target.position[1]" in recorder else None
+    if build.target_swing(values, terms) is not None:
+        notes.append(
+            "the hinged appendage is drawn at angle 0: this page does not swing it; hinge.angle tells where it is"
+        )
     numbers = bullets(recorder.names)
     shots = np.stack([recorder.vector(f"bullet[{b}].position") for b in numbers], axis=1) if numbers else None
     return Clip(

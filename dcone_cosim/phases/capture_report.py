@@ -173,7 +173,8 @@ def figures(run: RunResult, phase: PhaseScene, result: PhaseResult) -> Iterator[
         values = {**run.parameters.get(phase.name, {}), **phase.main.made}
         shapes = build.net_drawing(values, phase.main.terms), build.target_surface(values, phase.main.terms)
         asked = bool(phase.options.snapshots)
-        yield "capture_in_space.png", partial(net_view.draw, result, *shapes, asked, title)
+        swing = build.target_swing(values, phase.main.terms)
+        yield "capture_in_space.png", partial(net_view.draw, result, *shapes, asked, title, swing=swing)
     cells = force_map.of_run(run, phase.name)
     if cells is not None:
         yield "force_map.png", partial(force_map.draw, cells, title)

@@ -24,6 +24,7 @@ from dcone_cosim.handoff import (
     line_drawn,
     mean_motion,
     prepare,
+    require_rigid,
 )
 from dcone_cosim.level import CENTER, GROUP, SHAPE, TURNING_SETS
 from dcone_cosim.line import ATTACHMENT, REST_LENGTH, line_notes, line_of
@@ -338,6 +339,7 @@ class Removal(Tow):
         left, altitude = run.left[stage.before.name], phase.setting("orbit.altitude")
         assert altitude is not None, "the contract asks for it"
         assert capture.located is not None, "it has handed over"
+        require_rigid(capture.recorder.names)
         handed = prepare(left, mean_motion(altitude))
         if drawn := build.line_mass(phase.main.values, phase.main.terms):
             handed = line_drawn(handed, drawn)  # it was on the reel

@@ -14,7 +14,7 @@ import numpy as np
 
 from dcone_cosim.findings import Finding
 from dcone_cosim.fmu.component import Steppable
-from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, Vector, frame_rate
+from dcone_cosim.handoff import CAPTURE_OUTPUTS, CAPTURE_PARAMETERS, Vector, frame_rate, require_rigid
 from dcone_cosim.ledger import AXES, LedgerRow, closure_finding, require_closed
 from dcone_cosim.level import ATTITUDE, RATE
 from dcone_cosim.phases import kinds
@@ -262,6 +262,7 @@ class FurtherShot(Capture):
             return None
         run, phase, before = stage.run, stage.phase, stage.before
         left, shot = run.left[before.name], run.phases[before.name]
+        require_rigid(shot.recorder.names)
         reload, rate = phase.options.reload, frame_rate(phase)
         target = vector(left, "target.position"), vector(left, "target.velocity")
         chaser = vector(left, "chaser.position") - target[0], vector(left, "chaser.velocity") - target[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -48,8 +49,13 @@ def draw(
     asked: bool,
     title: str,
     path: Path,
+    *,
+    swing: Callable[[float], Array] | None = None,
 ) -> None:
-    """PNG of the capture at up to eight times; net and target as far as their shapes are known."""
+    """PNG of the capture at up to eight times; net and target as far as their shapes are known.
+
+    swing    corners of a target whose appendage swings, body axes, by the angle of its hinge
+    """
     shots = result.snapshots
     chosen = choose(shots.times, asked, result.located)
     row_of = {i: int(np.argmin(np.abs(result.recorder["time"] - shots.times[i]))) for i in chosen}
@@ -61,10 +67,11 @@ def draw(
     figure.subplots_adjust(
         left=side + 0.02, right=0.97 - side, bottom=0.45 / height, top=1.0 - 0.55 / height, wspace=0.06, hspace=0.1
     )
-    least, most = _limits(result, chosen, row_of, surface)
+    bodies = {i: _corners(result, row_of[i], surface, swing) for i in chosen}
+    least, most = _limits(result, row_of, bodies)
     for panel, i in enumerate(chosen):
         axes = figure.add_subplot(rows, columns, panel + 1, projection="3d", computed_zorder=False)
-        _panel(axes, result, i, row_of[i], drawing, surface)
+        _panel(axes, result, i, row_of[i], drawing, bodies[i], surface)
         _frame(axes, least, most)
         mark = "  (hand-over)" if result.located is not None and shots.times[i] == result.located else ""
         axes.set_title(f"t = {shots.times[i]:.2f} s{mark}", y=0.99)
@@ -74,12 +81,18 @@ def draw(
 
 
 def _panel(
-    axes: Any, result: PhaseResult, shot: int, row: int, drawing: Drawing | None, surface: Surface | None
+    axes: Any,
+    result: PhaseResult,
+    shot: int,
+    row: int,
+    drawing: Drawing | None,
+    corners: Array | None,
+    surface: Surface | None,
 ) -> None:
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
     nodes = result.snapshots.nodes[shot][:, SHOWN]
-    _target(axes, result, row, surface)
+    _target(axes, corners, surface)
     lines, rim = _thread_lines(nodes, drawing)
     if lines:
         axes.add_collection3d(Line3DCollection(lines, colors=style.NET, linewidths=0.35, alpha=0.75, zorder=3))
@@ -112,10 +125,9 @@ def _thread_lines(nodes: Array, drawing: Drawing | None) -> tuple[list[Array], A
     return [nodes[line] for line in lines], nodes[rim]
 
 
-def _target(axes: Any, result: PhaseResult, row: int, surface: Surface | None) -> None:
+def _target(axes: Any, corners: Array | None, surface: Surface | None) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    corners = _corners(result, row, surface)
     if corners is None or surface is None:
         return
     polygons = [corners[face][:, SHOWN] for face in surface[1]]
@@ -124,25 +136,23 @@ def _target(axes: Any, result: PhaseResult, row: int, surface: Surface | None) -
     )
 
 
-def _corners(result: PhaseResult, row: int, surface: Surface | None) -> Array | None:
-    """Corners of the target turned by its attitude, (n, 3) [m]; None where they are not known."""
+def _corners(
+    result: PhaseResult, row: int, surface: Surface | None, swing: Callable[[float], Array] | None
+) -> Array | None:
+    """Corners of the target turned by its attitude and its hinge, (n, 3) [m]; None where they are not known."""
     recorder = result.recorder
     if "target.attitude[1]" not in recorder or surface is None:
         return None
     turn = rotation_matrix(recorder.vector("target.attitude", 4)[row])
-    corners: Array = recorder.vector("target.position")[row] + np.array(surface[0]) @ turn.T
+    own = np.array(surface[0]) if swing is None else swing(float(recorder["hinge.angle"][row]))
+    corners: Array = recorder.vector("target.position")[row] + own @ turn.T
     return corners
 
 
-def _limits(
-    result: PhaseResult, chosen: list[int], rows: dict[int, int], surface: Surface | None
-) -> tuple[Array, Array]:
+def _limits(result: PhaseResult, rows: dict[int, int], bodies: dict[int, Array | None]) -> tuple[Array, Array]:
     """Bounds of everything shown, one for all panels so that they compare."""
-    clouds = [result.snapshots.nodes[i] for i in chosen] + [_bullets(result, rows[i]) for i in chosen]
-    for i in chosen:
-        corners = _corners(result, rows[i], surface)
-        if corners is not None:
-            clouds.append(corners)
+    clouds = [result.snapshots.nodes[i] for i in bodies] + [_bullets(result, rows[i]) for i in bodies]
+    clouds += [corners for corners in bodies.values() if corners is not None]
     points = np.concatenate(clouds)[:, SHOWN]
     return points.min(axis=0), points.max(axis=0)
 

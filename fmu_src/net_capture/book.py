@@ -27,6 +27,7 @@ def make_balance(composition: Any) -> Any:
     gravity, has_gradient = composition.gravity, composition.gradient is not None
     potential_at, bends, given, changes = gravity.potential, gravity.bends, gravity.given, gravity.given is not None
     chaser_potential, target_potential = gravity.chaser_potential, gravity.target_potential
+    swings = has_target and composition.target.hinge is not None
     has_wrap = composition.wrap is not None
     rubs = composition.terms.get("wrap") == "friction"
     has_air, has_load = composition.air is not None, composition.pull_off is not None
@@ -61,6 +62,8 @@ def make_balance(composition: Any) -> Any:
         energy += 0.5 * p.chaser_mass * dot(p.chaser_velocity, p.chaser_velocity)
         if has_target:
             energy += p.target_energy
+        if swings:
+            energy += p.hinge_energy + p.hinge_loss
         if has_contact:
             energy += p.contact_loss
         if presses:

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 
 from fmu_src.implied import Implied, formula
 from fmu_src.net_capture import formulas
+from fmu_src.net_capture.appendage import laying
+from fmu_src.net_capture.hinge.numbers import BODY
 from fmu_src.net_capture.interface import GROUPS, NETS, rigged_of
 from fmu_src.net_capture.nets import USUAL_BULLETS, Checks, Hanging, Thread
 from fmu_src.net_capture.release import ejection, ejector
@@ -95,6 +97,8 @@ def rows(values: Values, terms: Mapping[str, str]) -> Iterator[Implied]:
         yield from _of_cord(values, terms)
     if "target.solid" in values:
         yield from solids.rows(values)
+    if BODY in values:
+        yield from laying.rows(values)
     if "target.grid" in values:
         yield from mesh.rows(values)
     if "orbit.altitude" in values:

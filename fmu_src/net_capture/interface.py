@@ -24,6 +24,7 @@ from fmu_src.net_capture import (
     wall,
     wrapping,
 )
+from fmu_src.net_capture.appendage import part as hinge
 from fmu_src.net_capture.capacity import FAMILIES, MOST_NODES, MOST_THREADS
 from fmu_src.net_capture.closing import closings, jam
 from fmu_src.net_capture.contact import contacts
@@ -287,9 +288,9 @@ def rigged_of(terms: Mapping[str, str]) -> dict[str, Term]:
     return {name: part for name, part in RIGGINGS.items() if name in terms}
 
 
-def _plain(part: Term) -> Group:
-    """A group of one term, which the scene need not name where it has the table."""
-    return Group({PLAIN: part}, selector="kind", optional=True, follows=lambda terms, values: PLAIN)
+def _plain(part: Term, selector: str = "kind", **others: Term) -> Group:
+    """A group of one term, which the scene need not name where it has the table, and others that it must name."""
+    return Group({PLAIN: part, **others}, selector=selector, optional=True, follows=lambda terms, values: PLAIN)
 
 
 PLAIN = "plain"
@@ -312,14 +313,10 @@ GROUPS = {
     "substeps": Group(paces(), selector="substeps", default="fixed", table="solver"),
     "target": Group(TARGETS, selector="shape", optional=True),
     "gravity_gradient": _plain(gradient.PART),
+    "hinge": _plain(hinge.PART),
     "contact": Group(CONTACTS, optional=True),
     "force_map": _plain(force_map.PART),
-    "wrap": Group(
-        {PLAIN: wrapping.PART, "friction": wrapping.FRICTION},
-        selector="bends",
-        optional=True,
-        follows=lambda terms, values: PLAIN,
-    ),
+    "wrap": _plain(wrapping.PART, selector="bends", friction=wrapping.FRICTION),
     "closing": Group(CLOSINGS, selector="drive", optional=True),
     "jam": _plain(jam.PART),
     "tether": Group({"slack": tether.PART, "dragging": tether.DRAGGING}, selector="state", optional=True),

@@ -35,6 +35,8 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
     gravity, scheme, peaks = parts.gravity, parts.scheme, parts.peaks
     gradient, has_gradient = parts.gradient, parts.gradient is not None
     target, contact, closing, tether = parts.target, parts.contact, parts.closing, parts.tether
+    swings = has_target and target.hinge is not None
+    show_hinge = target.hinge.show if swings else None
     lag, frame_rate, now, write_nodes = scheme.lag, gravity.rate, parts.clock.now, parts.numbering.write
     energy_balance = make_balance(parts)
 
@@ -81,6 +83,8 @@ def make_measure(parts: Any, measures: Any, tensions: Any, not_finite: int) -> A
                 p.angular_momentum[axis] += p.chaser_spin[axis]
         if has_target:
             target.measure(p)
+            if swings:
+                show_hinge(p, ahead)
             target.turn(p.target_attitude, p.target_pose, p.target_rate, p, frame_rate(p), ahead)
             quality.add_body_momenta(p, p.target_mass, p.target_position, p.target_velocity)
             for axis in range(3):

@@ -84,6 +84,8 @@ def make_limit_way(composition: Any) -> Any:
     """
     has_ejection = composition.ejection is not None
     fastest = composition.ejection.fastest if has_ejection else None
+    swings = composition.target is not None and composition.target.hinge is not None
+    reach = composition.target.hinge.reach if swings else None
 
     @kernel
     def limit_way(p):
@@ -104,6 +106,8 @@ def make_limit_way(composition: Any) -> Any:
         speed = fastest(p) if has_ejection else p.bullets_speed
         speed += math.sqrt(dot(p.chaser_start_velocity, p.chaser_start_velocity))
         speed += math.sqrt(dot(p.target_start_rate, p.target_start_rate)) * p.envelope_radius
+        if swings:
+            speed += abs(p.hinge_start_rate) * reach(p)
         way = WAY_SHARE * p.target_thickness
         if speed * p.solver_substep > way:
             p.measure_every = math.ceil(MEASURE_INTERVAL * speed / way - 1e-9)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from fmu_src.extremes import Extreme
 from fmu_src.interface import Term, Variable, fault
+from fmu_src.net_capture.hinge.motion import Hinge, make_hinge
 from fmu_src.net_capture.refusal import Refusal, Scene, text
 from fmu_src.rows import at_least_zero, moving, output, parameter, positive, state, vector
 from orbital.kernel import kernel
@@ -115,6 +116,7 @@ class Target(NamedTuple):
     measure(p)                     rate and energy from its momenta
     turn(out, attitude, rate, p, frame_rate, h)   out = attitude after a time
     sample(p, out, number)         out = a sample point in the frame [m], below where any part of the net comes
+    hinge                          kernels of the appendage that swings, see `hinge.motion`; None: it is one rigid body
     """
 
     shape: Any
@@ -123,6 +125,7 @@ class Target(NamedTuple):
     measure: Any
     turn: Any
     sample: Any
+    hinge: Hinge | None = None
 
 
 def refuses(scene: Scene) -> Iterator[Refusal]:
@@ -262,6 +265,11 @@ def make_target(composition: Any, part: Term) -> Target:
     shape = part.make(composition)
     uniform_inertia, measure_shape, shape_sample = shape.inertia, shape.measure, shape.sample
     given_otherwise, axes = shape.axes is not None, shape.axes
+    swings = "hinge" in composition.terms
+    hinge = make_hinge(composition) if swings else None
+    place_hinge, drift_hinge, measure_hinge, extent, follow = (
+        (hinge.place, hinge.drift, hinge.measure, hinge.extent, hinge.follow) if hinge is not None else [None] * 5
+    )
     no_inertia, no_quaternion = composition.code(NO_INERTIA.name), composition.code(NO_QUATERNION.name)
 
     @kernel
@@ -305,9 +313,13 @@ def make_target(composition: Any, part: Term) -> Target:
         for i in range(3):
             spin[i] = principal[i] * p.target_rate[i]
         rotate(p.target_spin, p.target_pose, spin)
+        if swings:
+            place_hinge(p)
         p.target_thickness = math.inf
         p.target_edge = 0.0
         measure_shape(p)
+        if swings:
+            extent(p)
         for i in range(3):
             p.target_thickness = min(p.target_thickness, 2.0 * p.half_size[i])
         if p.target_edge == 0.0:
@@ -324,8 +336,22 @@ def make_target(composition: Any, part: Term) -> Target:
         Checked  tests/net_capture/test_enclosure.py
         """
         shape_sample(p, out, number, BEYOND_REACH * p.net_mesh)
+        if swings:
+            follow(p, out, number)
         rotate(out, p.target_pose, out)
         for i in range(3):
             out[i] += p.target_place[i]
 
+    @kernel
+    def drift_both(p, frame_rate, h):
+        """Move the target by one substep, turn it and let its appendage swing.
+
+        Checked  tests/net_capture/test_hinge.py
+        """
+        for i in range(3):
+            p.target_place[i] += h * p.target_drift[i]
+        drift_hinge(p, frame_rate, h)
+
+    if hinge is not None:
+        return Target(shape, place, drift_both, measure_hinge, turn, sample, hinge)
     return Target(shape, place, make_drift("gravity_gradient" in composition.terms), measure_target, turn, sample)

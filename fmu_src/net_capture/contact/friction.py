@@ -14,7 +14,7 @@ FRICTION = 0.1
 1999."""
 CARRIED, SINCE, PLANES = 0, 3, 4
 """Node planes behind those of scheme and pace: how far a node has been carried along the surface from where it holds
-on, body axes [m], and the substep after the one in which it last touched."""
+on, axes of the body touched [m], and the substep after the one in which it last touched."""
 ALONG = 0.82
 """Stiffness along the surface over that across it, 2 (1 - nu) / (2 - nu) at nu = 0.3. Source: Mindlin, J. Appl. Mech.
 16, 1949."""
@@ -35,6 +35,9 @@ def make_friction(composition: Any) -> Friction:
     """Kernels for the composition's memory."""
     node_plane, first_plane = composition.memory.node_plane, composition.contact_planes
     relative, aim, push = make_push(composition)
+    hinge = composition.target.hinge
+    swings = hinge is not None
+    along_own, along_body = (hinge.along_own, hinge.along_body) if hinge is not None else [None] * 2
 
     @kernel
     def stored(p, work, node, stiffness):
@@ -76,11 +79,15 @@ def make_friction(composition: Any) -> Friction:
         rate = ALONG * dashpot
         before = stored(p, work, node, stiffness) if held else 0.0
         # where it holds on, frame axes; the surface may have turned under it
+        for k in range(3):
+            rested[k] = node_plane(p, work, first_plane + CARRIED + k)[node]
+        if swings:
+            along_body(p, rested)
         for i in range(3):
             carried[i] = 0.0
             if held:
                 for k in range(3):
-                    carried[i] += turn[i, k] * node_plane(p, work, first_plane + CARRIED + k)[node]
+                    carried[i] += turn[i, k] * rested[k]
         relative(p, work, node, 2.0, slip)
         lifted, out = dot(carried, normal), dot(carried, normal) + since * dot(slip, normal)
         for i in range(3):
@@ -112,8 +119,11 @@ def make_friction(composition: Any) -> Friction:
             p.contact_loss += taken
             p.contact_friction_loss += taken
         for i in range(3):
-            held_at = turn[0, i] * carried[0] + turn[1, i] * carried[1] + turn[2, i] * carried[2]
-            node_plane(p, work, first_plane + CARRIED + i)[node] = held_at
+            rested[i] = turn[0, i] * carried[0] + turn[1, i] * carried[1] + turn[2, i] * carried[2]
+        if swings:
+            along_own(p, rested)
+        for i in range(3):
+            node_plane(p, work, first_plane + CARRIED + i)[node] = rested[i]
         return h * size
 
     return Friction(rub, stored)

@@ -36,6 +36,11 @@ def make(composition: Any) -> Contact:
     now, has_hollows = composition.clock.now, composition.target.shape.faces is None
     has_map = composition.force_map is not None
     add_to_map = composition.force_map.add if has_map else None
+    hinge = composition.target.hinge
+    swings = hinge is not None
+    swing, along, feel_both, push_both = (
+        (hinge.swing, hinge.along, hinge.feel, hinge.push) if hinge is not None else [None] * 4
+    )
 
     @kernel
     def meet(p, work, node, h, ended):
@@ -77,10 +82,14 @@ def make(composition: Any) -> Contact:
         arm[1] = node_plane(p, work, X + 1)[node] - h * v[node] - p.target_place[1]
         arm[2] = node_plane(p, work, X + 2)[node] - h * w[node] - p.target_place[2]
         if ended:
+            if swings:
+                swing(p, arm)
             for axis in range(3):
                 j, k = (axis + 1) % 3, (axis + 2) % 3
                 carried = p.target_omega[j] * arm[k] - p.target_omega[k] * arm[j]
                 p.contact_lever[axis] = node_plane(p, work, U + axis)[node] - p.target_drift[axis] - carried
+                if swings:
+                    p.contact_lever[axis] -= p.hinge_moved[axis]
             for axis in range(3):
                 arm[axis] += h * p.contact_lever[axis]
         for i in range(3):
@@ -99,6 +108,8 @@ def make(composition: Any) -> Contact:
         cross(lever, arm, normal)
         own = normal[0] * u[node] + normal[1] * v[node] + normal[2] * w[node]
         approach = own - dot(normal, p.target_drift) - dot(lever, p.target_omega)
+        if swings:
+            approach -= along(p, body, local) * p.hinge_speed
         if ended:
             gap -= h * approach
         if gap + h * approach >= 0.0:
@@ -118,15 +129,20 @@ def make(composition: Any) -> Contact:
                     body[i] = turn[0, i] * arm[0] + turn[1, i] * arm[1] + turn[2, i] * arm[2]
                 cross(lever, arm, normal)
                 approach = own - dot(normal, p.target_drift) - dot(lever, p.target_omega)
+                if swings:
+                    approach -= along(p, body, local) * p.hinge_speed
             wanted = -p.contact_restitution * approach
         if wanted <= approach:
             return 0
         turned = p.contact_turned
         cross(local, body, local)
         feel = inverse + 1.0 / p.target_mass
-        for i in range(3):
-            turned[i] = local[i] / p.target_inertia[i]
-            feel += local[i] * turned[i]
+        if swings:
+            feel += feel_both(p, local)
+        else:
+            for i in range(3):
+                turned[i] = local[i] / p.target_inertia[i]
+                feel += local[i] * turned[i]
         impulse = (wanted - approach) / feel
         p.contact_impulse += impulse
         if has_map:
@@ -148,8 +164,11 @@ def make(composition: Any) -> Contact:
             node_plane(p, work, P + axis)[node] += change - 0.5 * taken * normal[axis]
             p.target_drift[axis] -= impulse / p.target_mass * normal[axis]
             p.target_spin[axis] -= impulse * lever[axis]
-            gain = turn[axis, 0] * turned[0] + turn[axis, 1] * turned[1] + turn[axis, 2] * turned[2]
-            p.target_omega[axis] -= impulse * gain
+            if not swings:
+                gain = turn[axis, 0] * turned[0] + turn[axis, 1] * turned[1] + turn[axis, 2] * turned[2]
+                p.target_omega[axis] -= impulse * gain
+        if swings:
+            push_both(p, impulse)
         if p.contact_first_time < 0.0:
             p.contact_first_time = now(p)
         return 1

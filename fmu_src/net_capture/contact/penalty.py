@@ -34,6 +34,8 @@ from fmu_src.net_capture.contact.friction import FRICTION, PLANES, SINCE, make_f
 from fmu_src.net_capture.contact.pushing import make_push
 from fmu_src.net_capture.contact.touching import INSIDE_TARGET, ROWS, make_contact
 from fmu_src.net_capture.contact.touching import refuses as refuses_place
+from fmu_src.net_capture.hinge.numbers import BODY as HINGED
+from fmu_src.net_capture.hinge.numbers import YIELDS
 from fmu_src.net_capture.planes import INVERSE_MASS, MASS, SHOWN, SHOWN_RATE, U, X
 from fmu_src.net_capture.refusal import Refusal, Scene
 from fmu_src.rows import at_least_zero, output, peak, positive, state
@@ -109,6 +111,9 @@ def make(composition: Any) -> Contact:
     node_plane, distance_to = composition.memory.node_plane, composition.target.shape.distance
     now, first_plane = composition.clock.now, composition.contact_planes
     relative, aim, push = make_push(composition)
+    hinge = composition.target.hinge
+    swings = hinge is not None
+    swing, largest_share = (hinge.swing, hinge.largest_share) if hinge is not None else [None] * 2
     has_map = composition.force_map is not None
     add_to_map = composition.force_map.add if has_map else None
     rub, stored_along = make_friction(composition)
@@ -180,6 +185,10 @@ def make(composition: Any) -> Contact:
         rotate_inverse(body, p.target_pose, arm)
         depth = -distance_to(p, local, body)
         rotate(p.contact_normal, p.target_pose, local)
+        if swings:
+            swing(p, arm)
+            for axis in range(3):
+                slip[axis] -= p.hinge_moved[axis]
         depth += 0.5 * p.solver_substep * dot(slip, p.contact_normal)
         mass = node_plane(p, work, MASS)[node]
         stiffness = own_stiffness(p.contact_duration, p.contact_stiffness, mass)
@@ -228,6 +237,8 @@ def make(composition: Any) -> Contact:
 
         Checked  tests/net_capture/test_penalty.py
         """
+        if swings:
+            return max(largest_share(p), TARGET_SHARE)
         least = min(p.target_inertia[0], p.target_inertia[1], p.target_inertia[2])
         share = 1.0 + p.target_mass * p.envelope_radius * p.envelope_radius / least
         given = abs(p.target_principal_inertia[0]) + abs(p.target_principal_inertia[1])
@@ -263,6 +274,8 @@ def of_values(
         share = 1.0 + radius(values) ** 2 / min(told)
     elif worked_out:
         share = max(share, 1.0 + radius(values) ** 2 / min(worked_out))
+    if HINGED in values:
+        share = max(TARGET_SHARE, float(values[HINGED][YIELDS]))
     lightest = node * (0.5 if values["net.segments"] > 1 else 0.75)
     duration, stiffness = values["contact.duration"], values["contact.stiffness"]
     found: float = formula(stiffening)(duration, stiffness, lightest, mass, nodes, values["target.mass"], share)

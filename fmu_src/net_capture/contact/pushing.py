@@ -26,7 +26,9 @@ class Push(NamedTuple):
 
 def make_push(composition: Any) -> Push:
     """Kernels for the composition's memory."""
-    node_plane = composition.memory.node_plane
+    node_plane, hinge = composition.memory.node_plane, composition.target.hinge
+    swings = hinge is not None
+    swing, along, feel_both, push_both = (hinge.swing, hinge.along, hinge.feel, hinge.push) if swings else [None] * 4
 
     @kernel
     def relative(p, work, node, back, out):
@@ -40,6 +42,10 @@ def make_push(composition: Any) -> Push:
         for axis in range(3):
             u = node_plane(p, work, U + axis)[node]
             out[axis] += u - back * (node_plane(p, work, P + axis)[node] - u) - p.target_drift[axis]
+        if swings:
+            swing(p, p.contact_arm)
+            for axis in range(3):
+                out[axis] -= p.hinge_moved[axis]
 
     @kernel
     def aim(p, inverse, direction):
@@ -50,6 +56,15 @@ def make_push(composition: Any) -> Push:
         lever, turned, turn = p.contact_lever, p.contact_turned, p.target_turn
         cross(lever, p.contact_arm, direction)
         feel = inverse + 1.0 / p.target_mass
+        if swings:
+            point, local = p.hinge_point, p.hinge_local
+            for i in range(3):
+                arm = p.contact_arm
+                point[i] = turn[0, i] * arm[0] + turn[1, i] * arm[1] + turn[2, i] * arm[2]
+                local[i] = turn[0, i] * direction[0] + turn[1, i] * direction[1] + turn[2, i] * direction[2]
+            along(p, point, local)
+            cross(local, point, local)
+            return feel + feel_both(p, local)
         for i in range(3):
             own = turn[0, i] * lever[0] + turn[1, i] * lever[1] + turn[2, i] * lever[2]
             turned[i] = own / p.target_inertia[i]
@@ -72,6 +87,9 @@ def make_push(composition: Any) -> Push:
             node_plane(p, work, P + axis)[node] += 1.5 * change
             p.target_drift[axis] -= impulse / p.target_mass * direction[axis]
             p.target_spin[axis] -= impulse * lever[axis]
-            p.target_omega[axis] -= impulse * dot(turn[axis], turned)
+            if not swings:
+                p.target_omega[axis] -= impulse * dot(turn[axis], turned)
+        if swings:
+            push_both(p, impulse)
 
     return Push(relative, aim, push)

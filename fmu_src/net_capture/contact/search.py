@@ -238,11 +238,20 @@ def make_search(composition: Any, longest: int) -> Search:
     return Search(near, close, largest_pull, clear_steps, hurries)
 
 
-@kernel
-def largest_way(p, h):
-    """How far a point within the envelope moves with the target in a substep [m].
+def make_largest_way(hinge: Any) -> Any:
+    """Kernel `largest_way(p, h)` of a target, with the kernels of its appendage that swings, if any."""
+    swings = hinge is not None
+    reach = hinge.reach if swings else None
 
-    Checked  tests/net_capture/test_contact.py
-    """
-    turning = math.sqrt(dot(p.target_omega, p.target_omega)) * p.envelope_radius
-    return h * (math.sqrt(dot(p.target_drift, p.target_drift)) + turning)
+    @kernel
+    def largest_way(p, h):
+        """How far a point within the envelope moves with the target in a substep [m].
+
+        Checked  tests/net_capture/test_contact.py
+        """
+        turning = math.sqrt(dot(p.target_omega, p.target_omega)) * p.envelope_radius
+        if swings:
+            turning += abs(p.hinge_speed) * reach(p)
+        return h * (math.sqrt(dot(p.target_drift, p.target_drift)) + turning)
+
+    return largest_way

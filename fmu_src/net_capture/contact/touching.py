@@ -11,7 +11,7 @@ import numpy as np
 from fmu_src.implied import formula
 from fmu_src.interface import fault
 from fmu_src.net_capture.contact import Contact
-from fmu_src.net_capture.contact.search import largest_way, make_search
+from fmu_src.net_capture.contact.search import make_largest_way, make_search
 from fmu_src.net_capture.planes import MASS, SHOWN
 from fmu_src.net_capture.refusal import Refusal, Scene, text
 from fmu_src.net_capture.stepping import LONGEST_SLEEP
@@ -81,6 +81,10 @@ def make_contact(composition: Any, touch: Any) -> Contact:
     node_plane, reals_of = memory.node_plane, memory.reals
     search = make_search(composition, LONGEST_SLEEP)
     near, close, largest_pull = search.near, search.close, search.largest_pull
+    hinge = composition.target.hinge
+    swings = hinge is not None
+    take_both = hinge.take if hinge is not None else None
+    largest_way = make_largest_way(hinge)
     inside_target = composition.code(INSIDE_TARGET.name)
     from fmu_src.lanes import lowest
 
@@ -92,7 +96,10 @@ def make_contact(composition: Any, touch: Any) -> Contact:
         Checked  tests/net_capture/test_fast_nodes.py
         """
         to_matrix(p.target_turn, p.target_pose)
-        take_rate(p, rate)
+        if swings:
+            take_both(p, rate)
+        else:
+            take_rate(p, rate)
         p.contact_margin = largest_way(p, p.solver_substep)
 
     @kernel

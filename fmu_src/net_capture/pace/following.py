@@ -149,6 +149,8 @@ def make(composition: Any) -> Pace:
     first_plane = NODE_PLANES + needs.planes
     has_contact, has_closing = composition.contact is not None, composition.closing is not None
     everywhere = composition.everywhere
+    swings = composition.target is not None and composition.target.hinge is not None
+    reach = composition.target.hinge.reach if swings else None
     from fmu_src.lanes import highest, lowest, peek, poke
 
     stiffen = composition.closing.stiffen if has_closing else None
@@ -235,8 +237,12 @@ def make(composition: Any) -> Pace:
         Checked  tests/net_capture/test_following.py
         """
         mass = node_plane(p, work, MASS)
-        least = min(p.target_inertia[0], p.target_inertia[1], p.target_inertia[2])
-        turning = math.sqrt(dot(p.target_spin, p.target_spin)) / least * p.envelope_radius
+        if swings:
+            turning = math.sqrt(dot(p.hinge_rates[0:3], p.hinge_rates[0:3])) * p.envelope_radius
+            turning += abs(p.hinge_rates[3]) * reach(p)
+        else:
+            least = min(p.target_inertia[0], p.target_inertia[1], p.target_inertia[2])
+            turning = math.sqrt(dot(p.target_spin, p.target_spin)) / least * p.envelope_radius
         found = 0.0
         for node in range(p.node_slots):
             if mass[node] > 0.0:

@@ -4,6 +4,8 @@ A piece is given in axes of its own, from the middle of its box: round ones abou
 axis to both sides. A row of numbers says one, `ROW` of them:
 
     kind, four sizes [m], [rad]; mass [kg]; position [m] and attitude of its own axes in the design axes, scalar first
+
+Where any of them swings about a hinge one more says whether each does, 1 or 0.
 """
 
 from __future__ import annotations
@@ -50,6 +52,8 @@ ENTRY: tuple[Variable, ...] = (
     vector("position", "m", "of its middle in the design axes", "parameter"),
     parameter("attitude[#]", "1", "quaternion from its axes to the design axes, scalar first; zero: aligned", 0.0,
               shape=(4,)),
+    Variable("hinged", "1", "parameter", "whether it is part of the appendage that swings: [capture.hinge]", False,
+             kind="Boolean"),
 )  # fmt: skip
 """What a scene may say of a piece."""
 ROUND, TALL = 96, 24
@@ -70,7 +74,11 @@ class Piece(NamedTuple):
 
 def gather(entries: Sequence[Mapping[str, Any]]) -> list[list[float]]:
     """Rows of pieces from what a scene says of them, SI; ValueError with the number of the piece at fault."""
-    return [_row(f"piece {place}", entry) for place, entry in enumerate(entries, 1)]
+    rows = [_row(f"piece {place}", entry) for place, entry in enumerate(entries, 1)]
+    if any(entry.get("hinged", False) for entry in entries):
+        for row, entry in zip(rows, entries, strict=True):
+            row.append(float(entry.get("hinged", False)))
+    return rows
 
 
 def _row(name: str, entry: Mapping[str, Any]) -> list[float]:
@@ -80,7 +88,7 @@ def _row(name: str, entry: Mapping[str, Any]) -> list[float]:
     wanted = list(dict.fromkeys(key.partition("[")[0] for key in SIZES[kind]))
     called = f"{name}, a {KINDS[kind]},"
     for key in entry:
-        if key not in (*wanted, "shape", "mass", "density", "position", "attitude"):
+        if key not in (*wanted, "shape", "mass", "density", "position", "attitude", "hinged"):
             raise ValueError(f"{called} has no {key}; expected {', '.join(wanted)}")
     optional = ("angle",)
     for key in wanted:

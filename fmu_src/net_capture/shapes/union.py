@@ -9,14 +9,14 @@ Masses add, also where pieces overlap. It moves about its principal axes, see `s
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from fmu_src.implied import formula
-from fmu_src.interface import Laid, Term
+from fmu_src.interface import Laid, Term, Undesigned
 from fmu_src.net_capture.shapes import Checks, Hulls, Point, Shape, Values, hulls, samples, solids
 from fmu_src.net_capture.shapes import pieces as of
 from fmu_src.net_capture.shapes.box import box_distance
@@ -31,6 +31,8 @@ from orbital.vectors import dot
 
 PARTS, PIECES = "target.parts", "target.pieces"
 BODIES, PLANES = "target.bodies", "target.planes"
+HINGED = "hinge.stiffness"
+"""A value that only scenes have whose target is hinged."""
 WORDS = 18
 """Numbers of a piece in the FMU: kind, four sizes (of a box half its edges), place of its middle, matrix from its axes
 to the body's by rows, and radius of the sphere about its middle."""
@@ -151,6 +153,42 @@ def contact_distance(rows, room, normal, point):
     return found
 
 
+@kernel
+def of_swinging(rows, room, distance, normal, point):
+    """1 if the face that a point is nearest to is one of a piece that swings, else 0.
+
+    Where that face lies in the open the foot of the point lies on its piece.
+
+    rows         its pieces, and whether each swings             (n, 19)
+    room         for vectors                                     (6, 3)
+    distance     of the point, and the outward normal       [m]  (3,)
+    point        in body axes                               [m]  (3,)
+
+    Checked  tests/net_capture/test_hinge.py
+    """
+    own, local = room[0], room[1]
+    nearest = math.inf
+    swings = 0
+    for k in range(rows.shape[0]):
+        row = rows[k]
+        x = point[0] - distance * normal[0] - row[5]
+        y = point[1] - distance * normal[1] - row[6]
+        z = point[2] - distance * normal[2] - row[7]
+        for i in range(3):
+            local[i] = row[8 + i] * x + row[11 + i] * y + row[14 + i] * z
+        off = abs(piece_distance(row, own, local))
+        if off < nearest:
+            nearest = off
+            swings = 1 if row[WORDS] != 0.0 else 0
+    return swings
+
+
+def swinging(rows: np.ndarray) -> np.ndarray:
+    """Which pieces a scene calls hinged, (n,)."""
+    found: np.ndarray = rows[:, of.ROW] != 0.0 if rows.shape[1] > of.ROW else np.zeros(len(rows), dtype=bool)
+    return found
+
+
 def make(composition: Any) -> Shape:
     """Kernels of a union."""
     pieces_of = composition.table(PIECES)
@@ -171,6 +209,19 @@ def make(composition: Any) -> Shape:
         """
         return contact_distance(pieces_of(p), p.piece_room, normal, point)
 
+    @kernel
+    def distance_now(p, normal, point):
+        """The same of pieces some of which swing, as they are now; whether the nearest one does is noted.
+
+        Checked  tests/net_capture/test_hinge.py
+        """
+        rows = p.hinge_rows[0 : pieces_of(p).shape[0]]
+        found = contact_distance(rows, p.piece_room, normal, point)
+        p.hinge_touched = of_swinging(rows, p.piece_room, found, normal, point)
+        return found
+
+    if "hinge" in composition.terms:
+        distance = distance_now
     solid = samples.make_solid(composition, plain_distance)._replace(distance=distance)
     if "wrap" not in composition.terms:
         return solid
@@ -192,10 +243,10 @@ def body_of(rows: np.ndarray) -> solids.Solid:
     return solids.solid_of(mass, center, tensor)
 
 
-def pieces_table(rows: np.ndarray, body: solids.Solid) -> np.ndarray:
+def pieces_table(pieces: Sequence[of.Piece], body: solids.Solid) -> np.ndarray:
     """The table `pieces`, in body axes."""
-    found = np.empty((len(rows), WORDS))
-    for row, piece in zip(found, of.pieces(rows), strict=True):
+    found = np.empty((len(pieces), WORDS))
+    for row, piece in zip(found, pieces, strict=True):
         half = of.half_of(piece)
         row[0], row[1:5] = piece.kind, piece.sizes
         if piece.kind == of.BOX:
@@ -224,8 +275,13 @@ def planes(numbers: Mapping[str, np.ndarray]) -> np.ndarray:
 
 
 def lay(values: Mapping[str, float], sources: Mapping[str, np.ndarray]) -> Laid:
-    """Tables of the FMU, and the mass, from what a scene says of the pieces."""
-    return _laid(sources[PARTS].tobytes())
+    """Tables of the FMU, and the mass, from what a scene says of the pieces; those of a hinge as at angle 0."""
+    rows = sources[PARTS]
+    if HINGED not in values and swinging(rows).any():
+        number = 1 + int(np.argmax(swinging(rows)))
+        expected = f"piece {number} says `hinged = true`, which needs the table [capture.hinge]"
+        raise Undesigned("target.parts", f"{len(rows)} pieces", expected)
+    return _laid(np.ascontiguousarray(rows[:, : of.ROW]).tobytes())
 
 
 @lru_cache(maxsize=8)
@@ -236,7 +292,7 @@ def _laid(content: bytes) -> Laid:
         body.to_body(np.vstack([of.spanning(piece, around) for piece in found])) for around in (False, True)
     )
     solid = solids.table(body, inner, outer, min(of.thickness_of(piece) for piece in found))
-    table = pieces_table(rows, body)
+    table = pieces_table(found, body)
     points = body.to_body(np.vstack([of.filling(piece) for piece in found]))
     normals, room, distance = np.empty_like(points), np.empty((2, 3)), formula(union_distance)
 

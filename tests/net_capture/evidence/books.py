@@ -45,7 +45,7 @@ from tests import kernels
 RESULT = Path(__file__).with_name("books.json")
 COMMAND = "python -m tests.net_capture.evidence.books"
 MODEL = "net_capture"
-HOLDS = ("energy.kinetic", "energy.elastic", "target.energy", "energy.potential", "contact.stored")
+HOLDS = ("energy.kinetic", "energy.elastic", "target.energy", "energy.potential", "contact.stored", "hinge.energy")
 GAVE = ("closing.work", "tether.work", "pull_off.work", "ejection.work", "gravity.work")
 TOOK = (
     "contact.loss",
@@ -60,6 +60,7 @@ TOOK = (
     "table.friction_loss",
     "self_contact.loss",
     "break.energy",
+    "hinge.loss",
 )
 EARTH, RADIUS = 3.986004418e14, 6378137.0
 """Gravitational parameter [m3/s2] and equatorial radius [m], WGS 84."""

@@ -1,0 +1,97 @@
+"""The term of a hinged appendage: what a scene says of it, and what goes with it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from fmu_src.interface import Term
+from fmu_src.net_capture.appendage.laying import lay
+from fmu_src.net_capture.hinge.numbers import BODY, MOST_PIECES
+from fmu_src.net_capture.hinge.numbers import LIMIT as AT_LIMIT
+from fmu_src.net_capture.refusal import Refusal, Scene, text
+from fmu_src.net_capture.shapes.union import WORDS
+from fmu_src.rows import angle, at_least_zero, count, output, parameter, peak, state, vector
+from fmu_src.tables import Table
+
+LIMIT = 0.5 * math.pi
+"""Largest angle unless the scene says otherwise: a wing that lies along the body's wall."""
+
+ROWS = (
+    at_least_zero("hinge.stiffness", "N.m/rad", "spring of the hinge, relaxed as the target is drawn", 0.0),
+    at_least_zero("hinge.damping", "N.m.s/rad", "dashpot of the hinge", 0.0),
+    angle("hinge.start_angle", "angle at the start, from the target as it is drawn", 0.0, -math.pi, math.pi),
+    parameter(
+        "hinge.start_rate",
+        "rad/s",
+        "at which it turns at the start, relative to the rest of the target",
+        0.0,
+        display_unit="deg/s",
+    ),
+    output(
+        "hinge.angle", "rad", "of the appendage from the target as it is drawn", rate="hinge.rate", display_unit="deg"
+    ),
+    output("hinge.rate", "rad/s", "of that angle", display_unit="deg/s"),
+    output("hinge.energy", "J", "in the spring of the hinge"),
+    peak("hinge.loss", "J", "taken so far by its dashpot, and by its stops"),
+    output("target.reach", "m", "farthest point of the target from its centre of mass, at any angle", discrete=True),
+    vector("target.inertia", "kg.m2", "about the body axes, of the whole as it is now"),
+    vector("target.products", "kg.m2", "its products of inertia, as elements 12, 13, 23 of the tensor"),
+    state("hinge_now[#]", "1", "attitude, cosine, sine, angle, momentum [N.m.s] and loss [J]", shape=(9,)),
+    state("hinge_steps[#][#]", "1", "room of the integration", shape=(3, 9)),
+    state("hinge_rates[#]", "rad/s", "of the rest of the target, in its axes, and of the hinge", shape=(4,)),
+    state("hinge_speed", "rad/s", "rate of the hinge in contact"),
+    state("hinge_inverse[#][#]", "1/(kg.m2)", "inverse of the matrix of the masses", shape=(4, 4)),
+    state("hinge_whole[#][#]", "kg.m2", "inertia of the whole, body axes", shape=(3, 3)),
+    state("hinge_own[#][#]", "kg.m2", "inertia of the appendage, body axes", shape=(3, 3)),
+    state("hinge_small[#][#]", "1/(kg.m2)", "inverse of that of the whole", shape=(3, 3)),
+    state("hinge_coupling[#]", "kg.m2", "how the rate of the hinge enters the angular momentum", shape=(3,)),
+    state("hinge_eased[#]", "1", "rate of the rest per rate of the hinge without angular momentum", shape=(3,)),
+    state("hinge_shift[#]", "m", "centre of mass of the whole, from that at angle 0, body axes", shape=(3,)),
+    state("hinge_recoil[#]", "m", "way of that centre in the body axes per radian", shape=(3,)),
+    state("hinge_gain[#]", "1/(kg.m)", "rates that an impulse gives", shape=(4,)),
+    state("hinge_lever", "m", "way of the point touched along the impulse, per radian"),
+    count("hinge_touched", "whether the point of the surface found last belongs to the appendage", "state"),
+    state("hinge_point[#]", "m", "point touched, from the centre of mass, body axes", shape=(3,)),
+    state("hinge_local[#]", "1", "direction of an impulse, body axes", shape=(3,)),
+    state("hinge_moved[#]", "m/s", "velocity of a point by the swing, frame axes", shape=(3,)),
+    state("hinge_room[#][#]", "1", "room for vectors", shape=(8, 3)),
+    state("hinge_rows[#][#]", "1", "pieces of the target as they are now", shape=(MOST_PIECES, WORDS + 1)),
+)
+ASKED = (
+    vector("hinge.position", "m", "a point of the hinge's axis, in the target's design axes", "parameter"),
+    vector(
+        "hinge.axis", "1", "direction of the hinge, design axes, of any length: it turns to the right about it",
+        "parameter", (1.0, 0.0, 0.0),
+    ),
+    angle("hinge.limit", "largest angle to both sides, where it is stopped without a rebound", LIMIT, 0.0, math.pi),
+)  # fmt: skip
+
+
+def refuses(scene: Scene) -> Iterator[Refusal]:
+    """Moments that the two bodies have not, a map of forces, and a start beyond the stops."""
+    told = scene.vector("target.principal_inertia")
+    if any(told):
+        expected = "must be left out: with [capture.hinge] they follow from the pieces of both bodies"
+        yield Refusal("target.principal_inertia", text(told, " kg m2"), expected)
+    limit, start = (
+        float(scene.values[BODY][AT_LIMIT]) if BODY in scene.values else math.pi,
+        scene.values["hinge.start_angle"],
+    )
+    if abs(start) > limit:
+        expected = f"must be within hinge.limit, {math.degrees(limit):.4g} deg"
+        yield Refusal("hinge.start_angle", f"{math.degrees(start):.4g} deg", expected)
+
+
+PART = Term(
+    "an appendage of the target that swings about a hinge with a spring and a dashpot",
+    ROWS,
+    needs=("target",),
+    excludes=("wrap", "force_map"),
+    carries={"target": ("union",)},
+    tables=(Table(BODY, "1", "masses of both bodies, the hinge, what holds at any angle, and what belongs to which"),),
+    asked=ASKED,
+    lay=lay,
+    make=lambda composition: None,
+    refuses=refuses,
+)

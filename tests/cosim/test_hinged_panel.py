@@ -1,0 +1,96 @@
+"""What a scene says of a hinged appendage, what goes with it, and what is refused by its name."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dcone_cosim import build
+from dcone_cosim.errors import HandoffError
+from dcone_cosim.handoff import require_rigid
+from dcone_cosim.loading import load, shipped
+from dcone_cosim.scene.mistakes import SceneError
+from tests.cosim.test_warnings import cautions
+
+NAME = "hinged-panel"
+INERTIA = 'principal_inertia = ["9 kg m2", "9 kg m2", "9 kg m2"]'
+TOW = '\n[removal]\nmacro_step = "1 s"\nduration = "1 h"\n'
+
+
+def text() -> str:
+    return shipped()[NAME].read_text()
+
+
+def without_hinge(scene: str) -> str:
+    return scene[: scene.index("[capture.hinge]")] + scene[scene.index("[capture.contact]") :]
+
+
+def refused(tmp_path: Path, scene: str) -> str:
+    file = tmp_path / "mine.toml"
+    file.write_text(scene)
+    with pytest.raises(SceneError) as caught:
+        load(str(file))
+    return str(caught.value)
+
+
+def test_the_scene_that_is_shipped() -> None:
+    main = load(NAME).phases[0].main
+    told = {row.key: row for row in build.implied("net_capture", main.values, main.terms)}
+    assert 0.09 < told["hinge.frequency"].value < 0.11
+    assert told["hinge.mass"].value == pytest.approx(22.0)
+    assert told["hinge.dies_out"].value == pytest.approx(2.0 * told["hinge.moment"].value / 0.4)
+    assert cautions(NAME) == ""
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda s: s.replace("hinged = true\n", ""), "one or more of them must say `hinged = true`"),
+        (lambda s: s.replace('mass = "700 kg"', 'mass = "700 kg"\nhinged = true'), "must not be hinged"),
+        (lambda s: s.replace("axis = [1.0, 0.0, 0.0]", "axis = [0.0, 0.0, 0.0]"), "must be a direction"),
+        (lambda s: s.replace('start_rate = "10 deg/s"', 'start_angle = "91 deg"'), "within hinge.limit, 90 deg"),
+        (lambda s: s.replace("[capture.contact]", "[capture.wrap]\n\n[capture.contact]"), "cannot go together"),
+        (lambda s: s.replace("[capture.contact]", "[capture.force_map]\n\n[capture.contact]"), "cannot go together"),
+        (lambda s: s + TOW, "what is handed over to or from a removal is one rigid target"),
+        (without_hinge, "piece 2 says `hinged = true`, which needs the table [capture.hinge]"),
+        (
+            lambda s: s.replace('shape = "union"', f'shape = "union"\n{INERTIA}'),
+            "they follow from the pieces of both bodies",
+        ),
+    ],
+    ids=["none", "all", "axis", "beyond", "wrap", "force_map", "removal", "no hinge", "inertia"],
+)  # fmt: skip
+def test_what_does_not_go_with_it_is_refused(tmp_path: Path, change, said: str) -> None:  # type: ignore[no-untyped-def]
+    assert said in refused(tmp_path, change(text()))
+
+
+def test_another_shape_is_refused(tmp_path: Path) -> None:
+    scene = text()
+    scene = scene[: scene.index("[[capture.target.parts]]")] + scene[scene.index("[capture.hinge]") :]
+    assert "capture.target.shape" in refused(tmp_path, scene.replace('shape = "union"', 'shape = "sphere"'))
+
+
+def test_a_capture_that_tells_of_a_hinge_hands_nothing_over() -> None:
+    """Also an FMU in a file, of which no scene knows what is in it."""
+    require_rigid(("target.attitude[1]",))
+    with pytest.raises(HandoffError, match="an appendage that swings"):
+        require_rigid(("target.attitude[1]", "hinge.angle"))
+
+
+def test_pictures_follow_the_angle() -> None:
+    """At angle 0 the corners are those of the surface; at another the wing has turned about its edge, and the centre of
+    mass of the whole has stayed where it was."""
+    main = load(NAME).phases[0].main
+    values = {**main.values, **main.made}
+    surface, swing = build.target_surface(values, main.terms), build.target_swing(values, main.terms)
+    assert surface is not None
+    assert swing is not None
+    np.testing.assert_allclose(swing(0.0), surface[0], atol=1e-15)
+    moved, drawn = swing(0.5), np.array(surface[0])
+    # of 722 kg the 22 kg of boom and wing, 0.2 and 0.9 m from the hinge: about the first axis they swing to -y
+    away = (2.0 * 0.2 + 20.0 * 0.9) / 722.0 * np.array([0.0, -np.sin(0.5), np.cos(0.5) - 1.0])
+    np.testing.assert_allclose(moved[:8], drawn[:8] - away, atol=1e-12)
+    edge = np.array([0.0, 0.0, 1.0 - (2.0 * 1.2 + 20.0 * 1.9) / 722.0])
+    before, after = drawn[-8:] - edge, moved[-8:] + away - edge
+    c, s = np.cos(0.5), np.sin(0.5)
+    np.testing.assert_allclose(after, before @ np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]]), atol=1e-12)
